@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
+from riser_soil.assembly.end_places import corners
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.part import Model, State
@@ -18,13 +20,13 @@ from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, 
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.interruption import asked_to_end, end_together, uninterrupted
-from riser_soil.scene.stages import Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
 from riser_soil.seating import seat
 from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.solution import NewtonSettings
-from riser_soil.solve.step_control import Control, StepControl
+from riser_soil.solve.step_control import Control, PathSteps, StepControl
 from riser_soil.solve.step_solver import StepSolver, solver_of
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
@@ -163,7 +165,7 @@ class StageRun:
     assembly: Assembly
     stage: Stage
     stepper: TimeStepper
-    control: StepControl | AutoSteps
+    control: StepControl | PathSteps | AutoSteps
     observer: StageObserver
     relaxed: int = 0
 
@@ -206,8 +208,8 @@ def _overload(assembly: Assembly) -> str:
 def _walk(run: StageRun, checkpoint: CheckpointWriter | None) -> State:
     stepper, control = run.stepper, run.control
     while not control.finished:
-        static = isinstance(run.stage, StaticStage)
-        step = _static_step(run) if static else stepper.advance(control)
+        dynamic = isinstance(run.stage, DynamicStage)
+        step = stepper.advance(control) if dynamic else _static_step(run)
         with uninterrupted():
             stepper.commit(step, control)
             run.observer.record(stepper, step, last=control.finished)
@@ -280,25 +282,37 @@ def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
     return replace(settings, line_search=settings.line_search or lies, linear_start=lies and at_rest)
 
 
-def _load_steps(assembly: Assembly, stage: StaticStage) -> int:
-    """Load steps of a static stage: as many as the scene asks for; more where soil is to follow a riser that is laid on
-    it or moved.
+def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
+    """Load steps from t0 to t1 of a stage without inertia: as many as the scene asks for; more where soil is to follow
+    a riser that is laid on it or moved.
     """
     asked = assembly.scene.solver.load_steps
     if assembly.soil is None:
         return asked
-    moved = assembly.moved_in(stage) / (MOVED_BY * assembly.scales.diameter)
+    moved = assembly.moved(t0, t1) / (MOVED_BY * assembly.scales.diameter)
     if assembly.scene.has_path_dependent_soil:
-        moved = max(moved, assembly.pressed_in(stage) / (PRESSED_BY * assembly.scales.diameter) - ROUND_OFF)
+        moved = max(moved, assembly.pressed(t0, t1) / (PRESSED_BY * assembly.scales.diameter) - ROUND_OFF)
     laid = LAID_IN if assembly.cushion is not None and assembly.is_laid_in(stage) else 1
     return max(asked, laid, min(math.ceil(moved), MOST_STEPS))
 
 
-def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepControl | AutoSteps:
+def _path_steps(assembly: Assembly, stage: QuasiStaticStage) -> PathSteps:
+    """From corner to corner of a quasi-static stage, as long as asked at most, or as load steps would be."""
+    met, longest = [0.0, *corners(assembly.scene, stage)], stage.time_step
+    if longest == "auto":
+        counts = [_load_steps(assembly, stage, a, b) for a, b in pairwise(met)]
+    else:
+        counts = [math.ceil((b - a) / longest - ROUND_OFF) for a, b in pairwise(met)]
+    return PathSteps(met, counts, assembly.scene.solver.min_load_step)
+
+
+def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepControl | PathSteps | AutoSteps:
     """The steps of a stage, from its beginning to its end."""
     solver = assembly.scene.solver
     if isinstance(stage, StaticStage):
-        return StepControl(1.0, 1.0 / _load_steps(assembly, stage), solver.min_load_step)
+        return StepControl(1.0, 1.0 / _load_steps(assembly, stage, 0.0, 1.0), solver.min_load_step)
+    if isinstance(stage, QuasiStaticStage):
+        return _path_steps(assembly, stage)
     smallest = assembly.smallest_step(stage)
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)

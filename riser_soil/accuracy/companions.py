@@ -56,7 +56,7 @@ class PeakObserver(StatelessObserver):
         if self._assembly.comm.rank == 0:
             seen = self._seen(stepper)
             self.peaks.record([step.t], seen, soil)
-            if self._envelope is not None and (last or self.peaks.stages[-1].kind == "dynamic"):
+            if self._envelope is not None and (last or self.peaks.stages[-1].kind != "static"):
                 self._envelope.follow(instants_at(seen, 0))
 
     def relaxed(self, relaxed: object) -> None:

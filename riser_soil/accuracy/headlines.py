@@ -1,6 +1,6 @@
 """Headline quantities of a run, by stage: what an engineer reads first in its summary, and what its error is part of.
 
-In a static stage they are the values at its end, in a dynamic one the extremes over the stage; the soil's settlement is
+In a static stage they are the values at its end, in others the extremes over the stage; the soil's settlement is
 the largest over the stage in both, as far as the soil was recorded.
 
 Errors are told relative to a scale, at least the value's own size and never less than a floor, as a quantity that
@@ -120,7 +120,7 @@ def _known(name: str, unit: str, value: float | None, figure: str, which: str) -
 
 
 def _value(stage: Told, path: tuple[str, ...], which: str) -> float | None:
-    """A figure at the end of a static stage, or an extreme, min or max, of a dynamic one; None where there is none."""
+    """A figure at the end of a static stage, or an extreme, min or max, of another; None where there is none."""
     static = stage["kind"] == "static"
     found: Any = stage["final" if static else "extremes"]
     for key in path:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Any, TypeVar
 
 from riser_soil.accuracy.chain import COARSER, Ratios, companions, run_values
@@ -73,8 +74,7 @@ def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
 
 
 def _first_statics(scene: Scene) -> Sequence[Any]:
-    dynamic = [n for n, stage in enumerate(scene.stages) if not isinstance(stage, StaticStage)]
-    return scene.stages[: dynamic[0]] if dynamic else scene.stages
+    return tuple(takewhile(lambda stage: isinstance(stage, StaticStage), scene.stages))
 
 
 def _computed(scene: Scene, comm: Any) -> tuple[Scene, CurveEnvelope, RunPeaks]:

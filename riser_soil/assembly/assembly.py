@@ -242,21 +242,22 @@ class Assembly:
             with_soil = [*on_ground, *self.soil_parts]
         return Model([self.line], [*parts, *with_soil], self.ground_fields)
 
-    def moved_in(self, stage: StaticStage) -> float:
-        """How far a static stage moves the end that it moves farthest [m], from where it was as the stage began."""
-        return max((float(np.linalg.norm(target - origin)) for origin, target in self._moves(stage)), default=0.0)
+    def moved(self, t0: float, t1: float) -> float:
+        """How far the end that the present stage moves farthest [m] is at t1 from where it is at t0."""
+        return max((float(np.linalg.norm(after - before)) for before, after in self._moves(t0, t1)), default=0.0)
 
-    def pressed_in(self, stage: StaticStage) -> float:
-        """By how much a static stage changes the embedment of an end's underside [m], in the level soil before it."""
+    def pressed(self, t0: float, t1: float) -> float:
+        """By how much the embedment of an end's underside changes between t0 and t1 of the present stage [m], in the
+        level soil before it.
+        """
         axis = self.scene.seabed_level + 0.5 * self.scales.diameter
-        depths = ([max(0.0, axis - float(x[2])) for x in move] for move in self._moves(stage))
+        depths = ([max(0.0, axis - float(x[2])) for x in move] for move in self._moves(t0, t1))
         return max((abs(after - before) for before, after in depths), default=0.0)
 
-    def _moves(self, stage: StaticStage) -> list[tuple[Array, Array]]:
-        """Where the ends that a static stage moves were as it began, and where they go (3,) [m]."""
-        origins = self.begun.get(stage.name, end_positions(self.line))
-        targets = (getattr(stage.move, name, None) for name in ("start", "end"))
-        return [(x, np.asarray(target)) for x, target in zip(origins, targets, strict=True) if target is not None]
+    def _moves(self, t0: float, t1: float) -> list[tuple[Array, Array]]:
+        """Where the ends that the present stage moves are at t0 and at t1 (3,) [m]."""
+        motions = (end.motion for end in (self.line.start, self.line.end))
+        return [(motion(t0)[0], motion(t1)[0]) for motion in motions if motion is not None]
 
     def first_guess(self, stage: Stage) -> Array | None:
         """Increments (size,) to where the first static step begins its search; None where it begins as it is placed."""

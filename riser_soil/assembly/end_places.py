@@ -8,12 +8,14 @@ from typing import assert_never
 import numpy as np
 
 from riser_soil.assembly.motions import set_motion, vessels_of
+from riser_soil.assembly.stage import times_to_hit
 from riser_soil.core.arrays import Array
 from riser_soil.riser.ends import End
 from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage, TimedStage
+from riser_soil.solve.automatic_steps import from_last_to_first
 
 # Times at which a stage is looked at, at least: a prime number of intervals, as whole periods would always find the
 # same.
@@ -46,16 +48,36 @@ def instants(scene: Scene, stage: Stage) -> Array:
     periods = [period for _, period in periods_of(scene, stage)]
     count = PER_PERIOD * stage.duration / min(periods, default=stage.duration)
     even = np.linspace(0.0, stage.duration, int(np.clip(count, LOOKS, MOST_LOOKS)))
-    motions = stage.motion.by_end.values() if stage.motion is not None else ()
-    given = [history for motion in motions for history in (motion.table, motion.vessel_history) if history is not None]
-    rows = [np.array(history.columns.values["t"]) for history in given]
-    times = np.unique(np.concatenate([even, *rows]))
+    times = np.unique(np.concatenate([even, *_rows(stage)]))
     return np.asarray(times[times <= stage.duration])
 
 
-def periods_of(scene: Scene, stage: DynamicStage) -> Iterator[tuple[str, float]]:
+def corners(scene: Scene, stage: QuasiStaticStage) -> list[float]:
+    """t of a quasi-static stage where an equilibrium is due whatever its steps are, its end the last: rows of tables,
+    parts of periods, ends of ramps, bends of load histories, outputs.
+    """
+    parts = [np.arange(0.0, stage.duration, period / PER_PERIOD) for _, period in periods_of(scene, stage)]
+    met = np.concatenate([times_to_hit(scene, stage), *_rows(stage), *parts])
+    return from_last_to_first(stage.duration, met.tolist())[::-1]
+
+
+def corner_count(scene: Scene, stage: QuasiStaticStage) -> float:
+    """About how many `corners` there are, outputs left out."""
+    of_periods = (PER_PERIOD * stage.duration / period for _, period in periods_of(scene, stage))
+    bends = sum(len(load.history or ()) for load in stage.loads)
+    return sum(of_periods) + sum(rows.size for rows in _rows(stage)) + bends + 1.0
+
+
+def _rows(stage: TimedStage) -> list[Array]:
+    """t of the rows of a stage's tables."""
+    motions = stage.motion.by_end.values() if stage.motion is not None else ()
+    given = [history for motion in motions for history in (motion.table, motion.vessel_history) if history is not None]
+    return [np.array(history.columns.values["t"]) for history in given]
+
+
+def periods_of(scene: Scene, stage: TimedStage) -> Iterator[tuple[str, float]]:
     """Periods [s] of what moves in a stage."""
-    if scene.water is not None and scene.water.waves is not None:
+    if isinstance(stage, DynamicStage) and scene.water is not None and scene.water.waves is not None:
         yield "the waves", scene.water.waves.period
     if stage.motion is not None:
         for name, motion in stage.motion.by_end.items():

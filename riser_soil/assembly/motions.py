@@ -15,7 +15,7 @@ from riser_soil.riser.line import Line
 from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.rao import TRANSLATIONS
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 def vessels_of(scene: Scene) -> Vessels | None:
     """The vessels that carry ends; None where there are none."""
-    stages = [stage for stage in scene.stages if isinstance(stage, DynamicStage) and stage.motion is not None]
-    if not any(motion.vessel for stage in stages if stage.motion for motion in stage.motion.by_end.values()):
+    given = [stage.motion for stage in scene.stages if not isinstance(stage, StaticStage) and stage.motion is not None]
+    if not any(each.vessel for motion in given for each in motion.by_end.values()):
         return None
     from riser_soil.assembly.vessels import Vessels
 
@@ -58,6 +58,8 @@ def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessel
     elif stage.motion is not None and name in stage.motion.by_end:
         for way in stage.motion.by_end[name].ways.values():  # rotation last: a table beside it has none of its own
             _set(end, name, origin, stage, way, vessels)
+        if isinstance(stage, QuasiStaticStage):
+            _slow(end)
 
 
 def _move(end: End, origin: Array, target: Vector | None) -> None:
@@ -65,6 +67,14 @@ def _move(end: End, origin: Array, target: Vector | None) -> None:
         from riser_soil.motion.move import SmoothMove
 
         end.motion = SmoothMove(origin, np.asarray(target))
+
+
+def _slow(end: End) -> None:
+    """Without rates."""
+    from riser_soil.motion.slow import SlowMotion, SlowTurning
+
+    end.motion = SlowMotion(end.motion) if end.motion is not None else None
+    end.turning = SlowTurning(end.turning) if end.turning is not None else None
 
 
 def _set(end: End, name: str, origin: Array, stage: Stage, way: MotionKind, vessels: Vessels | None) -> None:
@@ -77,9 +87,9 @@ def _set(end: End, name: str, origin: Array, stage: Stage, way: MotionKind, vess
         case Rotation():
             end.turning = _rocking(way)
         case Table():
-            _carry(end, origin, _table(way))
+            _carry(end, origin, _table(way, stage))
         case VesselHistory():
-            _sail(end, origin, way)
+            _sail(end, origin, way, stage)
         case Vessel():
             assert vessels is not None
             vessel = vessels.motion(stage, name, origin)
@@ -108,18 +118,19 @@ def _rocking(given: Rotation) -> Callable[[float], SupportRotation]:
     return RockingSupport(np.array(given.axis) / np.linalg.norm(given.axis), swing)
 
 
-def _table(given: Table | VesselHistory) -> SixDegreeMotion:
+def _table(given: Table | VesselHistory, stage: Stage) -> SixDegreeMotion:
     from riser_soil.motion.table import TabulatedMotion
 
     values = np.hstack([given.displacements, given.rotations])
-    return TabulatedMotion(np.array(given.columns.values["t"]), values, given.ramp)
+    straight = isinstance(stage, QuasiStaticStage)
+    return TabulatedMotion(np.array(given.columns.values["t"]), values, given.ramp, straight)
 
 
-def _sail(end: End, origin: Array, given: VesselHistory) -> None:
+def _sail(end: End, origin: Array, given: VesselHistory, stage: Stage) -> None:
     """With a vessel at which the end is at origin (3,) as the stage begins."""
     from riser_soil.motion.rigid_body import CarriedFrame, CarriedPoint, RigidBody
 
-    once = lru_cache(maxsize=2)(_table(given))  # a step asks again and again for its beginning and its end
+    once = lru_cache(maxsize=2)(_table(given, stage))  # a step asks again and again for its beginning and its end
     body = RigidBody(once, np.array([given.axes(mode) for mode in TRANSLATIONS]).T)
     end.motion, end.turning = CarriedPoint(body, origin, np.array(given.reference)), CarriedFrame(body)
 

@@ -19,7 +19,7 @@ from riser_soil.scene.stages import (
     MidpointScheme,
     NewmarkScheme,
     Stage,
-    StaticStage,
+    TimedStage,
     loads_in,
 )
 from riser_soil.scene.stages import Load as LoadScene
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 def scheme_of(stage: Stage) -> Scheme:
     """The time scheme of a stage."""
-    if isinstance(stage, StaticStage):
+    if not isinstance(stage, DynamicStage):
         return Static()
     match stage.scheme:
         case MidpointScheme():
@@ -45,7 +45,7 @@ def scheme_of(stage: Stage) -> Scheme:
             assert_never(stage.scheme)
 
 
-def times_to_hit(scene: Scene, stage: DynamicStage) -> list[float]:
+def times_to_hit(scene: Scene, stage: TimedStage) -> list[float]:
     """Times [s] in a stage where output is due, a motion's ramp ends or a load's history bends."""
     motions = stage.motion.by_end.values() if stage.motion else ()
     ramps = [way.ramp for motion in motions for way in motion.ways.values() if way.ramp]
@@ -60,7 +60,7 @@ def _multiples(interval: float, end: float) -> list[float]:
 
 def prescribe_spin(scene: Scene, line: Line, stage: Stage) -> None:
     """Prescribe the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
-    line.prescribe_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
+    line.prescribe_spin(spins_freely(scene.riser) and not isinstance(stage, DynamicStage))
 
 
 def loads_of(scene: Scene, line: Line, stage: Stage) -> list[Part]:

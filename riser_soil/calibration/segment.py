@@ -25,7 +25,7 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, run_stage
 
 TABLE = "path.csv"
-STEP = 1.0  # s; no rate of the soil's is taken and both ends are driven: time only counts
+STEP = 1.0  # of the count that the table goes by
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class PipeSegment:
     def scene(self, parameters: Mapping[str, float], table: Path | str, steps: int) -> Scene:
         """The scene that follows a table of so many steps, with numbers by their paths in it."""
         motion = {"table": str(table)}
-        stage = {"name": "penetration", "kind": "dynamic", "duration": STEP * steps, "time_step": STEP}
+        stage = {"name": "penetration", "kind": "quasi-static", "duration": STEP * steps, "time_step": STEP}
         given = [f"stages={json.dumps([stage | {'motion': {'start': motion, 'end': motion}}])}"]
         given += [f"{path}={float(value)!r}" for path, value in parameters.items()]
         return read_scene(self.file, [*self.overrides, *given])
@@ -59,7 +59,7 @@ class PipeSegment:
 
 @dataclass
 class ContactForceLog(StatelessObserver):
-    """Vertical force of all ground on the riser [N] after each step of a stage, by time [s]."""
+    """Vertical force of all ground on the riser [N] after each step of a stage, by its t."""
 
     assembly: Assembly
     times: list[float] = field(default_factory=list)
@@ -122,6 +122,4 @@ def contact_length(assembly: Assembly) -> float:
 def write_table(path: PenetrationPath, first: float, file: Path) -> None:
     """The path as a table of motion for both ends; first: penetration as the scene begins [m]."""
     rows = [f"{STEP * n:.10g}, 0, 0, {float(first - w)!r}" for n, w in enumerate(path.w)]
-    while len(rows) < 4:  # that cubic splines ask for
-        rows.append(f"{STEP * len(rows):.10g}, 0, 0, {float(first - path.w[-1])!r}")
-    file.write_text("\n".join(["t [s], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")
+    file.write_text("\n".join(["t [-], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")

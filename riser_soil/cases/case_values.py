@@ -56,7 +56,7 @@ def _statistics(run: Run, since: float) -> Iterator[CaseValue]:
     number = max((n for n, stage in enumerate(stages) if stage["kind"] == "dynamic"), default=None)
     if number is None:
         return
-    begun = sum(stage["time"] for stage in stages[:number] if stage["kind"] == "dynamic")
+    begun = sum(stage["time"] for stage in stages[:number])
     seen = (run["stage"] == number) & (run.time >= begun + since)
     for name, unit, series in _series(run):
         values = series[seen]

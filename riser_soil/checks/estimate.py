@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from riser_soil.assembly import sized
+from riser_soil.assembly.end_places import corner_count
 from riser_soil.checks.fill import factor_memory
 from riser_soil.checks.inventory import built
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
@@ -20,7 +21,7 @@ from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import MeshFile, SoilScene
-from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.soil.grading import BlockSpec
@@ -155,7 +156,7 @@ def size_of(scene: Scene) -> ProblemSize:
     condensed = scene.soil is not None and _condensed(scene, scene.soil)
     seconds = BUILD * elements + steps * of_riser + (of_soil + ON_CONDENSED * steps if condensed else of_soil * steps)
     dofs = 3 if resolved_dimension(scene) == 2 else 6
-    auto = any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages)
+    auto = any(not isinstance(stage, StaticStage) and stage.time_step == "auto" for stage in scene.stages)
     return ProblemSize(
         elements=elements,
         components=components,
@@ -175,12 +176,17 @@ def size_of(scene: Scene) -> ProblemSize:
 
 def _stage(scene: Scene, stage: Stage) -> tuple[float, float, float, float]:
     """Steps, times that automatic steps have to hit, records and pictures of a stage."""
-    if not isinstance(stage, DynamicStage):
+    if isinstance(stage, StaticStage):
         return float(scene.solver.load_steps), 0.0, 1.0, 1.0
-    output, auto = scene.output, stage.time_step == "auto"
+    output = scene.output
     paces = [stage.duration / pace for pace in (output.interval, output.xdmf_interval) if pace is not None]
-    stops = math.fsum(paces) if auto else 0.0
-    steps = max(stops, 1.0 / LONGEST_AUTO) if stage.time_step == "auto" else stage.duration / stage.time_step
+    given = 0.0 if stage.time_step == "auto" else stage.duration / stage.time_step
+    if isinstance(stage, QuasiStaticStage):
+        stops = math.fsum(paces) + corner_count(scene, stage)
+        steps = stops + given if given else stops * scene.solver.load_steps
+    else:
+        stops = 0.0 if given else math.fsum(paces)
+        steps = given or max(stops, 1.0 / LONGEST_AUTO)
     pictures = _due(stage.duration, output.xdmf_interval or output.interval, steps)
     return steps, stops, max(pictures, _due(stage.duration, output.interval, steps)), pictures
 

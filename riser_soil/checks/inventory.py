@@ -34,7 +34,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "springs": "" if sprung else "no end has a rotational spring",
         "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
         "loads": "" if any(s.loads for s in scene.stages) or tensioned else "no stage has loads",
-        "inertia": "" if has_dynamics(scene) else "all stages are static",
+        "inertia": "" if has_dynamics(scene) else "no stage is dynamic",
         "rotary inertia": _no_rotary_inertia(scene),
         "structural damping": _no_structural_damping(scene),
         "morison": _no_morison(scene),
@@ -107,14 +107,14 @@ def _no_friction(scene: Scene, ground: str) -> str:
 
 def _no_rotary_inertia(scene: Scene) -> str:
     if not has_dynamics(scene):
-        return "all stages are static"
+        return "no stage is dynamic"
     given = any(t.rotary_inertia for t in scene.used_line_types.values())
     return "" if given or resolved_dimension(scene) == 3 else "no line type has rotary inertia"
 
 
 def _no_structural_damping(scene: Scene) -> str:
     if not has_dynamics(scene):
-        return "all stages are static"
+        return "no stage is dynamic"
     damped = any(t.damping and t.damping.ratio for t in scene.used_line_types.values())
     return "" if damped else "no line type has damping"
 
@@ -123,7 +123,7 @@ def _no_morison(scene: Scene) -> str:
     if scene.water is None:
         return "the scene has no water"
     if not has_dynamics(scene) and scene.water.current is None:
-        return "all stages are static, and still water does not load a riser at rest"
+        return "no stage is dynamic, and still water does not load a riser at rest"
     types, attachments = scene.used_line_types.values(), scene.riser.attachments
     resist = any(t.drag or t.added_mass for t in types) or any(a.drag_area or a.added_mass for a in attachments)
     if resist or (scene.water.waves and has_dynamics(scene)):

@@ -76,7 +76,7 @@ def _stretched(scene: Scene) -> Iterator[str]:
         at = int(apart.argmax())
         strain = float(apart[at]) / length - 1.0
         if strain > STRETCHED:
-            when = f" at {instants(scene, stage)[at]:.4g} s" if isinstance(stage, DynamicStage) else ""
+            when = f" at {instants(scene, stage)[at]:.4g} s" if not isinstance(stage, StaticStage) else ""
             key = "move" if isinstance(stage, StaticStage) else "motion"
             yield (
                 f"stages.{n}.{key}: the ends come to be {apart[at]:.6g} m apart{when}, but the riser is only "
@@ -119,9 +119,8 @@ def _courses(scene: Scene, name: str, support: Support) -> Iterator[VelocitiesBy
     end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(scene)
     for stage in scene.stages:
         set_motion(end, name, position, stage, vessels)
-        duration = stage.duration if isinstance(stage, DynamicStage) else 1.0
-        yield _course(end, np.linspace(0.0, duration, LOOKS), support.rotation != "free")
-        position = position if end.motion is None else end.motion(duration)[0]
+        yield _course(end, np.linspace(0.0, stage.end, LOOKS), support.rotation != "free")
+        position = position if end.motion is None else end.motion(stage.end)[0]
 
 
 def _course(end: End, times: Array, turns: bool) -> VelocitiesByEnd:

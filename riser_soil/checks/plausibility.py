@@ -9,9 +9,10 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.checks.bending_plausibility import bending_warnings
+from riser_soil.checks.inventory import has_dynamics
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Load, StaticStage
+from riser_soil.scene.stages import DynamicStage, Load, Stage, StaticStage
 
 
 def physical_warnings(assembly: Assembly) -> Iterator[str]:
@@ -37,10 +38,8 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
 def _moves(scene: Scene) -> bool:
     """Whether ends move in any stage, or waves come in a dynamic one."""
     waves = scene.water is not None and scene.water.waves is not None
-    return any(
-        stage.move is not None if isinstance(stage, StaticStage) else waves or stage.motion is not None
-        for stage in scene.stages
-    )
+    moved = (stage.move if isinstance(stage, StaticStage) else stage.motion for stage in scene.stages)
+    return any(each is not None for each in moved) or (waves and has_dynamics(scene))
 
 
 def _light_pipes(assembly: Assembly) -> Iterator[str]:
@@ -80,13 +79,13 @@ def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:
 
 
 def _loads_that_end(scene: Scene) -> Iterator[str]:
-    """Loads of static stages that the next stage does not have, and so takes away."""
+    """Loads of stages without inertia that the next stage does not have, and so takes away."""
     for n, (stage, after) in enumerate(pairwise(scene.stages)):
-        if not isinstance(stage, StaticStage):
+        if isinstance(stage, DynamicStage):
             continue
         acting_after = [_acting(other) for other in after.loads]
         for m, load in enumerate(stage.loads):
-            if not load.keep and not _has_ended(load) and _acting(load) not in acting_after:
+            if not load.keep and not _has_ended(load, stage) and _acting(load) not in acting_after:
                 back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
                 yield (
                     f"stages.{n}.loads.{m}: {_told(load)} ends with its stage; {after.name} is without it, and the "
@@ -94,12 +93,12 @@ def _loads_that_end(scene: Scene) -> Iterator[str]:
                 )
 
 
-def _has_ended(load: Load) -> bool:
-    """Whether a static load's own history brings it to nothing by the end of its stage."""
+def _has_ended(load: Load, stage: Stage) -> bool:
+    """Whether a load's own history brings it to nothing by the end of its stage."""
     if load.history is None:
         return False
     times, factors = zip(*load.history, strict=True)
-    return float(np.interp(1.0, times, factors)) == 0.0
+    return float(np.interp(stage.end, times, factors)) == 0.0
 
 
 def _acting(load: Load) -> tuple[object, ...]:

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from riser_soil.checks.inventory import has_dynamics
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import StaticStage
 from riser_soil.scene.wave_kinds import Airy, WaveKind
 from riser_soil.sea.dispersion import wave_number
 
@@ -34,8 +34,8 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
             yield from _steep_sea(place, scene.gravity, train)
         yield from _shallow(train, k, h)
     yield from _other_depth(scene)
-    if all(isinstance(stage, StaticStage) for stage in scene.stages):
-        yield "water.waves: waves act in dynamic stages, and all stages are static: nothing will come of them"
+    if not has_dynamics(scene):
+        yield "water.waves: waves act in dynamic stages, and no stage is dynamic: nothing will come of them"
 
 
 def _steep(place: str, wave: Airy, k: float, h: float) -> Iterator[str]:

@@ -10,7 +10,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.errors import SolveError
 from riser_soil.modes.eigenpairs import Eigenpairs, lowest
-from riser_soil.modes.rest import LOADED, RiserAtRest, at_rest
+from riser_soil.modes.rest import RiserAtRest, at_rest
 from riser_soil.riser.directors import Frames
 from riser_soil.riser.line import UP
 from riser_soil.riser.sections import larger_beside
@@ -87,7 +87,7 @@ def _require_sound(found: Eigenpairs, least: float) -> None:
 
 def _seen(rest: RiserAtRest, squares: Array, found: Eigenpairs) -> Modes:
     line = rest.assembly.line
-    state = State.at_rest(LOADED, rest.assembly.size)
+    state = State.at_rest(rest.stage.end, rest.assembly.size)
     tangents = line.trial(state).turn.tangent @ line.basis.T
     nodal = np.array([line.nodal(rest.whole(mode)) for mode in found.modes])
     moved = nodal[..., : line.dimension] @ line.basis.T

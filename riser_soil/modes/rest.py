@@ -17,22 +17,21 @@ from riser_soil.core.system import System, Timer
 from riser_soil.errors import SceneError
 from riser_soil.interruption import agreeing
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, StaticStage
+from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.stages import LayingCounter, lay, run_stage
 
 STIFFNESS = Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)
 MASS = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
-LOADED = 1.0  # load factor at the end of a static stage
 MOVING = DynamicStage(name="small vibrations", kind="dynamic", duration=1.0, time_step=1.0)
 
 
 class RiserAtRest(NamedTuple):
-    """Equilibrium at the end of a static stage. stiffness, mass (free, free): by the increments of the free dofs, of
-    all fields; rows (size,): row of each entry of a local array, -1 where prescribed.
+    """Equilibrium at the end of a stage without inertia. stiffness, mass (free, free): by the increments of the free
+    dofs, of all fields; rows (size,): row of each entry of a local array, -1 where prescribed.
     """
 
     assembly: Assembly
-    stage: StaticStage
+    stage: Stage
     stiffness: csr_array
     mass: csr_array
     rows: IntArray
@@ -60,14 +59,14 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
     return _linearised(assembly, stages[-1], clock)
 
 
-def stages_up_to(scene: Scene, name: str | None) -> list[StaticStage]:
-    """The scene's first stages up to a static one, all of them static."""
+def stages_up_to(scene: Scene, name: str | None) -> list[Stage]:
+    """The scene's first stages up to a named one, none of them dynamic."""
     names = [stage.name for stage in scene.stages]
     if name is not None and name not in names:
         raise SceneError(f'--stage "{name}": the scene has no such stage; it has {", ".join(names)}')
-    found: list[StaticStage] = []
+    found: list[Stage] = []
     for stage in scene.stages:
-        if not isinstance(stage, StaticStage):
+        if isinstance(stage, DynamicStage):
             break
         found.append(stage)
         if stage.name == name:
@@ -79,8 +78,8 @@ def stages_up_to(scene: Scene, name: str | None) -> list[StaticStage]:
     return found
 
 
-def _linearised(assembly: Assembly, stage: StaticStage, clock: Timer) -> RiserAtRest:
-    model, state = assembly.begin(stage), State.at_rest(LOADED, assembly.size)
+def _linearised(assembly: Assembly, stage: Stage, clock: Timer) -> RiserAtRest:
+    model, state = assembly.begin(stage), State.at_rest(stage.end, assembly.size)
     at_rest = [part for part in model.parts if part is not assembly.cushion]
     massive = _with_mass(assembly)
     system = System(assembly.comm, Model(model.lines, [*at_rest, *massive], model.others), clock)

@@ -26,7 +26,7 @@ from riser_soil.plots.bodies import (
 from riser_soil.plots.moving_pictures import write_film
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
-from riser_soil.results.cycles import beginning, cycles, dynamic_stage, period_of
+from riser_soil.results.cycles import beginning, cycles, period_of, timed_stage
 from riser_soil.results.derived import along
 
 _SIZE = (960, 540)
@@ -77,7 +77,7 @@ def film(run: Run, file: Path, stage: str | None, period: float | None, field: s
 
 def _filmed(run: Run, stage: str | None, period: float | None) -> tuple[float, float]:
     """From when to when [s]: the last whole cycle of the stage; all of it where it has no one period."""
-    number = dynamic_stage(run, stage)
+    number = timed_stage(run, stage)
     try:
         last = cycles(run, number, period_of(run, number) if period is None else period)[-1]
         length = period_of(run, number) if period is None else period

@@ -16,7 +16,7 @@ from riser_soil.plots.moving_pictures import write_film
 from riser_soil.plots.scales import colour_scale
 from riser_soil.plots.shape import filmed_records
 from riser_soil.results import Run
-from riser_soil.results.cycles import cycles, dynamic_stage
+from riser_soil.results.cycles import cycles, timed_stage
 from riser_soil.results.derived import along
 from riser_soil.results.seabed_line import seabed_under
 from riser_soil.results.stage_records import stage_records
@@ -26,10 +26,10 @@ _INCHES, _DPI = (9.6, 5.4), 100
 
 
 def film_riser(run: Run, file: Path, stage: str | None = None, period: float | None = None) -> None:
-    """The last whole cycle of a dynamic stage, by default the last one; of motion without one period the records around
+    """The last whole cycle of a stage along t, by default the last one; of motion without one period the records around
     the largest moment.
     """
-    number = dynamic_stage(run, stage)
+    number = timed_stage(run, stage)
     of_stage = stage_records(run, run.stage_names[number])
     records = filmed_records(of_stage, MOST_FRAMES) if period is None else cycles(run, number, period)[-1].records
     if len(records) < 2:

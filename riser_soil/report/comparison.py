@@ -41,7 +41,7 @@ def headlines_table(runs: Mapping[str, Run]) -> ReportTable:
     labels = [*runs]
     heads = [head for label in labels[1:] for head in (label, f"differs from {labels[0]} by [%]")]
     note = (
-        "Of static stages at their end, of dynamic ones the extremes. A difference is relative to the first run's "
+        "Of static stages at their end, of others the extremes. A difference is relative to the first run's "
         "size; of forces to a tenth of the stage's largest at least, of touchdown arcs to the distance of the ends."
     )
     return ReportTable(("quantity", "unit", labels[0], *heads), rows, note)

@@ -12,13 +12,11 @@ from riser_soil.plots.units import shown
 from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
 
 READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}  # units of headline quantities, as they are read
-_HEADS = {
-    "static": ("quantity", "unit", "value", "at arc [m]", "±"),
-    "dynamic": (
-        *("quantity", "unit", "at the end", "min", "at t [s]", "at arc [m]", "±"),
-        *("max", "at t [s]", "at arc [m]", "±"),
-    ),
-}
+_AT_THE_END = ("quantity", "unit", "value", "at arc [m]", "±")
+_OVER_THE_STAGE = (
+    *("quantity", "unit", "at the end", "min", "at t [s]", "at arc [m]", "±"),
+    *("max", "at t [s]", "at arc [m]", "±"),
+)
 _AXES, _ALL = ("x", "y", "z"), ", x, y, z"
 _NOTE = "Times are those of the run, arc lengths count from the riser's start. "
 _LEFT_OUT = "Components that stay 0 are left out. "
@@ -54,7 +52,7 @@ def headlines_table(summary: Mapping[str, Any]) -> ReportTable:
         shares = (_bar(bar.get("by_source", {}).get(source), scale) for source in sources)
         rows.append([each.stage, each.name, unit, number(each.value * scale), _whole_bar(bar, scale), *shares])
     head = ("stage", "quantity", "unit", "value", "±", *(f"by {source}" for source in sources))
-    note = "Of static stages at their end, of dynamic ones the extremes over the stage."
+    note = "Of static stages at their end, of others the extremes over the stage."
     return compact(ReportTable(head, rows, note))
 
 
@@ -63,8 +61,9 @@ def _whole_bar(bar: Mapping[str, Any], scale: float) -> str:
 
 
 def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, str], float | None]) -> ReportTable:
+    head = _AT_THE_END if stage["kind"] == "static" else _OVER_THE_STAGE
     if stage["final"] is None:
-        return ReportTable(_HEADS[stage["kind"]], [])
+        return ReportTable(head, [])
     rows: list[list[str]] = []
     signs: dict[str, list[str]] = {}
     for output, figure in outputs.figures(()):
@@ -81,7 +80,7 @@ def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, st
         if output.sign and told_here:
             signs.setdefault(output.sign, []).append(words.removesuffix(_ALL))
     told = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
-    return compact(ReportTable(_HEADS[stage["kind"]], rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
+    return compact(ReportTable(head, rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
 
 
 def _without_round_off(

@@ -30,7 +30,7 @@ def soil_table(stage: Mapping[str, Any]) -> ReportTable:
         place = ", ".join(number(round(x, 3) + 0.0, 4) for x in largest["position"])
         value = number(largest["value"] * figure.row.scale)
         rows.append([figure.row.words, figure.row.unit or "-", value, place, number(largest["time"], 4)])
-    time = "at t [s]" if stage["kind"] == "dynamic" else "at load factor"
+    time = "at load factor" if stage["kind"] == "static" else "at t [s]"
     return ReportTable(("quantity", "unit", "value", "at x, y, z [m]", time), rows)
 
 
@@ -53,7 +53,7 @@ def energy_table(stage: Mapping[str, Any]) -> ReportTable:
                 words = f"{title} {name.replace('_', ' ')}"
                 rows.append([words, number(value * 1e-3), percent(value)])
     worst = energy["worst_residual"]
-    note = "Energy is not balanced in statics." if stage["kind"] == "static" else ""
+    note = "Energy is not balanced in statics." if stage["kind"] != "dynamic" else ""
     if worst["value"] is not None and worst["time"] is not None:
         share = percent(worst["value"])
         size, at = number(worst["value"], 3), number(worst["time"], 4)

@@ -72,7 +72,7 @@ class RunPart:
 
 
 def write_report(folders: Sequence[Path], file: Path, stage: str | None = None) -> Path:
-    """Writes the page. stage: the one that is drawn; by default all dynamic ones, else the last.
+    """Writes the page. stage: the one that is drawn; by default all along t, else the last.
 
     Raises ResultsError where a folder holds no run, or nothing was recorded; the file is then left as it was.
     """
@@ -156,15 +156,15 @@ def _scene_tables(scene: Any) -> Iterator[tuple[str, ReportTable]]:
 def _shape(run: Run) -> list[Image]:
     """The shape at the end of the first stage: where the riser lies before it is moved."""
     first = all_stages(run)[:1]
-    still = [each for stage in first if not stage.dynamic for each in pictures(stage) if each.group == "shape"]
+    still = [each for stage in first if not stage.timed for each in pictures(stage) if each.group == "shape"]
     return [Image(embedded(each.draw()), each.caption) for each in still]
 
 
 def _drawn_stages(run: Run, stage: str | None) -> dict[int, StageRecords]:
     """The stages that are drawn, by their numbers."""
     chosen = stage_records(run, stage)
-    dynamic = [each for each in all_stages(run) if each.dynamic] if stage is None else []
-    return {each.number: each for each in (dynamic or [chosen])}
+    timed = [each for each in all_stages(run) if each.timed] if stage is None else []
+    return {each.number: each for each in (timed or [chosen])}
 
 
 def _stage_part(summary: Mapping[str, Any], told: Mapping[str, Any], drawn: StageRecords | None) -> StagePart:

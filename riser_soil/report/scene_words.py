@@ -185,5 +185,5 @@ def _water(scene: Scene) -> str:
 
 
 def _stages(scene: Scene) -> str:
-    lasts = {stage.name: f", {number(stage.duration)} s" for stage in scene.stages if stage.kind == "dynamic"}
+    lasts = {stage.name: f", {number(stage.duration)} s" for stage in scene.stages if stage.kind != "static"}
     return f"Stages: {', '.join(f'{s.name} ({s.kind}{lasts.get(s.name, str())})' for s in scene.stages)}."

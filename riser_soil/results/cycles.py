@@ -23,15 +23,25 @@ class Cycle:
     records: IntArray
 
 
+def stage_of_kind(run: Run, name: str | None, *kinds: str) -> int:
+    """Number of a stage of one of these kinds by its name; the last one by default."""
+    found = {stage["name"]: n for n, stage in enumerate(run.summary["stages"]) if stage["kind"] in kinds}
+    chosen = name if name is not None else next(reversed(found), "")
+    if chosen not in found:
+        words = " or ".join(kinds)
+        known = f"its {words} stages: {', '.join(found)}" if found else f"it has no {words} stage"
+        raise ResultsError(f'{run.folder}: "{chosen}" is no {words} stage of the run; {known}')
+    return found[chosen]
+
+
 def dynamic_stage(run: Run, name: str | None) -> int:
     """Number of a dynamic stage by its name; the last one by default."""
-    kinds = {stage["name"]: (n, stage["kind"]) for n, stage in enumerate(run.summary["stages"])}
-    dynamic = [key for key, (_, kind) in kinds.items() if kind == "dynamic"]
-    chosen = name if name is not None else (dynamic[-1] if dynamic else "")
-    if chosen not in dynamic:
-        known = f"its dynamic stages: {', '.join(dynamic)}" if dynamic else "it has no dynamic stage"
-        raise ResultsError(f'{run.folder}: "{chosen}" is no dynamic stage of the run; {known}')
-    return kinds[chosen][0]
+    return stage_of_kind(run, name, "dynamic")
+
+
+def timed_stage(run: Run, name: str | None) -> int:
+    """Number of a stage along t by its name; the last one by default."""
+    return stage_of_kind(run, name, "quasi-static", "dynamic")
 
 
 def beginning(run: Run, stage: int) -> float:

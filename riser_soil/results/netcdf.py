@@ -54,7 +54,7 @@ def variable(output: OutputQuantity[Any]) -> Variable:
 
 
 SERIES: dict[str, Variable] = {
-    "time": Variable(("time",), "s", "total simulated time; static stages take none"),
+    "time": Variable(("time",), "s", "total simulated time; static stages take none, quasi-static ones their t"),
     "stage": Variable(("time",), "1", "index of the stage", dtype="i4"),
     **{output.name: variable(output) for output in outputs.of_instant() if output.where != "summary"},
 }

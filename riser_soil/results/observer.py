@@ -39,7 +39,7 @@ from riser_soil.results.screen import print_summary
 from riser_soil.results.settlement_trough import count_of, offsets_of
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.output import Checkpoint
-from riser_soil.scene.stages import Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
@@ -118,7 +118,7 @@ class Observer:
         """stepper: at the stage's beginning; collective."""
         self._enter(stage, stepper.energy)
         if self._recorder is not None:
-            automatic = not isinstance(stage, StaticStage) and stage.time_step == "auto"
+            automatic = isinstance(stage, DynamicStage) and stage.time_step == "auto"
             self._recorder.begin_stage(stage.name, stage.kind, automatic)
         if self._peaks is not None:
             self._peaks.begin_stage(stage.name, stage.kind)
@@ -128,7 +128,7 @@ class Observer:
 
     def _enter(self, stage: Stage, begun: Energy) -> None:
         """begun: energy stored as the stage begins."""
-        scene, static = self._assembly.scene, isinstance(stage, StaticStage)
+        scene, static = self._assembly.scene, not isinstance(stage, DynamicStage)
         self._stage = stage
         self._schedule.begin_stage(stage.kind)
         self._balance = EnergyLedger(begun, static, dissipating(scene), working(scene))
@@ -136,7 +136,7 @@ class Observer:
         self._plausibility.begin_stage(stage)
 
     def _show(self, stage: Stage) -> None:
-        self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
+        self._progress.begin_stage(stage.name, stage.kind, stage.end)
 
     def _begin_at(self, stepper: TimeStepper) -> None:
         """Records the state before all stages, which no static stage has brought about."""
@@ -152,7 +152,7 @@ class Observer:
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
         # Relaxation, in statics, commits states that are no steps: the soil must be known before it.
-        soil = self._soil() if due.pictures or isinstance(self._stage, StaticStage) else None
+        soil = self._soil() if due.pictures or not isinstance(self._stage, DynamicStage) else None
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if last:

@@ -81,7 +81,7 @@ class StagePeaks:
         self._t, self._last = [*self._t[-4:], t], [*self._last[-4:], peaked]
         if self.kind == "dynamic" and len(self._t) >= 3 and self._t[-3] < self._t[-2] < t:
             self.peaks.update(self._t[-2], vertex(np.array(self._t[-3:]), np.array(self._last[-3:])))
-        if self.kind == "dynamic":
+        if self.kind != "static":
             self._follow_smoothly()
 
     @property
@@ -100,7 +100,10 @@ class StagePeaks:
 
     @property
     def _even(self) -> bool:
-        return len(self._t) == 5 and bool(np.ptp(np.diff(self._t)) <= UNEVEN * (self._t[-1] - self._t[0]))
+        """Whether five steps of one motion are as long; from one equilibrium to the next there may be corners."""
+        if self.kind != "dynamic" or len(self._t) < 5:
+            return False
+        return bool(np.ptp(np.diff(self._t)) <= UNEVEN * (self._t[-1] - self._t[0]))
 
     def _smooth_to_the_end(self) -> Extremes:
         """With the last two steps, whose ringing is that of the five."""
@@ -147,9 +150,9 @@ class RunPeaks:
         self._places = None if mesh is None else places(mesh)
 
     def begin_stage(self, name: str, kind: str) -> None:
-        """A dynamic stage's extremes include the state that it begins with, where a stage came before it."""
+        """Extremes of a stage along t include the state that it begins with, where a stage came before it."""
         self.stages.append(StagePeaks(name, kind))
-        if kind == "dynamic" and len(self.stages) > 1:
+        if kind != "static" and len(self.stages) > 1:
             self.stages[-1].begin(self.stages[-2])
 
     def record(self, times: Sequence[float], seen: Instant, soil: SoilSnapshot | None = None) -> None:

@@ -77,7 +77,7 @@ class Plausibility:
 
     def begin_stage(self, stage: Stage) -> None:
         self._last_stage = stage.name == self._assembly.scene.stages[-1].name
-        self._unit = "s" if stage.kind == "dynamic" else "of the load"
+        self._unit = "of the load" if stage.kind == "static" else "s"
         self._largest = 0.0  # moment [N.m]
         self._boundary: BoundaryStress | None = None
         self._axial = self._bending = self._smooth = self._steep = self._stretch = self._beyond = LargestValue()

@@ -41,11 +41,10 @@ class Progress:
     ) -> None:
         self._bar.stop()
 
-    def begin_stage(self, name: str, kind: str, duration: float = 1.0) -> None:
-        """kind: `static` or `dynamic`. duration: s of a dynamic stage."""
+    def begin_stage(self, name: str, kind: str, end: float = 1.0) -> None:
+        """kind: `static`, `quasi-static` or `dynamic`. end: t at the stage's end; in a static stage the load factor."""
         self._kind = kind
-        total = 1.0 if kind == "static" else duration
-        self._bar.reset(self._task, total=total, description=name, state="", visible=True)
+        self._bar.reset(self._task, total=end, description=name, state="", visible=True)
 
     def update(self, t: float, time_step: float, newton_iterations: int) -> None:
         """t: s since the stage began (static: load factor); time_step: of the step just accepted."""

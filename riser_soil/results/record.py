@@ -169,22 +169,22 @@ class Recorder:
         self.close()
 
     def begin_stage(self, name: str, kind: str, automatic: bool = False) -> None:
-        """kind: `static` or `dynamic`. automatic: whether the time steps are.
+        """kind: `static`, `quasi-static` or `dynamic`. automatic: whether the time steps are.
 
-        A dynamic stage's extremes include the state that it begins with.
+        Extremes of a stage along t include the state that it begins with.
         """
         if self.summary.stages:
             self.flush()
         self._time.begin_stage(kind)
         stage = StageTally(name, kind, indicators=StageIndicators(*self._scales, automatic=automatic))
-        if kind == "dynamic" and self._latest is not None:
+        if kind != "static" and self._latest is not None:
             stage.extremes.update(self._time.now, self._latest)
             stage.indicators.begin(self._time.now, self._latest)
         self.summary.stages.append(stage)
         self._series.begin_stage(name)
 
     def begin_at(self, seen: Instant, soil: SoilSnapshot | None = None) -> None:
-        """The state that the run begins with, where its first stage is dynamic: recorded at time zero.
+        """The state that the run begins with, where its first stage is not static: recorded at time zero.
 
         seen: of one instant, as if of many.
         """
@@ -416,5 +416,5 @@ def _soil_file(folder: Path, mesh: SoilMesh | None, goes_on: bool) -> XdmfFile |
 
 
 def _place(stage: StageTally) -> str:
-    time = f" at t = {stage.time:.6g} s" if stage.kind == "dynamic" else f" after {stage.steps} load step(s)"
+    time = f" after {stage.steps} load step(s)" if stage.kind == "static" else f" at t = {stage.time:.6g} s"
     return f"in stage {stage.name}{time}"

@@ -50,8 +50,8 @@ class _OutputInterval:
 class Schedule:
     """Says after each accepted step what is to be written.
 
-    A dynamic stage is written at the first accepted step at or after each multiple of the interval since the
-    stage began, and at its last step; a static stage only at its last step. Pictures imply the series.
+    A quasi-static or dynamic stage is written at the first accepted step at or after each multiple of the interval
+    since the stage began, and at its last step; a static stage only at its last step. Pictures imply the series.
 
     interval: s between records of results.nc; None for every accepted step.
     picture_interval: s between frames of the XDMF files; None for the same as `interval`.
@@ -63,7 +63,7 @@ class Schedule:
         self._static = True
 
     def begin_stage(self, kind: str) -> None:
-        """kind: `static` or `dynamic`."""
+        """kind: `static`, `quasi-static` or `dynamic`."""
         self._static = kind == "static"
         self._series.restart()
         self._pictures.restart()

@@ -60,7 +60,7 @@ def _table(title: str, rows: list[Row]) -> Table:
 
 
 def _stage_title(stage: dict[str, Any]) -> str:
-    ranges = " (range over the stage)" if stage["kind"] == "dynamic" else ""
+    ranges = "" if stage["kind"] == "static" else " (range over the stage)"
     return f"{stage['name']} ({stage['kind']}), at its end{ranges}"
 
 
@@ -103,7 +103,7 @@ def _soil_rows(stage: dict[str, Any]) -> Iterator[Row]:
         if figure.row is None or not largest["value"]:
             continue
         place = ", ".join(f"{round(x, 3) + 0.0:.4g}" for x in largest["position"])
-        when = f", {largest['time']:.4g} s" if stage["kind"] == "dynamic" else ""
+        when = "" if stage["kind"] == "static" else f", {largest['time']:.4g} s"
         value = _number(largest["value"], figure.row.unit, figure.row.scale)
         yield figure.row.words, f"{value} at ({place}) m{when}"
 
@@ -133,7 +133,7 @@ def _newton(stage: dict[str, Any]) -> str:
 
 def _energy_rows(stage: dict[str, Any]) -> list[Row]:
     energy, share = stage["energy"], 100.0 / max(stage["energy"]["turned_over"], 1e-300)
-    if stage["kind"] == "static":
+    if stage["kind"] != "dynamic":
         return [("energy residual", "not balanced in statics")]
     worst = energy["worst_residual"]
     at = f", at most {worst['value'] * share:.2g} % at {worst['time']:.4g} s" if worst["value"] else ""

@@ -11,7 +11,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
-from riser_soil.results.cycles import cycles, dynamic_stage, period_of
+from riser_soil.results.cycles import cycles, period_of, timed_stage
 from riser_soil.results.read import Run
 
 COLUMNS = ("arc_m", "cycle", "end_s", "force_range_N_per_m", "height_range_m", "k_Pa", "k_over_su")
@@ -42,13 +42,13 @@ class SecantStiffness:
 def secant_stiffness(
     run: Run, arcs: Sequence[float], stage: str | None = None, period: float | None = None
 ) -> SecantStiffness:
-    """Between the records of a dynamic stage, by default the last, and linear between the nodes.
+    """Between the records of a stage along t, by default the last, and linear between the nodes.
 
     arcs: m. period: s; by default that of the stage's motion. Where the riser lifts off, the range of its height has
     the way through the water too: the stiffness is that of the whole cycle. Raises ResultsError.
     """
     _check_arcs(run, arcs)
-    number = dynamic_stage(run, stage)
+    number = timed_stage(run, stage)
     found = cycles(run, number, period_of(run, number) if period is None else period)
     force, height = (_at(run, values, arcs) for values in (run["contact_force"], run["position"][..., 2]))
     forces, heights = ([np.ptp(values[cycle.records], axis=0) for cycle in found] for values in (force, height))

@@ -12,7 +12,7 @@ TICK = 1e-6
 
 
 class SimulatedTime:
-    """Total simulated time: dynamic stages add up, static stages take none."""
+    """Total simulated time: quasi-static and dynamic stages add up, static stages take none."""
 
     def __init__(self) -> None:
         self._begun = 0.0

@@ -14,7 +14,7 @@ from riser_soil.results.read import Run
 
 @dataclass(frozen=True, eq=False)
 class StageRecords:
-    """A stage and its records (nr,) in results.nc; of a dynamic stage with the state that it begins with."""
+    """A stage and its records (nr,) in results.nc; of one along t with the state that it begins with."""
 
     run: Run
     number: int
@@ -31,8 +31,9 @@ class StageRecords:
         return str(self.told["name"])
 
     @property
-    def dynamic(self) -> bool:
-        return bool(self.told["kind"] == "dynamic")
+    def timed(self) -> bool:
+        """Whether it goes along t, as quasi-static and dynamic stages do."""
+        return bool(self.told["kind"] != "static")
 
     @property
     def time(self) -> Array:
@@ -42,7 +43,7 @@ class StageRecords:
     @property
     def moves(self) -> bool:
         """Whether there is more than one instant."""
-        return self.dynamic and len(self.records) > 1
+        return self.timed and len(self.records) > 1
 
     def __getitem__(self, name: str) -> Array:
         """A variable of results.nc at the stage's records, (nr, ...)."""
@@ -50,7 +51,7 @@ class StageRecords:
 
 
 def stage_records(run: Run, name: str | None = None) -> StageRecords:
-    """A stage by its name; by default the last dynamic one of which something was recorded, else the last of all.
+    """A stage by its name; by default the last along t of which something was recorded, else the last of all.
 
     Raises ResultsError where there is no such stage, or nothing was recorded of it.
     """
@@ -59,8 +60,8 @@ def stage_records(run: Run, name: str | None = None) -> StageRecords:
     if not recorded:
         raise ResultsError(f"{run.folder}: nothing was recorded, so there is nothing to draw")
     if name is None:
-        dynamic = [n for n in recorded if stages[n]["kind"] == "dynamic"]
-        return _of(run, (dynamic or recorded)[-1], of_record)
+        timed = [n for n in recorded if stages[n]["kind"] != "static"]
+        return _of(run, (timed or recorded)[-1], of_record)
     named = [n for n in recorded if stages[n]["name"] == name]
     if not named:
         known = ", ".join(stages[n]["name"] for n in recorded)
@@ -81,6 +82,6 @@ def _stage_of_records(run: Run) -> IntArray:
 
 def _of(run: Run, number: int, of_record: IntArray) -> StageRecords:
     own = np.flatnonzero(of_record == number)
-    dynamic = run.summary["stages"][number]["kind"] == "dynamic"
-    before = np.flatnonzero(of_record < number)[-1:] if dynamic else own[:0]
+    timed = run.summary["stages"][number]["kind"] != "static"
+    before = np.flatnonzero(of_record < number)[-1:] if timed else own[:0]
     return StageRecords(run, number, np.concatenate([before, own]))

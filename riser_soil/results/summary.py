@@ -53,7 +53,7 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
 class StageTally:
     """Statistics of one stage, gathered while it runs.
 
-    time: s simulated in it (0 in statics); seen: its last step, until the summary of its `final` state is asked for.
+    time: s simulated in it (static: 0); seen: its last step, until the summary of its `final` state is asked for.
     """
 
     name: str
@@ -108,8 +108,8 @@ class StageTally:
 
     @property
     def method(self) -> str | None:
-        """The method by which the equilibria of a static stage were found."""
-        if self.kind != "static":
+        """The method by which the equilibria of a stage without inertia were found."""
+        if self.kind == "dynamic":
             return None
         if self.relaxations:
             return "relaxation"
@@ -137,7 +137,7 @@ class StageTally:
     @property
     def warnings(self) -> list[str]:
         """Warnings about the stage's results, with numbers and a remedy."""
-        used = [*self._overused("s" if self.kind == "dynamic" else "of the load")]
+        used = [*self._overused("of the load" if self.kind == "static" else "s")]
         if self.kind != "dynamic":
             return [*used, *self.implausible]
         off = energy_warnings(self.energy, *self.worst_residual)

@@ -31,11 +31,14 @@ _Line = tuple[int, list[str]]
 
 @dataclass(frozen=True)
 class CsvColumns:
-    """A file's columns by name, in SI units, and the lines of its header and of each row in the file."""
+    """A file's columns by name, in SI units, the units that it gives them in, and the lines of its header and of each
+    row in the file.
+    """
 
     file: Path
     header: int
     values: Mapping[str, tuple[float, ...]]
+    units: Mapping[str, str]
     lines: tuple[int, ...]
 
     @property
@@ -53,14 +56,15 @@ def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> CsvColu
     lines = list(lines_of(file))
     if not lines:
         raise wrong_file(f"{file}: the file is empty; its first line must name the columns: {_header(known)}")
-    names, units = _columns(file, lines[0], known)
-    missing = [name for name in required if name not in names]
+    units = _columns(file, lines[0], known)
+    missing = [name for name in required if name not in units]
     if missing:
         text = f"there is no column {missing[0]}; the header must be like {_header(known)}"
         raise wrong_file(f"{file}:{lines[0][0]}: {text}")
-    rows = [_row(file, line, names) for line in lines[1:]]
-    values = {name: tuple(row[i] * units[i] for row in rows) for i, name in enumerate(names)}
-    return CsvColumns(file, lines[0][0], values, tuple(number for number, _ in lines[1:]))
+    rows = [_row(file, line, [*units]) for line in lines[1:]]
+    sizes = [known[name][unit] for name, unit in units.items()]
+    values = {name: tuple(row[i] * sizes[i] for row in rows) for i, name in enumerate(units)}
+    return CsvColumns(file, lines[0][0], values, units, tuple(number for number, _ in lines[1:]))
 
 
 def lines_of(file: Path) -> Iterator[_Line]:
@@ -90,17 +94,16 @@ def _text(file: Path) -> str:
         raise wrong_file(f"{file}: can't be read ({err.strerror}); check the file and its permissions") from err
 
 
-def _columns(file: Path, header: _Line, known: Known) -> tuple[list[str], list[float]]:
-    """Names and unit sizes of the columns."""
+def _columns(file: Path, header: _Line, known: Known) -> dict[str, str]:
+    """Units of the columns by their names."""
     number, cells = header
-    names, units = [], []
+    units: dict[str, str] = {}
     for cell in cells:
         name, unit = _name_and_unit(f"{file}:{number}", cell, known)
-        if name in names:
+        if name in units:
             raise wrong_file(f"{file}:{number}: there are two columns {name}; remove one of them")
-        names.append(name)
-        units.append(known[name][unit])
-    return names, units
+        units[name] = unit
+    return units
 
 
 def _name_and_unit(place: str, cell: str, known: Known) -> tuple[str, str]:

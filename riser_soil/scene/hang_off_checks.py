@@ -27,7 +27,7 @@ def _wanting(scene: Scene, name: str) -> Iterator[tuple[str, str]]:
         yield f"needs a catenary to begin with, between this end and the {other}", "give both a position, and gravity"
         return
     if first.kind != "static":
-        yield "is that of the first stage at rest, and the first stage is dynamic", "begin with a static stage"
+        yield f"is that of the first stage at rest, and the first stage is {first.kind}", "begin with a static stage"
     elif first.move is not None:
         yield "is that of the first stage, which moves an end", "let a later stage move it"
     if here.position[2] <= there.position[2]:

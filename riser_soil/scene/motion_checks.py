@@ -7,6 +7,8 @@ from riser_soil.scene.motions import EndMotion, Table, Vessel, VesselHistory
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, TimedStage
+from riser_soil.scene.time_history import COUNT, LEAST_ROWS
 from riser_soil.scene.vectors import cross, minus
 
 # What round-off may leave of a displacement [m] or an angle [rad] where the motion is to begin at its middle.
@@ -15,15 +17,15 @@ _AT_ZERO = 1e-9
 _LATE = 1e-9
 
 
-def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, duration: float) -> Iterator[Problem]:
-    """Conflicts of the motion at a path with the scene and with its stage's duration [s]."""
+def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, stage: TimedStage) -> Iterator[Problem]:
+    """Conflicts of the motion at a path with the scene and with its stage."""
     yield from _jumps(path, motion)
     if motion.table:
-        yield from _table((*path, "table"), motion.table, duration)
+        yield from _table((*path, "table"), motion.table, stage)
     if motion.vessel_history:
-        yield from _table((*path, "vessel_history", "file"), motion.vessel_history, duration)
+        yield from _table((*path, "vessel_history", "file"), motion.vessel_history, stage)
     if motion.vessel:
-        yield from _vessel(scene, (*path, "vessel"), motion.vessel)
+        yield from _vessel(scene, (*path, "vessel"), motion.vessel, stage)
     end = scene.riser.start if path[-1] == "start" else scene.riser.end
     if motion.rotation and isinstance(end, Support) and end.rotation == "free":
         allowed = f"riser.{path[-1]}.rotation is free, so that nothing turns with the support"
@@ -32,8 +34,12 @@ def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, duration: floa
         yield Problem((*path, "arc", "hub"), f"the {path[-1]} lies at its hub and can't turn about it", "move the hub")
 
 
-def _vessel(scene: Scene, path: Path, vessel: Vessel) -> Iterator[Problem]:
+def _vessel(scene: Scene, path: Path, vessel: Vessel, stage: TimedStage) -> Iterator[Problem]:
     waves = scene.water.waves if scene.water else None
+    if not isinstance(stage, DynamicStage):
+        remedy = "give its motions as vessel_history, or make the stage dynamic"
+        yield Problem(path, f"a vessel answers waves, and a {stage.kind} stage has none", remedy)
+        return
     if waves is None:
         yield Problem(path, "a vessel moves in waves, and the scene has none", "add water.waves, or leave this out")
         return
@@ -66,14 +72,29 @@ def _jumps(path: Path, motion: EndMotion) -> Iterator[Problem]:
                 yield _jump((*path, key, "phase_deg"), f"{angle:.4g} deg")
 
 
-def _table(path: Path, table: Table | VesselHistory, duration: float) -> Iterator[Problem]:
+def _table(path: Path, table: Table | VesselHistory, stage: TimedStage) -> Iterator[Problem]:
     """Times count from the stage's beginning, to its end."""
-    time = table.columns.values["t"]
-    if time[0] != 0.0 or time[-1] < duration * (1.0 - _LATE):
-        allowed = f"{table.file} covers {time[0]:g} to {time[-1]:g} s, but the stage lasts from 0 to {duration:g} s"
-        yield Problem(path, allowed, "begin the table at 0 s, the stage's beginning, and let it last to its end")
+    time, unit = table.columns.values["t"], table.columns.units["t"]
+    if isinstance(stage, DynamicStage):
+        yield from _no_time_history(path, table)
+    if time[0] != 0.0 or time[-1] < stage.duration * (1.0 - _LATE):
+        t = "" if unit == COUNT else " s"
+        covers, lasts = f"covers {time[0]:g} to {time[-1]:g}{t}", f"lasts from 0 to {stage.duration:g}{t}"
+        remedy = f"begin the table at 0{t}, the stage's beginning, and let it last to its end"
+        yield Problem(path, f"{table.file} {covers}, but the stage {lasts}", remedy)
     elif not table.ramp:
         yield from _table_jumps(path, table)
+
+
+def _no_time_history(path: Path, table: Table | VesselHistory) -> Iterator[Problem]:
+    """What a dynamic stage, which joins the rows by cubic splines in time, asks for beyond a quasi-static one."""
+    rows, unit = table.columns.rows, table.columns.units["t"]
+    if rows < LEAST_ROWS:
+        allowed = f"{table.file}: a table of {rows} rows; cubic splines need at least {LEAST_ROWS}"
+        yield Problem(path, allowed, "add rows, or make the stage quasi-static")
+    if unit == COUNT:
+        allowed = f"{table.file}:{table.columns.header}: t counts [{COUNT}], and a dynamic stage goes by time"
+        yield Problem(path, allowed, "give t [s], or make the stage quasi-static")
 
 
 def _table_jumps(path: Path, table: Table | VesselHistory) -> Iterator[Problem]:

@@ -9,7 +9,7 @@ from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, 
 from riser_soil.scene.problem import Path
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage
+from riser_soil.scene.stages import StaticStage
 
 # Part of the largest value in a table under which a value is no motion.
 _NEGLIGIBLE = 1e-9
@@ -57,7 +57,7 @@ def rotation_axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
 def _ways(scene: Scene) -> Iterator[tuple[Path, MotionKind]]:
     """All motions of the ends, stage by stage."""
     for n, stage in enumerate(scene.stages):
-        if isinstance(stage, DynamicStage) and stage.motion:
+        if not isinstance(stage, StaticStage) and stage.motion:
             for end, motion in stage.motion.by_end.items():
                 yield from ((("stages", n, "motion", end, key), way) for key, way in motion.ways.items())
 

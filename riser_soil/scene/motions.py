@@ -1,4 +1,4 @@
-"""Scene language: prescribed motions of the ends in dynamic stages."""
+"""Scene language: prescribed motions of the ends in quasi-static and dynamic stages."""
 
 import math
 from functools import cached_property

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.motions import ArcMotion, MotionKind, Vessel, VesselHistory
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.scene.stages import Stage, StaticStage, TimedStage
 from riser_soil.scene.vectors import minus, plus
 
 
@@ -21,14 +21,14 @@ def with_end_at(scene: Scene, name: str, place: Vector) -> Scene:
 
 def _stages(scene: Scene, name: str, by: Vector) -> Iterator[Stage]:
     for stage in scene.stages:
-        if isinstance(stage, DynamicStage):
-            yield _shifted(stage, name, by)
-        else:
+        if isinstance(stage, StaticStage):
             by = (0.0, 0.0, 0.0) if getattr(stage.move, name, None) is not None else by
             yield stage
+        else:
+            yield _shifted(stage, name, by)
 
 
-def _shifted(stage: DynamicStage, name: str, by: Vector) -> DynamicStage:
+def _shifted(stage: TimedStage, name: str, by: Vector) -> TimedStage:
     if stage.motion is None or name not in stage.motion.by_end:
         return stage
     given = stage.motion.by_end[name]

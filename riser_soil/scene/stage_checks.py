@@ -9,7 +9,7 @@ from riser_soil.scene.motion_checks import motion_conflicts
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import End, Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Load, MidpointScheme, StaticStage
+from riser_soil.scene.stages import DynamicStage, Load, MidpointScheme, StaticStage, TimedStage
 
 # Strain of a riser pulled straight beyond which a new position must be a mistake.
 _GREATEST_STRAIN = 0.1
@@ -23,10 +23,14 @@ def stage_conflicts(scene: Scene) -> Iterator[Problem]:
         for m, load in enumerate(stage.loads):
             yield from _load_on_riser(scene, ("stages", n, "loads", m), load)
             yield from _moment_on_chain(scene, ("stages", n, "loads", m), load)
-        if isinstance(stage, StaticStage):
-            yield from _static(scene, n, stage)
-        else:
+        if isinstance(stage, DynamicStage):
             yield from _dynamic(scene, n, stage)
+        else:
+            yield from _at_rest(scene, n)
+        if isinstance(stage, StaticStage):
+            yield from _moves(scene, n, stage)
+        else:
+            yield from _motions(scene, n, stage)
     yield from _reachable_moves(scene)
 
 
@@ -73,9 +77,9 @@ def _nearest_node(scene: Scene, arc: float) -> float:
     return min(scene.riser.node_arcs, key=lambda node: abs(node - arc))
 
 
-def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
-    ends = {"start": scene.riser.start, "end": scene.riser.end}
-    if all(end == "free" for end in ends.values()):
+def _at_rest(scene: Scene, n: int) -> Iterator[Problem]:
+    """What keeps a riser from having an equilibrium."""
+    if scene.riser.start == scene.riser.end == "free":
         remedy = "give an end a position, or make the stage dynamic"
         yield Problem(("stages", n), "a riser with two free ends has no equilibrium", remedy)
     elif _swings_freely(scene):
@@ -83,6 +87,10 @@ def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
         yield Problem(
             ("stages", n), "with one freely rotating support and without gravity, it has no equilibrium", remedy
         )
+
+
+def _moves(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
+    ends = {"start": scene.riser.start, "end": scene.riser.end}
     if stage.move:
         targets = {"start": stage.move.start, "end": stage.move.end}
         yield from _prescribed(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
@@ -108,12 +116,15 @@ def _swings_freely(scene: Scene) -> bool:
     return scene.gravity == 0.0 and len(prescribed) == 1 and prescribed[0].rotation == "free"
 
 
-def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
+def _motions(scene: Scene, n: int, stage: TimedStage) -> Iterator[Problem]:
     if stage.motion:
         ends = {"start": scene.riser.start, "end": scene.riser.end}
         yield from _prescribed(ends, {("stages", n, "motion", key): key for key in stage.motion.by_end})
         for key, motion in stage.motion.by_end.items():
-            yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage.duration)
+            yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage)
+
+
+def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
     yield from _midpoint(scene, n, stage)
     key = "duration" if stage.time_step == "auto" else "time_step"
     smallest = scene.solver.min_time_step

@@ -1,4 +1,4 @@
-"""Scene language: static and dynamic stages with their moves, motions, loads and time schemes."""
+"""Scene language: static, quasi-static and dynamic stages with their moves, motions, loads and time schemes."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
+from riser_soil.core.kinds import OneOf, registry
 from riser_soil.core.quantities import (
     FROZEN,
     NEAREST,
@@ -24,7 +25,6 @@ from riser_soil.core.quantities import (
     Text,
     Time,
     by_key,
-    by_kind,
     word_or_number,
     wrong,
 )
@@ -58,7 +58,7 @@ class Load(BaseModel):
         default=None,
         description="factor on the load, linear between [[t, factor], ...]: t in seconds since the stage "
         "began (in a static stage the part of the stage, 0 to 1); by default static loads grow linearly "
-        "from 0 to 1 and dynamic loads have the factor 1 throughout",
+        "from 0 to 1, and quasi-static and dynamic loads have the factor 1 throughout",
     )
     keep: Literal[True, False] = Field(
         default=False,
@@ -174,15 +174,65 @@ Scheme = Annotated[
 ]
 
 
+_KIND = "static, quasi-static or dynamic"
+_LOADS = "loads on the riser during this stage"
+
+
 class StaticStage(BaseModel):
     """Equilibrium without inertia or drag."""
 
     model_config = FROZEN
 
     name: Text = Field(min_length=1, description="name of the stage, different from the others")
-    kind: Literal["static"] = Field(description="static or dynamic")
+    kind: Literal["static"] = Field(description=_KIND)
     move: MovedEnds | None = Field(default=None, description="new prescribed positions of ends, {start, end}")
-    loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
+    loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
+
+
+    @property
+    def end(self) -> float:
+        """Load factor at the stage's end."""
+        return 1.0
+
+
+class QuasiStaticStage(BaseModel):
+    """Equilibria one after another along motions and loads, without inertia, damping or rates.
+
+    t, in which motions and loads are given, only tells their order: seconds, or a count such as that of cycles.
+    """
+
+    model_config = FROZEN
+
+    name: Text = Field(min_length=1, description="name of the stage, different from the others")
+    kind: Literal["quasi-static"] = Field(description=_KIND)
+    duration: Time = Field(description="t at the stage's end, as its tables count: in seconds or otherwise")
+    time_step: AutoOrTime = Field(
+        default="auto",
+        description="longest step of t, or auto: from row to row of tables and load histories and 24 to a period, in "
+        "as many steps as a static stage would take, on soil that yields none that presses by more than 1/160 of the "
+        "diameter; either way rows are hit",
+    )
+    motion: Motion | None = Field(
+        default=None, description="prescribed motions of ends, {start, end}; tables are straight between their rows"
+    )
+    loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
+
+    @model_validator(mode="after")
+    def _lasts_a_step(self) -> Self:
+        _at_most(self.time_step, self.duration)
+        return self
+
+    @property
+    def end(self) -> float:
+        """t at the stage's end."""
+        return self.duration
+
+
+def _at_most(time_step: float | Literal["auto"], duration: float) -> None:
+    """A step within its stage, or an error."""
+    if time_step != "auto" and time_step > duration:
+        allowed = f"must not exceed the stage's duration ({duration:g} s)"
+        raise wrong("time_step", allowed, "take a smaller time_step or a longer duration")
 
 
 class DynamicStage(BaseModel):
@@ -191,7 +241,7 @@ class DynamicStage(BaseModel):
     model_config = FROZEN
 
     name: Text = Field(min_length=1, description="name of the stage, different from the others")
-    kind: Literal["dynamic"] = Field(description="static or dynamic")
+    kind: Literal["dynamic"] = Field(description=_KIND)
     duration: Time = Field(description="duration [s]")
     time_step: AutoOrTime = Field(
         description="time step [s], or auto: as long as each step's local error stays within tolerance; such steps "
@@ -203,7 +253,7 @@ class DynamicStage(BaseModel):
         "riser is off its path after this one step [m]; by default 0.02 of its outer diameter",
     )
     motion: Motion | None = Field(default=None, description="prescribed motions of ends, {start, end}")
-    loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
+    loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
     scheme: Scheme = Field(
         default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlphaParameters()),
         description="{newmark: {beta, gamma}}, {generalized_alpha: {rho_inf}} or {midpoint: {}}",
@@ -211,12 +261,7 @@ class DynamicStage(BaseModel):
 
     @model_validator(mode="after")
     def _lasts_a_step(self) -> Self:
-        if self.time_step != "auto" and self.time_step > self.duration:
-            raise wrong(
-                "time_step",
-                f"must not exceed the stage's duration ({self.duration:g} s)",
-                "take a smaller time_step or a longer duration",
-            )
+        _at_most(self.time_step, self.duration)
         return self
 
     @model_validator(mode="after")
@@ -226,24 +271,21 @@ class DynamicStage(BaseModel):
             raise wrong("tolerance", "steps of a given size have no tolerance", remedy)
         return self
 
+    @property
+    def end(self) -> float:
+        """Time at the stage's end [s]."""
+        return self.duration
 
-Stage = Annotated[
-    Annotated[StaticStage, Tag("<StaticStage>")] | Annotated[DynamicStage, Tag("<DynamicStage>")],
-    Discriminator(
-        by_kind({"static": StaticStage, "dynamic": DynamicStage}),
-        custom_error_type="kind",
-        custom_error_message="static, dynamic",
-    ),
-]
+
+KINDS = registry(StaticStage, QuasiStaticStage, DynamicStage)
+TimedStage = QuasiStaticStage | DynamicStage
+"""Stages along t, with motions of the ends."""
+Stage = Annotated[StaticStage | QuasiStaticStage | DynamicStage, OneOf(KINDS)]
 
 
 def loads_in(stages: Sequence[Stage], stage: Stage) -> tuple[Load, ...]:
     """The loads of a stage, with those that earlier stages keep."""
     names = [each.name for each in stages]
     before = stages[: names.index(stage.name)] if stage.name in names else ()
-    kept = (load.kept_after(_end(each)) for each in before for load in each.loads if load.keep)
+    kept = (load.kept_after(each.end) for each in before for load in each.loads if load.keep)
     return (*kept, *stage.loads)
-
-
-def _end(stage: Stage) -> float:
-    return 1.0 if isinstance(stage, StaticStage) else stage.duration

@@ -38,7 +38,7 @@ class AutoSteps:
     ) -> None:
         self.end, self.tolerance = end, tolerance
         self._smallest = smallest
-        self._stops = _from_last_to_first(end, stops)
+        self._stops = from_last_to_first(end, stops)
         self._now = 0.0
         self._size = max(smallest, min(first, FIRST * end))
         self._error = 0.0
@@ -101,7 +101,7 @@ class AutoSteps:
         return float(self.dt * (aim / max(self._error, aim / AHEAD**ORDER)) ** (1.0 / ORDER))
 
 
-def _from_last_to_first(end: float, stops: Iterable[float]) -> list[float]:
+def from_last_to_first(end: float, stops: Iterable[float]) -> list[float]:
     """The end and all stops before it, without those that all but meet one after them."""
     kept = [end]
     for stop in sorted(stops, reverse=True):

@@ -1,12 +1,15 @@
 """Step size control: the nominal step, halved where a step fails, doubled again where it goes well.
 
 All times lie on a binary refinement of the nominal steps, so that nominal times are always hit. The last nominal step
-ends where the stage does; it may be shorter than the others.
+ends where the stage does; it may be shorter than the others. A path with corners has nominal steps of its own from each
+of them to the next.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -22,7 +25,6 @@ class Control(Protocol):
     judges_error: whether it needs the local error of each step.
     """
 
-    end: float
     judges_error: bool
 
     @property
@@ -111,3 +113,55 @@ class StepControl:
             return self.end
         whole, rest = divmod(ticks, 2**self._levels)
         return whole * self.step + rest / 2**self._levels * self._nominal(ticks)
+
+
+class PathSteps:
+    """Steps of equal nominal size from each corner of a path to the next, so that corners are always hit.
+
+    corners (n + 1,): increasing, from 0 on. counts (n,): nominal steps between them. share: of a nominal step, below
+    which it is not cut.
+    """
+
+    judges_error = False
+
+    def __init__(self, corners: Sequence[float], counts: Sequence[int], share: float) -> None:
+        self._begins = corners[:-1]
+        sizes = [(b - a) / count for (a, b), count in zip(pairwise(corners), counts, strict=True)]
+        stretches = zip(pairwise(corners), sizes, strict=True)
+        self._stretches = [StepControl(b - a, size, share * size) for (a, b), size in stretches]
+        self._number = 0
+
+    @property
+    def finished(self) -> bool:
+        return self._number == len(self._stretches)
+
+    @property
+    def target(self) -> float:
+        return self._begins[self._number] + self._stretch.target
+
+    @property
+    def dt(self) -> float:
+        return self._stretch.dt
+
+    def rejection(self, error: float) -> str:
+        return ""
+
+    def accept(self, easy: bool) -> None:
+        self._stretch.accept(easy)
+        self._number += self._stretch.finished
+
+    def cut(self) -> bool:
+        return self._stretch.cut()
+
+    def state(self) -> Saved:
+        within = {} if self.finished else self._stretch.state()
+        return within | {"number": np.array(self._number)}
+
+    def restore(self, saved: Saved) -> None:
+        self._number = int(saved["number"])
+        if not self.finished:
+            self._stretch.restore(saved)
+
+    @property
+    def _stretch(self) -> StepControl:
+        return self._stretches[self._number]

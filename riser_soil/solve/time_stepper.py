@@ -125,8 +125,8 @@ class TimeStepper:
         self._forces = self.system.forces(self.now)
 
     def depends_on(self, control: Control) -> bool:
-        """Whether loads or supports change until the stage's end; in statics shorter steps are easier only then."""
-        end = State(control.end, self.before.u.copy(), self.before.v.copy(), self.before.a.copy())
+        """Whether loads or supports change in the step to be tried; in statics shorter steps are easier only then."""
+        end = State(control.target, self.before.u.copy(), self.before.v.copy(), self.before.a.copy())
         change = total(self.system.forces(end)) - total(self.system.forces(self.before))
         self.system.prescribe(end)
         changed = bool(np.any(change != 0.0) or np.any(end.u != 0.0))

@@ -90,7 +90,7 @@ def _at_rest(run: Run) -> Iterator[Answer]:
     """Dynamic stages without motion: their extremes are the static stage's values."""
     found = headlines(run.summary)
     static = next(stage["name"] for stage in run.summary["stages"] if stage["kind"] == "static")
-    for stage in (each["name"] for each in run.summary["stages"] if each["kind"] == "dynamic"):
+    for stage in (each["name"] for each in run.summary["stages"] if each["kind"] != "static"):
         for name in ("top tension", "force at end", "force at start"):
             before, now = found.get(f"{static}: {name}"), found.get(f"{stage}: {name}")
             if before is not None and now is not None:

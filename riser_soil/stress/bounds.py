@@ -12,7 +12,7 @@ from riser_soil.results.read import Run
 from riser_soil.results.summary import DOUBTFUL
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import StaticStage, loads_in
+from riser_soil.scene.stages import DynamicStage, Stage, loads_in
 from riser_soil.stress.answers import Answer, between
 
 BALANCE = 1e-3  # of the largest force: what an equilibrium may miss
@@ -26,10 +26,10 @@ def bounds(run: Run) -> Iterator[Answer]:
     yield between("numbers that are none", wrong, 0, 0)
     scene = read_scene(run.folder / "scene.yaml")
     for stage, told in zip(scene.stages, run.summary["stages"], strict=True):
-        if isinstance(stage, StaticStage):
-            yield from _balance(scene, stage, told)
-        else:
+        if isinstance(stage, DynamicStage):
             yield from _energy(told)
+        else:
+            yield from _balance(scene, stage, told)
 
 
 def _recorded(run: Run) -> tuple[str, ...]:
@@ -47,7 +47,7 @@ def _energy(stage: dict[str, Any]) -> Iterator[Answer]:
     yield between(f"{stage['name']}: {ENERGY} [-]", worst_residual(stage), 0.0, DOUBTFUL)
 
 
-def _balance(scene: Scene, stage: StaticStage, told: dict[str, Any]) -> Iterator[Answer]:
+def _balance(scene: Scene, stage: Stage, told: dict[str, Any]) -> Iterator[Answer]:
     """Vertical forces at the stage's end: reactions, contact, loads and weight; and no tension beyond their sum."""
     if not _still_and_submerged(scene):
         return
@@ -79,7 +79,7 @@ def _weight(scene: Scene) -> float:
     return along + sum(each.net_weight for each in attachments_of(scene))
 
 
-def _loads(scene: Scene, stage: StaticStage) -> np.ndarray:
+def _loads(scene: Scene, stage: Stage) -> np.ndarray:
     """Sum of a stage's loads at its end (3,) [N]."""
     total = np.zeros(3)
     for load in loads_in(scene.stages, stage):

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from riser_soil.accuracy.knobs import KNOBS, varied
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, StaticStage
+from riser_soil.scene.stages import StaticStage
 
 BASE = "as it is"
 CLOSE, NEAR, SAME = 0.02, 0.1, 1e-4  # what headline quantities may differ by, of their scales
@@ -44,7 +44,7 @@ def extremes(scene: Scene) -> Iterator[ExtremeScene]:
             against = BASE if apart else None
             yield ExtremeScene(f"{knob.words}, {factor:.3g} times as fine", varied(scene, knob, factor), against, apart)
     yield from _materials(scene)
-    if any(isinstance(stage, DynamicStage) and stage.motion for stage in scene.stages):
+    if any(not isinstance(stage, StaticStage) and stage.motion for stage in scene.stages):
         yield from _motions(scene)
     straight = _with(scene.riser, initial="straight")  # there is no catenary without weight
     yield ExtremeScene("gravity 0", _with(scene, gravity=0.0, riser=straight))
@@ -78,7 +78,7 @@ def _motions(scene: Scene) -> Iterator[ExtremeScene]:
     yield ExtremeScene("harmonic motion in a tenth of its period", _moved(scene, period=0.1))
     if scene.water is None or scene.water.waves is None:
         last = max((n for n, stage in enumerate(scene.stages) if isinstance(stage, StaticStage)), default=-1)
-        still = [_with(stage, motion=None) if isinstance(stage, DynamicStage) else stage for stage in scene.stages]
+        still = [stage if isinstance(stage, StaticStage) else _with(stage, motion=None) for stage in scene.stages]
         if last >= 0:
             yield ExtremeScene("no motion", _with(scene, stages=tuple(still)), _AT_REST, SAME)
 
@@ -125,7 +125,7 @@ def _moved(scene: Scene, **factors: float) -> Scene:
 
 
 def _stage_moved(stage: Any, factors: dict[str, float]) -> Any:
-    if not isinstance(stage, DynamicStage) or stage.motion is None:
+    if isinstance(stage, StaticStage) or stage.motion is None:
         return stage
     ends = {end: _end_moved(motion, factors) for end, motion in stage.motion.by_end.items()}
     return _with(stage, motion=_with(stage.motion, **ends))

@@ -48,6 +48,10 @@ def dynamic(duration: float, time_step: float, name: str = "dynamic", **more: An
     return {"name": name, "kind": "dynamic", "duration": duration, "time_step": time_step, **more}
 
 
+def quasi_static(duration: float, name: str = "quasi-static", **more: Any) -> Mapping:
+    return {"name": name, "kind": "quasi-static", "duration": duration, **more}
+
+
 IN_WAVES: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "outer_diameter": 0.3, "mass": 120.0}
 IN_WAVES |= {"drag": {"normal": 1.1, "tangential": 0.05}, "added_mass": {"normal": 1.0, "tangential": 0.2}}
 

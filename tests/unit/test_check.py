@@ -71,8 +71,8 @@ def test_unknowns_of_the_soil_are_those_that_are_free() -> None:
     ("mapping", "left_out"),
     [
         (without_soil(), "soil: the scene has no soil"),
-        (without_soil(), "inertia: all stages are static"),
-        (without_soil(), "morison: all stages are static, and still water does not load a riser at rest"),
+        (without_soil(), "inertia: no stage is dynamic"),
+        (without_soil(), "morison: no stage is dynamic, and still water does not load a riser at rest"),
     ],
 )
 def test_reasons_of_what_is_left_out(mapping: Mapping, left_out: str) -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import Ledger, StepStatistics
+from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
 from riser_soil.results.doubtful_extremes import AT, JUDGED
 from riser_soil.results.figures import places_of
 from riser_soil.results.indicators import ImpactLoss, StageIndicators

@@ -220,4 +220,4 @@ def test_ordinary_waves_raise_no_doubt(waves: Any) -> None:
 
 def test_waves_in_a_static_scene_are_doubted() -> None:
     told = list(wave_warnings(scene_in({"surface_level": 100.0, "waves": AIRY}, static("only"))))
-    assert any("all stages are static" in line for line in told)
+    assert any("no stage is dynamic" in line for line in told)
