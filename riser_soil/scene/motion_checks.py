@@ -75,9 +75,9 @@ def _jumps(path: Path, motion: EndMotion) -> Iterator[Problem]:
 def _table(path: Path, table: Table | VesselHistory, stage: TimedStage) -> Iterator[Problem]:
     """Times count from the stage's beginning, to its end."""
     time, unit = table.columns.values["t"], table.columns.units["t"]
-    if isinstance(stage, DynamicStage):
-        yield from _no_time_history(path, table)
-    if time[0] != 0.0 or time[-1] < stage.duration * (1.0 - _LATE):
+    if isinstance(stage, DynamicStage) and (wrong := [*_no_time_history(path, table)]):
+        yield from wrong
+    elif time[0] != 0.0 or time[-1] < stage.duration * (1.0 - _LATE):
         t = "" if unit == COUNT else " s"
         covers, lasts = f"covers {time[0]:g} to {time[-1]:g}{t}", f"lasts from 0 to {stage.duration:g}{t}"
         remedy = f"begin the table at 0{t}, the stage's beginning, and let it last to its end"

@@ -84,7 +84,7 @@ def test_an_mp4_is_ffmpeg_s(folder: Path, monkeypatch: pytest.MonkeyPatch) -> No
     ("name", "choice", "says"),
     [
         ("film.avi", {}, r"a film is a \.gif or \.mp4 file"),
-        ("film.gif", {"stage": "lay"}, '"lay" is no dynamic stage of the run'),
+        ("film.gif", {"stage": "lay"}, '"lay" is no quasi-static or dynamic stage of the run'),
         ("film.gif", {"field": "warmth"}, '"warmth" is no field of a film; allowed: settlement, '),
         ("film.gif", {"period": 5.0}, "no whole cycle of 5 s"),
     ],
