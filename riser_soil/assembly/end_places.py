@@ -63,9 +63,10 @@ def corners(scene: Scene, stage: QuasiStaticStage) -> list[float]:
 
 def corner_count(scene: Scene, stage: QuasiStaticStage) -> float:
     """About how many `corners` there are, outputs left out."""
-    of_periods = (PER_PERIOD * stage.duration / period for _, period in periods_of(scene, stage))
-    bends = sum(len(load.history or ()) for load in stage.loads)
-    return sum(of_periods) + sum(rows.size for rows in _rows(stage)) + bends + 1.0
+    of_periods = {period: PER_PERIOD * stage.duration / period for _, period in periods_of(scene, stage)}
+    bends = [np.array([t for t, _ in load.history or ()]) for load in stage.loads]
+    given = np.concatenate([np.array([stage.duration]), *_rows(stage), *bends])
+    return sum(of_periods.values()) + float(np.count_nonzero(np.unique(given) > 0.0))
 
 
 def _rows(stage: TimedStage) -> list[Array]:

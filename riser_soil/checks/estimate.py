@@ -183,7 +183,7 @@ def _stage(scene: Scene, stage: Stage) -> tuple[float, float, float, float]:
     given = 0.0 if stage.time_step == "auto" else stage.duration / stage.time_step
     if isinstance(stage, QuasiStaticStage):
         stops = math.fsum(paces) + corner_count(scene, stage)
-        steps = stops + given if given else stops * scene.solver.load_steps
+        steps = max(stops, given) if given else stops * scene.solver.load_steps
     else:
         stops = 0.0 if given else math.fsum(paces)
         steps = given or max(stops, 1.0 / LONGEST_AUTO)

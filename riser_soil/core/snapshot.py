@@ -158,6 +158,7 @@ class Ledger:
     """Energy of the whole model [J]: stored now, and turned over since the stage began.
 
     numerical: taken out by the time scheme, negative where it put energy in; see `riser_soil.results.energy_ledger`.
+    ahead: taken by forces of contact and soil, which act with their value at the end of a step, beyond their mean.
     residual = change of (kinetic + strain + potential) + dissipated + numerical - work, positive when energy appears
     from nowhere; nan in a static stage, whose first shape need not be an equilibrium.
     turned_over: the largest yet of kinetic energy, strain energy, energy dissipated, and work, by their sizes; the
@@ -173,8 +174,19 @@ class Ledger:
     work: float = 0.0
     residual: float = 0.0
     turned_over: float = 0.0
+    ahead: float = 0.0
     dissipated_by: Mapping[str, float] = field(default_factory=dict)
     work_by: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def made(self) -> float:
+        """What the time scheme has truly taken out [J], or put in: `numerical`, less what forces ahead of their mean
+        book with the other sign.
+        """
+        whole = self.numerical + self.ahead
+        if self.numerical * self.ahead >= 0.0:
+            return self.numerical
+        return whole if whole * self.numerical > 0.0 else 0.0
 
     @property
     def stored(self) -> float:

@@ -176,17 +176,17 @@ class System:
 
     def work_in_step(
         self, first: Forces, bulk: Array, last: Forces, u: Array, share: float
-    ) -> tuple[float, float]:
-        """Work [J] over the increments u of a step: what prescribed motions put in, by the mean reactions, and what the
-        bulk forces F, as their mean, and end-of-step forces E take out.
+    ) -> tuple[float, float, float]:
+        """Work [J] over the increments u of a step: what prescribed motions put in, by the mean reactions; what the
+        bulk forces F, as their mean, and end-of-step forces E take out; and what E takes beyond its own mean.
 
         first, last: forces where the step begins and in its balance; bulk: F where it begins, in the step's own axes.
         share: of the means, what is there as the step begins.
         """
         begun, ended = ((forces.inertia, forces.force, forces.end) for forces in (first, last))
         work = _work_of(self.prescribed_dofs, share, begun, bulk, ended, u)
-        put_in, taken = self.sum([float(joules) for joules in work])
-        return put_in, taken
+        put_in, taken, ahead = self.sum([float(joules) for joules in work])
+        return put_in, taken, ahead
 
     def reactions(self, forces: Forces) -> Array:
         """Reactions at this rank's prescribed dofs [N, N.m]."""
@@ -233,15 +233,16 @@ def _couples(block: MatrixBlock, end_of_lines: int) -> bool:
 @njit
 def _work_of(
     dofs: IntArray, share: float, first: Groups, bulk: Array, last: Groups, u: Array
-) -> tuple[float, float]:
-    """Work of the mean of all groups on some of the dofs, and of the mean F and of E on all."""
-    work, against = 0.0, 0.0
+) -> tuple[float, float, float]:
+    """Work of the mean of all groups on some of the dofs; of the mean F and of E on all; of E beyond its mean."""
+    work, against, ahead = 0.0, 0.0, 0.0
     for i in dofs:
         begun, ended = first[0][i] + first[1][i] + first[2][i], last[0][i] + last[1][i] + last[2][i]
         work += (share * begun + (1.0 - share) * ended) * u[i]
     for i in range(u.size):
         against += (share * bulk[i] + (1.0 - share) * last[1][i] + last[2][i]) * u[i]
-    return work, against
+        ahead += share * (last[2][i] - first[2][i]) * u[i]
+    return work, against, ahead
 
 
 def total(forces: Forces) -> Array:

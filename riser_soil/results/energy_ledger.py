@@ -7,9 +7,17 @@ of supports, all that acts takes
 
 out of the motion in a step (`AcceptedStep.braking`). What the kinetic energy loses beyond it, -(K(n+1) - K(n)) - B, is
 the time scheme's own: with linear inertia exactly what alpha_m, alpha_f, beta and gamma dissipate, zero to round-off
-for average acceleration (for Newmark's scheme: Hughes, The Finite Element Method, 1987, section 9.4). The difference
-between the change of the parts' energies and B is the residual: the error of the mean of nonlinear forces over a step,
-zero for linear ones and else of second order. Inertia that turns adds its own such error to the scheme's share.
+for average acceleration (for Newmark's scheme: Hughes, The Finite Element Method, 1987, section 9.4). Forces E take
+
+    A = du.(E(n+1) - E(n))/2
+
+more than by their mean. Where they stop a motion, as in an impact, it loses A. Where supports or weight press slowly
+into the ground, they give what the mean asks for, and K does not change: then B = A, and the scheme's own is -A, which
+is booked but moves nothing (`Ledger.made`).
+
+The difference between the change of the parts' energies and B is the residual: the error of the mean of nonlinear
+forces over a step, zero for linear ones and else of second order. Inertia that turns adds its own such error to the
+scheme's share.
 """
 
 from __future__ import annotations
@@ -57,6 +65,7 @@ class EnergyLedger:
             numerical=numerical,
             work=work,
             residual=np.nan if self._static else energy.total - self._begun + dissipated + numerical - work,
+            ahead=before.ahead + step.ahead,
             turned_over=max(before.turned_over, energy.kinetic, energy.strain, abs(dissipated), abs(work)),
             dissipated_by=dissipated_by,
             work_by=work_by,

@@ -4,7 +4,8 @@ Each is an estimate of size, calibrated in `tests/verification/test_indicators.p
 
 - time step: `time_resolution` and `doubtful_extremes`, in the extremes of some figures, and the largest local error of
   a step;
-- impact: what contact's force at the end of the step takes beyond what the ground does. A share s of the energy of an
+- impact: what contact's force at the end of the step takes beyond what the ground does, as far as the motion loses it:
+  nothing where supports or weight press slowly into the ground (`energy_ledger`). A share s of the energy of an
   impact, lost while the riser is brought to rest and thrown back, lowers the force of it by some 1 - (1 - s)^(1/4), as
   half of the loss comes before the peak and the force goes with the root of the energy;
 - bending: the largest misfit of the elements, `riser.resolution`.
@@ -52,7 +53,8 @@ class ImpactLoss:
     """Energy [J] that contact has lost to the time step, and its part in one impact.
 
     lost: of the stage. recent: of late, fading within two of a contact's periods. largest: of it, with its time [s].
-    kinetic: the largest of the riser yet.
+    kinetic: the largest of the riser yet. before (3,): of the ledger, what contact's accounts, forces ahead of their
+    mean and the scheme itself took by the last step.
     """
 
     lost: float = 0.0
@@ -60,14 +62,26 @@ class ImpactLoss:
     largest: float = 0.0
     time: float = math.nan
     kinetic: float = 0.0
+    before: Sequence[float] = (0.0, 0.0, 0.0)
 
     def follow(self, t: float, dt: float, period: float, ledger: Ledger) -> None:
-        lost = sum(ledger.dissipated_by.get(name, 0.0) for name in LOSSES)
+        lost = self._lost_by_motion(ledger)
         fading = max(4.0 * dt, 2.0 * period if math.isfinite(period) else 0.0)
-        self.recent = self.recent * math.exp(-dt / fading) + lost - self.lost
-        self.lost, self.kinetic = lost, max(self.kinetic, ledger.kinetic)
+        self.recent = self.recent * math.exp(-dt / fading) + lost
+        self.lost, self.kinetic = self.lost + lost, max(self.kinetic, ledger.kinetic)
         if self.recent > self.largest:
             self.largest, self.time = self.recent, t
+
+    def _lost_by_motion(self, ledger: Ledger) -> float:
+        """Of the last step: all of contact's loss, but for the share of forces ahead of their mean that the scheme has
+        put in in that step.
+        """
+        booked = sum(ledger.dissipated_by.get(name, 0.0) for name in LOSSES)
+        now = booked, ledger.ahead, ledger.numerical
+        loss, ahead, numerical = (a - b for a, b in zip(now, self.before, strict=True))
+        self.before = now
+        put_in = min(1.0, max(0.0, -numerical / ahead)) if ahead else 0.0
+        return loss * (1.0 - put_in)
 
     @property
     def share(self) -> float:

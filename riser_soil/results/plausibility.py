@@ -105,8 +105,14 @@ class Plausibility:
             borne = over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
             self._load = self._load.or_larger(borne, arc, t)
         self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
-        self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
+        self._look_for_stretch(contact.stretch(state), t)
         self._look_for_ground(seen.riser, touch)
+
+    def _look_for_stretch(self, stretch: float, t: float) -> None:
+        """Of soil at small strain: at large strain cells move with it."""
+        assert self._assembly.soil is not None
+        if not self._assembly.soil.moves:
+            self._stretch = self._stretch.or_larger(np.array([stretch]), np.full(1, np.nan), t)
 
     def _look_for_ground(self, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         down = not np.isnan(touch.touchdown_arc)

@@ -140,7 +140,7 @@ def _energy_rows(stage: dict[str, Any]) -> list[Row]:
     residual = f"{energy['residual'] * share:.2g} % of {energy['turned_over']:.3g} J{at}"
     return [
         ("energy residual", residual),
-        ("energy taken out by the time scheme", f"{energy['numerical'] * share:.2g} %"),
+        ("energy taken out by the time scheme", f"{energy['made'] * share:.2g} %"),
     ]
 
 

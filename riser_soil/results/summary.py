@@ -33,8 +33,8 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
             f"the energy balance is {worst:.3g} J off at {t:.5g} s, {abs(worst) / ledger.turned_over:.2%} of the "
             f"{ledger.turned_over:.3g} J turned over, and {ledger.residual:.3g} J at the end: take a smaller time_step"
         )
-    if abs(ledger.numerical) > allowed:
-        done, own = ("took out" if ledger.numerical > 0.0 else "put in"), abs(ledger.numerical)
+    if abs(ledger.made) > allowed:
+        done, own = ("took out" if ledger.made > 0.0 else "put in"), abs(ledger.made)
         yield (
             f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
             "turned over: take a smaller time_step"
@@ -131,8 +131,8 @@ class StageTally:
     def _energy(self) -> dict[str, Any]:
         worst, t = self.worst_residual
         worst_residual = {"value": worst if self.kind == "dynamic" else math.nan, "time": t}
-        relative = self.energy.relative_residual
-        return asdict(self.energy) | {"relative_residual": relative, "worst_residual": worst_residual}
+        told = {"made": self.energy.made, "relative_residual": self.energy.relative_residual}
+        return asdict(self.energy) | told | {"worst_residual": worst_residual}
 
     @property
     def warnings(self) -> list[str]:

@@ -34,7 +34,8 @@ class AcceptedStep:
     """A solved step and its energy balance [J]; cuts: failed attempts before it.
 
     turned: what each part, and "supports", dissipates and puts in. braking: what all forces, supports included, take
-    out of the motion; in exact time integration the kinetic energy loses that much.
+    out of the motion; in exact time integration the kinetic energy loses that much. ahead: of it, what end-of-step
+    forces take beyond their mean over the step.
     """
 
     t: float
@@ -44,6 +45,7 @@ class AcceptedStep:
     energy: Energy
     turned: dict[str, Work]
     braking: float
+    ahead: float = 0.0
 
     @property
     def dissipated(self) -> float:
@@ -189,12 +191,12 @@ class TimeStepper:
         """Energy balance of the step: stored, dissipated and external."""
         energy, turned = self.newton.turned_over(self.before, solution)
         start = self._forces if self._history is None else self._history
-        supports, against = self.system.work_in_step(
+        supports, against, ahead = self.system.work_in_step(
             self._forces, start.force, solution.forces, solution.state.u, self.scheme.start_share
         )
         braking = against - supports - sum(work.inertial for work in turned.values())
         turned["supports"] = Work(external=supports)
-        return AcceptedStep(control.target, control.dt, solution, cuts, energy, turned, braking)
+        return AcceptedStep(control.target, control.dt, solution, cuts, energy, turned, braking, ahead)
 
     def _reject_energy_gain(self, step: AcceptedStep) -> None:
         """NotConvergedError for a dynamic step that creates energy, so that it is cut."""

@@ -129,6 +129,16 @@ def test_turned_over_is_the_most_that_was_stored_or_went_through(stored: Energy,
         assert balance.ledger.turned_over == 7.0
 
 
+@pytest.mark.parametrize(
+    ("numerical", "ahead", "made"),
+    [(-9.0, 9.0, 0.0), (-9.0, 4.0, -5.0), (-9.0, 20.0, 0.0), (-9.0, -1.0, -9.0), (3.0, 50.0, 3.0), (3.0, -1.0, 2.0)],
+)
+def test_the_scheme_has_made_what_forces_ahead_of_their_mean_do_not_explain(
+    numerical: float, ahead: float, made: float
+) -> None:
+    assert Ledger(numerical=numerical, ahead=ahead).made == made
+
+
 def test_what_has_no_account_can_t_be_booked() -> None:
     balance = EnergyLedger(Energy(), True, ("seabed",), ("supports",))
     with pytest.raises(KeyError, match="friction"):

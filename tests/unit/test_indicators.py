@@ -197,6 +197,17 @@ def test_losses_fade_within_two_periods_of_the_contact() -> None:
     assert loss.share == pytest.approx(0.06 / (1.0 - math.exp(-0.25)), rel=1e-6)
 
 
+def test_what_the_scheme_puts_in_as_well_is_no_loss() -> None:
+    """A pipe pressed in slowly: forces ahead of their mean are paid by the scheme; half of them by the motion."""
+    loss, half = ImpactLoss(), ImpactLoss()
+    for n in range(1, 9):
+        booked = {"contact_time_scheme": 6.0 * n}
+        loss.follow(n, 1.0, 0.5, Ledger(ahead=9.0 * n, numerical=-9.0 * n, dissipated_by=booked))
+        half.follow(n, 1.0, 0.5, Ledger(ahead=9.0 * n, numerical=-4.5 * n, dissipated_by=booked))
+    assert loss.lost == loss.share == 0.0
+    assert half.lost == pytest.approx(24.0)
+
+
 def test_steps_that_misplace_the_riser_are_a_warning() -> None:
     told = list(followed([1000.0] * 3, local_error=0.9).warnings())
     assert len(told) == 1

@@ -181,7 +181,7 @@ def test_a_load_that_comes_back_may_be_cut_on_its_way() -> None:
 
 def test_hysteretic_ground_answers_as_its_law_does(tmp_path: Path) -> None:
     """A pipe pressed in and lifted by its ends: the law along the same path, whatever the steps between the rows."""
-    law = {"kind": "randolph-quiggin", "su": 5.0e3}
+    law: Mapping = {"kind": "randolph-quiggin", "su": 5.0e3}
     D, w = ROD["outer_diameter"], np.array([0.0, 0.03, 0.027, 0.03, 0.026, 0.06])
     rows = "".join(f"{t}, 0, 0, {-z}\n" for t, z in enumerate(w))
     (tmp_path / "path.csv").write_text("t [-], x [m], y [m], z [m]\n" + rows, encoding="utf-8")
@@ -212,6 +212,40 @@ def test_hysteretic_ground_answers_as_its_law_does(tmp_path: Path) -> None:
         history = answer.history
         expected.append(float(answer.force[0]))
     assert found == pytest.approx(expected, rel=1e-6)
+
+
+def pressed(stage: Mapping, folder: Path) -> Mapping:
+    """What the summary tells of a stage in which a pipe is pressed into hysteretic clay by its ends, and lifted."""
+    rows = "".join(f"{t}, 0, 0, {-z}\n" for t, z in enumerate((0.0, 0.01, 0.02, 0.03, 0.029, 0.028, 0.03, 0.04)))
+    (folder / "path.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows, encoding="utf-8")
+    ends = {name: {"table": "path.csv"} for name in ("start", "end")}
+    given = riser_scene(
+        stage | {"motion": ends},
+        pipe=ROD | {"EI": 1e9},
+        length=1.0,
+        elements=1,
+        start=prescribed(0.0, 0.0, 0.15, rotation="fixed"),
+        end=prescribed(1.0, 0.0, 0.15, rotation="fixed"),
+        riser={"initial": "straight"},
+        seabed={"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 5.0e3}},
+    )
+    run(scene_from_mapping(given, folder), folder / "out")
+    (told,) = Run(folder / "out").summary["stages"]
+    return dict(told)
+
+
+def test_a_slow_dynamic_stage_has_no_impacts_and_makes_no_energy(tmp_path: Path) -> None:
+    """The supports are paid for the mean force of each step and the ground takes that at its end: what the scheme books
+    for it moves nothing.
+    """
+    told = pressed(dynamic(7.0, 1.0), tmp_path)
+    energy, impact = told["energy"], told["indicators"]["impact"]
+    assert energy["numerical"] < -0.05 * energy["turned_over"]
+    assert energy["ahead"] == pytest.approx(-energy["numerical"], rel=1e-3)
+    assert abs(energy["made"]) < 1e-3 * energy["turned_over"]
+    assert energy["dissipated_by"]["seabed_time_scheme"] > 0.05 * energy["turned_over"]
+    assert impact["lost"] < 1e-3 * energy["dissipated_by"]["seabed_time_scheme"]
+    assert not [each for each in told["warnings"] if "impact lost" in each or "the time scheme" in each]
 
 
 def test_a_stage_after_it_goes_on_from_there(tmp_path: Path) -> None:

@@ -77,7 +77,7 @@ def test_ground_without_strength_and_another_period(folder: Path) -> None:
     ("arc", "stage", "period", "says"),
     [
         (21.0, None, None, "arc length 21 m is not on the riser, which is 20 m long"),
-        (1.0, "lay", None, '"lay" is no quasi-static or dynamic stage of the run; its quasi-static or dynamic stages: heave'),
+        (1.0, "lay", None, 'is no quasi-static or dynamic stage of the run; its quasi-static or dynamic stages: heave'),
         (1.0, None, 8.0, 'stage "heave" has no whole cycle of 8 s'),
     ],
 )

@@ -216,7 +216,7 @@ def test_structure_of_the_file(tmp_path: Path) -> None:
     assert (lay["kind"], lay["time"], lay["steps"], lay["newton_iterations"]) == ("static", 0.0, 2, 6)
     assert (heave["kind"], heave["steps"]) == ("dynamic", 10)
     assert heave["time"] == pytest.approx(1.0)
-    assert set(heave["energy"]) == {*vars(Ledger()), "relative_residual", "worst_residual"}
+    assert set(heave["energy"]) == {*vars(Ledger()), "made", "relative_residual", "worst_residual"}
     assert heave["energy"]["worst_residual"] == {"value": 1e-6, "time": pytest.approx(0.1)}
     assert lay["energy"]["worst_residual"] == {"value": None, "time": None}
 
