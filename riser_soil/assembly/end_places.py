@@ -61,6 +61,22 @@ def corners(scene: Scene, stage: QuasiStaticStage) -> list[float]:
     return from_last_to_first(stage.duration, met.tolist())[::-1]
 
 
+def cycle_count(scene: Scene, stage: Stage) -> float:
+    """Cycles in a stage: periods of what moves, or turns of a table or load history, two to a cycle."""
+    if isinstance(stage, StaticStage):
+        return 0.0
+    periods = (stage.duration / period for _, period in periods_of(scene, stage))
+    given = [np.array(table.displacements) for table in _tables(stage)]
+    given += [np.array([factor for _, factor in load.history])[:, None] for load in stage.loads if load.history]
+    return max([*periods, *(0.5 * float(_turns(values).max()) for values in given)], default=0.0)
+
+
+def _turns(values: Array) -> Array:
+    """How often each column (n, m) turns back."""
+    ways = (np.sign(np.diff(column)) for column in values.T)
+    return np.array([np.count_nonzero(np.diff(way[way != 0.0])) for way in ways])
+
+
 def corner_count(scene: Scene, stage: QuasiStaticStage) -> float:
     """About how many `corners` there are, outputs left out."""
     of_periods = {period: PER_PERIOD * stage.duration / period for _, period in periods_of(scene, stage)}
@@ -71,9 +87,12 @@ def corner_count(scene: Scene, stage: QuasiStaticStage) -> float:
 
 def _rows(stage: TimedStage) -> list[Array]:
     """t of the rows of a stage's tables."""
+    return [np.array(table.columns.values["t"]) for table in _tables(stage)]
+
+
+def _tables(stage: TimedStage) -> list[Table | VesselHistory]:
     motions = stage.motion.by_end.values() if stage.motion is not None else ()
-    given = [history for motion in motions for history in (motion.table, motion.vessel_history) if history is not None]
-    return [np.array(history.columns.values["t"]) for history in given]
+    return [table for motion in motions for table in (motion.table, motion.vessel_history) if table is not None]
 
 
 def periods_of(scene: Scene, stage: TimedStage) -> Iterator[tuple[str, float]]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from riser_soil.assembly import Assembly
+from riser_soil.assembly.end_places import cycle_count
 from riser_soil.assembly.ground import smoothing
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
@@ -24,6 +25,7 @@ CORNER = 20.0
 # How far the riser may come down for each metre that an end moves, and for each of its length under loads or in moving
 # water.
 LOWERED, DRIVEN = 5.0, 0.1
+MANY_CYCLES = 10
 # Points of each element that are looked at, and the part of a mesh's height by which its top may miss the seabed.
 POINTS, OFF_LEVEL = 20, 1e-3
 
@@ -46,6 +48,19 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
         yield from _top_off_the_seabed(assembly)
         yield from _out_of_reach(assembly)
         yield from _rate_without_effect(assembly)
+        yield from _forgets(assembly.scene)
+
+
+def _forgets(scene: Scene) -> Iterator[str]:
+    """Many cycles on clay whose loops do not close."""
+    cycles = sum(cycle_count(scene, stage) for stage in scene.stages)
+    laws = [] if scene.soil is None else [law for law in scene.soil.laws if law.forgets_at is not None]
+    if laws and cycles >= MANY_CYCLES:
+        yield (
+            f"soil: {laws[0].kind} lets go of a mean stress, half of it in each cycle of {laws[0].forgets_at:.2%} "
+            f"shear strain, and strains on in each under a mean load; the scene has {cycles:.4g} cycles (told from "
+            f"{MANY_CYCLES} on): take iwan, whose loops close; riser-soil material shows both"
+        )
 
 
 def _beyond_the_grid(assembly: Assembly) -> Iterator[str]:

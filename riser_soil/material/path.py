@@ -8,7 +8,7 @@ has no column keeps its strain.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -85,13 +85,18 @@ def _path_of(columns: CsvColumns, source: str) -> MaterialPath:
 
 
 def shear_cycles(amplitudes: Sequence[float] = AMPLITUDES, rows: int = ROWS) -> MaterialPath:
-    """Symmetric cycles of gamma_xz that grow, two at each amplitude, under a vertical stress that stays as it is,
-    all of them slow.
+    """Symmetric cycles of gamma_xz that grow, two at each amplitude, under a vertical stress that stays as it is."""
+    return shear_path((0.0, *(sign * a for a in amplitudes for sign in (1.0, -1.0) * (TURNS // 2))), rows)
+
+
+def shear_path(turns: Iterable[float], rows: int, by_stress: bool = False) -> MaterialPath:
+    """Simple shear from turn to turn of gamma_xz, or of tau_xz [Pa], under a vertical stress that stays as it is, slow
+    all the way.
     """
-    turns = [0.0, *(sign * amplitude for amplitude in amplitudes for sign in (1.0, -1.0) * (TURNS // 2))]
-    gamma = np.concatenate([np.linspace(a, b, rows + 1)[1:] for a, b in pairwise(turns)])
-    values = np.zeros((gamma.size, 6))
-    values[:, 4] = gamma
-    stress = np.array([name == "sigma_zz" for name in STRESSES])
-    seconds = np.full(gamma.size, np.inf)
-    return MaterialPath(values, stress, ("gamma_xz", "sigma_zz"), "cycles of simple shear", seconds)
+    driven = np.concatenate([np.linspace(a, b, rows + 1)[1:] for a, b in pairwise(turns)])
+    values = np.zeros((driven.size, 6))
+    values[:, 4] = driven
+    name = STRESSES[4] if by_stress else STRAINS[4]
+    stress = np.array([each in ("sigma_zz", name) for each in STRESSES])
+    seconds = np.full(driven.size, np.inf)
+    return MaterialPath(values, stress, (name, "sigma_zz"), "cycles of simple shear", seconds)

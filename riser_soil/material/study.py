@@ -10,6 +10,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.material.loops import ClosedCycle, closed_cycles
+from riser_soil.material.memory import columns, memory, told
 from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
 from riser_soil.material.point import MaterialCurve, drive, law_at, point_at
 from riser_soil.results.whole_file import refuse_file, written_together
@@ -17,8 +18,9 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
 from riser_soil.soil import mandel
 
-FILES = CURVE, CYCLES, PICTURE = "material.csv", "material_cycles.csv", "material.png"
+FILES = CURVE, CYCLES, MEMORY, PICTURE = "material.csv", "material_cycles.csv", "material_memory.csv", "material.png"
 USUAL_DEPTH = 1.0  # m, at most half of the block's depth
+_LEFT = f"{CURVE}, {CYCLES}, {MEMORY} and {PICTURE}"
 SIGNED = "# riser_soil material: "  # the first line's beginning, by which the program knows its files
 
 
@@ -32,14 +34,16 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     z = _depth(soil, depth)
     _refuse(folder, force)
     taken = read_path(path) if path is not None else shear_cycles()
-    curve = drive(point_at(soil, z), taken)
+    point = point_at(soil, z)
+    curve = drive(point, taken)
     k = taken.driven
     given = curve.stress if taken.stress[k] else curve.strain
     cycles = closed_cycles(given[:, k], curve.strain[:, k], curve.stress[:, k])
     kind = law_at(soil, z)[0].kind
     heading = f"{SIGNED}{kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
-    _leave(folder, heading, curve, cycles)
-    return _told(soil, z, taken, curve, cycles, folder)
+    remembered = memory(point)
+    _leave(folder, heading, {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: columns(remembered)})
+    return "\n".join([*_told(soil, z, taken, curve, cycles), *told(remembered), f"written: {_LEFT} in {folder}"])
 
 
 def _soil_of(scene: Scene) -> SoilScene:
@@ -76,13 +80,13 @@ def _own(file: Path) -> bool:
         return SIGNED.strip("# ").encode() in opened.read(2000)
 
 
-def _leave(folder: Path, heading: str, curve: MaterialCurve, cycles: list[ClosedCycle]) -> None:
+def _leave(folder: Path, heading: str, tables: dict[str, dict[str, Array]]) -> None:
     """Write all files, none of them by halves."""
     from riser_soil.plots.material import draw
 
     with written_together(folder, FILES) as drafts:
-        _write(drafts / CURVE, heading, _curve_columns(curve))
-        _write(drafts / CYCLES, heading, _cycle_columns(cycles))
+        for name, columns_of in tables.items():
+            _write(drafts / name, heading, columns_of)
         draw(drafts / CURVE, drafts / CYCLES, drafts / PICTURE)
 
 
@@ -111,8 +115,8 @@ def _cycle_columns(cycles: list[ClosedCycle]) -> dict[str, Array]:
 
 
 def _told(
-    soil: SoilScene, z: float, path: MaterialPath, curve: MaterialCurve, cycles: list[ClosedCycle], folder: Path
-) -> str:
+    soil: SoilScene, z: float, path: MaterialPath, curve: MaterialCurve, cycles: list[ClosedCycle]
+) -> list[str]:
     k = path.driven
     stress = np.abs(curve.stress[:, k] - curve.stress[0, k]).max()
     lines = [
@@ -124,4 +128,4 @@ def _told(
         lines.append(f"{'amplitude [-]':>15} {'secant [kPa]':>14} {'damping [%]':>12}")
         last = {f"{c.amplitude:.6g}": c for c in cycles}.values()
         lines += [f"{c.amplitude:15.4g} {1e-3 * c.secant_modulus:14.5g} {100.0 * c.damping_ratio:12.3f}" for c in last]
-    return "\n".join([*lines, f"written: {CURVE}, {CYCLES} and {PICTURE} in {folder}"])
+    return lines

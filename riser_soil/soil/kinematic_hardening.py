@@ -15,6 +15,18 @@ Its left side less the right falls with Δp, by √6 G at least, so that the roo
 With a rate of shear (see `rate`) that makes clay r times as strong, r q0 stands for q0 and γ/r for γ: at a steady rate
 loops are those of clay with r su. With y = Δp/r, θ = 1/(1 + γ y) and r' = dr/dΔp, dy/dΔp = (1 - y r')/r and
 d(θ Δp)/dΔp = θ² (1 + γ y² r'). When flow slows down α falls by what it recalls, within a strain of some 1/γ.
+
+The backstress fades with slip in either direction. In simple shear dα = k (a ∓ α) dγp, with a = (1 - share) su and k =
+γ/√3 = C/(3 a), so that slip is easier towards the bound than away from it. Cycles of stress add the same strain each
+time (J. Lemaitre, J.-L. Chaboche, Mechanics of Solid Materials, 1990, section 5.4; there in tension),
+
+    (1/k) ln[(a² - αmin²)/(a² - αmax²)],   αmin = τmin + share su,   αmax = τmax - share su,
+
+and of a small mean stress a cycle of strain, in which the backstress goes from -m to m and back, leaves
+
+    r²,   r = (a - m)(G + k (a + m)) / ((a + m)(G + k (a - m))),
+
+as a difference between two ways goes with the slope dα/dγ = G H/(G + H), H = k (a ∓ α), from their first to their last.
 """
 
 from __future__ import annotations
@@ -52,6 +64,15 @@ class KinematicHardening(UndrainedClay):
     elastic_share: Share = Field(
         default=0.1, description="share of su up to which undisturbed clay is elastic, below 1 [-]"
     )
+
+    @property
+    def forgets_at(self) -> float:
+        """By r² = 1/2, a quadratic equation in x = m/a: κ (1 - r) x² + (1 + r) x = (1 + κ)(1 - r), κ = k a/G."""
+        a, slope, r = 1.0 - self.elastic_share, 2.0 * (1.0 + self.nu) / 3.0, math.sqrt(0.5)
+        G, k = self.E_over_su / (3.0 * slope), self.E_over_su / (3.0 * a)  # in su
+        constant = (1.0 + slope) * (1.0 - r)
+        x = 2.0 * constant / (1.0 + r + math.sqrt((1.0 + r) ** 2 + 4.0 * slope * (1.0 - r) * constant))
+        return (a * x + self.elastic_share) / G + math.atanh(x) / k
 
     def intact(self, depth: Array, initial: Array) -> CyclicClay:
         bulk, shear, limit = self._constants(depth)

@@ -116,6 +116,13 @@ class SoilLaw(BaseModel, ABC):
         """What is wrong with soil of this depth [m]: what is allowed, and what to do."""
         return None
 
+    @property
+    def forgets_at(self) -> float | None:
+        """Amplitude of shear strain of which a cycle takes half of a small mean stress; None of a law whose loops
+        close.
+        """
+        return None
+
     def bearing(self, width: float) -> Bearing | None:
         """Bearing capacity of the soil's surface under a strip of this width [m]; None without a limit."""
         return None

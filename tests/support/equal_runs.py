@@ -102,4 +102,4 @@ def _near(one: Any, other: Any) -> bool:
         return bool(np.all(a == b))
     finite = np.isfinite(a)
     scale = np.abs(a[finite]).max(initial=0.0)
-    return np.array_equal(finite, np.isfinite(b)) and bool(np.all(np.abs(a - b)[finite] <= TOLERANCE * scale))
+    return np.array_equal(finite, np.isfinite(b)) and bool(np.all(np.abs(a[finite] - b[finite]) <= TOLERANCE * scale))

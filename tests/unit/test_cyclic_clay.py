@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,12 @@ from riser_soil.soil.iwan import IwanOverlay, Overlay
 from riser_soil.soil.kinematic_hardening import CyclicClay, KinematicHardening
 from riser_soil.soil.law import PLASTIC_STRAIN
 from tests.support.coupled_scenes import touchdown
+from tests.support.two_surfaces import (
+    added_by_the_last_cycle,
+    fading_backstress,
+    lost_a_cycle,
+    two_surfaces,
+)
 
 SU, OVER_SU, NU = 4.0e3, 300.0, 0.45
 G0 = OVER_SU * SU / (2.0 * (1.0 + NU))
@@ -249,3 +257,17 @@ def test_wrong_constants_are_told(key: str, value: object, told: str) -> None:
     scene["soil"]["law"] = {"kind": "iwan", "su": 600.0, "E_over_su": 300.0, key: value}
     with pytest.raises(SceneError, match=told):
         scene_from_mapping(scene)
+
+
+HELD, AMPLITUDE = 3.0, 0.3  # shear strains over su/G: near the strength, and cycles that yield both ways
+LOW, HIGH = 0.1, 0.7  # shear stresses over su
+
+
+def test_two_surfaces_forget_as_a_fading_backstress_does() -> None:
+    """Towards a bound that stays slip is easier than away from it: a mean stress relaxes, a mean load strains on,
+    whatever law the modulus follows between. Both backbones are at 0.91 su at 3 su/G.
+    """
+    laws = partial(fading_backstress, 2.98 / 3.0), partial(two_surfaces, 0.6)
+    assert [law().strain(HELD) for law in laws] == pytest.approx([0.911, 0.910], abs=2e-3)
+    assert [lost_a_cycle(law(), HELD, AMPLITUDE) for law in laws] == pytest.approx([0.20, 0.13], abs=0.01)
+    assert [added_by_the_last_cycle(law(), LOW, HIGH) for law in laws] == pytest.approx([0.49, 0.22], abs=0.02)

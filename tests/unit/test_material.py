@@ -17,6 +17,11 @@ from typer.testing import CliRunner, Result
 from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
 from riser_soil.material.loops import closed_cycles, turns
+from riser_soil.material.memory import HIGH, LOW
+from riser_soil.material.path import shear_path
+from riser_soil.material.point import MaterialPoint, drive
+from riser_soil.soil.law import SoilLaw
+from riser_soil.soil.laws import LAWS
 from tests.support.coupled_scenes import touchdown
 from tests.support.on_ranks import HANGS, ROOT, environment
 
@@ -33,7 +38,8 @@ SAND = {
     "E": 2.0e7,
     "match": "triaxial-compression",
 }
-FILES = {"material.csv", "material_cycles.csv", "material.png"}
+KINEMATIC = {"kind": "kinematic-hardening", "su": SU, "E_over_su": E / SU, "nu": NU, "elastic_share": 0.2}
+FILES = {"material.csv", "material_cycles.csv", "material_memory.csv", "material.png"}
 Call = Callable[..., Result]
 
 
@@ -129,6 +135,46 @@ def test_dissipation_is_the_area_of_the_loops(material: Call) -> None:
     np.testing.assert_allclose(lost, area, rtol=1e-6, atol=1e-9)
     assert area[-1] > 1.0
     np.testing.assert_allclose(curve["sigma_zz"], curve["sigma_zz"][0], rtol=1e-9)
+
+
+def law_of(given: dict[str, Any]) -> SoilLaw:
+    return LAWS[given["kind"]].model_validate(given)
+
+
+def test_a_fading_backstress_lets_go_of_a_mean_stress() -> None:
+    """Half of it in each cycle of the amplitude that the law tells: of a little that a longer way has left."""
+    law = law_of(KINEMATIC)
+    amplitude = law.forgets_at
+    assert amplitude is not None
+    point = MaterialPoint(law.at_points(np.array([1.0]), np.zeros((1, 6))), np.zeros((1, 6)))
+    rows = 200
+    path = shear_path([0.0, *(amplitude, -amplitude) * 6, 1.02 * amplitude, *(-amplitude, amplitude) * 4], rows)
+    stress = drive(point, path).stress[13 * rows :: rows, 4]
+    mean = stress[1::2] + stress[2::2]
+    np.testing.assert_allclose(mean[1:] / mean[:-1], 0.5, rtol=0.02)
+
+
+def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> None:
+    """(1/k) ln[(a² - αmin²)/(a² - αmax²)] in each cycle, see riser_soil/soil/kinematic_hardening.py."""
+    done = material(KINEMATIC, "gamma_xz [-]\n1e-4\n")
+    assert done.exit_code == 0, done.output
+    told = table("material_memory.csv")
+    largest, a, q0 = told["stress_at_0.001"][0], 0.8 * SU, 0.2 * SU
+    low, high = LOW * largest + q0, HIGH * largest - q0
+    added = np.diff(told["strain_of_stress_cycles"])
+    np.testing.assert_allclose(added, 3.0 * a / E * np.log((a**2 - low**2) / (a**2 - high**2)), rtol=0.03)
+    assert f"{added[-1]:.5f} more by the last one" in done.output
+
+
+@pytest.mark.parametrize("law", [IWAN, ELASTIC], ids=["iwan", "linear elastic"])
+def test_closed_loops_keep_mean_stress_and_strain(material: Call, law: dict[str, Any]) -> None:
+    done = material(law, "gamma_xz [-]\n1e-4\n")
+    assert done.exit_code == 0, done.output
+    told = table("material_memory.csv")
+    del told["cycle"]
+    for name, values in told.items():
+        np.testing.assert_allclose(values, values[0], rtol=1e-6, err_msg=name)
+    assert law_of(law).forgets_at is None
 
 
 def test_drained_triaxial_compression_of_sand_fails_as_coulomb_says(material: Call) -> None:

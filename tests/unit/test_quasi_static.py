@@ -11,7 +11,8 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import build
-from riser_soil.assembly.end_places import corner_count, corners
+from riser_soil.assembly.end_places import corner_count, corners, cycle_count
+from riser_soil.checks.ground_plausibility import ground_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
@@ -24,7 +25,7 @@ from riser_soil.solve.step_control import PathSteps
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
+from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
 from tests.support.equal_runs import unlike
 from tests.support.left_run import leave_after
@@ -135,6 +136,32 @@ def test_a_period_has_four_and_twenty_corners(tmp_path: Path) -> None:
     (stage,) = found.stages
     assert stage.kind == "quasi-static"
     assert corners(found, stage) == pytest.approx(np.arange(1, 37) / 12.0)
+
+
+HELD_BACK: Mapping = {"at": "end", "force": [1.0, 0.0, 0.0]}
+COUNTED: list[tuple[Mapping, float]] = [
+    (quasi_static(4.0, motion=PULLED), 1.0),  # it turns twice
+    (quasi_static(3.0, motion={"end": {"harmonic": {"amplitude": [0.01, 0.0, 0.0], "period": 0.5}}}), 6.0),
+    (quasi_static(9.0, loads=[HELD_BACK | {"history": [[t, t % 2] for t in range(9)]}]), 3.5),
+    (static(), 0.0),
+]
+
+
+@pytest.mark.parametrize(("stage", "cycles"), COUNTED, ids=["table", "periods", "history", "static"])
+def test_cycles_are_counted(stage: Mapping, cycles: float, tmp_path: Path) -> None:
+    found = scene(tmp_path, stage)
+    assert cycle_count(found, found.stages[0]) == pytest.approx(cycles)
+
+
+@pytest.mark.parametrize(("kind", "duration", "told"), [("kinematic-hardening", 100.0, True), ("iwan", 100.0, False)])
+def test_many_cycles_on_clay_that_forgets_are_told(kind: str, duration: float, told: bool) -> None:
+    swing = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 0.01], "period": 10.0}}}
+    given = touchdown(LAY, quasi_static(duration, motion=swing))
+    given["soil"]["law"] = {"kind": kind, "su": 600.0, "E_over_su": 300.0, "nu": 0.49}
+    warnings = [each for each in ground_warnings(built(given)) if "lets go of a mean stress" in each]
+    assert len(warnings) == told
+    assert all("half of it in each cycle of 0.69% shear strain" in each for each in warnings)
+    assert all("the scene has 10 cycles (told from 10 on): take iwan" in each for each in warnings)
 
 
 def walk(control: PathSteps, cut_at: int = -1) -> list[float]:
