@@ -17,7 +17,7 @@ WATER: Mapping = {"density": 1025.0}
 CLAY: Mapping = {"kind": "von-mises", "su": 2.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
 CYCLIC: Mapping = CLAY | {"kind": "kinematic-hardening", "elastic_share": 0.1}
 ELASTIC: Mapping = {"kind": "linear-elastic", "E": 1.2e6, "nu": 0.45}
-UPRIGHT, FREELY = ({"method": "surface", "soil_moves": how} for how in ("upright", "freely"))
+SURFACE: Mapping = {"method": "surface"}
 HANG: Mapping = {"name": "hang", "kind": "static"}
 
 
@@ -74,7 +74,7 @@ def hose(elements: int, *stages: Mapping, **more: Any) -> Mapping:
     return line(HOSE, *ends, even(40.0, elements), [HANG, *stages], seabed=floor, water=WATER, **more)
 
 
-def pressed(law: Mapping, cells: int, depth: float, contact: Mapping = UPRIGHT, lifted: float = 0.0) -> Mapping:
+def pressed(law: Mapping, cells: int, depth: float, contact: Mapping = SURFACE, lifted: float = 0.0) -> Mapping:
     """A short stiff pipe, pressed by its ends into a slice of soil, then lifted a little; m. cells: to its diameter."""
     pipe = {"outer_diameter": 0.3, "submerged_weight": 500.0, "mass": 120.0, "EA": 1.0e10, "EI": 1.0e7}
     ends = [{"position": [x, 0.0, 0.15], "rotation": "fixed"} for x in (0.0, 0.3)]
@@ -91,7 +91,7 @@ def slice_of(law: Mapping, cells: int, at: float, thickness: float) -> Mapping:
     return {"block": block, "mesh": {"size_at_riser": size, "size_far": 0.3}, "law": law}
 
 
-def resting(law: Mapping, weight: float, thickness: float, contact: Mapping = FREELY) -> Mapping:
+def resting(law: Mapping, weight: float, thickness: float, contact: Mapping = SURFACE) -> Mapping:
     """A pipe between hinges sags by its weight [N/m] onto a slice of soil under its middle."""
     pipe = {"outer_diameter": 0.3, "submerged_weight": weight, "mass": 120.0, "EA": 1.0e6, "EI": 5.0e4}
     ends, soil = ([0.0, 0.0, 0.148], [6.0, 0.0, 0.148]), slice_of(law, 12, 3.0, thickness)
@@ -200,11 +200,11 @@ SCENES: dict[str, Mapping] = {
     "heave on clay springs": touching(CLAY_SPRINGS, 1.0, moved([0.0, 0.0, 1.0], 8.0, 2.0, 80)),
     "heave on clay springs with suction": touching(SUCTION_SPRINGS, 1.0, moved([0.0, 0.0, 1.0], 8.0, 2.0, 80)),
     "pipe pressed on elastic soil": pressed(ELASTIC, 12, 0.006),
-    "pipe pressed on elastic soil that slides": pressed(ELASTIC, 24, 0.006, FREELY),
+    "pipe pressed on elastic soil that slides": pressed(ELASTIC, 24, 0.006, SURFACE),
     "pipe pressed on clay": pressed(CLAY, 12, 0.02),
-    "pipe pressed on clay that slides": pressed(CLAY, 14, 0.012, FREELY),
+    "pipe pressed on clay that slides": pressed(CLAY, 14, 0.012, SURFACE),
     "pipe pressed on cyclic clay and lifted": pressed(CYCLIC, 10, 0.015, lifted=0.0005),
     "pipe rests on elastic soil": resting(ELASTIC, 300.0, 0.1),
-    "pipe rests on clay": resting(CLAY, 200.0, 0.5, UPRIGHT),
+    "pipe rests on clay": resting(CLAY, 200.0, 0.5, SURFACE),
     "pipe rests on clay that slides": resting(CLAY, 120.0, 0.8),
 }  # fmt: skip

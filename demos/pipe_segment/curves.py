@@ -19,8 +19,9 @@ from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
 HERE = Path(__file__).parent
 SCENE = HERE / "scene.yaml"
 D, SU = 0.30, 5.0e3  # m, Pa; as in the scene
-STEP, PAUSE, DEEPEST = 0.01, 0.1, 0.2  # of the path, where it cycles, its end, over D
+STEP, PAUSE, DEEPEST = 0.005, 0.1, 0.2  # of the path, where it cycles, its end, over D
 AMPLITUDES = (0.0025, 0.005, 0.01, 0.02)  # of uplift, over D
+CYCLES, UPLIFT = 14, 0.01  # of one amplitude, over D
 LAWS: dict[str, NormalLaw] = {
     "randolph-quiggin": RandolphQuiggin(kind="randolph-quiggin", su=SU).of_pipe(D),
     "aubeny-biscontin": AubenyBiscontin(kind="aubeny-biscontin", su=SU).of_pipe(D),
@@ -29,8 +30,17 @@ LAWS: dict[str, NormalLaw] = {
 
 def demo_path() -> PenetrationPath:
     """Down to D/10, up and down again ever farther, then on to D/5."""
-    corners = [0.0, PAUSE, *(w for a in AMPLITUDES for w in (PAUSE - a, PAUSE)), DEEPEST]
-    pieces = (path_through(D * np.array([b]), D * a, D * STEP).w[1:] for a, b in pairwise(corners))
+    return _through(PAUSE, *(w for a in AMPLITUDES for w in (PAUSE - a, PAUSE)), DEEPEST)
+
+
+def cyclic_path() -> PenetrationPath:
+    """Down to D/10, and there many times up and down by as much."""
+    return _through(PAUSE, *(PAUSE - UPLIFT, PAUSE) * CYCLES)
+
+
+def _through(*corners: float) -> PenetrationPath:
+    """From the surface, corner by corner, over D; short steps after each."""
+    pieces = (path_through(D * np.array([b]), D * a, D * STEP).w[1:] for a, b in pairwise((0.0, *corners)))
     return PenetrationPath(np.concatenate([np.zeros(1), *pieces]), np.zeros(0))
 
 
@@ -63,9 +73,15 @@ def strip(ratio: Array) -> Array:
 
 FORMULAS = {
     "strip as wide as the chord": strip,
+    "Merifield et al., smooth": lambda ratio: 5.3 * ratio**0.25,
     "Aubeny et al., smooth": lambda ratio: 4.97 * ratio**0.23,
     "Aubeny et al., rough": lambda ratio: 6.73 * ratio**0.29,
 }
+
+
+def at_the_pause(w: Array, V: Array) -> Array:
+    """V each time that the path is where it cycles."""
+    return V[np.isclose(w, PAUSE * D, rtol=1e-9)]
 
 
 def secant_stiffnesses(w: Array, V: Array) -> list[float]:

@@ -15,6 +15,7 @@ import numpy as np
 from demos.page import publish, script, table
 from demos.pipe_segment.curves import (
     AMPLITUDES,
+    CYCLES,
     DEEPEST,
     FORMULAS,
     HERE,
@@ -23,6 +24,8 @@ from demos.pipe_segment.curves import (
     SCENE,
     SU,
     D,
+    at_the_pause,
+    cyclic_path,
     demo_path,
     monotonic,
     of_law,
@@ -37,8 +40,9 @@ from riser_soil.plots.curves import save, sheet
 
 PAGE, PICTURES = HERE / "README.md", HERE.parents[1] / "docs"
 DEPTHS = (0.02, 0.05, 0.1, 0.15, 0.2)  # of the table, over D
-FINER = ("soil.mesh.size_at_riser=0.01875", "soil.block.x=[0.140625, 0.159375]")
-FREELY = "contact.soil_moves=freely"
+FINER = "soil.mesh.size_at_riser.across=0.009375"
+SMALL = "soil.strain=small"
+CLAYS = {kind: f"soil.law={{kind: {kind}, su: {SU}, E_over_su: 300.0}}" for kind in ("kinematic-hardening", "iwan")}
 NOISE, SEED, POINTS = 0.05, 1, 30
 TRUTH = {"soil.law.su": SU, "soil.law.E_over_su": 300.0}  # the scene's
 CLOSED_FORM_SU = 4.0e3  # Pa
@@ -50,10 +54,13 @@ def main(results: Path, page: bool) -> None:
     results.mkdir(parents=True, exist_ok=True)
     path, down = demo_path(), monotonic()
     V = resistance(path)
-    curves = {"cells of D/8": (down.w / D, resistance(down)), "cells of D/16": (down.w / D, resistance(down, *FINER))}
-    curves["D/16, soil moves freely"] = (down.w / D, resistance(down, *FINER, FREELY))
+    curves = {"cells of D/16": (down.w / D, resistance(down)), "cells of D/32": (down.w / D, resistance(down, FINER))}
+    curves["D/16, small strain"] = (down.w / D, resistance(down, SMALL))
+    cycles = cyclic_path()
+    loads = {clay: at_the_pause(cycles.w, resistance(cycles, law)) for clay, law in CLAYS.items()}
     fits = {"the model's own": of_own_curve(results), "closed form, smooth": of_closed_form(results)}
-    blocks = {"capacity": capacity_page(curves), "stiffness": stiffness_page(path.w, V), "fits": fits_page(fits)}
+    blocks = {"capacity": capacity_page(curves), "stiffness": stiffness_page(path.w, V)}
+    blocks |= {"memory": memory_page(loads), "fits": fits_page(fits)}
     publish(blocks, results, PAGE if page else None)
     pictures = PICTURES if page else results
     draw(pictures / "pipe_segment.png", path.w, V, curves)
@@ -75,6 +82,15 @@ def stiffness_page(w: Array, V: Array) -> str:
     found = {"segment": secant_stiffnesses(w, V)} | of_laws
     rows = ([name, *(f"{k:.0f}" for k in stiffnesses)] for name, stiffnesses in found.items())
     return table(["uplift over D", *(f"{a:g}" for a in AMPLITUDES)], rows)
+
+
+def memory_page(loads: dict[str, Array]) -> str:
+    """V/(su D) at D/10 before cycles, after the first and after all: of the segment's clays and of seabed laws."""
+    w = cyclic_path().w
+    found = {f"segment, {clay}": V for clay, V in loads.items()}
+    found |= {name: at_the_pause(w, of_law(law, w)) for name, law in LAWS.items()}
+    rows = ([name, *(f"{V[n]:.2f}" for n in (0, 1, CYCLES))] for name, V in found.items())
+    return table(["V/(su D) at D/10", "first", "after a cycle", f"after {CYCLES}"], rows)
 
 
 def of_own_curve(results: Path) -> Fit:
@@ -123,7 +139,7 @@ def draw(png: Path, w: Array, V: Array, curves: dict[str, tuple[Array, Array]]) 
     ratio = np.linspace(1e-3, DEEPEST, 200)
     for name, formula in FORMULAS.items():
         left.plot(ratio, formula(ratio), "--", linewidth=1.0, label=name)
-    right.plot(w / D, V, label="segment, cells of D/8")
+    right.plot(w / D, V, label="segment, cells of D/16")
     for name, law in LAWS.items():
         right.plot(w / D, of_law(law, w), linewidth=1.0, label=name)
     for axes in (left, right):

@@ -60,7 +60,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: A
         level=scene.seabed_level,
         unit_weight=weight_of(given),
         K0=given.K0,
-        moves=given.moves,
+        moves=scene.soil_moves,
     )
 
 
@@ -76,7 +76,12 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: Any) -> DistributedM
         case _:
             assert_never(given.mesh)
     first, last = ((float(x), float(y)) for x, y, _ in (line.to_global(line.x[node]) for node in (0, -1)))
-    return block_grid(comm, block_of(scene, given, (first, last)))
+    spec = block_of(scene, given, (first, last))
+    if given.model == "block":
+        return block_grid(comm, spec)
+    from riser_soil.soil.slices import slice_grid
+
+    return slice_grid(comm, spec)
 
 
 def soil_contact_of(
@@ -119,7 +124,6 @@ def _surface_contact_of(
         surface,
         penalty if suction is None else _with_suction(penalty, suction, "soil", scales.diameter),
         (ALONG * across, across),
-        upright=settings.soil_moves == "upright",
         along=line.direction[:2],
     )
 

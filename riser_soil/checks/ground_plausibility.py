@@ -28,6 +28,8 @@ LOWERED, DRIVEN = 5.0, 0.1
 MANY_CYCLES = 10
 # Points of each element that are looked at, and the part of a mesh's height by which its top may miss the seabed.
 POINTS, OFF_LEVEL = 20, 1e-3
+# Weight over what clay bears at its surface from which small strain is told of: V/(su D) = 1.3, an embedment of D/25.
+SUNK_AT = 0.25
 
 
 def ground_warnings(assembly: Assembly) -> Iterator[str]:
@@ -45,6 +47,8 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
         yield from _nodes_without_friction(assembly)
         yield from _nodes_on_soil(assembly)
         yield from mesh_warnings(assembly)
+        yield from _small_strain(assembly)
+        yield from _unrenewed(assembly)
         yield from _top_off_the_seabed(assembly)
         yield from _out_of_reach(assembly)
         yield from _rate_without_effect(assembly)
@@ -115,6 +119,30 @@ def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
         f"{assembly.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "
         "yields depend on these two sizes; contact.method: surface lets it touch all along"
     )
+
+
+def _small_strain(assembly: Assembly) -> Iterator[str]:
+    """Soil that yields at small strain under a pipe that it bears only on its strength."""
+    scene = assembly.scene
+    if scene.soil is None or scene.soil.is_linear or scene.soil_moves:
+        return
+    bearing, weight = scene.soil.top_law.bearing(_diameter(assembly)), assembly.scales.weight
+    if bearing is not None and weight > SUNK_AT * bearing.capacity:
+        yield (
+            f"the soil is computed at small strain, and the riser's weight, {weight:.4g} N/m, is "
+            f"{weight / bearing.capacity:.0%} of the {bearing.capacity:.4g} N/m that its clay bears at the surface "
+            f"(told above {SUNK_AT:.0%}): it sinks in by more than small strain follows, and is borne too little; take "
+            "soil.strain: large and contact.method: surface"
+        )
+
+
+def _unrenewed(assembly: Assembly) -> Iterator[str]:
+    """Cells that move and can't be made anew."""
+    if assembly.scene.soil_moves and assembly.mesh_renewal is None:
+        yield (
+            "the soil's cells move with it, and this mesh can't be renewed on the way: a run ends where one folds, as "
+            "where the pipe sinks in by some 0.3 diameters; hexahedra under a riser along x or y are renewed"
+        )
 
 
 def _top_off_the_seabed(assembly: Assembly) -> Iterator[str]:

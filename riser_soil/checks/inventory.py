@@ -94,7 +94,9 @@ def _no_new_mesh(scene: Scene) -> str:
         return "the scene has no soil"
     if scene.soil.is_linear:
         return "elastic soil is computed at small strain"
-    return "" if scene.soil.moves else "soil.strain: small keeps the cells where they are"
+    if scene.soil.strain == "small":
+        return "soil.strain: small keeps the cells where they are"
+    return "" if scene.soil_moves else "at contact.method: node cells stay where they are"
 
 
 def _no_friction(scene: Scene, ground: str) -> str:

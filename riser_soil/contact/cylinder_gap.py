@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from riser_soil.contact.closest_point import Axis, combined, signed_distance
+from riser_soil.contact.closest_point import Axis, bow_of, combined, nearest, signed_distance
 from riser_soil.contact.near_points import NearPoints, Surface, point_on
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
@@ -127,3 +127,16 @@ def _square_to(t: tuple[float, float, float], n: tuple[float, float, float]) -> 
         x, y, z = (-n[1], n[0], 0.0) if abs(n[2]) < 0.5 else (0.0, -n[2], n[1])
         size = math.sqrt(x * x + y * y + z * z)
     return x / size, y / size, z / size
+
+
+@njit
+def gaps_of(axis: Axis, points: Array) -> tuple[Array, Array]:
+    """Gaps (n,) [m] between the pipe and points (n, 3), and unit vectors (n, 3) away from its axis."""
+    bow, elements = bow_of(axis), np.arange(len(axis.length))
+    gaps, away = np.empty(len(points)), np.empty((len(points), 3))
+    for i in range(len(points)):
+        p = (points[i, 0], points[i, 1], points[i, 2])
+        e, along, gaps[i], _ = nearest(axis, bow, elements, p, np.inf)
+        n = away_from_axis(axis.q[e], axis.length[e], axis.radius[e], along, p)[1]
+        away[i, 0], away[i, 1], away[i, 2] = n
+    return gaps, away

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.facets import QUAD
+from riser_soil.contact.facets import QUAD, strips
 from riser_soil.contact.gap import heights
 from riser_soil.contact.pairing import Cover, FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -51,23 +51,30 @@ class DeformedSurface:
     def __init__(self, surface: SoilSurface) -> None:
         self._surface = surface
         self._pairing = FacetSearch(surface.points, surface.facets)
-        self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
+        self._plain = self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
 
     @property
     def has_quads(self) -> bool:
         """Whether facets have four nodes."""
         return self.facets.shape[1] == len(QUAD)
 
-    def put_across(self, along: Array) -> None:
-        """Number the nodes of facets of four so that eta runs across a horizontal direction (2,)."""
-        a, b, c, d = np.moveaxis(self._surface.points[self.facets][:, :, :2] @ along, 1, 0)
+    def smooth(self, along: Array) -> None:
+        """Join facets of four nodes across a horizontal direction (2,): to strip8, eta across it."""
+        a, b, c, d = np.moveaxis(self._surface.points[self._plain][:, :, :2] @ along, 1, 0)
         lengthwise = np.abs(c + d - a - b) > np.abs(b + c - a - d)
-        self.facets[lengthwise] = np.roll(self.facets[lengthwise], 1, axis=1)
+        corners = self._plain.copy()
+        corners[lengthwise] = np.roll(corners[lengthwise], 1, axis=1)
+        self.facets = strips(corners)
 
     def widths(self, points: Array) -> Array:
         """Mean length (nf,) of the sides of facets of four that run along eta, nodes at points (np, 3) [m]."""
-        a, b, c, d = np.moveaxis(points[self.facets], 1, 0)
+        a, b, c, d = np.moveaxis(points[self.facets[:, :4]], 1, 0)
         return np.asarray(0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)))
+
+    @property
+    def corners(self) -> IntArray:
+        """Nodes of facets without those beside strips."""
+        return self._plain
 
     @property
     def end(self) -> int:
@@ -108,8 +115,12 @@ class DeformedSurface:
 
     def height(self, xy: Array, points: Array) -> Array:
         """Height (n,) [m] of the surface of some points at horizontal positions (n, 2) [m]; nan beside it."""
-        found = heights(*self.locate(xy, points), self.facets, points)
+        found = self.heights(xy, points)
         return np.where(np.isfinite(found), found, np.nan)
+
+    def heights(self, xy: Array, points: Array) -> Array:
+        """The same; −inf beside it."""
+        return np.asarray(heights(*self.locate(xy, points), self._plain, points))
 
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
@@ -127,6 +138,6 @@ class DeformedSurface:
 
 def _area(at: Array) -> Array:
     """Vector area (n, 3) [m2] between the corners of facets (n, nv, 3): along their normal, upwards."""
-    corners = at[:, : 4 if at.shape[1] == 4 else 3]
+    corners = at[:, : 3 if at.shape[1] == 6 else 4]
     corners = corners - corners[:, :1]
     return np.asarray(0.5 * np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1))

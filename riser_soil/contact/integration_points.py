@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 
-from riser_soil.contact.facets import QUAD
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
+TRI = range(6)  # nodes of tri6
 LARGEST = 512  # divisions of a facet's side
 ENOUGH = 12  # points along a facet or an element, whichever is shorter: they leave 1e-4 of the force, of a cubic gap
 
@@ -23,12 +23,12 @@ def divisions(
 ) -> IntArray:
     """Into how many parts (nf, 2) facets are cut in xi and eta: their points lie no farther apart than the spacing.
 
-    points (np, 3): undeformed [m]. facets (nf, 4 or 6). along (2,): horizontal unit vector of the riser. spacing: of
+    points (np, 3): undeformed [m]. facets (nf, 4, 6 or 8). along (2,): horizontal unit vector of the riser. spacing: of
     points along and across it [m]. element: length of the riser's elements [m], over which the gap is smooth; along the
     riser points are spread wider than asked for where that is enough for it and for the facet.
     """
     at = points[facets]
-    if facets.shape[1] == len(QUAD):
+    if facets.shape[1] != len(TRI):
         a, b, c, d = at[:, 0], at[:, 1], at[:, 2], at[:, 3]
         counted = _parts(0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1), along, spacing, element)
     else:
@@ -50,7 +50,7 @@ def _parts(sides: Array, along: Array, spacing: tuple[float, float], element: fl
 def place(nodes: int, parts: IntArray, k: int) -> tuple[float, float, float]:
     """(xi, eta) of the k-th point of a facet, and the area in (xi, eta) that it stands for."""
     n, m = parts[0], parts[1]
-    if nodes == 4:
+    if nodes != 6:
         return -1.0 + (2 * (k // m) + 1) / n, -1.0 + (2 * (k % m) + 1) / m, 4.0 / (n * m)
     left = n * n - k  # triangles from this one on: those of m rows fill m²
     m = int(math.sqrt(left))

@@ -1,5 +1,6 @@
-"""New meshes of soil at large strain: the part "new mesh", which looks after each step whether its cells have strained
-too far and lets soil and contact go on on new ones.
+"""New meshes of soil at large strain: the part "new mesh".
+
+Before each step it looks whether cells have strained too far, and lets soil and contact go on with new ones.
 """
 
 from __future__ import annotations

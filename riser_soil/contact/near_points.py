@@ -6,7 +6,6 @@ What lies beyond an element's reach is passed over, facet by facet and row by ro
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -78,19 +77,12 @@ def boxes(axis: Axis, above: float, around: float) -> tuple[Array, Array]:
     return low, high
 
 
-Fill = Callable[[Axis, Surface, PairsByFacet, float, NearPoints], int]
-
-
-def near_points(
-    axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float, fill: Fill
-) -> NearPoints:
-    """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m], as `fill` finds
-    them: `fill_near` or `fill_near_rows`.
-    """
+def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float) -> NearPoints:
+    """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m]."""
     pairs, room = by_facet(elements, facets, len(surface.facets)), FEW
     while True:
         points = points_room(room)
-        found = fill(axis, surface, pairs, within, points)
+        found = fill_near(axis, surface, pairs, within, points)
         if found <= room:
             return first_of(points, found)
         room = found
@@ -276,3 +268,22 @@ def point_on(
 @njit
 def _distance(p: tuple[float, float, float], r: tuple[float, float, float]) -> float:
     return math.sqrt((p[0] - r[0]) ** 2 + (p[1] - r[1]) ** 2 + (p[2] - r[2]) ** 2)
+
+
+def points_of(first: Surface, second: Surface, chosen: IntArray) -> tuple[IntArray, Array, Array]:
+    """Numbers (n,) of the integration points of some facets, and their places (n, 3) on two surfaces of these."""
+    counts = first.parts[chosen].prod(axis=1)
+    numbers = np.concatenate([np.arange(n) + first.first[f] for f, n in zip(chosen, counts, strict=True)] or [chosen])
+    places = np.empty((2, len(numbers), 3))
+    for surface, out in zip((first, second), places, strict=True):
+        _put_places(surface, np.repeat(chosen, counts), numbers, out)
+    return numbers, places[0], places[1]
+
+
+@njit
+def _put_places(surface: Surface, facets: IntArray, numbers: IntArray, out: Array) -> None:
+    nv = surface.facets.shape[1]
+    N, dN = np.empty(nv), np.empty((nv, 2))
+    for i, f in enumerate(facets):
+        xi, eta, _ = place(nv, surface.parts[f], numbers[i] - surface.first[f])
+        out[i, 0], out[i, 1], out[i, 2] = point_on(surface.deformed, surface.facets[f], xi, eta, N, dN)

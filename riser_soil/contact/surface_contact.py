@@ -10,9 +10,8 @@ import numpy as np
 from riser_soil.contact.active_pairs import ActivePairs, add_rows, in_dofs, paired
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.cylinder_gap import gap_forms
+from riser_soil.contact.cylinder_gap import gap_forms, gaps_of
 from riser_soil.contact.detection import add_blocks, add_shares
-from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
 from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.law import Penalty
@@ -22,11 +21,10 @@ from riser_soil.contact.near_points import (
     Surface,
     boxes,
     by_facet,
-    fill_near,
     near_points,
+    points_of,
 )
 from riser_soil.contact.point_memory import PointMemory
-from riser_soil.contact.row_gap import fill_near_rows, gaps_of, points_of, row_forms
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.suction import SuctionLaw
 from riser_soil.contact.surface_loop import TouchNumbers
@@ -56,14 +54,14 @@ class SurfaceContact(SoilContact):
 
     A point of the soil's surface bears the pressure p(−gap) times its area where the step starts (before all steps, at
     small strain), along the normal from the pipe's curved axis, and the element under whose axis it lies bears the
-    opposite through its shape functions: neither the riser's nodes nor those of the soil are special. Where the soil
-    moves, the gap is that of rows of points, see `row_gap`. All forces derive from the potential ∫ ψ(−gap) dA: the
-    tangent is symmetric, and the forces on riser and soil sum to zero in all directions.
+    opposite through its shape functions: neither the riser's nodes nor those of the soil are special. All forces derive
+    from the potential ∫ ψ(−gap) dA: the tangent is symmetric, and the forces on riser and soil sum to zero in all
+    directions. Where the soil moves, the surface across the riser is a smooth curve through the nodes (strip8 of
+    `facets`): flat facets would cut off the round groove that the pipe has pressed.
 
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
     history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
-    riser [m], see `divisions`. upright: contact sees the soil's surface move up and down alone, and presses on it so;
-    the horizontal forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser on the
+    riser [m], see `divisions`. along (2,): horizontal unit vector of the riser on the
     ground; by default its first axis. reach: by default half a facet above the soil, but no more than a quarter radius
     around the pipe.
     """
@@ -76,20 +74,19 @@ class SurfaceContact(SoilContact):
         pressure: Penalty | SuctionLaw,
         spacing: tuple[float, float],
         *,
-        upright: bool = False,
         along: Array | None = None,
         reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, pressure, surface)
-        self._radius, self._pressure, self._upright = radius, pressure, upright
+        self._radius, self._pressure = radius, pressure
         if not self.active:
             return
         half = 0.5 * self._soil.facet_size
         self._reach = reach or CandidateRange(half, min(half, AROUND * float(radius.max())))
         axis = line.basis[:2, 0] if along is None else along
-        self._by_rows = surface.moves and self._soil.has_quads
-        if self._by_rows:
-            self._soil.put_across(axis)
+        self._smooth = surface.moves and self._soil.has_quads
+        if self._smooth:
+            self._soil.smooth(axis)
             self._widths = self._soil.widths(surface.points)
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts.prod(axis=1)))[:-1]
@@ -104,33 +101,22 @@ class SurfaceContact(SoilContact):
         return SurfaceState(trial, *found)
 
     def _evaluate(self, trial: Trial) -> tuple[Array, ActivePairs]:
-        deformed = self._seen(trial.state)
+        deformed = self._soil.deformed(trial.state)
         axis, surface = self.axis(trial), self.surface(deformed)
         reach = self._pressure.reach if len(self._memory.numbers) else self.law.start
         elements, facets = self._pairs(axis, deformed, CandidateRange(reach, reach))
-        fill = fill_near_rows if self._by_rows else fill_near
-        near = near_points(axis, surface, elements, facets, reach, fill)
+        near = near_points(axis, surface, elements, facets, reach)
         acting = self.law.active(-near.gap, self._memory.at(near.number))
         return deformed, self._pressed(axis, surface, near.of(acting))
 
     def _pressed(self, axis: Axis, surface: Surface, near: NearPoints) -> ActivePairs:
         """Forces at points near enough to have any."""
-        forms, C, by_place = (row_forms if self._by_rows else gap_forms)(axis, surface, near, self.line.basis)
-        if self._upright:
-            first = 4 * self.line.dimension
-            forms[:, :, first::3] = forms[:, :, first + 1 :: 3] = 0.0
+        forms, C, by_place = gap_forms(axis, surface, near, self.line.basis)
         pair, element, facet = paired(near.element, near.facet, self.line.length.size)
         answer = self.law.update(-near.gap, self._memory.at(near.number))
         weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
         touching = near, pair, element, facet, forms, C, by_place
         return ActivePairs(*touching, *weighed, answer.history, self.line.dimension)
-
-    def _seen(self, state: State) -> Array:
-        """The surface's points (np, 3) as contact sees them [m]."""
-        deformed = self._soil.deformed(state)
-        if self._upright:
-            deformed[:, :2] = self._soil.at_first[:, :2]
-        return deformed
 
     def touch_numbers(self) -> TouchNumbers | None:
         """For the compiled loop, with room for axis and surface; None with a history."""
@@ -139,7 +125,7 @@ class SurfaceContact(SoilContact):
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
         frame = np.ascontiguousarray(self.line.basis), self.line.origin
         surface = self.surface(self._soil.settled)
-        return TouchNumbers(axis, surface, *frame, self.law.numbers, float(self.law.start), self._upright)
+        return TouchNumbers(axis, surface, *frame, self.law.numbers, float(self.law.start))
 
     def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
         """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
@@ -147,7 +133,7 @@ class SurfaceContact(SoilContact):
         """
         around = [boxes(axis, self._reach.above, self._reach.around) for axis in axes]
         low, high = np.min([low for low, _ in around], axis=0), np.max([high for _, high in around], axis=0)
-        elements, facets = touching_boxes(low, high, settled, self._soil.facets)
+        elements, facets = touching_boxes(low, high, settled, self._soil.corners)
         return low, high, by_facet(elements, facets, len(self._soil.facets))
 
     def surface(self, deformed: Array) -> Surface:
@@ -168,7 +154,7 @@ class SurfaceContact(SoilContact):
     def _pairs(self, axis: Axis, deformed: Array, reach: CandidateRange) -> tuple[IntArray, IntArray]:
         """Elements and facets (n,) whose boxes touch, those of the pipe wider by the reach."""
         low, high = boxes(axis, reach.above, reach.around)
-        found: tuple[IntArray, IntArray] = touching_boxes(low, high, deformed, self._soil.facets)
+        found: tuple[IntArray, IntArray] = touching_boxes(low, high, deformed, self._soil.corners)
         return found
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -181,7 +167,7 @@ class SurfaceContact(SoilContact):
 
     def candidates(self, state: State) -> CandidatePairs:
         axis = self.axis(self.line.trial(state))
-        pairs = self._pairs(axis, self._seen(state), self._reach)
+        pairs = self._pairs(axis, self._soil.deformed(state), self._reach)
         return CandidatePairs.of(len(self._soil.facets), *pairs)
 
     def element_forces(self, state: State) -> tuple[None, Array]:
@@ -362,16 +348,17 @@ class SurfaceContact(SoilContact):
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) under the nodes less that at which the force begins [m]; inf beside the soil."""
-        return self._above(self.line.trial(state), self._seen(state)) - self.law.start
+        return self._above(self.line.trial(state), self._soil.deformed(state)) - self.law.start
 
     def predict(self, guess: State) -> Array:
         """Increments of a first guess that lands, see `landing`: only of nodes below the highest point of the soil."""
         if not self.active:
             return guess.u
         moved = self.line.nodal(guess.u)[:, : self.line.dimension]
-        x, surface, radius = self.line.to_global(self.line.x + moved), self._seen(guess), larger_beside(self._radius)
+        x, surface = self.line.to_global(self.line.x + moved), self._soil.deformed(guess)
+        radius = larger_beside(self._radius)
         low = np.flatnonzero(x[:, 2] - radius < surface[:, 2].max() + self.law.start)
-        was = self.line.to_global(self.line.x[low]), self._seen(State.at_rest(guess.t, guess.u.size))
+        was = self.line.to_global(self.line.x[low]), self._soil.deformed(State.at_rest(guess.t, guess.u.size))
         present, guessed = (
             self._over(*place, radius[low]) - self.law.start for place in (was, (x[low], surface))
         )
@@ -383,18 +370,17 @@ class SurfaceContact(SoilContact):
 
     def _over(self, x: Array, surface: Array, radius: Array) -> Array:
         """The same of places x (n, 3) with radii (n,)."""
-        facet, xi = self._soil.locate(x[:, :2], surface)
-        return np.asarray(x[:, 2] - radius - heights(facet, xi, self._soil.facets, surface))
+        return np.asarray(x[:, 2] - radius - self._soil.heights(x[:, :2], surface))
 
     def state(self) -> Saved:
         """That of the pattern, the history of the points, and how wide facets were on their mesh at first."""
         kept = super().state() | (gathered({"points": self._memory}) if self.active else {})
-        return kept | ({"widths": self._widths} if self.active and self._by_rows else {})
+        return kept | ({"widths": self._widths} if self.active and self._smooth else {})
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
         if self.active:
             self._memory.restore(within(saved, "points"))
-            if self._by_rows:
+            if self._smooth:
                 self._widths = saved["widths"]
 

@@ -28,7 +28,7 @@ POINTS, LEFT = range(2)  # in `TouchRoom.found`: how many points touch; whether 
 
 class TouchNumbers(NamedTuple):
     """The pipe and the surface. axis: room for q; surface: with room for its present points. basis (3, d), origin (3,):
-    of the line. law: its numbers, its force begins at a gap of `reach` [m]. upright: see `SurfaceContact`.
+    of the line. law: its numbers, its force begins at a gap of `reach` [m].
     """
 
     axis: Axis
@@ -37,7 +37,6 @@ class TouchNumbers(NamedTuple):
     origin: Array
     law: Any
     reach: float
-    upright: bool
 
 
 class Watched(NamedTuple):
@@ -92,7 +91,7 @@ def move_top(touch: TouchNumbers, top: TopMotion, border: Border) -> None:
     """Write where the watched nodes are."""
     moved = np.dot(top.by, border.u)
     for k in range(top.nodes.size):
-        for i in range(2 if touch.upright else 0, 3):
+        for i in range(3):
             touch.surface.deformed[top.nodes[k], i] = top.accepted[top.nodes[k], i] + moved[3 * k + i]
 
 
@@ -171,7 +170,7 @@ def _press(
             end_q[e, a, j] += along * shares[a]
     nodes = touch.surface.facets[near.facet[i]]
     for a in range(nodes.size):
-        for j in range(2 if touch.upright else 0, 3):
+        for j in range(3):
             row = top.rows[nodes[a], j]
             if row >= 0:
                 residual[row] -= room.force[i] * N[a] * n[j]
@@ -190,9 +189,6 @@ def add_touch_tangent(
     nz = nq + 3 * facets.shape[1]
     forms, C = np.empty((n, FORMS, nz)), np.zeros((n, FORMS, FORMS))
     put_gap_forms(touch.axis, touch.surface, near, touch.basis, forms, C)
-    if touch.upright:
-        for a in range(facets.shape[1]):
-            forms[:, :, nq + 3 * a : nq + 3 * a + 2] = 0.0
     pair, element, facet = paired(near.element, near.facet, K.shape[0])
     by_z = np.zeros((element.size, nz, nz))
     add_products(by_z, pair, forms, by_curvature(forms, C, room.force[:n], room.slope[:n]))

@@ -105,14 +105,9 @@ class Plausibility:
             borne = over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
             self._load = self._load.or_larger(borne, arc, t)
         self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
-        self._look_for_stretch(contact.stretch(state), t)
+        if not self._assembly.scene.soil_moves:
+            self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
         self._look_for_ground(seen.riser, touch)
-
-    def _look_for_stretch(self, stretch: float, t: float) -> None:
-        """Of soil at small strain: at large strain cells move with it."""
-        assert self._assembly.soil is not None
-        if not self._assembly.soil.moves:
-            self._stretch = self._stretch.or_larger(np.array([stretch]), np.full(1, np.nan), t)
 
     def _look_for_ground(self, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         down = not np.isnan(touch.touchdown_arc)
@@ -198,9 +193,9 @@ class Plausibility:
         if self._stretch.value > LARGE_STRETCH:
             yield (
                 f"the soil's surface under the riser is stretched to {self._stretch.value:.3g} times its area at "
-                f"{self._stretch.t:.5g} {self._unit}: soil is computed at small strain, and soil that flows from under "
-                f"the pipe bears too little from some {LARGE_STRETCH:g} times on; take the depth that the riser sinks "
-                "to for no figure, or raise su"
+                f"{self._stretch.t:.5g} {self._unit}: this soil is computed at small strain, and soil that flows from "
+                f"under the pipe bears too little from some {LARGE_STRETCH:g} times on; take soil.strain: large and "
+                "contact.method: surface, or the depth that the riser sinks to for no figure"
             )
 
     def _overloaded(self) -> Iterator[str]:

@@ -39,6 +39,12 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
             f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
             "turned over: take a smaller time_step"
         )
+    lost = ledger.dissipated_by.get("new_mesh", 0.0)
+    if abs(lost) > allowed:
+        yield (
+            f"new meshes of the soil took {lost:.3g} J, {abs(lost) / ledger.turned_over:.2%} of the "
+            f"{ledger.turned_over:.3g} J turned over, as stress was transferred: take smaller cells under the riser"
+        )
     given = -sum(ledger.dissipated_by.get(name, 0.0) for name in ("contact", "contact_time_scheme"))
     if given > allowed:
         yield (

@@ -66,11 +66,6 @@ class Contact(BaseModel):
         "diameter at nodes on soil, 0 on its surface; on a seabed what the riser sinks in by its weight, within "
         "1/3000 and 1/300 of the diameter",
     )
-    soil_moves: Literal["freely", "upright"] = Field(
-        default="freely",
-        description="how contact sees the soil's surface move: freely, or upright alone, so that soil that flows aside "
-        "stays under the pipe: for pipes that go straight down into plastic clay",
-    )
     friction: Friction | None = Field(default=None, description="friction on seabed and soil; none by default")
     suction: Suction | None = Field(
         default=None,

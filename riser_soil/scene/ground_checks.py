@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 
 from riser_soil.scene.bathymetry import ground_height
-from riser_soil.scene.contact import Contact
 from riser_soil.scene.plane import positions
-from riser_soil.scene.problem import Path, Problem
+from riser_soil.scene.problem import Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
@@ -74,22 +73,12 @@ def _ground_can_do_so(scene: Scene) -> Iterator[Problem]:
 def _surface_of_a_pipe_and_soil(scene: Scene) -> Iterator[Problem]:
     if scene.contact is None:
         return
-    if scene.contact.soil_moves != "freely":
-        yield from _sees_soil_move_upright(scene, scene.contact)
     if scene.contact.method == "surface" and scene.soil is None:
         remedy = "add soil, or take line or node"
         yield Problem(("contact", "method"), "surface is contact with soil, and the scene has none", remedy)
     if scene.soil is not None and scene.contact_at == "axis" and not scene.contact.at_nodes:
         remedy = "write outer, or contact.method: node"
         yield Problem(("seabed", "contact_at"), "the axis has no surface to touch the soil with", remedy)
-
-
-def _sees_soil_move_upright(scene: Scene, contact: Contact) -> Iterator[Problem]:
-    path: Path = ("contact", "soil_moves")
-    if scene.soil is None or contact.at_nodes:
-        yield Problem(path, "is for the surface of soil", "add soil, take method: surface, or leave this out")
-    elif contact.friction is not None:
-        yield Problem(path, "friction slides over soil that moves freely", "write freely, or leave out friction")
 
 
 def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:

@@ -84,6 +84,14 @@ class Scene(BaseModel):
         return self.soil is not None and self.soil.path_dependent
 
     @property
+    def soil_moves(self) -> bool:
+        """Whether the scene has soil at large strain, whose cells move with it."""
+        if self.soil is None or self.soil.is_linear:
+            return False
+        on_surface = self.contact is not None and not self.contact.at_nodes
+        return self.soil.strain == "large" or (self.soil.strain == "auto" and on_surface)
+
+    @property
     def water_depth(self) -> float:
         """Depth of the water for waves [m]; inf in a scene that has neither ground nor a depth."""
         if self.water is None or self.water.surface_level is None:

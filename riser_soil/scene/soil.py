@@ -187,9 +187,15 @@ class SoilScene(BaseModel):
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
     )
     K0: Ratio = Field(default=1.0, description="initial horizontal over vertical effective stress [-]")
+    model: Literal["block", "sections"] = Field(
+        default="block",
+        description="block: one continuum; sections: independent slices across the riser in plane strain, as long as "
+        "the cells of the block along it",
+    )
     strain: Literal["auto", "small", "large"] = Field(
         default="auto",
-        description="whether cells move with the soil (large) or stay where they were (small); auto: small",
+        description="whether cells move with the soil (large) or stay where they were (small); auto: large where the "
+        "soil yields and the pipe's surface touches it",
     )
     inertia: Literal[False] = Field(
         default=False, description="whether the soil has mass; false: quasi-static"
@@ -211,6 +217,19 @@ class SoilScene(BaseModel):
         if feature is not None and isinstance(self.mesh, GeneratedMesh) and self.mesh.kind != "tet":
             raise wrong("mesh", "a trench or a groove is meshed in tetrahedra", "write kind: tet")
         return self
+
+    @model_validator(mode="after")
+    def _sections_of_a_plain_block(self) -> Self:
+        feature = self.given_block.feature if self.given_block else None
+        if self.model == "sections" and (isinstance(self.mesh, MeshFile) or feature is not None or self._tetrahedral):
+            raise wrong(
+                "model", "sections are those of a plain block of hexahedra", "write model: block, or mesh: {kind: hex}"
+            )
+        return self
+
+    @property
+    def _tetrahedral(self) -> bool:
+        return isinstance(self.mesh, GeneratedMesh) and self.mesh.kind == "tet"
 
     @model_validator(mode="after")
     def _elastic_at_small_strain(self) -> Self:
@@ -251,11 +270,6 @@ class SoilScene(BaseModel):
     def is_linear(self) -> bool:
         """Whether all of its laws are."""
         return all(law.linear for law in self.laws)
-
-    @property
-    def moves(self) -> bool:
-        """Whether its cells move with it."""
-        return self.strain == "large"
 
     @property
     def laws(self) -> list[SoilLaw]:

@@ -102,13 +102,11 @@ def _moves(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
 
 def _lowest(scene: Scene, target: Vector) -> float:
     """Height [m] below which an end's axis can't go: that of the ground, or within soil that moves aside."""
-    moves = scene.soil is not None and scene.soil.moves
-    return ground_height(scene, target) - (_DEEPEST * scene.largest_diameter if moves else 0.0)
+    return ground_height(scene, target) - (_DEEPEST * scene.largest_diameter if scene.soil_moves else 0.0)
 
 
 def _of_ground(scene: Scene) -> str:
-    moves = scene.soil is not None and scene.soil.moves
-    return f"{_DEEPEST:g} diameters below the seabed" if moves else "the seabed"
+    return f"{_DEEPEST:g} diameters below the seabed" if scene.soil_moves else "the seabed"
 
 
 def _swings_freely(scene: Scene) -> bool:

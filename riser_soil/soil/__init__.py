@@ -1,1 +1,1 @@
-"""The soil as a small-strain continuum: mesh, constitutive laws, and the part "soil"."""
+"""The soil as a continuum: mesh, constitutive laws, and the part "soil"."""

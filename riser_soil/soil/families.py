@@ -20,7 +20,7 @@ class Family:
 
     faces: local nodes of each face, corners in a cycle (`quad4`), for `tri6` followed by the midpoints of the
     sides 12, 23, 31. vtk: basix' local node at each place of VTK's order. flip: face nodes of the same face
-    seen from behind.
+    seen from behind. axes: along which its cells extend; thickness: along the third one, where there is one [m].
     """
 
     cell: basix.CellType
@@ -32,9 +32,16 @@ class Family:
     faces: tuple[tuple[int, ...], ...]
     flip: tuple[int, ...]
     vtk: tuple[int, ...]
+    axes: tuple[int, ...] = (0, 1, 2)
+    thickness: float = 1.0
+
+    @property
+    def plane(self) -> bool:
+        """Whether its cells are in plane strain."""
+        return len(self.axes) == 2
 
     def quadrature(self) -> tuple[Array, Array]:
-        """Points (nq, 3) and weights (nq,) on the reference cell."""
+        """Points (nq, 3) and weights (nq,) on the reference cell; in a plane (nq, 2)."""
         points, weights = basix.make_quadrature(self.cell, self.quadrature_degree)
         return np.asarray(points), np.asarray(weights)
 
@@ -43,7 +50,7 @@ class Family:
         return np.asarray(_tabulate(self.cell, self.degree, points)[0, :, :, 0])
 
     def gradients(self, points: Array) -> Array:
-        """Derivatives of the shape functions on the reference cell (nq, nn, 3)."""
+        """Derivatives of the shape functions on the reference cell (nq, nn, 3); in a plane (nq, nn, 2)."""
         return _reference_gradients(self.cell, self.degree, points)
 
 
@@ -79,4 +86,17 @@ TET10 = Family(
     faces=((0, 1, 2, 9, 6, 8), (0, 1, 3, 9, 5, 7), (0, 2, 3, 8, 4, 7), (1, 2, 3, 6, 4, 5)),
     flip=(0, 2, 1, 5, 4, 3),
     vtk=(0, 1, 2, 3, 9, 6, 8, 7, 5, 4),
+)
+
+QUAD4 = Family(
+    cell=basix.CellType.quadrilateral,
+    degree=1,
+    vertices=4,
+    quadrature_degree=3,
+    mean_dilatation=True,
+    corners=2,
+    faces=((0, 1), (0, 2), (1, 3), (2, 3)),
+    flip=(1, 0),
+    vtk=(0, 1, 3, 2),
+    axes=(1, 2),
 )

@@ -38,11 +38,12 @@ class DistributedMesh:
     volume: IntArray
 
     def supported(self, points: Array) -> BoolArray:
-        """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides."""
+        """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides and of plane cells."""
         near = 1e-6 * float(np.max(self.high - self.low))
         at_side = (points < self.low + near) | (points > self.high - near)
         bottom = points[:, 2] < self.low[2] + near
         prescribed: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
+        prescribed[:, [axis for axis in range(3) if axis not in self.family.axes]] = True
         return prescribed
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -34,7 +35,8 @@ POOR = 0.1  # scaled Jacobian below which a cell is told of
 def quality_of(grid: DistributedMesh) -> MeshQuality:
     """Quality of a grid, known on every rank (collective)."""
     corners = grid.nodes.points[grid.nodes.cells[:, : grid.family.vertices]]
-    found = grid.nodes.comm.allgather(_of_cells(corners) if len(corners) else None)
+    of_kind = _quadrilaterals if grid.family.plane else _tetrahedra if corners.shape[1] == 4 else _hexahedra
+    found = grid.nodes.comm.allgather(_of_cells(corners, of_kind) if len(corners) else None)
     ranks = [each for each in found if each is not None]
     thin, skewed = max(ranks, key=lambda q: q.aspect), min(ranks, key=lambda q: q.jacobian)
     return MeshQuality(
@@ -48,9 +50,9 @@ def quality_of(grid: DistributedMesh) -> MeshQuality:
     )
 
 
-def _of_cells(corners: Array) -> MeshQuality:
+def _of_cells(corners: Array, of_kind: Callable[[Array], tuple[Array, Array, Array]]) -> MeshQuality:
     """Of cells (nc, 4 or 8, 3)."""
-    edges, aspect, jacobian = (_tetrahedra if corners.shape[1] == 4 else _hexahedra)(corners)
+    edges, aspect, jacobian = of_kind(corners)
     worst, least = int(aspect.argmax()), int(jacobian.argmin())
     middle = corners.mean(axis=1)
     return MeshQuality(
@@ -78,6 +80,16 @@ def _tetrahedra(corners: Array) -> tuple[Array, Array, Array]:
     product = np.max([edges[:, own].prod(axis=1) for own in at_corner], axis=0)
     aspect = edges.max(axis=1) / (2.0 * np.sqrt(6.0) * np.maximum(inscribed, np.finfo(float).tiny))
     return edges, aspect, np.sqrt(2.0) * six_volumes / product
+
+
+def _quadrilaterals(corners: Array) -> tuple[Array, Array, Array]:
+    """Lengths of the edges (nc, 8), aspect ratios and scaled Jacobians (nc,); corners in lexicographic order."""
+    number = np.arange(4)
+    along = corners[:, number[:, None] ^ np.array([1, 2])] - corners[:, :, None]
+    length = np.linalg.norm(along, axis=3)
+    sine = np.linalg.norm(np.cross(along[:, :, 0], along[:, :, 1]), axis=2) / length.prod(axis=2)
+    edges = length.reshape(len(corners), 8)
+    return edges, edges.max(axis=1) / edges.min(axis=1), sine.min(axis=1)
 
 
 def _hexahedra(corners: Array) -> tuple[Array, Array, Array]:

@@ -24,6 +24,7 @@ from riser_soil.soil.grid import DistributedMesh, on_all_ranks
 from riser_soil.soil.large_strain import moved_on
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
+from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.transfer import nearest_rows
 
 FOLDS = 0.1  # skewness of a cell
@@ -61,7 +62,7 @@ class Soil:
         self.grid, self.moves = grid, moves
         self.field = SoilField(grid)
         self.mesh: GatheredMesh = gather(grid)
-        self.surface = top_of(grid, self.mesh, moves)
+        self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
             grid.nodes.comm, lambda: cell_gradients(grid.family, grid.nodes.points, self._cells)
@@ -211,7 +212,8 @@ class Soil:
         after, number = points[self.grid.nodes.number], self.surface.global_index[::3] // 3
         self.field.total = (after - self.grid.nodes.points).ravel()
         self._move_to(before, after)
-        self.surface.committed = points[number] - self.surface.points if len(number) else self.surface.committed
+        if len(number):
+            self.surface.committed = points[number] - self.mesh.points[number]
         self._stored = self._stores(self._found)
 
     def _move_to(self, before: Array, after: Array) -> None:
@@ -250,13 +252,16 @@ class Soil:
 
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""
+        if self.grid.family.plane:
+            return SoilMesh(*vars(slabs(self.grid, self.mesh)).values())
         return SoilMesh(self.mesh.points, self.mesh.cells[:, self.grid.family.vtk])
 
     def output_fields(self) -> SoilSnapshot:
         """Committed displacement and cell averages on rank 0, empty elsewhere (collective)."""
         owned = self.field.total[: 3 * self.grid.nodes.owned].reshape(-1, 3)
+        moved = gather_rows(self.grid, owned)
         return SoilSnapshot(
-            gather_rows(self.grid, owned),
+            np.concatenate([moved, moved]) if self.grid.family.plane else moved,
             *(gather_rows(self.grid, self._cell_mean(values)) for values in self._invariants()),
         )
 

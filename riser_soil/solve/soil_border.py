@@ -116,8 +116,6 @@ class SoilBorder(LoopBorder):
             self._soil.rebuild(before)
         committed = self._top.committed
         accepted = np.asarray(self._top.points + committed)
-        if self._touch.upright:
-            accepted[:, :2] = self._top.points[:, :2]
         self._touch.surface.deformed[...] = accepted
         if self._reached is not self._top.reached or self._has_moved(accepted):
             self._look([])

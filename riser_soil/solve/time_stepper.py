@@ -252,6 +252,7 @@ class TimeStepper:
                 continue
             system = self.system
             balance_held(system.comm, system.model, self.before.t, self.newton.settings, system.clock)
+            self.newton.renew()  # the balance has chosen patterns of its own
             part.lose(self.energy.total - system.energy(self.before).total)
             self._forces = system.forces(self.before)
             self._past.stop(slice(system.end_of_lines, None))

@@ -44,7 +44,6 @@ def history(values: str) -> Changes:
 
 CASES: list[tuple[Changes, str, str]] = [
     ((("method: node", "method: surface"), NO_SOIL), "contact.method", "surface is contact with soil"),
-    ((("method: node", "method: node, soil_moves: upright"),), "contact.soil_moves", "is for the surface of soil"),
     (
         (("method: node", "method: surface"), ("stiffness: 1.0e5}", "stiffness: 1.0e5, contact_at: axis}")),
         "seabed.contact_at",

@@ -106,7 +106,6 @@ def all_soil_yielding() -> Trial:
     scene["soil"]["block"] |= {"y": [-1.0, 1.0], "depth": 0.5}
     scene["soil"]["mesh"]["size_far"] = 0.125
     scene["soil"]["law"] = {"kind": "von-mises", "su": 5e3, "E_over_su": 300.0, "nu": 0.49}
-    scene["contact"] |= {"soil_moves": "upright"}
     scene["stages"] = [{"name": "push", "kind": "static", "move": _down(0.25 * D)}]
     scene["solver"] = {"load_steps": 30}
 

@@ -76,6 +76,7 @@ def pipe_in_place(w: float, strips: int, rough: bool, *, E_over_su: float = 0.0,
         "line_types": {"pipe": {"outer_diameter": D, "EA": TYPICAL * size, "EI": 1e8, "submerged_weight": 0.0}},
         "riser": {"segments": [{"line_type": "pipe", "length": size, "elements": 1}], **ends, "initial": "unstressed"},
         "soil": {
+            "strain": "small",
             "block": {
                 "x": [0.0, size],
                 "y": [-2.5 * chord(w) * D, 2.5 * chord(w) * D],

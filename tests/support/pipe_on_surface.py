@@ -76,7 +76,6 @@ def pipe_on_surface(
     dimension: int = 3,
     spacing: float = 0.05,
     pressure: Penalty | SuctionLaw = CORNERED,
-    upright: bool = False,
 ) -> PipeOnSurface:
     """A riser through points (n, 3), smooth at the nodes."""
     arc = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
@@ -94,7 +93,6 @@ def pipe_on_surface(
         surface,
         pressure,
         (2.0 * spacing, spacing),
-        upright=upright,
         along=direction[:2],
         reach=CandidateRange(0.5, 0.5),
     )

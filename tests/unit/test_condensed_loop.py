@@ -26,7 +26,6 @@ from tests.support.driven_stage import Watcher, before_commit, built
 SAME = 1e-8
 CASES: dict[str, tuple[int, Mapping]] = {
     "in a plane": (2, {}),
-    "upright": (2, {"soil_moves": "upright"}),
     "in space": (3, {"friction": None}),
 }
 SCHEME, SETTINGS = GeneralizedAlpha.newmark(), NewtonSettings(1e-9, 25, 1e-6, line_search=True)

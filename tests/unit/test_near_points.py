@@ -33,7 +33,7 @@ def test_no_point_within_the_gap_is_passed_over(stretch: float, bend: float, tur
     """Beside a search so wide that every point is tried on every element."""
     axis, surface = axis_of(stretch, bend), plane_of_soil(turned)
     pairs = np.array([0, 1, 0, 1]), np.array([0, 0, 1, 1])
-    found, tried = (near_points(axis, surface, *pairs, within, fill_near) for within in (WITHIN, 1e3))
+    found, tried = (near_points(axis, surface, *pairs, within) for within in (WITHIN, 1e3))
     assert len(tried.number) == 2 * PARTS**2
     expected = tried.of(tried.gap < WITHIN)
     assert 20 < len(expected.number) < 2 * PARTS**2
@@ -44,10 +44,10 @@ def test_no_point_within_the_gap_is_passed_over(stretch: float, bend: float, tur
 def test_points_beyond_the_room_are_counted_and_given_room(monkeypatch: pytest.MonkeyPatch) -> None:
     axis, surface = axis_of(0.9, 0.2), plane_of_soil(0)
     elements, facets = np.array([0, 1, 0, 1]), np.array([0, 0, 1, 1])
-    wanted = near_points(axis, surface, elements, facets, WITHIN, fill_near)
+    wanted = near_points(axis, surface, elements, facets, WITHIN)
     few = points_room(3)
     assert fill_near(axis, surface, by_facet(elements, facets, 2), WITHIN, few) == len(wanted.number) > 3
     np.testing.assert_array_equal(few.number, wanted.number[:3])
     monkeypatch.setattr("riser_soil.contact.near_points.FEW", 3)
-    for got, told in zip(near_points(axis, surface, elements, facets, WITHIN, fill_near), wanted, strict=True):
+    for got, told in zip(near_points(axis, surface, elements, facets, WITHIN), wanted, strict=True):
         np.testing.assert_array_equal(got, told)

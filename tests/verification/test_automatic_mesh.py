@@ -57,7 +57,6 @@ def sinking(steps: int = 10) -> Mapping:
     """A pipe as heavy as the clay bears on its chord where it has sunk in by D/4, pushed there step by step."""
     chord = 2.0 * np.sqrt(0.25 * 0.75) * D
     scene = slice_scene(EVEN_CLAY, (2.0 + np.pi) * EVEN_CLAY["su"] * chord, D / 4.0)
-    scene["contact"]["soil_moves"] = "upright"
     push, depths = scene["stages"][0], np.linspace(0.0, D / 4.0, steps + 1)[1:]
     scene["stages"] = [
         push | {"name": f"to {w:g}", "move": {end: [*at[:2], 0.5 * D - float(w)] for end, at in push["move"].items()}}

@@ -1,9 +1,7 @@
 """Automatic mesh on the demo: its riser laid on four metres of its clay, on cells and elements of other sizes.
 
 The demo's own block, 16 m long, with half of all automatic cells has 270 thousand unknowns: more than can be solved in
-a test. So the block is cut to 4 m, on the first three of which the riser lies, and the heave is left out. Contact is
-`upright`: on cells that resolve what touches the pipe sinks in by D/28, and where contact follows the clay freely more
-and more of it flows from under the pipe.
+a test. So the block is cut to 4 m, on the first three of which the riser lies, and the heave is left out.
 """
 
 from __future__ import annotations
@@ -23,7 +21,7 @@ from tests.support.automatic_cells import scaled
 from tests.support.coupled_scenes import DEMO
 from tests.support.driven_stage import take
 
-BLOCK = ("soil.block.x=[24.5,28.5]", "contact.soil_moves=upright")
+BLOCK = ("soil.block.x=[24.5,28.5]",)
 
 
 def on_block(*changes: str) -> Scene:

@@ -73,14 +73,3 @@ def extrapolated(coarse: float, fine: float, strips: tuple[int, int]) -> tuple[f
     ratio = strips[1] / strips[0]
     first, second = (fine + (fine - coarse) / (ratio**order - 1.0) for order in (1, 2))
     return first, second
-
-
-@pytest.mark.verify
-def test_upright_the_load_never_falls() -> None:
-    """Pushed by D/10, E/su = 300: more than a smooth pipe and less than a rough one, as contact presses upright."""
-    scene = pipe_in_place(0.3, 9, rough=False, E_over_su=300.0, down=0.1)
-    scene["contact"]["soil_moves"] = "upright"
-    scene["solver"]["load_steps"] = 16
-    load = resistance(scene)
-    assert np.all(np.diff(load) > 0.0)
-    assert smooth_by_slip_lines(0.3) < load[-1] < rough_by_slip_lines(0.3)

@@ -1,4 +1,4 @@
-"""Contact by rows of points across the riser, as on soil that moves: derivatives, balance, and a groove that fits."""
+"""Contact with the smooth surface of soil that moves: its curve, derivatives, balance, and a groove that fits."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+from riser_soil.contact.facets import shape, strips
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.soil_friction import SoilFriction
 from riser_soil.core.arrays import Array
@@ -75,7 +76,7 @@ def test_forces_and_moments_sum_to_zero() -> None:
 
 
 def grooved(moves: bool, depth: float) -> PipeOnSurface:
-    """A pipe that penetrates by `depth`, all along, a groove of its own shape, whose nodes lie on a circle."""
+    """A pipe that penetrates by `depth`, all along, a groove whose nodes lie on a circle."""
     surface = top("quad4", 30, 10, 0.1)
     surface.moves = moves
     angle = np.clip(surface.points[:, 1] / 0.1 * 0.3, -1.2, 1.2)
@@ -86,17 +87,42 @@ def grooved(moves: bool, depth: float) -> PipeOnSurface:
 
 
 def test_a_groove_that_fits_bears_the_pipe_evenly() -> None:
-    """k times the penetration, over the facets' own width and along normals between those of their nodes, while points
-    of the facets' chords, each 0.3 rad of the circle wide, penetrate by R 0.15^2/2 more.
-    """
-    depth = 1e-4
+    """Nodes 0.3 rad apart on a circle: the smooth curve leaves it by 3/128 0.3^4 of its radius, chords by 0.3^2/8."""
+    depth = 1e-3
+    deep = 3.0 / 128.0 * 0.3**4 * RADIUS
     made = grooved(True, depth)
-    gap = made.contact.evaluate(made.state()).pressed.points.gap
-    np.testing.assert_allclose(gap, -depth, rtol=1e-9)
-    upwards = 2.0 * sum(2.0 * np.sin(0.15) * np.mean([np.cos(0.3 * n), np.cos(0.3 * n + 0.3)]) for n in range(4))
-    expected = STIFFNESS * depth * (RADIUS - depth) * upwards * 3.0
-    assert -made.contact.force_on_soil(made.state())[2] == pytest.approx(expected, rel=1e-6)
-    assert -grooved(False, depth).contact.force_on_soil(made.state())[2] > 5.0 * expected
+    points = made.contact.evaluate(made.state()).pressed.points
+    inner = np.abs(made.surface.points[made.contact._soil.corners[points.facet]].mean(axis=1)[:, 1]) < 0.25
+    gap = -points.gap[inner]
+    assert depth - 1e-9 < gap.min() < gap.max() < depth + 1.1 * deep
+    chords = grooved(False, depth)
+    assert np.max(-chords.contact.evaluate(chords.state()).pressed.points.gap) > depth + 0.9 * 0.3**2 / 8.0 * RADIUS
+
+
+def test_the_curve_goes_through_nodes_with_the_slope_between_their_neighbours() -> None:
+    N, dN = shape(8, -1.0, -1.0)
+    np.testing.assert_allclose(N, [1.0, 0, 0, 0, 0, 0, 0, 0])
+    np.testing.assert_allclose(2.0 * dN[:, 1], [0, 0, 0, 0.5, -0.5, 0, 0, 0])  # by t = (1 + eta)/2
+    for xi, eta in ((0.3, -0.7), (-0.2, 0.1), (1.0, 1.0)):
+        N, dN = shape(8, xi, eta)
+        places = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -3], [1, -3], [1, 3], [-1, 3]])
+        np.testing.assert_allclose(N @ places, [xi, eta], atol=1e-14)
+        np.testing.assert_allclose(dN.T @ places, np.eye(2), atol=1e-14)
+        h = 1e-6
+        ways = h * np.eye(2)
+        by = [(shape(8, xi + a, eta + b)[0] - shape(8, xi - a, eta - b)[0]) / (2.0 * h) for a, b in ways]
+        np.testing.assert_allclose(dN.T, by, atol=1e-9)
+
+
+def test_strips_reach_to_the_next_nodes_across() -> None:
+    """Of a grid two facets long and three wide, numbered across first; at its rim nodes stand for themselves."""
+    number = np.arange(12).reshape(3, 4)
+    cells = [number[i : i + 2, j : j + 2] for i in range(2) for j in range(3)]
+    quads = np.array([[n[0, 0], n[1, 0], n[1, 1], n[0, 1]] for n in cells])
+    found = strips(quads)
+    assert found[1].tolist() == [1, 5, 6, 2, 0, 4, 7, 3]
+    assert found[3].tolist() == [4, 8, 9, 5, 4, 8, 10, 6]
+    assert (found[:, :4] == quads).all()
 
 
 def test_what_points_remember_goes_over_to_those_that_lie_there_next() -> None:

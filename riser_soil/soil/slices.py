@@ -1,0 +1,82 @@
+"""Sections: soil as independent slices in plane strain across the riser, in the place of a block.
+
+Each slice has the columns and layers of the block's cells, as quadrilaterals; nothing moves along the riser. Slices are
+not joined, so that the soil's share of the matrix falls apart into one block for each. On top a slice is as wide along
+the riser as it stands for: the riser meets one surface, whose nodes share the dofs of their slice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.core.arrays import IntArray
+from riser_soil.errors import MeshError
+from riser_soil.soil.dolfinx_compat import Nodes
+from riser_soil.soil.families import QUAD4
+from riser_soil.soil.field import components
+from riser_soil.soil.gathered import GatheredMesh
+from riser_soil.soil.grading import BlockSpec
+from riser_soil.soil.grid import DistributedMesh
+from riser_soil.soil.surface import SoilTop
+
+
+def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
+    """Slices of a plain block under a riser along x or y, as many as it has cells along it; each rank has some of them,
+    one after the other.
+    """
+    along, across = spec.axis, 1 - spec.axis
+    if not spec.lies_along(along):
+        raise MeshError("soil mesh: sections need a riser that runs along x or y; turn the scene, or take model: block")
+    (low, high), columns, layers = spec.ends, spec.coordinates(across), spec.coordinates(2)
+    count = max(1, len(spec.coordinates(along)) - 1)
+    thickness = (high - low) / count
+    mine = np.array_split(np.arange(count), comm.size)[comm.rank]
+    per_slice = len(columns) * len(layers)
+    family = replace(QUAD4, axes=(across, 2), thickness=thickness)
+    points = np.zeros((len(mine), len(columns), len(layers), 3))
+    points[..., along] = (low + (mine + 0.5) * thickness)[:, None, None]
+    points[..., across], points[..., 2] = columns[None, :, None], layers
+    cells = _cells(len(columns), len(layers))
+    local = (per_slice * np.arange(len(mine))[:, None, None] + cells).reshape(-1, 4)
+    number = per_slice * (mine[0] if len(mine) else 0) + np.arange(len(mine) * per_slice)
+    nodes = Nodes(comm, local, points.reshape(-1, 3), number, len(number))
+    corners = np.array([[*spec.x, *spec.y, spec.level - spec.depth, spec.level]]).reshape(3, 2)
+    return DistributedMesh(family, nodes, corners[:, 0], corners[:, 1], np.zeros(len(local), dtype=np.int64))
+
+
+def _cells(columns: int, layers: int) -> IntArray:
+    """Nodes (nc, 4) of a slice's cells, in lexicographic order; nodes are numbered column by column, upwards."""
+    number = np.arange(columns * layers).reshape(columns, layers)
+    corners = number[:-1, :-1], number[1:, :-1], number[:-1, 1:], number[1:, 1:]
+    return np.stack([corner.ravel() for corner in corners], axis=1)
+
+
+def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
+    """The surface on rank 0: of each slice two rows of its top nodes, half its thickness before and behind."""
+    along = next(axis for axis in range(2) if axis not in grid.family.axes)
+    top = np.flatnonzero(mesh.points[:, 2] > grid.high[2] - 1e-9 * float(np.ptp([grid.low[2], grid.high[2]])))
+    if not len(mesh.points):
+        return SoilTop(mesh.points, np.zeros((0, 4), dtype=np.int64), components(top), np.zeros(0, dtype=bool), moves)
+    columns = len(np.unique(mesh.points[top, 1 - along]))
+    rows = top.reshape(-1, columns)
+    points = np.repeat(mesh.points[rows][:, None], 2, axis=1)  # (ns, 2, nc, 3)
+    points[:, 0, :, along] -= 0.5 * grid.family.thickness
+    points[:, 1, :, along] += 0.5 * grid.family.thickness
+    place = np.arange(points.size // 3).reshape(-1, 2, columns)
+    around = place[:, 0, :-1], place[:, 1, :-1], place[:, 1, 1:], place[:, 0, 1:]
+    facets = np.stack([each.ravel() for each in (around if along == 0 else around[::-1])], axis=1)
+    number = np.repeat(rows[:, None], 2, axis=1).ravel()
+    flat = points.reshape(-1, 3)
+    return SoilTop(flat, facets, components(number), grid.supported(flat).ravel(), moves)
+
+
+def slabs(grid: DistributedMesh, mesh: GatheredMesh) -> GatheredMesh:
+    """Slices as hexahedra in VTK's order, as thick as they stand for: of the nodes all those in front come first."""
+    along = next(axis for axis in range(2) if axis not in grid.family.axes)
+    half = np.zeros(3)
+    half[along] = 0.5 * grid.family.thickness
+    n, quads = len(mesh.points), mesh.cells[:, grid.family.vtk]
+    return GatheredMesh(np.concatenate([mesh.points - half, mesh.points + half]), np.hstack([quads, quads + n]))

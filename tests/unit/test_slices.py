@@ -1,0 +1,84 @@
+"""Soil in sections: slices in plane strain, not joined, under one surface."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.core.part import State
+from riser_soil.errors import MeshError
+from riser_soil.soil.grading import BlockSpec
+from riser_soil.soil.slices import slice_grid
+from riser_soil.soil.soil import Soil
+from tests.support.sinking_pipe import CLAY, sink, sinking
+from tests.support.soil_bench import assemble
+from tests.support.soil_cases import ELASTIC
+
+ALONG = pytest.mark.parametrize("along", [0, 1])
+
+
+def spec(along: int, **more: Any) -> BlockSpec:
+    """Four cells of half a metre along the riser."""
+    line, ranges = np.zeros((2, 2)), [(0.0, 2.0), (-1.0, 1.0)]
+    line[1, along] = 2.0
+    x, y = ranges if along == 0 else ranges[::-1]
+    first, second = ((float(p[0]), float(p[1])) for p in line)
+    return BlockSpec(x, y, 1.0, 0.25, 0.5, riser=(first, second), along=0.5, **more)
+
+
+def soil_of(along: int, law: Any = ELASTIC) -> Soil:
+    return Soil(slice_grid(MPI.COMM_SELF, spec(along)), law, level=0.0, unit_weight=5.0e3)
+
+
+@ALONG
+def test_slices_fill_the_block(along: int) -> None:
+    soil = soil_of(along)
+    assert soil._gradients.weights.sum() == pytest.approx(2.0 * 2.0 * 1.0, rel=1e-12)
+    places = np.unique(soil.grid.nodes.points[:, along])
+    np.testing.assert_allclose(places, [0.25, 0.75, 1.25, 1.75])
+    mesh = soil.output_mesh()
+    corners = mesh.points[mesh.cells]
+    assert np.ptp(corners, axis=1).prod(axis=1).sum() == pytest.approx(4.0, rel=1e-12)
+    assert len(soil.output_fields().displacement) == len(mesh.points)
+
+
+@ALONG
+def test_the_top_is_one_level_surface_seen_from_above(along: int) -> None:
+    top = soil_of(along).surface
+    a, b, c, d = np.moveaxis(top.points[top.facets], 1, 0)
+    area = 0.5 * np.cross(c - a, d - b)
+    assert (area[:, 2] > 0.0).all()
+    assert area[:, 2].sum() == pytest.approx(4.0, rel=1e-12)
+    assert not area[:, :2].any()
+    assert (np.unique(top.global_index, return_counts=True)[1] == 2).all()
+
+
+@ALONG
+def test_slices_answer_alone_and_not_along_the_riser(along: int) -> None:
+    """A force on one of them moves no other one."""
+    soil = soil_of(along)
+    K = assemble(soil, State.at_rest(0.0, soil.field.size))
+    which = np.repeat(np.round(soil.grid.nodes.points[:, along] * 2.0), 3)
+    apart = which[:, None] != which[None]
+    assert not K[apart].any()
+    assert soil.field.prescribed.reshape(-1, 3)[:, along].all()
+    assert not soil.field.prescribed.reshape(-1, 3)[:, 2].all()
+
+
+def test_a_riser_askew_has_no_sections() -> None:
+    with pytest.raises(MeshError, match="along x or y"):
+        slice_grid(MPI.COMM_SELF, BlockSpec((0.0, 2.0), (-1.0, 1.0), 1.0, 0.25, 0.5, riser=((0.0, 0.0), (2.0, 0.5))))
+
+
+@pytest.mark.parametrize("strain", ["small", "large"])
+@pytest.mark.parametrize("law", [CLAY, CLAY | {"kind": "kinematic-hardening"}], ids=lambda law: law["kind"])
+def test_one_section_is_a_slice_of_one_cell(law: Any, strain: str) -> None:
+    """Pressed in by D/12, on new meshes at large strain; where cells come to touch round-off is magnified."""
+    scenes = [sinking(6, 1.0 / 12.0, 10, law, strain=strain, model=model) for model in ("block", "sections")]
+    found = [sink(scene | {"solver": {"load_steps": 10, "tolerance": 1e-11}}) for scene in scenes]
+    np.testing.assert_allclose(found[1].V, found[0].V, rtol=1e-4)
+    assert found[0].renewals == found[1].renewals
+    assert (found[0].renewals > 0) == (strain == "large")
