@@ -14,7 +14,7 @@ from riser_soil.core.part import State
 from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
-from riser_soil.results.observer import riser_snapshot
+from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
