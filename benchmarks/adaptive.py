@@ -13,7 +13,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.snapshot import instants_at
 from riser_soil.core.system import Timer
-from riser_soil.results.instants import Instants
+from riser_soil.results.instants import InstantReader
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
@@ -40,7 +40,7 @@ class StepHistory(StatelessObserver):
     iterations: int = 0
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        self._instants = Instants(self.assembly)
+        self._instants = InstantReader(self.assembly)
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
         pass

@@ -9,7 +9,7 @@ from riser_soil.assembly import Assembly, build, sized
 from riser_soil.core.snapshot import Instant, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.interruption import agreeing
-from riser_soil.results.instants import Instants
+from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.schedule import Schedule
 from riser_soil.scene.scene import Scene
@@ -36,7 +36,7 @@ class PeakObserver(StatelessObserver):
     """Follows a companion: `peaks` has what the summary of a run would have of it; on rank 0."""
 
     def __init__(self, assembly: Assembly, envelope: CurveEnvelope | None = None) -> None:
-        self._assembly, self._instants = assembly, Instants(assembly)
+        self._assembly, self._instants = assembly, InstantReader(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.output_mesh())

@@ -25,7 +25,7 @@ LOW, HIGH = 0.1, 0.7  # of the stress at that strain, between which cycles of st
 KEPT = 1e-3  # of the stress: less is no mean stress
 
 
-class Relaxation(NamedTuple):
+class StressRelaxation(NamedTuple):
     """Cycles of strain from HELD down by twice the amplitude and back: shear stress at HELD when they begin and at the
     end of each (CYCLES + 1,), and mean stress of each (CYCLES,) [Pa].
     """
@@ -48,7 +48,7 @@ class Memory(NamedTuple):
     nan where the soil can't follow it.
     """
 
-    relaxation: tuple[Relaxation, ...]
+    relaxation: tuple[StressRelaxation, ...]
     ratchet: Array
 
 
@@ -58,11 +58,11 @@ def memory(point: MaterialPoint) -> Memory:
     return Memory(relaxation, _ratchet(point, float(relaxation[0].top[0])))
 
 
-def _relaxation(point: MaterialPoint, amplitude: float) -> Relaxation:
+def _relaxation(point: MaterialPoint, amplitude: float) -> StressRelaxation:
     stress = drive(point, shear_path(_between(HELD - 2.0 * amplitude, HELD), ROWS)).stress[:, 4]
     turns = (stress - stress[0])[ROWS::ROWS]
     top, bottom = turns[::2], turns[1::2]
-    return Relaxation(amplitude, top, 0.5 * (bottom + top[1:]))
+    return StressRelaxation(amplitude, top, 0.5 * (bottom + top[1:]))
 
 
 def _ratchet(point: MaterialPoint, largest: float) -> Array:

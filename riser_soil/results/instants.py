@@ -44,7 +44,7 @@ class Look(NamedTuple):
     ground: OnGround
 
 
-class Instants:
+class InstantReader:
     """Looks at a run's states, and tells of them; on the rank that holds the riser.
 
     fields: those of `ContactSnapshot` wanted.

@@ -28,7 +28,7 @@ from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError,
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
 from riser_soil.results.energy_ledger import EnergyLedger
-from riser_soil.results.instants import Instants, Look
+from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
@@ -74,7 +74,7 @@ class Observer:
         self._peaks = peaks if recorder is not None else None
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        self._instants = Instants(assembly, _known_fields(assembly))
+        self._instants = InstantReader(assembly, _known_fields(assembly))
         self._seen: list[Seen] = []  # since they were handed over
         self._plausibility = Plausibility(assembly)
         self._checkpoints = CheckpointSchedule(_asked(assembly), assembly.comm)

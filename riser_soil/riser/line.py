@@ -275,7 +275,7 @@ class Line:
         self._supports, self._bases = (dict(zip(ends, saved[name], strict=True)) for name in ("supports", "bases"))
         left = within(saved, "left")
         if left:
-            state = State(float(left["t"]), left["u"], left["v"], left["a"])
+            state = State(float(left["t"]), left["u"], left["v"], left["a"], dt=float(left["dt"]))
             rates = self.nodal(state.v), self.nodal(state.a)
             turning = partial(self.frames.turn_of, within(left, "turn"))
             self._left = Trial(state, self.x, self.chord, turning, rates)

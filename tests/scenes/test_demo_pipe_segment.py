@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from demos.page import block
-from demos.pipe_segment.curves import FORMULAS, HERE, PAUSE, SCENE, D, demo_path, monotonic, resistance, strip
-from demos.pipe_segment.run import FINER, NOISE, capacity_page, stiffness_page
+from demos.pipe_segment.curves import FORMULAS, HERE, PAUSE, SCENE, D, demo_path, monotonic, resistance
+from demos.pipe_segment.run import FINER, NOISE, SMALL, capacity_page, stiffness_page
 from riser_soil.calibration.segment import write_table
 from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
@@ -36,29 +36,29 @@ def test_the_scene_follows_the_demo_s_path(tmp_path: Path) -> None:
     write_table(path, 0.0, tmp_path / "path.csv")
     assert (tmp_path / "path.csv").read_text() == (HERE / "penetration.csv").read_text()
     (stage,) = read_scene(SCENE).stages
-    assert stage.kind == "dynamic"
+    assert stage.kind == "quasi-static"
     assert stage.duration == len(path.w) - 1
 
 
 def test_page_shows_capacities_as_computed() -> None:
-    shown, name = rows(block(PAGE, "capacity")), "cells of D/8"
+    shown, name = rows(block(PAGE, "capacity")), "cells of D/16"
     found = rows(capacity_page({name: coarse()}))
     assert all(shown[formula] == found[formula] for formula in FORMULAS)
     numbers = [[float(x) for x in table[f"segment, {name}"]] for table in (shown, found)]
     assert numbers[0] == pytest.approx(numbers[1], rel=0.01, abs=0.01)
 
 
-def test_resistance_is_that_of_a_strip_as_wide_as_the_chord() -> None:
-    """Once there are several cells across the chord, within what D/8 tell of it; it never falls."""
+def test_resistance_is_that_of_a_smooth_pipe_with_heave() -> None:
+    """Merifield, White & Randolph's, for clay that does not harden; this one's strength is far from used at first."""
     ratio, V = coarse()
     assert np.all(np.diff(V) > -0.01 * V.max())
     deep = ratio >= PAUSE
-    assert np.abs(V[deep] / strip(ratio[deep]) - 1.0).max() < 0.25
-    assert V[-1] == pytest.approx(strip(ratio[-1]), rel=0.1)
+    np.testing.assert_allclose(V[deep], FORMULAS["Merifield et al., smooth"](ratio[deep]), rtol=0.1)
+    assert V[-1] == pytest.approx(FORMULAS["Merifield et al., smooth"](ratio[-1]), rel=0.03)
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize("cells", [(), FINER], ids=["D/8", "D/16"])
+@pytest.mark.parametrize("cells", [(), (FINER,)], ids=["D/16", "D/32"])
 def test_resistance_never_falls_down_to_a_quarter_of_the_diameter(cells: tuple[str, ...]) -> None:
     V = resistance(monotonic(0.25), *cells)
     assert np.diff(V).min() > -1e-3 * V.max()
@@ -95,7 +95,7 @@ def test_page_shows_stiffnesses_as_computed() -> None:
 def test_soil_at_small_strain_loses_its_resistance() -> None:
     path = monotonic(PAUSE)
     ratio = path.w / D
-    large, small = (resistance(path, *FINER, *more) for more in ((), ("soil.strain=small",)))
+    large, small = (resistance(path, *more) for more in ((), (SMALL,)))
     assert np.diff(large).min() > -5e-3 * large.max()
     assert small[-1] < 0.5 * large[-1]
     assert 0.03 < ratio[small.argmax()] < 0.07

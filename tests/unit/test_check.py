@@ -44,7 +44,7 @@ def with_value(mapping: Mapping, *path: str | int, value: Any) -> Mapping:
 def test_a_whole_scene() -> None:
     lines = report(touchdown(LAY, heave(1.0))).splitlines()
     assert lines[0] == "Touchdown on a small block: 2 stages, riser in 2 dimensions"
-    assert lines[1] == "built: riser, inertia, morison, seabed, soil, cushion, contact"
+    assert lines[1] == "built: riser, inertia, morison, seabed, soil, new mesh, cushion, contact"
     assert lines[2:4] == [
         "left out: springs: no end has a rotational spring",
         "left out: attachments: nothing is attached to the riser",
@@ -54,7 +54,7 @@ def test_a_whole_scene() -> None:
     assert "soil.mesh.size_at_riser 0.5 m is 10 times the 0.0482 m by which the riser touches" in lines[-2]
     assert lines[-1] == "1 warning"
     at_nodes = report({**touchdown(LAY, heave(1.0)), "contact": {"method": "node"}}).splitlines()
-    assert "touches the soil at its nodes only, 0.5 m apart, on cells of 0.5 m" in at_nodes[-2]
+    assert "touches the soil at its nodes only, 0.5 m apart, on cells of 0.5 m" in at_nodes[-3]
 
 
 def test_a_scene_without_doubts() -> None:
@@ -219,8 +219,9 @@ def test_long_elements_in_a_bend_are_told_with_the_error_of_the_moment() -> None
 @pytest.mark.parametrize(("key", "given"), [("friction", {"axial": 0.3}), ("suction", {"cap": 50.0, "reach": 0.1})])
 def test_nodes_without_friction_or_suction_on_soil_are_told(key: str, given: Mapping) -> None:
     rough = {**touchdown(), "contact": {"method": "node", key: given}}
-    (found,) = warnings(rough)
+    found, strains = warnings(rough)
     assert f"contact.{key} acts on the seabed only: on the soil, x from 2 to 9 m and y from -1 to 1 m" in found
+    assert "small strain" in strains
     rough["contact"]["method"] = "auto"
     assert not warnings(rough)
     del rough["soil"]

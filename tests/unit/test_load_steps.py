@@ -102,7 +102,7 @@ def test_relaxation_that_fails_on_its_way_leaves_clay_and_riser_as_they_were(mon
         for owner in committing:
             owner.commit(pressed)
         moved = gathered(owners(model))
-        assert all((moved[name] != seen[0][name]).any() for name in ("fields/riser/x", "parts/soil/stress"))
+        assert all((moved[name] != seen[0][name]).any() for name in ("fields/riser/x", "parts/soil/law/stress"))
         raise SolveError("no rest was found")
 
     def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> AcceptedStep:

@@ -155,6 +155,7 @@ def test_steps_tell_their_time_and_held_lines_leave_the_soil_none() -> None:
     """A new mesh is balanced at once: what fast flow has borne stays."""
     scene = touchdown(LAY, heave(1.5, 0.15), su=450.0)
     scene["soil"]["law"]["rate"] = {"mu": 0.2, "reference": 1e-5}
+    scene["soil"]["strain"] = "small"
     assembly, times = built(scene), list[float]()
     soil, (lay, last) = assembly.soil, assembly.scene.stages
     assert soil is not None

@@ -58,7 +58,7 @@ def plastic_spring() -> Iterator[None]:
 def on_soil(law: Mapping, solved: str = "auto") -> Mapping:
     scene = touchdown(LAY)
     scene["solver"]["soil"] = solved
-    scene["soil"]["law"] = dict(law)
+    scene["soil"] |= {"law": dict(law), "strain": "small"}
     return scene
 
 

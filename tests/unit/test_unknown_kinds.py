@@ -67,7 +67,7 @@ def test_a_third_soil_law_is_refused() -> None:
         scene_from_mapping(given)
     third = another(VonMises(kind="von-mises", **CLAY), surface_modulus=lambda width: 1.0e6)
     whole = scene()
-    with pytest.raises(AttributeError, match="at_points"):
+    with pytest.raises(AttributeError, match="linear"):
         build(with_parts(whole, soil=with_parts(whole.soil, law=third)), MPI.COMM_SELF)
 
 

@@ -157,6 +157,8 @@ def test_every_part_matters_in_the_jacobian(kind: str, method: str, monkeypatch:
     """Left out of the matrix, each part shows in the rows that it acts on."""
     case = Case(kind, 3, "dynamic", method)
     for part in case.step.system.model.parts:
+        if part.name == "new mesh":  # acts between steps
+            continue
         with monkeypatch.context() as without:
             without.setattr(part, "tangent", lambda *_: None)
             errors = case.errors()

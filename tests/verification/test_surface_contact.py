@@ -90,7 +90,7 @@ def test_contact_at_nodes_has_no_limit() -> None:
 def test_soil_that_flows_from_under_the_pipe_is_told(tmp_path: Path) -> None:
     """Pushed in by D/16, plastic clay moves aside: the resistance is no figure any more."""
     scene = slice_of_soil(4)
-    scene["soil"]["law"] = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": NU}
+    scene["soil"] |= {"law": {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": NU}, "strain": "small"}
     for end in ("start", "end"):
         scene["stages"][0]["move"][end][2] = 0.44 * D
     run(scene_from_mapping(scene), tmp_path)

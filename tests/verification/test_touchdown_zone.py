@@ -142,7 +142,9 @@ def test_where_line_types_meet_the_one_nearer_to_its_limit_counts(tmp_path: Path
 
 
 def test_embedment_in_soil_counts_from_where_it_lay(tmp_path: Path) -> None:
-    run(scene_from_mapping(touchdown(LAY, su=1000.0)), tmp_path)
+    scene = touchdown(LAY, su=1000.0)
+    scene["soil"]["strain"] = "small"
+    run(scene_from_mapping(scene), tmp_path)
     seen = Run(tmp_path)
     settlement = -seen.soil_frame().fields["displacement"][:, 2].min()
     on_soil = (seen["position"][-1, :, 0] > 2.5) & (seen["position"][-1, :, 0] < 8.5)
