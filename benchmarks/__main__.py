@@ -2,7 +2,7 @@
 
 import argparse
 
-from benchmarks import adaptive, condensed, coupled, impact, length, plastic, riser_only, tank, twins, waves
+from benchmarks import adaptive, condensed, coupled, impact, length, plastic, riser_only, storm, tank, twins, waves
 
 argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__).parse_args()
 riser_only.report()
@@ -14,4 +14,5 @@ plastic.report()
 adaptive.report()
 impact.report()
 tank.report()
+storm.report()
 waves.report()
