@@ -44,8 +44,9 @@ def hanging(linear: str = "auto") -> Mapping:
 
 
 def bouncing(linear: str = "auto") -> Mapping:
-    """A pipe that falls on clay, which yields, strikes after 0.32 s, is thrown off and strikes again; at small strain, as
-    nodes that move leave a balance behind that the next step finds with the soil.
+    """A pipe that falls on clay, which yields, strikes after 0.32 s, is thrown off and strikes again.
+
+    At small strain: nodes that move leave a balance behind that the next step finds with the soil.
     """
     given = falling(1e7, 0.02, CLAY | {"su": 2e4}, duration=0.7)
     given["soil"]["strain"] = "small"

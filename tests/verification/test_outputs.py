@@ -74,7 +74,7 @@ def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
     """The settlement told is that of the surface in the file, the underside lies in it by what force compresses, and by
     what the smooth surface of contact dips below flat facets.
 
-    The first is f/k at a chord as wide as the diameter, with k ten times the soil's modulus, and more on a narrower one.
+    The first is f/k at a chord as wide as the diameter, with k ten times the soil's modulus, more on a narrower one.
     """
     run, k = Run(demo.folder), 10.0 * 300.0 * 2.0e3
     frame = run.soil_frame()
