@@ -306,7 +306,7 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
 
 
 def _add_ground(assembly: Assembly) -> None:
-    from riser_soil.assembly import ground
+    from riser_soil.assembly import friction, ground
 
     scene, settings = assembly.scene, assembly.scene.contact
     assert settings is not None
@@ -318,7 +318,7 @@ def _add_ground(assembly: Assembly) -> None:
         surface = soil.surface if assembly.condensed is None else assembly.condensed.top
         contact = ground.soil_contact_of(scene, settings, line, elements, surface, stiffness["soil"])
         assembly.soil_contact = contact
-        assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)
+        assembly.soil_friction = friction.soil_friction_of(scene, settings, contact, elements, soil.surface.volume)
         assembly.mesh_renewal = ground.mesh_renewal_of(soil, contact, assembly.soil_friction, line)
         if assembly.laying is not None or scene.stages[0].kind == "static":
             top = soil.surface.points
@@ -326,4 +326,4 @@ def _add_ground(assembly: Assembly) -> None:
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
         assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)
-        assembly.friction = ground.friction_of(settings, assembly.seabed, elements)
+        assembly.friction = friction.friction_of(scene, settings, assembly.seabed, elements)

@@ -14,7 +14,7 @@ from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.scene.contact import Contact as ContactScene
-from riser_soil.scene.contact import Friction, Suction
+from riser_soil.scene.contact import Suction
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
@@ -23,7 +23,6 @@ from riser_soil.scene.soil_law import law_of, volumes, weight_of
 
 if TYPE_CHECKING:
     from riser_soil.contact.cushion import Cushion
-    from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.law import Penalty
     from riser_soil.contact.mesh_renewal import MeshRenewal
     from riser_soil.contact.seabed_contact import SeabedContact
@@ -40,8 +39,7 @@ if TYPE_CHECKING:
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
 # Integration points across the width that touches at rest, as parts of the diameter, and how much farther apart along.
 POINTS_ACROSS, FINEST, COARSEST, ALONG = 4.0, 1.0 / 200.0, 1.0 / 16.0, 4.0
-# Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
-NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
+NARROWEST_CORNER, WIDEST_CORNER = 1.0 / 3000.0, 1.0 / 300.0  # of the outer diameter; sharper ones cost iterations
 SHALLOWEST = 1.0 / 300.0  # soil that gains strength from nothing has at least that of this depth
 CUSHION, LEVEL = 0.01, 0.01  # of the diameter: how far it gives under the riser's weight; unevenness of a level top
 
@@ -175,34 +173,6 @@ def seabed_contact_of(
     )
 
 
-def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> CoulombFriction | None:
-    """Friction on the seabed, where the scene asks for it."""
-    if settings.friction is None:
-        return None
-    from riser_soil.contact.friction import CoulombFriction, mobilised_within
-
-    mu, slide = _coefficients(settings.friction, scales_of(elements))
-    return CoulombFriction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))
-
-
-def soil_friction_of(
-    scene: Scene, settings: ContactScene, contact: SoilContact, elements: Elements
-) -> SoilFriction | None:
-    """Friction on the soil, where the scene asks for it and the pipe's surface touches."""
-    if settings.friction is None or settings.at_nodes:
-        return None
-    from riser_soil.contact.friction import mobilised_within
-    from riser_soil.contact.soil_friction import SoilFriction
-    from riser_soil.contact.surface_contact import SurfaceContact
-
-    assert isinstance(contact, SurfaceContact)
-    assert scene.soil is not None
-    scales = scales_of(elements)
-    mu, slide = _coefficients(settings.friction, scales)
-    width = contact_width(scales, scene.soil.top_law.surface_modulus(scales.diameter))
-    return SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)
-
-
 def cushion_of(
     scene: Scene, contact: SoilContact, elements: Elements, top: Array, comm: Communicator
 ) -> Cushion | None:
@@ -226,21 +196,20 @@ def cushion_of(
     )
 
 
-def _coefficients(given: Friction, scales: Scales) -> tuple[tuple[float, float], float]:
-    """Axial and lateral coefficient of friction, and the slide that mobilises it [m]."""
-    mu = given.axial, given.axial if given.lateral is None else given.lateral
-    return mu, MOBILISATION * scales.diameter if given.mobilisation == "auto" else float(given.mobilisation)
-
-
 def seabed_law(seabed: Seabed, settings: ContactScene, elements: Elements, stiffness: dict[str, float]) -> NormalLaw:
     """How the seabed answers to penetration by the line of its mean diameter. stiffness [N/m2]: of penalties."""
     match seabed:
         case HystereticSeabed():
-            return seabed.law.of_pipe(float(np.average(elements.outer_diameter, weights=elements.length)))
+            return seabed.law.of_pipe(mean_diameter(elements))
         case RigidSeabed() | SpringSeabed():
             return _penalty(settings, scales_of(elements), stiffness["seabed"])
         case _:
             assert_never(seabed)
+
+
+def mean_diameter(elements: Elements) -> float:
+    """That along the line [m]: of laws for a line of several diameters."""
+    return float(np.average(elements.outer_diameter, weights=elements.length))
 
 
 def _penalty(settings: ContactScene, scales: Scales, stiffness: float) -> NormalLaw:

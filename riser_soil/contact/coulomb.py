@@ -1,12 +1,13 @@
-"""Return mapping of Coulomb friction with an elastic mobilisation length, point by point.
+"""Return mapping of friction with an elastic mobilisation length, point by point: Coulomb's, up to adhesion.
 
 Traction t (..., r) on the riser per length in r directions along the ground [N/m]; ds (..., r) its movement in
-the step. With the normal force N >= 0 at the end of the step and coefficients mu (r,):
+the step. With the normal force N >= 0 at the end of the step, coefficients mu (r,) and the adhesion A, infinite where
+there is none, the limits are L_i = min(mu_i N, A), and
 
-    t* = t_n - k ds;   m = sqrt(sum (t*_i/mu_i)^2);   t = t* where m <= N,  else N t*/m.
+    t* = t_n - k ds;   m = sqrt(sum (t*_i/L_i)^2);   t = t* where m <= 1,  else t*/m.
 
 Stored are t.t/(2 k). A step extracts -t.ds from the riser; less the change of the energy stored, that is
-|t - t_n|^2/(2 k) + (m/N - 1) t.t/k >= 0, whatever t_n, ds and N are: friction dissipates in every step, and no closed
+|t - t_n|^2/(2 k) + (m - 1) t.t/k >= 0, whatever t_n, ds and L are: friction dissipates in every step, and no closed
 path gains work. The stiffness k is the same in all directions, so that their rotation with the riser does not change
 the energy stored.
 """
@@ -23,13 +24,18 @@ from riser_soil.core.compiled import njit
 Pair = tuple[float, float]  # along both directions, or along one and 0
 
 
-def traction(elastic: Array, N: Array, mu: Array) -> tuple[Array, Array, Array]:
-    """t (..., r) from t* and N (...), and its derivatives by t* (..., r, r) and by N (..., r); r is 1 or 2."""
+def traction(
+    elastic: Array, N: Array, slope: Array, mu: Array, most: Array | float = np.inf, most_slope: Array | float = 0.0
+) -> tuple[Array, Array, Array]:
+    """t (..., r) from t*, N and adhesion `most` (...), and its derivatives by t* (..., r, r) and by the penetration
+    (..., r), by which those of N and `most` are slope and most_slope (...); r is 1 or 2.
+    """
     r = elastic.shape[-1]
     found = np.empty((N.size, r)), np.empty((N.size, r, r)), np.empty((N.size, r))
-    _tractions(elastic.reshape(-1, r), N.reshape(-1), mu, *found)
-    t, by_elastic, by_N = found
-    return t.reshape(elastic.shape), by_elastic.reshape(*elastic.shape, r), by_N.reshape(elastic.shape)
+    pushed = np.stack(np.broadcast_arrays(N, slope, most, most_slope), axis=-1).reshape(-1, 4)
+    _tractions(elastic.reshape(-1, r), pushed, mu, *found)
+    t, by_elastic, by_penetration = found
+    return t.reshape(elastic.shape), by_elastic.reshape(*elastic.shape, r), by_penetration.reshape(elastic.shape)
 
 
 def stuck(elastic: Array, N: Array) -> tuple[Array, Array, Array]:
@@ -40,25 +46,38 @@ def stuck(elastic: Array, N: Array) -> tuple[Array, Array, Array]:
 
 
 @njit
-def _tractions(elastic: Array, N: Array, mu: Array, t: Array, by_elastic: Array, by_N: Array) -> None:
+def _tractions(elastic: Array, pushed: Array, mu: Array, t: Array, by_elastic: Array, by_penetration: Array) -> None:
     r = mu.size
-    for i in range(N.size):
-        guess, limits = (elastic[i, 0], elastic[i, r - 1] if r > 1 else 0.0), (mu[0], mu[r - 1])
-        found, by_guess, by_normal = return_map(guess, N[i], limits)
+    for i in range(len(pushed)):
+        guess, N, most = (elastic[i, 0], elastic[i, r - 1] if r > 1 else 0.0), pushed[i, :2], pushed[i, 2:]
+        limit, rise = limits(N[0], N[1], (mu[0], mu[r - 1]), (most[0], most[1]))
+        found, by_guess, by_push = return_map(guess, limit, rise)
         for j in range(r):
-            t[i, j], by_N[i, j] = found[j], by_normal[j]
+            t[i, j], by_penetration[i, j] = found[j], by_push[j]
             for k in range(r):
                 by_elastic[i, j, k] = by_guess[j][k]
 
 
 @njit
-def return_map(elastic: Pair, N: float, mu: Pair) -> tuple[Pair, tuple[Pair, Pair], Pair]:
-    """t at one point from t* and N, and its derivatives by both."""
-    (a, b), (p, q) = elastic, mu
-    level = math.sqrt((a / p) ** 2 + (b / q) ** 2)
-    if level <= N:
+def limits(N: float, slope: float, mu: Pair, most: Pair) -> tuple[Pair, Pair]:
+    """L at one point and its derivative by the penetration; most: adhesion and its derivative. 0 where N <= 0."""
+    if N <= 0.0:
+        return (0.0, 0.0), (0.0, 0.0)
+    first, second = mu[0] * N < most[0], mu[1] * N < most[0]
+    limit = mu[0] * N if first else most[0], mu[1] * N if second else most[0]
+    return limit, (mu[0] * slope if first else most[1], mu[1] * slope if second else most[1])
+
+
+@njit
+def return_map(elastic: Pair, limit: Pair, rise: Pair) -> tuple[Pair, tuple[Pair, Pair], Pair]:
+    """t at one point from t* and L, its derivative by t*, and that by the penetration, by which that of L is `rise`."""
+    (a, b), (p, q) = elastic, limit
+    if p <= 0.0 or q <= 0.0:
+        return (0.0, 0.0), ((0.0, 0.0), (0.0, 0.0)), (0.0, 0.0)
+    level = math.hypot(a / p, b / q)
+    if level <= 1.0:
         return elastic, ((1.0, 0.0), (0.0, 1.0)), (0.0, 0.0)
-    share, u, v = N / level, a / level, b / level
-    x, y = u / p**2, v / q**2
-    turned = ((share * (1.0 - u * x), -share * u * y), (-share * v * x, share * (1.0 - v * y)))
-    return (share * a, share * b), turned, (u, v)
+    c, d = a / p / level, b / q / level  # t over the limit, a unit vector
+    turned = ((d * d / level, -c * d * (p / q) / level), (-c * d * (q / p) / level, c * c / level))
+    pushed = c * (c * c * rise[0] + d * d * (p / q) * rise[1]), d * (c * c * (q / p) * rise[0] + d * d * rise[1])
+    return (c * p, d * q), turned, pushed

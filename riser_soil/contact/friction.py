@@ -1,4 +1,4 @@
-"""Coulomb friction of the riser on the seabed, integrated along its elements: the part "friction"."""
+"""Friction of the riser on the seabed, integrated along its elements: the part "friction"."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.contact import friction_stations, seabed_stations
+from riser_soil.contact.adhesion import Adhesion, adhesions
 from riser_soil.contact.coulomb import stuck, traction
-from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.contact.seabed_contact import SeabedContact, StationContact
 from riser_soil.contact.seabed_loop import FrictionNumbers
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.core.arrays import Array, IntArray
@@ -40,21 +41,23 @@ class FrictionState(NamedTuple):
 
 
 class CoulombFriction(LinePart):
-    """Part "friction": Coulomb friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
+    """Part "friction": friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
 
-    axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2]; with the weight w
-    of the pipe and a mobilisation length, max(axial, lateral) w/mobilisation: `mobilised_within`. The force acts on the
-    axis. Directions are those of the start of the step; the traction is kept in the line's constant axes.
+    axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2], see
+    `mobilised_within`. adhesion: what clay holds the pipe by at most. The force acts on the axis. Directions are those
+    of the start of the step; the traction is kept in the line's constant axes.
     """
 
     name = "friction"
     traits = Traits("E", symmetric=False, keeps_way=True, roles=(Stateful,))
 
-    def __init__(self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array) -> None:
+    def __init__(
+        self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array, adhesion: Adhesion | None = None
+    ) -> None:
         super().__init__(contact.line)
         self.contact = contact
         self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
-        self._stiffness = stiffness
+        self._stiffness, self._adhesion = stiffness, adhesion or Adhesion()
         self._begun: FrictionState | None = None
         self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
@@ -74,11 +77,14 @@ class CoulombFriction(LinePart):
         found = self.contact.evaluate(trial)
         touching, begun, k = found.touching, self._friction_state(trial), self._stiffness
         elastic = friction_stations.elastic_guesses(touching.elements, tuple(begun), k, found.position)
-        N = np.maximum(touching.force, 0.0)
-        tractions = stuck(elastic, N) if self._sticks else traction(elastic, N, self._mu)
-        pressing = touching.force, touching.slope, touching.normal
-        resistance = friction_stations.resistances(touching.elements, begun.along, k, tractions, pressing)
+        tractions = stuck(elastic, touching.force) if self._sticks else self._limited(elastic, found)
+        resistance = friction_stations.resistances(touching.elements, begun.along, k, tractions, touching.normal)
         return FrictionTraction(touching.elements, *resistance)
+
+    def _limited(self, elastic: Array, found: StationContact) -> tuple[Array, Array, Array]:
+        pressed = found.touching
+        most = adhesions(self._adhesion, found.penetration[pressed.elements])
+        return traction(elastic, pressed.force, pressed.slope, self._mu, *most)
 
     def _friction_state(self, trial: Trial) -> FrictionState:
         return self._friction_state_from(trial.state.t)
@@ -115,7 +121,8 @@ class CoulombFriction(LinePart):
         position, traction, resistance = vectors
         along, mu = np.zeros((*shape, d, d - 1)), (float(self._mu[0]), float(self._mu[-1]))
         self._in_loop = FrictionNumbers(
-            self.contact.in_loop, mu, self._stiffness, position, along, traction, np.zeros(shape), resistance
+            *(self.contact.in_loop, mu, self._adhesion, self._stiffness),
+            *(position, along, traction, np.zeros(shape), resistance),
         )
         return self._in_loop
 
@@ -182,11 +189,13 @@ class CoulombFriction(LinePart):
         self._begun, self._slid = FrictionState(*begun) if begun else None, saved["slid"]
 
 
-def mobilised_within(mobilisation: float, axial: float, lateral: float, weight: Array) -> Array:
+def mobilised_within(
+    mobilisation: float, axial: float, lateral: float, weight: Array, most: float = np.inf
+) -> Array:
     """Stiffness (ne,) [N/m2] at which the larger coefficient is mobilised after so long a slide [m] under the weight
-    (ne,) [N/m].
+    (ne,) [N/m], or an adhesion that is less [N/m].
     """
-    return max(axial, lateral) * weight / mobilisation
+    return np.asarray(np.minimum(max(axial, lateral) * weight, most) / mobilisation)
 
 
 def directions(tau: Array, normal: Array) -> Array:

@@ -50,12 +50,12 @@ def elastic_guess(along: Along, traction: Vec, k: float, moved: Vec) -> Pair:
 
 @njit
 def resistance_by_position(
-    along: Along, k: float, by_elastic: tuple[Pair, Pair], by_N: Pair, N_slope: float, normal: Vec
+    along: Along, k: float, by_elastic: tuple[Pair, Pair], by_penetration: Pair, normal: Vec
 ) -> Mat:
-    """Derivative by the position of minus the traction; N_slope: of the normal force by the penetration."""
+    """Derivative by the position of minus the traction, from its derivatives by t* and by the penetration."""
     stuck = outer(scale(k, along[0]), vector_of(along, by_elastic[0]))
     stuck = matadd(stuck, outer(scale(k, along[1]), vector_of(along, by_elastic[1])))
-    return matadd(stuck, outer(scale(N_slope, vector_of(along, by_N)), normal))
+    return matadd(stuck, outer(vector_of(along, by_penetration), normal))
 
 
 @njit
@@ -115,13 +115,13 @@ def elastic_guesses(elements: IntArray, begun: tuple[Array, Array, Array], k: Ar
 
 @njit
 def resistances(
-    elements: IntArray, along: Array, k: Array, found: tuple[Array, Array, Array], pressing: tuple[Array, Array, Array]
+    elements: IntArray, along: Array, k: Array, found: tuple[Array, Array, Array], normal: Array
 ) -> tuple[Array, Array]:
     """Minus the tractions (m, ng, d) of some elements, and their derivative by the position (m, ng, d, d).
 
-    found: what `coulomb.traction` tells; pressing: normal force and its slope (m, ng), and the ground's normal.
+    found: what `coulomb.traction` tells; normal (m, ng, d): of the ground.
     """
-    (t, by_elastic, by_N), (force, slope, normal) = found, pressing
+    t, by_elastic, by_penetration = found
     m, ng, d = normal.shape
     resistance, by_position = np.empty((m, ng, d)), np.empty((m, ng, d, d))
     for i in range(m):
@@ -130,8 +130,7 @@ def resistances(
             ways = read_along(along[e, g])
             put(scale(-1.0, vector_of(ways, read_pair(t[i, g]))), resistance[i, g])
             by_guess = read_pair(by_elastic[i, g, 0]), read_pair(by_elastic[i, g, -1])
-            N_slope = slope[i, g] if force[i, g] > 0.0 else 0.0
-            by = resistance_by_position(ways, k[e], by_guess, read_pair(by_N[i, g]), N_slope, padded(normal[i, g]))
+            by = resistance_by_position(ways, k[e], by_guess, read_pair(by_penetration[i, g]), padded(normal[i, g]))
             put_matrix(by, by_position[i, g])
     return resistance, by_position
 

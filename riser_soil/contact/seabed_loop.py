@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.adhesion import Adhesion, adhesion_at
 from riser_soil.contact.contact_results import ContactResults, put_results
-from riser_soil.contact.coulomb import Pair, return_map
+from riser_soil.contact.coulomb import Pair, limits, return_map
 from riser_soil.contact.friction_stations import (
     directions_at,
     elastic_guess,
@@ -88,12 +89,13 @@ class SeabedNumbers(NamedTuple):
 
 
 class FrictionNumbers(NamedTuple):
-    """A `CoulombFriction` at the stations of a contact: coefficients, stiffness (ne,), its `FrictionState` and way slid
-    (ne, ng), and minus the traction found last (ne, ng, d).
+    """A `CoulombFriction` at the stations of a contact: coefficients, adhesion, stiffness (ne,), its `FrictionState`
+    and way slid (ne, ng), and minus the traction found last (ne, ng, d).
     """
 
     contact: SeabedNumbers
     mu: Pair
+    adhesion: Adhesion
     stiffness: Array
     position: Array
     along: Array
@@ -268,6 +270,15 @@ def _moved(part: FrictionNumbers, e: int, g: int) -> Vec:
     return moved
 
 
+@njit
+def _limits(part: FrictionNumbers, e: int, g: int) -> tuple[Pair, Pair]:
+    """L of `coulomb` at a station, and its derivative by the penetration."""
+    found = part.contact.found
+    most = adhesion_at(part.adhesion, found.penetration[e, g])
+    limit: tuple[Pair, Pair] = limits(found.force[e, g], found.slope[e, g], part.mu, most)
+    return limit
+
+
 @add_forces.of(FrictionNumbers)
 def _friction_forces(part: FrictionNumbers, at: Configuration, out: LineForces) -> None:
     """After those of the contact that it belongs to."""
@@ -276,7 +287,8 @@ def _friction_forces(part: FrictionNumbers, at: Configuration, out: LineForces) 
         if not contact.found.touches[e]:
             continue
         for g in range(contact.share.shape[1]):
-            t, _, _ = return_map(_elastic(part, e, g), max(contact.found.force[e, g], 0.0), part.mu)
+            limit, rise = _limits(part, e, g)
+            t, _, _ = return_map(_elastic(part, e, g), limit, rise)
             put(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
             p = e * contact.share.shape[1] + g
             stations.add_integrand_at(contact.at.weighted, p, held(part.resistance[e, g], at.D), out.end_q, e, at.D)
@@ -290,12 +302,11 @@ def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weig
             continue
         room[:] = 0.0
         for g in range(contact.share.shape[1]):
-            force, normal = found.force[e, g], padded(found.normal[e, g])
-            _, by_elastic, by_N = return_map(_elastic(part, e, g), max(force, 0.0), part.mu)
-            slope = found.slope[e, g] if force > 0.0 else 0.0
-            ways = read_along(part.along[e, g])
+            limit, rise = _limits(part, e, g)
+            _, by_elastic, by_penetration = return_map(_elastic(part, e, g), limit, rise)
+            ways, normal = read_along(part.along[e, g]), padded(found.normal[e, g])
             put_matrix(
-                resistance_by_position(ways, part.stiffness[e], by_elastic, by_N, slope, normal), contact.by
+                resistance_by_position(ways, part.stiffness[e], by_elastic, by_penetration, normal), contact.by
             )
             dragged = contact.at.N[e, g], contact.by, maps.place_rows[e]
             add_weighed(room, contact.at.weighted[e, g], (dragged,), at.D, at.R)

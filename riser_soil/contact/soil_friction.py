@@ -1,19 +1,20 @@
-"""Coulomb friction between the pipe's cylinder and the soil's surface, point by point: the part "soil friction"."""
+"""Friction between the pipe's cylinder and the soil's surface, point by point: the part "soil friction"."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.active_pairs import add_products, add_rows
+from riser_soil.contact.active_pairs import ActivePairs, add_products, add_rows
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.coulomb import stuck, traction
-from riser_soil.contact.near_points import Surface
+from riser_soil.contact.near_points import NearPoints, Surface
 from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.sliding import Slide, slide
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful, gathered, within
 from riser_soil.riser.line_part import LinePart
@@ -35,24 +36,36 @@ class SlidingState:
     gradient: Array
 
 
+SoilAdhesion = Callable[[IntArray, Array], Array]
+"""Facets (n,) and heights of points on them before the riser came (n,) [m] -> what the soil holds the pipe by at most
+(n,) [Pa].
+"""
+
 Sliding = tuple[Slide, Array, Array, Array, Array]  # what a trial keeps of a SlidingState: all but what holds the trial
 
 
 class SoilFriction(LinePart):
-    """Part "soil friction": Coulomb friction at the integration points of a `SurfaceContact`; group E.
+    """Part "soil friction": friction at the integration points of a `SurfaceContact`; group E.
 
     axial, lateral: coefficients, > 0, along the pipe and around it. stiffness: of the soil's surface along itself
-    [N/m3], see `coulomb`. The slide is that of the axis over the soil, and the force acts on the axis. Directions are
-    those of the start of the step; the traction is kept in global axes.
+    [N/m3], see `coulomb`. adhesion: without a limit by default. The slide is that of the axis over the soil, and the
+    force acts on the axis. Directions are those of the start of the step; the traction is kept in global axes.
     """
 
     name = "soil friction"
     traits = Traits("E", symmetric=False, keeps_way=True, roles=(Stateful,))
 
-    def __init__(self, contact: SurfaceContact, axial: float, lateral: float, stiffness: float) -> None:
+    def __init__(
+        self,
+        contact: SurfaceContact,
+        axial: float,
+        lateral: float,
+        stiffness: float,
+        adhesion: SoilAdhesion | None = None,
+    ) -> None:
         super().__init__(contact.line)
         self.contact = contact
-        self._mu, self._stiffness = np.array([axial, lateral]), stiffness
+        self._mu, self._stiffness, self._adhesion = np.array([axial, lateral]), stiffness, adhesion
         self._memory = PointMemory(np.zeros(AREA + 1))
         self._begun: tuple[Axis, Surface] | None = None
         self._slid: Array = np.zeros(self.line.nodes)
@@ -78,19 +91,23 @@ class SoilFriction(LinePart):
         moved = slide(pressed.points, self._start(found.trial.state), now, self.line.basis)
         before = self._memory.at(pressed.points.number)[:, :AREA]
         elastic = before - self._stiffness * moved.moved
-        t, _, _ = self._return(_along(moved.along, elastic), self._pressure(found))
+        t, _, _ = self._return(_along(moved.along, elastic), pressed)
         on_riser = np.einsum("nri,nr->ni", moved.along, t)
         gradient = np.zeros_like(pressed.gradient)
         by_z = np.einsum("ni,niz->nz", pressed.points.area[:, None] * on_riser, moved.by_z)
         add_rows(gradient, pressed.pair, -np.ones(len(by_z)), by_z)
         return moved, elastic, on_riser, by_z, gradient
 
-    def _return(self, elastic: Array, pressure: Array) -> tuple[Array, Array, Array]:
-        return stuck(elastic, pressure) if self._sticks else traction(elastic, pressure, self._mu)
+    def _return(self, elastic: Array, pressed: ActivePairs) -> tuple[Array, Array, Array]:
+        """Components (n, r) of the traction, their derivatives by those of t* and by the penetration."""
+        if self._sticks:
+            return stuck(elastic, pressed.force)
+        pressure, slope = pressed.force / pressed.points.area, pressed.slope / pressed.points.area
+        return traction(elastic, pressure, slope, self._mu, self._most(pressed.points))
 
-    def _pressure(self, found: SurfaceState) -> Array:
-        """Pressure (n,) of the points [Pa], 0 where they pull."""
-        return np.asarray(np.maximum(found.pressed.force, 0.0) / found.pressed.points.area)
+    def _most(self, points: NearPoints) -> Array | float:
+        """Adhesion of points (n,) [Pa]."""
+        return np.inf if self._adhesion is None else self._adhesion(points.facet, self.contact.first_heights(points))
 
     def _start(self, state: State) -> tuple[Axis, Surface]:
         """The pipe's axis and the soil's surface at the start of the step."""
@@ -126,12 +143,11 @@ class SoilFriction(LinePart):
         """Derivative (n, 3, nz) of the traction."""
         moved, pressed, k = sliding.moved, sliding.found.pressed, self._stiffness
         at, by_place = _along(moved.along, sliding.elastic), pressed.by_place
-        t, by_elastic, by_N = self._return(at, self._pressure(sliding.found))
+        t, by_elastic, by_penetration = self._return(at, pressed)
         elastic = -k * np.einsum("nri,niz->nrz", moved.along, moved.by_z)
         turned = _along(moved.along_by_s, sliding.elastic) - k * _along(moved.along, moved.moved_by_s)
         elastic += turned[:, :, None] * by_place[:, None]
-        pushed = np.where(pressed.force > 0.0, -pressed.slope / pressed.points.area, 0.0)[:, None] * pressed.forms[:, 0]
-        components = by_elastic @ elastic + by_N[:, :, None] * pushed[:, None]
+        components = by_elastic @ elastic - by_penetration[:, :, None] * pressed.forms[:, None, 0]
         out = np.einsum("nri,nrz->niz", moved.along, components)
         return np.asarray(out + np.einsum("nri,nr->ni", moved.along_by_s, t)[:, :, None] * by_place[:, None])
 

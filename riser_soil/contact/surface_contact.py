@@ -12,6 +12,7 @@ from riser_soil.contact.candidates import CandidatePairs, touching_boxes
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gap_forms, gaps_of
 from riser_soil.contact.detection import add_blocks, add_shares
+from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
 from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.law import Penalty
@@ -139,6 +140,10 @@ class SurfaceContact(SoilContact):
     def surface(self, deformed: Array) -> Surface:
         """The soil's surface with its points at (np, 3) [m]."""
         return Surface(self._soil.facets, self._parts, self._first, self._soil.measured, deformed)
+
+    def first_heights(self, points: NearPoints) -> Array:
+        """Heights (n,) of points before the riser came [m]."""
+        return heights(points.facet, points.xi, self._soil.facets, self._soil.at_first)
 
     def axis(self, trial: Trial) -> Axis:
         """The riser's axis at a trial."""

@@ -1,8 +1,8 @@
 """Scene language: contact of the riser with seabed and soil, friction and suction."""
 
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, model_validator
 
 from riser_soil.core.quantities import (
     FROZEN,
@@ -10,25 +10,45 @@ from riser_soil.core.quantities import (
     AutoOrLength,
     AutoOrLengthOrNone,
     Length,
+    Part,
     PositiveWeightPerLength,
     Ratio,
+    wrong,
 )
 
 
 class Friction(BaseModel):
-    """Coulomb friction on the seabed, and on the soil where the pipe's surface touches it."""
+    """Friction on the seabed, and on the soil where the pipe's surface touches it: no larger than the coefficients
+    times the pressure, nor than the adhesion.
+    """
 
     model_config = FROZEN
 
-    axial: Ratio = Field(description="friction coefficient along the pipe [-]")
+    axial: Ratio | None = Field(
+        default=None,
+        description="friction coefficient along the pipe [-]; by default, with adhesion, ten times the adhesion",
+    )
     lateral: Ratio | None = Field(
         default=None, description="friction coefficient across the pipe [-]; that along it by default"
+    )
+    adhesion: Part | None = Field(
+        default=None,
+        description="largest friction over the undrained shear strength su of undisturbed clay where it touches [-], 1 "
+        "for a fully rough pipe; without such a limit by default, and on ground without su",
     )
     mobilisation: AutoOrLength = Field(
         default="auto",
         description="slide after which friction is fully mobilised under the pipe's submerged weight [m], or auto: "
         "1/30 of the outer diameter",
     )
+
+    @model_validator(mode="after")
+    def _has_a_limit(self) -> Self:
+        if self.axial is None and self.adhesion is None:
+            raise wrong("axial", "the key is required here", "add axial, adhesion or both")
+        if self.axial is None and self.lateral is not None:
+            raise wrong("lateral", "is given without axial", "give axial, too")
+        return self
 
 
 class Suction(BaseModel):

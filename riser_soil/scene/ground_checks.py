@@ -8,6 +8,7 @@ from riser_soil.scene.problem import Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
+from riser_soil.seabed.bearing import Strength
 
 # Part of its radius by which a prescribed end may lie in a rigid seabed.
 _SUNK = 0.02
@@ -22,6 +23,7 @@ def ground_conflicts(scene: Scene) -> Iterator[Problem]:
         _seabed_has_one_shape,
         _grid_under_the_riser,
         _ground_can_do_so,
+        _ground_has_a_strength,
         _surface_of_a_pipe_and_soil,
         _ends_above_seabed,
     ):
@@ -68,6 +70,30 @@ def _ground_can_do_so(scene: Scene) -> Iterator[Problem]:
             yield Problem(("contact", key), text, "add seabed, or leave out contact.method: node, or leave it out")
     if scene.contact.suction and isinstance(scene.seabed, HystereticSeabed) and not on_soil:
         yield Problem(("contact", "suction"), "a hysteretic seabed has its own, in seabed.law", "leave it out")
+
+
+def _ground_has_a_strength(scene: Scene) -> Iterator[Problem]:
+    """Adhesion is a share of su: some ground must have it, and all of it where no coefficient is given."""
+    friction = scene.contact.friction if scene.contact is not None else None
+    if friction is None or friction.adhesion is None:
+        return
+    without = [told for told, strength in _strengths(scene) if strength is None]
+    path = ("contact", "friction", "adhesion")
+    if without and len(without) == len([*_strengths(scene)]):
+        text = f"is a share of the undrained shear strength su, and {' and '.join(without)} has none"
+        yield Problem(path, text, "give axial, the coefficient of friction, instead, or take a ground of clay")
+    elif without and friction.axial is None:
+        text = f"is a share of the undrained shear strength su, and beside the clay {' and '.join(without)} has none"
+        yield Problem(path, text, "give axial, too, the coefficient of friction there")
+
+
+def _strengths(scene: Scene) -> Iterator[tuple[str, float | Strength | None]]:
+    """What friction may act on, and its undrained shear strength, None where it has none."""
+    if scene.soil is not None and scene.contact is not None and not scene.contact.at_nodes:
+        for law in scene.soil.laws_at_top:
+            yield f"soil that is {law.kind}", law.undrained_strength(0.0)
+    if scene.seabed is not None:
+        yield f"the {scene.seabed.kind} seabed", scene.seabed.undrained_strength
 
 
 def _surface_of_a_pipe_and_soil(scene: Scene) -> Iterator[Problem]:

@@ -17,6 +17,7 @@ from riser_soil.core.quantities import (
 )
 from riser_soil.scene.files import GivenByName, NamedFile
 from riser_soil.scene.height_grid import HeightGrid, read_heights
+from riser_soil.seabed.bearing import Strength
 from riser_soil.seabed.law import SeabedLaw
 from riser_soil.seabed.laws import LAWS
 
@@ -109,6 +110,11 @@ class SeabedScene(BaseModel):
     grid: Grid = None
     contact_at: Toucher = "outer"
 
+    @property
+    def undrained_strength(self) -> Strength | None:
+        """Of clay, by depth; None of other ground."""
+        return None
+
 
 class RigidSeabed(SeabedScene):
     """A rigid ground; its penalty stiffness is `contact.stiffness`."""
@@ -131,6 +137,10 @@ class HystereticSeabed(SeabedScene):
 
     kind: Annotated[Literal["hysteretic"], KIND]
     law: Annotated[SeabedLaw, LAW] = Field(description=LAW.examples)
+
+    @property
+    def undrained_strength(self) -> Strength | None:
+        return self.law.undrained_strength
 
 
 Seabed = Annotated[

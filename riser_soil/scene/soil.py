@@ -282,6 +282,12 @@ class SoilScene(BaseModel):
         return min((rate for law in self.laws if (rate := law.reference_rate) is not None), default=None)
 
     @property
+    def laws_at_top(self) -> list[SoilLaw]:
+        """Those that the surface may lie in: of a plain block the first layer's."""
+        plain = self.block is not None and (self.given_block is None or self.given_block.feature is None)
+        return [self.top_law] if plain else self.laws
+
+    @property
     def top_law(self) -> SoilLaw:
         """The law at the seabed: the only one, or the first layer's."""
         law = self.layers[0].law if self.layers else self.law

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_layers import boundaries
 
@@ -36,6 +36,26 @@ def law_of(given: SoilScene, grid: DistributedMesh, shallowest: float = 0.0) -> 
             initial,
         )
     return lambda depth, initial: law_by_depth(laws, bottoms, depth, initial, shallowest)
+
+
+def strength_of(given: SoilScene, shallowest: float = 0.0) -> Callable[[IntArray, Array], Array]:
+    """What tells the undrained shear strength (n,) [Pa] of undisturbed soil in volumes (n,) at depths (n,) [m];
+    infinite of soil that has none. shallowest: as in `law_of`.
+    """
+    from riser_soil.soil.layered import in_layers
+
+    laws, bottoms, by_volume = given.laws, boundaries(given.layers or ()), bool(volumes(given))
+
+    def strength(volume: IntArray, depth: Array) -> Array:
+        layer, below = in_layers(bottoms, depth, shallowest)
+        found = np.full(len(depth), np.inf)
+        for k, law in enumerate(laws):
+            at = np.flatnonzero((volume if by_volume else layer) == k)
+            if (su := law.undrained_strength(below[at])) is not None:
+                found[at] = su
+        return found
+
+    return strength
 
 
 def weight_of(given: SoilScene) -> float | LayeredWeight:

@@ -50,11 +50,15 @@ class AubenyBiscontin(SeabedLaw):
     phi: NonNegative = Field(default=0.203, lt=1.0, description="suction over the resistance before the uplift [-]")
     psi: Ratio = Field(default=0.661, description="length of the separation over that of the rebound [-]")
 
+    @property
+    def undrained_strength(self) -> Strength:
+        return Strength(self.su, self.su_gradient)
+
     def of_pipe(self, diameter: float) -> AubenyBiscontinFormula:
         from riser_soil.seabed.aubeny_biscontin_formula import AubenyBiscontinFormula, AubenyBiscontinNumbers
         from riser_soil.seabed.pipe_bearing import PowerLaw
 
-        power_law = PowerLaw(diameter, Strength(self.su, self.su_gradient), self.a, self.b)
+        power_law = PowerLaw(diameter, self.undrained_strength, self.a, self.b)
         return AubenyBiscontinFormula(
             AubenyBiscontinNumbers(power_law, self.k_over_su, self.omega, self.phi, self.psi)
         )

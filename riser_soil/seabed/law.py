@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from pydantic import BaseModel
 
 from riser_soil.core.quantities import FROZEN
+from riser_soil.seabed.bearing import Strength
 
 if TYPE_CHECKING:
     from riser_soil.core.arrays import Array, BoolArray
@@ -76,6 +77,11 @@ class SeabedLaw(BaseModel, ABC):
     """The model of a seabed law in the scene: `kind`, a Literal of one word, and its constants."""
 
     model_config = FROZEN
+
+    @property
+    def undrained_strength(self) -> Strength | None:
+        """Of the clay, by depth; None where the law knows of none."""
+        return None
 
     @abstractmethod
     def of_pipe(self, diameter: float) -> NormalLaw:

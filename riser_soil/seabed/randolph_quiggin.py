@@ -57,11 +57,15 @@ class RandolphQuiggin(SeabedLaw):
     lambda_rep: Coefficient = Field(default=0.3, description="softening of repenetration [-]")
     f_b: Coefficient = Field(default=1.5, description="factor of the soil's buoyancy [-]")
 
+    @property
+    def undrained_strength(self) -> Strength:
+        return Strength(self.su, self.su_gradient)
+
     def of_pipe(self, diameter: float) -> RandolphQuigginFormula:
         from riser_soil.seabed.pipe_bearing import PowerLaw
         from riser_soil.seabed.randolph_quiggin_formula import RandolphQuigginFormula, RandolphQuigginNumbers
 
-        ultimate = PowerLaw(diameter, Strength(self.su, self.su_gradient), self.a, self.b, SHALLOW)
+        ultimate = PowerLaw(diameter, self.undrained_strength, self.a, self.b, SHALLOW)
         per_metre, weight = self.K_max / diameter, self.f_b * self.unit_weight
         return RandolphQuigginFormula(
             RandolphQuigginNumbers(ultimate, per_metre, self.f_suc, self.lambda_suc, self.lambda_rep, weight)

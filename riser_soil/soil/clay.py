@@ -64,6 +64,9 @@ class UndrainedClay(SoilLaw, ABC):
     def _strength(self) -> Strength:
         return Strength(self.su, self.su_gradient)
 
+    def undrained_strength(self, depth: Number) -> Number:
+        return self._strength.at(depth)
+
     def _modulus(self, strength: Number) -> Number:
         """Young's modulus of clay of that strength [Pa]."""
         return self.E_over_su * strength

@@ -18,17 +18,20 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class GatheredMesh:
-    """Points (n, 3) [m] by global node number and cells (nc, nn), rank by rank; empty on the other ranks."""
+    """Points (n, 3) [m] by global node number, cells (nc, nn), rank by rank, and number (nc,) of the named volume that
+    each lies in; empty on the other ranks.
+    """
 
     points: Array
     cells: IntArray
+    volume: IntArray
 
 
 def gather(grid: DistributedMesh) -> GatheredMesh:
     """Bring the mesh to rank 0 (collective)."""
     nodes = grid.nodes
     points = gather_rows(grid, nodes.points[: nodes.owned])
-    return GatheredMesh(points, gather_rows(grid, nodes.number[nodes.cells]))
+    return GatheredMesh(points, gather_rows(grid, nodes.number[nodes.cells]), gather_rows(grid, grid.volume))
 
 
 def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
@@ -39,23 +42,26 @@ def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
 
 def top_of(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
     """The surface that looks upwards; without points where the mesh is not gathered."""
-    facets = top_facets(grid, mesh)
+    facets, cells = top_facets(grid, mesh)
     used = np.unique(facets)
     points = mesh.points[used]
-    held = grid.supported(points).ravel()
-    return SoilTop(points, np.searchsorted(used, facets), components(used), held, moves)
+    dofs = components(used), grid.supported(points).ravel()
+    return SoilTop(points, np.searchsorted(used, facets), *dofs, mesh.volume[cells], moves)
 
 
-def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> IntArray:
-    """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`."""
+def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> tuple[IntArray, IntArray]:
+    """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`; and the
+    cell (nf,) of each.
+    """
     family = grid.family
     faces: IntArray = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))
     outer = _unshared(faces[:, : family.corners])
-    faces, cells = faces[outer], mesh.cells[outer // len(family.faces)]
-    outward = mesh.points[faces].mean(axis=1) - mesh.points[cells].mean(axis=1)
+    faces, cells = faces[outer], outer // len(family.faces)
+    outward = mesh.points[faces].mean(axis=1) - mesh.points[mesh.cells[cells]].mean(axis=1)
     inside_out = np.einsum("fi,fi->f", _normal(mesh.points, faces), outward) < 0.0
     faces[inside_out] = faces[inside_out][:, family.flip]
-    return faces[_normal(mesh.points, faces)[:, 2] > 0.01]
+    upwards = _normal(mesh.points, faces)[:, 2] > 0.01
+    return faces[upwards], cells[upwards]
 
 
 def _unshared(corners: IntArray) -> IntArray:

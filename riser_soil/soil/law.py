@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol
 from pydantic import BaseModel
 
 from riser_soil.core.quantities import FROZEN
+from riser_soil.seabed.bearing import Number
 
 if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
@@ -111,6 +112,12 @@ class SoilLaw(BaseModel, ABC):
     @abstractmethod
     def at_points(self, depth: Array, initial: Array) -> Formula:
         """The formula at depths (n,) below the seabed [m], of soil under an initial stress (n, 6) [Pa]."""
+
+    def undrained_strength(self, depth: Number) -> Number | None:
+        """Shear strength su of undisturbed soil at a depth below the seabed [m], or (n,) of them [Pa]; None of soil
+        that has no such strength.
+        """
+        return None
 
     def wrong_within(self, depth: float) -> tuple[str, str] | None:
         """What is wrong with soil of this depth [m]: what is allowed, and what to do."""

@@ -44,8 +44,13 @@ def law_by_depth(
     """The formula at depths (n,) below the seabed [m]; each law counts depth from the top of its layer, and at least
     `shallowest`.
     """
+    return of_layers(laws, *in_layers(bottoms, depth, shallowest), initial)
+
+
+def in_layers(bottoms: Sequence[float], depth: Array, shallowest: float) -> tuple[IntArray, Array]:
+    """Layer (n,) that holds a depth (n,) [m], and the depth below its top, at least `shallowest`."""
     layer = layer_at(bottoms, depth)
-    return of_layers(laws, layer, np.maximum(depth - np.array([0.0, *bottoms])[layer], shallowest), initial)
+    return layer, np.maximum(depth - np.array([0.0, *bottoms])[layer], shallowest)
 
 
 def of_layers(laws: Sequence[SoilLaw], layer: IntArray, depth: Array, initial: Array) -> Formula:

@@ -13,6 +13,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.core.arrays import IntArray
+from riser_soil.core.snapshot import SoilMesh
 from riser_soil.errors import MeshError
 from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.families import QUAD4
@@ -59,7 +60,8 @@ def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> Soi
     along = next(axis for axis in range(2) if axis not in grid.family.axes)
     top = np.flatnonzero(mesh.points[:, 2] > grid.high[2] - 1e-9 * float(np.ptp([grid.low[2], grid.high[2]])))
     if not len(mesh.points):
-        return SoilTop(mesh.points, np.zeros((0, 4), dtype=np.int64), components(top), np.zeros(0, dtype=bool), moves)
+        none = np.zeros(0, dtype=np.int64)
+        return SoilTop(mesh.points, none.reshape(0, 4), components(top), none.astype(bool), none, moves)
     columns = len(np.unique(mesh.points[top, 1 - along]))
     rows = top.reshape(-1, columns)
     points = np.repeat(mesh.points[rows][:, None], 2, axis=1)  # (ns, 2, nc, 3)
@@ -70,13 +72,14 @@ def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> Soi
     facets = np.stack([each.ravel() for each in (around if along == 0 else around[::-1])], axis=1)
     number = np.repeat(rows[:, None], 2, axis=1).ravel()
     flat = points.reshape(-1, 3)
-    return SoilTop(flat, facets, components(number), grid.supported(flat).ravel(), moves)
+    dofs = components(number), grid.supported(flat).ravel()
+    return SoilTop(flat, facets, *dofs, np.zeros(len(facets), dtype=np.int64), moves)
 
 
-def slabs(grid: DistributedMesh, mesh: GatheredMesh) -> GatheredMesh:
+def slabs(grid: DistributedMesh, mesh: GatheredMesh) -> SoilMesh:
     """Slices as hexahedra in VTK's order, as thick as they stand for: of the nodes all those in front come first."""
     along = next(axis for axis in range(2) if axis not in grid.family.axes)
     half = np.zeros(3)
     half[along] = 0.5 * grid.family.thickness
     n, quads = len(mesh.points), mesh.cells[:, grid.family.vtk]
-    return GatheredMesh(np.concatenate([mesh.points - half, mesh.points + half]), np.hstack([quads, quads + n]))
+    return SoilMesh(np.concatenate([mesh.points - half, mesh.points + half]), np.hstack([quads, quads + n]))

@@ -253,7 +253,7 @@ class Soil:
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""
         if self.grid.family.plane:
-            return SoilMesh(*vars(slabs(self.grid, self.mesh)).values())
+            return slabs(self.grid, self.mesh)
         return SoilMesh(self.mesh.points, self.mesh.cells[:, self.grid.family.vtk])
 
     def output_fields(self) -> SoilSnapshot:

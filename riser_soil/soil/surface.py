@@ -31,18 +31,24 @@ class SoilTop:
 
     points (np, 3) [m]: undeformed. facets (nf, nv): indexes into points, counter-clockwise from above, of 4 corners or
     of 3 and then the midpoints of the sides 12, 23, 31. global_index, prescribed (3 np,): of its dofs, x, y, z of each
-    point. committed (np, 3) [m]: displacement since the geostatic start at the last accepted step. moves: whether the
-    geometry follows that, as at large strain.
+    point. volume (nf,): number of the named volume below each facet. committed (np, 3) [m]: displacement since the
+    geostatic start at the last accepted step. moves: whether the geometry follows that, as at large strain.
     """
 
     name = "surface"
     space = "soil"
 
     def __init__(
-        self, points: Array, facets: IntArray, global_index: IntArray, prescribed: BoolArray, moves: bool = False
+        self,
+        points: Array,
+        facets: IntArray,
+        global_index: IntArray,
+        prescribed: BoolArray,
+        volume: IntArray,
+        moves: bool = False,
     ) -> None:
-        self.moves = moves
-        self.points, self.facets, self.global_index, self.prescribed = points, facets, global_index, prescribed
+        self.points, self.facets, self.volume, self.moves = points, facets, volume, moves
+        self.global_index, self.prescribed = global_index, prescribed
         self.committed: Array = np.zeros_like(points)
         self.size = points.size
         self.offset = 0

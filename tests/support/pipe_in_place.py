@@ -17,6 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from riser_soil.assembly.ground import contact_width
+from riser_soil.assembly.scales import LEAST_WEIGHT, Scales
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 from riser_soil.soil.seabed_feature import GrooveSpec
@@ -24,10 +26,12 @@ from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take
 
-D, SU, STEPS = 0.3, 5.0e3, 8
+D, SU, STEPS = 0.3, 5.0e3, 9
 TYPICAL = 5.0e11  # EA over length [N/m]: contact goes by a millionth of it where there is no weight
-ROUGH = 0.5  # coefficient of friction: su is less than half of the least pressure, 2.57 su
-GAPS, ELASTIC = 4.0, 50.0  # how far the pipe is pushed, in gaps under the groove's corners; E/su times the gap over D
+LEAST = 2.57 * SU  # least pressure under a smooth or a rough pipe, where it is half buried
+# In gaps between the groove's strips and the pipe that touches their edges: how far contact gives under that pressure,
+# the slide that mobilises adhesion, how far the pipe is pushed. E/su times that gap over D.
+GIVES, SLIDES, PUSHED, ELASTIC = 1.0, 0.1, 3.0, 50.0
 
 
 def half_angle(w: float) -> float:
@@ -60,20 +64,24 @@ def rough_by_slip_lines(w: float) -> float:
 def pipe_in_place(w: float, strips: int, rough: bool, *, E_over_su: float = 0.0, down: float = 0.0) -> Mapping:
     """A slice one cell thick, a groove of so many strips; cells as wide as these, and four times as wide far off.
 
-    The strips touch the pipe in their middles and leave gaps under their corners. The pipe is pushed `down` (over D),
-    by default a few times as far as these are high, into clay so stiff that it yields all around by then.
+    The strips touch a pipe of the diameter D in their middles; this one is larger, and touches their edges, so that all
+    of it touches from the first. It is pushed `down` (over D), by default a few times as far as it overlaps the strips
+    at most, into clay so stiff that it yields all around by then. rough: adhesion of 1.
     """
     gap = 0.5 * (1.0 / np.cos(half_angle(w) / strips) - 1.0)
-    down, E_over_su = down or GAPS * gap, E_over_su or ELASTIC / gap
+    down, E_over_su = down or PUSHED * gap, E_over_su or ELASTIC / gap
+    contact = {"method": "surface", "stiffness": LEAST / (GIVES * gap * D) * touching(E_over_su * SU)}
+    roughness = {"friction": {"adhesion": 1.0, "mobilisation": SLIDES * gap * D}} if rough else {}
     size = 1.0001 * half_angle(w) * D / strips
     assert GrooveSpec(w * D, 0.5 * D).strips(size) == strips
     z = (0.5 - w) * D
     ends = {end: {"position": [x, 0.0, z], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", size))}
     move = {"start": [0.0, 0.0, z - down * D], "end": [size, 0.0, z - down * D]}
+    pipe = {"outer_diameter": (1.0 + 2.0 * gap) * D, "EA": TYPICAL * size, "EI": 1e8, "submerged_weight": 0.0}
     return {
         "gravity": 0.0,
         "dimension": 2,
-        "line_types": {"pipe": {"outer_diameter": D, "EA": TYPICAL * size, "EI": 1e8, "submerged_weight": 0.0}},
+        "line_types": {"pipe": pipe},
         "riser": {"segments": [{"line_type": "pipe", "length": size, "elements": 1}], **ends, "initial": "unstressed"},
         "soil": {
             "strain": "small",
@@ -81,20 +89,20 @@ def pipe_in_place(w: float, strips: int, rough: bool, *, E_over_su: float = 0.0,
                 "x": [0.0, size],
                 "y": [-2.5 * chord(w) * D, 2.5 * chord(w) * D],
                 "depth": (w + 1.7 * chord(w)) * D,
-                "groove": {"embedment": w},
+                "groove": {"embedment": w, "diameter": D},
             },
             "mesh": {"kind": "tet", "size_at_riser": size, "size_far": 4.0 * size},
             "law": {"kind": "von-mises", "su": SU, "E_over_su": E_over_su, "nu": 0.49},
         },
-        "contact": {"method": "surface"} | ({"friction": friction(E_over_su)} if rough else {}),
+        "contact": contact | roughness,
         "solver": {"load_steps": STEPS, "max_iterations": 60},
         "stages": [{"name": "push", "kind": "static", "move": move}],
     }
 
 
-def friction(E_over_su: float) -> Mapping:
-    """Rough, and mobilised sooner the stiffer the clay is."""
-    return {"axial": ROUGH, "lateral": ROUGH, "mobilisation": 200.0 / E_over_su}
+def touching(E: float) -> float:
+    """Width by which the pipe touches elastic soil under its weight [m], over which its contact stiffness is spread."""
+    return contact_width(Scales(LEAST_WEIGHT * TYPICAL, D, 0.0), E)
 
 
 def resistance(scene: Mapping) -> Array:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from riser_soil.contact.adhesion import Adhesion, adhesions
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.friction import CoulombFriction, directions, mobilised_within
 from riser_soil.contact.law import Penalty
@@ -16,10 +19,12 @@ from riser_soil.core.part import State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.seabed.bearing import Strength
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.profile import Profile
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
+from tests.support.riser_loop import require_kernels
 from tests.support.sample_line import DIRECTION, START, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
@@ -34,29 +39,41 @@ PRESSED = DEPTH * K_N  # N/m, on each metre of the pipe
 @given(
     numbers=st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6),
     N=st.lists(st.just(0.0) | st.floats(1e-100, 2.0), min_size=3, max_size=3),  # squares that don't underflow
+    A=st.just(np.inf) | st.floats(0.01, 1.0),
 )
-def test_every_step_dissipates_and_keeps_to_the_cone(numbers: list[float], N: list[float]) -> None:
-    """Taken less the change of what is stored, for steps of any size under any normal force."""
+def test_every_step_dissipates_and_keeps_to_its_limits(numbers: list[float], N: list[float], A: float) -> None:
+    """Taken less the change of what is stored, for steps of any size under any normal force, with and without adhesion;
+    t lies in the ellipse of the limits along both directions.
+    """
     t: Array = np.zeros(2)
     k = 1.7
     for ds, normal in zip(np.array(numbers).reshape(3, 2), N, strict=True):
-        new, _, _ = traction(t - k * ds, np.array(normal), MU)
+        new, _, _ = traction(t - k * ds, np.array(normal), np.array(0.0), MU, A)
         most = (np.linalg.norm(t) + k * np.linalg.norm(ds)) ** 2 / k  # no term of this balance is larger
         assert -(new @ ds) - (new @ new - t @ t) / (2.0 * k) >= -8.0 * EPS * most - TINY
-        assert np.sqrt(np.sum((new / MU) ** 2)) <= normal * (1.0 + 1e-12)
+        limit = np.minimum(MU * normal, A)
+        assert np.linalg.norm(np.divide(new, limit, out=new.copy(), where=limit > 0.0)) <= 1.0 + 1e-12
         t = new
 
 
+@pytest.mark.parametrize("most", [np.inf, 0.4, 0.1], ids=["coulomb", "adhesion across", "adhesion"])
 @pytest.mark.parametrize("N", [5.0, 0.7, 0.0])
-def test_derivatives_of_the_return_map(N: float) -> None:
-    t, h = np.array([0.25, -0.6]), 1e-6
-    _, by_elastic, by_N = traction(t, np.array(N), MU)
+def test_derivatives_of_the_return_map(N: float, most: float) -> None:
+    """By t*, and by the penetration, with which both the normal force and the adhesion change."""
+    t, h, slope, widening = np.array([0.25, -0.6]), 1e-6, 1.3, 0.2
+
+    def at(guess: Array, deeper: float) -> tuple[Array, Array, Array]:
+        return traction(
+            guess, np.array(N + slope * deeper), np.array(slope), MU, most + widening * deeper, widening
+        )
+
+    _, by_elastic, by_penetration = at(t, 0.0)
     for j, e in enumerate(np.eye(2)):
-        ahead, behind = (traction(t + s * h * e, np.array(N), MU)[0] for s in (1, -1))
+        ahead, behind = (at(t + s * h * e, 0.0)[0] for s in (1, -1))
         assert by_elastic[:, j] == pytest.approx((ahead - behind) / (2 * h), abs=1e-8)
     if N > 0.0:
-        ahead, behind = (traction(t, np.array(N + s * h), MU)[0] for s in (1, -1))
-        assert by_N == pytest.approx((ahead - behind) / (2 * h), abs=1e-8)
+        ahead, behind = (at(t, s * h)[0] for s in (1, -1))
+        assert by_penetration == pytest.approx((ahead - behind) / (2 * h), abs=1e-8)
 
 
 def test_directions_lie_in_the_ground_and_follow_the_pipe() -> None:
@@ -69,14 +86,14 @@ def test_directions_lie_in_the_ground_and_follow_the_pipe() -> None:
     np.testing.assert_allclose(directions(tau[:, :1, ::2], up[:, :1, ::2])[0, 0], [[1.0], [0.0]], atol=1e-15)
 
 
-def straight(dimension: int) -> tuple[Line, CoulombFriction]:
+def straight(dimension: int, adhesion: Adhesion | None = None) -> tuple[Line, CoulombFriction]:
     """10 m of pipe, evenly pressed into level ground."""
     arc = np.linspace(0.0, 10.0, 6)
     flat = shapes.straight(arc, (0.0, 0.0, -DEPTH))
     line = Line(dimension, shapes.layout(arc, np.full(5, 0.2), flat, flat), End(False), End(False))
     contact = SeabedContact(line, np.zeros(5), Plane.level(0.0), Penalty(K_N))
     stiffness = mobilised_within(MOBILISATION, AXIAL, LATERAL, np.full(5, PRESSED))
-    return line, CoulombFriction(contact, AXIAL, LATERAL, stiffness)
+    return line, CoulombFriction(contact, AXIAL, LATERAL, stiffness, adhesion)
 
 
 def slid(line: Line, move: Array) -> State:
@@ -183,10 +200,45 @@ GROUNDS: dict[str, Ground] = {"level": Plane.level(START[2] - 0.1), "profile": H
 ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sample
 
 
-def rubbing(dimension: int, ground: str, stiffness: float) -> tuple[CoulombFriction, State]:
+def test_arc_below_the_seabed() -> None:
+    """Of a pipe above it, on it, sunk in by a quarter of its diameter (a third of a turn), by half and more."""
+    D, clay = 0.4, Adhesion(0.5, Strength(2.0e3, 3.0e3), 0.4)
+    z = np.array([[-0.1, 0.0, 0.25 * D, 0.5 * D, 0.7 * D]])
+    found, slope = adhesions(clay, z)
+    arc = np.pi * D * np.array([0.0, 0.0, 1.0 / 3.0, 0.5, 0.5])
+    np.testing.assert_allclose(found[0], 0.5 * (2.0e3 + 3.0e3 * np.maximum(z[0], 0.0)) * arc, rtol=1e-12)
+    deeper, shallower = (adhesions(clay, z + h)[0] for h in (1e-7, -1e-7))
+    inside = [0, 2, 4]
+    np.testing.assert_allclose(slope[0, inside], (deeper - shallower)[0, inside] / 2e-7, rtol=1e-7)
+    np.testing.assert_array_equal(adhesions(Adhesion(), z)[0], np.inf)
+
+
+@both_dimensions
+def test_dragged_along_clay_it_resists_with_its_adhesion(dimension: int) -> None:
+    """su over the arc below the seabed, here less than friction; mobilised over that over k."""
+    held = Adhesion(0.6, Strength(1.0e3, 2.0e4), 0.3)
+    line, friction = straight(dimension, held)
+    arc = 2.0 * 0.3 * np.arcsin(np.sqrt(DEPTH / 0.3))
+    most = 0.6 * 1.2e3 * arc
+    assert most < AXIAL * PRESSED
+    mobilised = most / (LATERAL * PRESSED) * MOBILISATION
+    force, _, _ = slide(line, friction, np.array([[0.5 * mobilised, 0.0, 0.0]]))
+    assert force == pytest.approx([-0.5 * most * 10.0, 0.0, 0.0])
+    force, taken, lost = slide(line, friction, np.array([[mobilised, 0.0, 0.0]] * 3))
+    assert force == pytest.approx([-most * 10.0, 0.0, 0.0])
+    assert lost == pytest.approx(taken + 0.5 * most * 10.0 * (0.25 - 1.0) * mobilised)
+
+
+#: Below friction at some stations of the sample, above it at others.
+CLAY = Adhesion(0.5, Strength(2.5e5, 1.0e5), 0.5)
+
+
+def rubbing(
+    dimension: int, ground: str, stiffness: float, adhesion: Adhesion | None = None
+) -> tuple[CoulombFriction, State]:
     at = sample(dimension)
     contact = SeabedContact(at.line, 0.5 * at.elements.outer_diameter, GROUNDS[ground], ROUND)
-    friction = CoulombFriction(contact, AXIAL, LATERAL, np.full(at.line.length.size, stiffness))
+    friction = CoulombFriction(contact, AXIAL, LATERAL, np.full(at.line.length.size, stiffness), adhesion)
     first = at.state(5, 0.1)
     friction.commit(first)
     contact.commit(first)
@@ -198,14 +250,36 @@ def rubbing(dimension: int, ground: str, stiffness: float) -> tuple[CoulombFrict
 
 @both_dimensions
 @pytest.mark.parametrize("ground", GROUNDS)
-@pytest.mark.parametrize("stiffness", [1.0e3, 1.0e7], ids=["sticks", "slips"])
-def test_tangent_is_the_derivative_of_the_residual(dimension: int, ground: str, stiffness: float) -> None:
-    friction, state = rubbing(dimension, ground, stiffness)
+@pytest.mark.parametrize(
+    ("stiffness", "adhesion"), [(1.0e3, None), (1.0e7, None), (1.0e7, CLAY)], ids=["sticks", "slips", "slips on clay"]
+)
+def test_tangent_is_the_derivative_of_the_residual(
+    dimension: int, ground: str, stiffness: float, adhesion: Adhesion | None
+) -> None:
+    friction, state = rubbing(dimension, ground, stiffness, adhesion)
     K = tangent([friction], state, WEIGHTS)
     assert error(K, difference_tangent(friction, state, WEIGHTS)) < 1e-7
     symmetric = bool(np.abs(K - K.T).max() <= 1e-11 * np.abs(K).max())
     assert symmetric == (stiffness < 1.0e6)
     assert not friction.traits.symmetric
+
+
+@both_dimensions
+def test_adhesion_limits_some_of_the_sample(dimension: int) -> None:
+    (held, state), (free, _) = (rubbing(dimension, "profile", 1.0e7, clay) for clay in (CLAY, None))
+    most, least = (np.linalg.norm(f.evaluate(f.line.trial(state)).resistance, axis=2) for f in (free, held))
+    lower = least < 0.99 * most
+    assert lower.any()
+    assert not lower.all()
+    assert (least <= most * (1.0 + 1e-12)).all()
+
+
+@both_dimensions
+def test_kernels_of_adhesion_are_the_parts_methods(dimension: int) -> None:
+    at = sample(dimension)
+    contact = SeabedContact(at.line, 0.5 * at.elements.outer_diameter, HILL, ROUND)
+    friction = CoulombFriction(contact, AXIAL, LATERAL, np.full(at.line.length.size, 1.0e5), CLAY)
+    require_kernels(at, [at.beam(), contact, friction])
 
 
 @both_dimensions
@@ -217,8 +291,8 @@ def test_tangent_needs_all_its_terms(dimension: int, term: str, monkeypatch: pyt
         monkeypatch.setattr(hermite, "add_geometric", lambda *_: None)
     else:
 
-        def without(elastic: Array, N: Array, mu: Array) -> tuple[Array, Array, Array]:
-            t, by_elastic, by_N = traction(elastic, N, mu)
+        def without(*given: Any) -> tuple[Array, Array, Array]:
+            t, by_elastic, by_N = traction(*given)
             return (t, 0.0 * by_elastic, by_N) if term.startswith("turning") else (t, by_elastic, 0.0 * by_N)
 
         monkeypatch.setattr("riser_soil.contact.friction.traction", without)

@@ -135,8 +135,8 @@ def test_a_profile_looks_the_same_from_wherever_it_is_measured(
 @settings(max_examples=200)
 @given(guess=numbers, N=st.just(0.0) | st.floats(1e-100, 2.0), mu=st.floats(0.1, 2.0), other=st.floats(0.1, 2.0))
 def test_friction_in_the_plane_is_that_in_space_along_the_pipe(guess: float, N: float, mu: float, other: float) -> None:
-    flat = traction(np.array([[guess]]), np.array([N]), np.array([mu]))
-    spatial = traction(np.array([[guess, 0.0]]), np.array([N]), np.array([mu, other]))
+    flat = traction(np.array([[guess]]), np.array([N]), np.array([5.0]), np.array([mu]))
+    spatial = traction(np.array([[guess, 0.0]]), np.array([N]), np.array([5.0]), np.array([mu, other]))
     for one, two in zip(flat, spatial, strict=True):
         assert one.ravel()[0] == pytest.approx(two.ravel()[0], rel=1e-12)
     assert spatial[0][0, 1] == spatial[2][0, 1] == 0.0
@@ -154,7 +154,7 @@ def test_stuck_ground_resists_by_its_stiffness_along_itself(given: list[float], 
     t = vector_of(along, elastic_guess(along, (0.0, 0.0, 0.0), k, tuple(moved)))
     np.testing.assert_allclose(t, -k * ground @ moved, atol=1e-9)
     stuck = ((1.0, 0.0), (0.0, 1.0))
-    found = resistance_by_position(along, k, stuck, (0.0, 0.0), 5.0, tuple(n))
+    found = resistance_by_position(along, k, stuck, (0.0, 0.0), tuple(n))
     np.testing.assert_allclose(found, k * ground, atol=1e-9)
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import gc
 import weakref
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
 
+from riser_soil.contact.coulomb import traction
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.soil_friction import SoilFriction
 from riser_soil.contact.suction import SuctionLaw
@@ -23,8 +25,15 @@ KINDS = pytest.mark.parametrize("kind", ["quad4", "tri6"])
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 
 
-def with_friction(made: PipeOnSurface, axial: float = AXIAL, lateral: float = LATERAL) -> SoilFriction:
-    return SoilFriction(made.contact, axial, lateral, ALONG_ITSELF)
+def with_friction(made: PipeOnSurface, held: Array | None = None) -> SoilFriction:
+    """held (nf,): adhesion of the facets [Pa]."""
+    adhesion = None if held is None else lambda facet, z: held[facet]
+    return SoilFriction(made.contact, AXIAL, LATERAL, ALONG_ITSELF, adhesion)
+
+
+def clay(made: PipeOnSurface) -> Array:
+    """Adhesion of facets, 2 to 5 kPa: less than friction where the pipe lies deep."""
+    return 5.0e3 - 1.0e3 * (np.arange(len(made.surface.facets)) % 4)
 
 
 def level(depth: float = DEPTH, beside: float = 0.013) -> Array:
@@ -46,10 +55,11 @@ def along_line(made: PipeOnSurface, friction: SoilFriction, u: Array, direction:
 @KINDS
 @DIMENSIONS
 @pytest.mark.parametrize("size", [1e-4, 4e-3])
-def test_the_tangent_is_the_slope_of_the_residual(kind: str, dimension: int, size: float) -> None:
+@pytest.mark.parametrize("adhesive", [False, True], ids=["", "adhesion"])
+def test_the_tangent_is_the_slope_of_the_residual(kind: str, dimension: int, size: float, adhesive: bool) -> None:
     """Sticking and slipping, in a second step, whose start has tractions and a bent pipe."""
     made = pipe_on_surface(sagging(), top(kind), dimension)
-    friction = with_friction(made)
+    friction = with_friction(made, clay(made) if adhesive else None)
     made.commit(shaken(made, 1, 2e-3), friction)
     u = shaken(made, 2, size)
     K, h = made.tangent(u, friction), 1e-8
@@ -78,6 +88,52 @@ def test_dragged_far_it_resists_with_mu_times_the_pressure(move: tuple[float, fl
     assert -(force @ move) == pytest.approx(mu * pressing, rel=0.02)  # around the pipe, friction is level at its bottom
     if mu == AXIAL:
         assert friction.slip()[2:4] == pytest.approx(0.05, rel=0.2)
+
+
+def dragged(made: PipeOnSurface, friction: SoilFriction, way: float) -> float:
+    """Force on the riser along itself [N] once it has been pulled along itself by a way [m]."""
+    made.commit(moved(made, (way, 0.0, 0.0)), friction)
+    return float(friction.force_on_riser(made.state())[0])
+
+
+def test_dragged_far_it_resists_with_the_adhesion_of_what_touches() -> None:
+    """Of each point, or with mu times its pressure where that is less; all of it comes into force at A/k."""
+    made = pipe_on_surface(level(), top("quad4"))
+    held = clay(made)
+    friction = with_friction(made, held)
+    pressed = made.contact.evaluate(made.state()).pressed
+    most = np.minimum(AXIAL * pressed.force, held[pressed.points.facet] * pressed.points.area)
+    assert -dragged(made, friction, 0.05) == pytest.approx(most.sum(), rel=1e-2)
+    assert most.sum() < 0.9 * AXIAL * pressed.force.sum()
+
+
+def test_a_pipe_in_full_adhesion_bears_it_over_the_area_that_touches() -> None:
+    """Where the pressure is a hundredth of what the coefficient needs for it, and slips at that traction."""
+    made, A = pipe_on_surface(level(), top("quad4")), 50.0
+    friction = with_friction(made, np.full(len(made.surface.facets), A))
+    area = made.contact.evaluate(made.state()).pressed.points.area.sum()
+    mobilised = A / ALONG_ITSELF
+    assert -dragged(made, friction, 0.8 * mobilised) == pytest.approx(0.8 * A * area, rel=5e-3)
+    assert friction.slip().max() < 0.1 * mobilised
+    assert -dragged(made, friction, 0.4 * mobilised) == pytest.approx(A * area, rel=5e-3)
+    assert -dragged(made, friction, 0.3) == pytest.approx(A * area, rel=5e-3)
+    assert friction.energy(made.state()).potential == pytest.approx(0.5 * A * area * mobilised, rel=1e-2)
+
+
+def test_the_tangent_needs_the_change_of_the_pressure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where friction is below the adhesion."""
+    made = pipe_on_surface(sagging(), top("quad4"))
+    friction = with_friction(made, clay(made))
+    made.commit(shaken(made, 1, 2e-3), friction)
+    u = shaken(made, 2, 4e-3)
+    expected = made.tangent(u, friction)
+
+    def without(*given: Any) -> tuple[Array, Array, Array]:
+        t, by_elastic, by_penetration = traction(*given)
+        return t, by_elastic, 0.0 * by_penetration
+
+    monkeypatch.setattr("riser_soil.contact.soil_friction.traction", without)
+    assert np.abs(made.tangent(u, friction) - expected).max() > 1e-2 * np.abs(expected).max()
 
 
 @KINDS
@@ -113,10 +169,11 @@ def test_what_is_forgotten_goes_at_once() -> None:
         gc.enable()
 
 
-def test_a_closed_way_gives_no_work() -> None:
+@pytest.mark.parametrize("adhesive", [False, True], ids=["", "adhesion"])
+def test_a_closed_way_gives_no_work(adhesive: bool) -> None:
     """Dissipated in each step, and no more than is taken from the riser in all."""
     made = pipe_on_surface(level(), top("quad4"))
-    friction = with_friction(made)
+    friction = with_friction(made, clay(made) if adhesive else None)
     taken, lost = 0.0, []
     angles = np.linspace(0.0, 2.0 * np.pi, 25)
     corners = 0.02 * np.stack([np.cos(angles), np.sin(angles), 0.2 * np.sin(3.0 * angles)], axis=1)

@@ -16,9 +16,10 @@ from riser_soil.errors import MeshError, SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import SoilScene
-from riser_soil.scene.soil_law import law_of, weight_of
+from riser_soil.scene.soil_law import law_of, strength_of, weight_of
 from riser_soil.soil import mandel
 from riser_soil.soil.block import BlockSpec
+from riser_soil.soil.gathered import gather, top_of
 from riser_soil.soil.grading import landing
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.iwan import IwanOverlay
@@ -211,6 +212,7 @@ def test_scene_gives_strength_and_weight_by_layer() -> None:
     su = np.array([2.0e3, 2.0e3, 1.02e4, 1.2e4])
     q = law.overstress(np.tile([0.0, 0.0, 1.0e3, 0.0, 0.0, 0.0], (4, 1)))
     np.testing.assert_allclose(q, 1.0e3 / np.sqrt(3.0) / su, rtol=1e-12)
+    np.testing.assert_allclose(strength_of(given)(np.zeros(4, dtype=np.int64), depth), su, rtol=1e-12)
     weight = weight_of(given)
     assert isinstance(weight, LayeredWeight)
     assert weight.values == (4.0e3, 5.0e3)
@@ -264,6 +266,10 @@ def test_layers_by_named_volumes(tmp_path: Path) -> None:
     law = law_of(given, grid)(np.full(2 * len(x), 0.1), np.zeros((2 * len(x), 6)))
     limited = law.overstress(np.tile([0.0, 0.0, 1.0e3, 0.0, 0.0, 0.0], (2 * len(x), 1))) > 0.0
     np.testing.assert_array_equal(limited, np.repeat(x > 1.0, 2))
+    top = top_of(grid, gather(grid), moves=False)
+    under = top.points[top.facets].mean(axis=1)[:, 0]
+    su = strength_of(given)(top.volume, np.full(len(under), 0.1))
+    np.testing.assert_array_equal(su, np.where(under > 1.0, 2.0e3, np.inf))
 
 
 def test_volumes_that_are_not_there_are_told(tmp_path: Path) -> None:

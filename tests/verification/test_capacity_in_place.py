@@ -1,4 +1,6 @@
-"""Capacity of a pipe wished in place, smooth and rough, from two meshes, against slip lines and a published fit."""
+"""Capacity of a pipe wished in place, smooth and rough, from two meshes, against slip lines, a published fit and
+published bounds.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,14 @@ from tests.support.pipe_in_place import chord, pipe_in_place, resistance, rough_
 
 PRANDTL = 2.0 + np.pi
 FEW, MORE = (9, 19), (13, 27)  # strips of the groove
-WITHIN, COARSE, FALLS = 0.04, 0.07, 3e-3  # shares of the capacity
+WITHIN, COARSE, FALLS = 0.04, 0.03, 3e-3  # shares of the capacity
+#: By w/D and roughness, V/(D su) from limit analyses, below and above; as they have been told, the source not at hand.
+BOUNDS = {
+    (0.1, False): (2.67, 2.80),
+    (0.3, False): (3.77, 3.96),
+    (0.1, True): (3.00, 3.09),
+    (0.5, True): (5.51, np.inf),
+}
 
 
 def fitted(w: float, rough: bool) -> float:
@@ -55,7 +64,9 @@ def _summed(w: float) -> float:
 @pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
 @pytest.mark.parametrize("w", [0.1, 0.2, 0.3, 0.4, 0.5])
 def test_capacity_from_two_meshes(w: float, rough: bool) -> None:
-    """Midway between what first and second order make of them. A smooth pipe's load falls a little behind its peak."""
+    """Midway between what first and second order make of them, rough by adhesion. A smooth pipe's load falls a little
+    behind its peak.
+    """
     strips = FEW if w < 0.35 else MORE
     loads = [resistance(pipe_in_place(w, n, rough)) for n in strips]
     coarse, fine = (float(load.max()) for load in loads)
@@ -64,6 +75,8 @@ def test_capacity_from_two_meshes(w: float, rough: bool) -> None:
     print(f"w/D = {w:g}: {coarse:.3f}, {fine:.3f}, {first:.3f} to {second:.3f}, fell by {fallen(loads[-1]):.1e}")
     known = rough_by_slip_lines(w) if rough else smooth_by_slip_lines(w), fitted(w, rough)
     assert (1.0 - WITHIN) * min(known) < capacity < (1.0 + WITHIN) * max(known)
+    low, high = BOUNDS.get((w, rough), (0.0, np.inf))
+    assert low < capacity < high
     assert abs(coarse / capacity - 1.0) < COARSE
     assert fallen(loads[-1]) < FALLS
 
