@@ -151,9 +151,9 @@ class SoilFriction(LinePart):
         out = np.einsum("nri,nrz->niz", moved.along, components)
         return np.asarray(out + np.einsum("nri,nr->ni", moved.along_by_s, t)[:, :, None] * by_place[:, None])
 
-    @property
-    def memory(self) -> PointMemory:
-        """Tractions of the points."""
+    def anew(self) -> PointMemory:
+        """The next step starts from a surface with other nodes: tractions of the points, to go over to them."""
+        self._begun = None
         return self._memory
 
     def energy(self, state: State) -> Energy:

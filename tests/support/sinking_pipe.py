@@ -68,7 +68,7 @@ class Sunk:
 def sink(scene: Mapping) -> Sunk:
     """Take the scene's only stage."""
     assembly, rows = built(scene), list[tuple[float, float, float]]()
-    contact, soil = assembly.soil_contact, assembly.soil
+    contact, friction, soil = assembly.soil_contact, assembly.soil_friction, assembly.soil
     assert contact is not None
     assert soil is not None
     thickness = float(soil.grid.high[0] - soil.grid.low[0])
@@ -76,7 +76,8 @@ def sink(scene: Mapping) -> Sunk:
     first = soil._gradients.weights.sum()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        load = -float(contact.force_on_soil(stepper.before)[2]) / (thickness * SU * D)
+        parts = contact, *([friction] if friction else [])
+        load = -sum(float(part.force_on_soil(stepper.before)[2]) for part in parts) / (thickness * SU * D)
         rows.append((step.t * deepest, load, step.solution.iterations))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())

@@ -126,18 +126,23 @@ def test_strips_reach_to_the_next_nodes_across() -> None:
 
 
 def test_what_points_remember_goes_over_to_those_that_lie_there_next() -> None:
-    """Nodes slide along the surface by half a facet: the tractions of friction stay where they were."""
+    """Nodes slide along the surface by half a facet: the tractions of friction stay where they were, and the nodes' way
+    is no slide.
+    """
     made = pipe_on_surface(sagging(0.0), (surface := top("quad4", 60, 40, 0.05)), spacing=0.01)
     surface.moves = True
     made = pipe_on_surface(sagging(0.0), surface, spacing=0.01)
     friction = SoilFriction(made.contact, 0.5, 0.3, 3e6)
     u = np.zeros(made.size)
     u[2 : 2 + made.line.size : 6] = 1e-3
-    friction.commit(made.state(u))
-    before, places = friction.memory.rows.copy(), surface.points + surface.committed
+    made.commit(u, friction)
+    pulled = friction.force_on_riser(made.state())
+    before, places = friction.state()["points/rows"].copy(), surface.points + surface.committed
     total = before[:, :3].T @ before[:, 3]
     surface.committed[:, 1] += 0.025
-    made.contact.surface_renewed(places, [friction.memory])
-    after = friction.memory.rows
+    made.contact.surface_renewed(places, [friction.anew()])
+    after = friction.state()["points/rows"]
     assert after[:, :3].T @ after[:, 3] == pytest.approx(total, rel=0.02, abs=0.02 * np.abs(total).max())
     assert len(after) != 0
+    pulls = friction.force_on_riser(made.state())
+    assert pulls == pytest.approx(pulled, abs=0.05 * np.abs(pulled).max())
