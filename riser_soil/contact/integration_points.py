@@ -1,7 +1,9 @@
 """Integration points of contact on the soil's surface: facets divided evenly, as fine as the contact asks for.
 
-Points are fixed to the soil: each keeps its place on its facet and the undeformed area that it stands for. quad4 is cut
-into rows and columns, tri6 into n² equal triangles; the points lie in the middles.
+Points are fixed to the soil: each keeps its place on its facet and the area that it stands for. They lie in rows, evenly
+spaced on straight lines in (xi, eta). quad4 and strip8 are cut into rows along eta and these into columns. tri6 is cut
+along the riser, from its corner in the middle across the riser to the side opposite; both parts are cut into rows from
+that line to their last corner, of even height, and each row into as many pieces. The points lie in the middles.
 """
 
 from __future__ import annotations
@@ -14,50 +16,86 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
 TRI = range(6)  # nodes of tri6
-LARGEST = 512  # divisions of a facet's side
+LARGEST = 512  # divisions of a facet in each direction
 ENOUGH = 12  # points along a facet or an element, whichever is shorter: they leave 1e-4 of the force, of a cubic gap
+LEVEL = 1e-6  # parts of a triangle's width below which two corners lie side by side
+
+CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))  # of tri6 in (xi, eta)
 
 
 def divisions(
     points: Array, facets: IntArray, along: Array, spacing: tuple[float, float], element: float = 0.0
 ) -> IntArray:
-    """Into how many parts (nf, 2) facets are cut in xi and eta: their points lie no farther apart than the spacing.
+    """How facets are cut, (nf, 5): rows, points in each, and of triangles how many rows lie below the middle corner,
+    the number of the lowest corner and that of the middle one, across the riser.
 
     points (np, 3): undeformed [m]. facets (nf, 4, 6 or 8). along (2,): horizontal unit vector of the riser. spacing: of
-    points along and across it [m]. element: length of the riser's elements [m], over which the gap is smooth; along the
-    riser points are spread wider than asked for where that is enough for it and for the facet.
+    points along and across it [m]; triangles take that across for both. element: length of the riser's elements [m],
+    over which the gap is smooth; along the riser points are spread wider than asked for where that is enough for it and
+    for the facet.
     """
     at = points[facets]
-    if facets.shape[1] != len(TRI):
-        a, b, c, d = at[:, 0], at[:, 1], at[:, 2], at[:, 3]
-        counted = _parts(0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1), along, spacing, element)
-    else:
-        sides = np.stack([at[:, 1] - at[:, 0], at[:, 2] - at[:, 1], at[:, 0] - at[:, 2]], axis=1)
-        counted = np.repeat(_parts(sides, along, spacing, element).max(axis=1)[:, None], 2, axis=1)
-    return np.clip(counted, 1, LARGEST)
-
-
-def _parts(sides: Array, along: Array, spacing: tuple[float, float], element: float) -> IntArray:
-    """Parts (nf, k) of sides (nf, k, 3) [m]; what they rise counts as across."""
+    if facets.shape[1] == len(TRI):
+        return _of_triangles(at[:, :3], along, spacing[1], element)
+    a, b, c, d = at[:, 0], at[:, 1], at[:, 2], at[:, 3]
+    sides = 0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1)
     lengthwise, across = np.abs(sides[..., :2] @ along), sides[..., :2] @ np.array([-along[1], along[0]])
-    apart = np.maximum(spacing[0], np.minimum(lengthwise, element) / ENOUGH)
+    apart = _apart(lengthwise, spacing[0], element)
     wanted = np.maximum(lengthwise / apart, np.hypot(across, sides[..., 2]) / spacing[1])
-    parts: IntArray = np.ceil(wanted - 1e-9).astype(np.int64)
-    return parts
+    return np.pad(_count(wanted), ((0, 0), (0, 3)))
+
+
+def _of_triangles(at: Array, along: Array, spacing: float, element: float) -> IntArray:
+    """Of triangles with corners (nf, 3, 3) [m]; across the riser is square to it in their plane."""
+    sides = at - at[:, :1]
+    ahead = np.array([*along, 0.0])
+    normal = np.cross(sides[:, 1], sides[:, 2])
+    across = _unit(np.cross(normal, ahead))
+    t, s = (np.einsum("fvi,fi->fv", sides, axis) for axis in (across, _unit(np.cross(across, normal))))
+    width = np.ptp(t, axis=1)
+    order = np.argsort(np.round((t - t.min(axis=1, keepdims=True)) / (LEVEL * width[:, None])), axis=1, kind="stable")
+    low, middle, high = order.T
+    f = np.arange(len(at))
+    share = (t[f, middle] - t[f, low]) / width
+    chord = np.abs(s[f, low] + share * (s[f, high] - s[f, low]) - s[f, middle])
+    rows, columns = _count(width / spacing), _count(chord / _apart(chord, spacing, element))
+    below = np.ceil(rows * share - 0.5 - LEVEL).astype(np.int64)
+    return np.stack([rows, columns, below, low, middle], axis=1)
+
+
+def _apart(length: Array, spacing: float, element: float) -> Array:
+    """Spacing of points along the riser on facets of a length [m]."""
+    return np.maximum(spacing, np.minimum(length, element) / ENOUGH)
+
+
+def _count(parts: Array) -> IntArray:
+    """Whole parts, no larger than those wanted."""
+    return np.clip(np.ceil(parts - 1e-9).astype(np.int64), 1, LARGEST)
+
+
+def _unit(v: Array) -> Array:
+    return np.asarray(v / np.linalg.norm(v, axis=1, keepdims=True))
 
 
 @njit
-def place(nodes: int, parts: IntArray, k: int) -> tuple[float, float, float]:
-    """(xi, eta) of the k-th point of a facet, and the area in (xi, eta) that it stands for."""
-    n, m = parts[0], parts[1]
+def row_of(nodes: int, cut: IntArray, row: int) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Ends of a facet's row in (xi, eta), and the area there that each of its points stands for."""
+    rows, columns, below = cut[0], cut[1], cut[2]
     if nodes != 6:
-        return -1.0 + (2 * (k // m) + 1) / n, -1.0 + (2 * (k % m) + 1) / m, 4.0 / (n * m)
-    left = n * n - k  # triangles from this one on: those of m rows fill m²
-    m = int(math.sqrt(left))
-    m += m * m < left
-    row, column = n - m, k - (n * n - m * m)
-    third = (1 + column % 2) / 3.0
-    return (row + third) / n, (column // 2 + third) / n, 0.5 / (n * n)
+        xi = -1.0 + (2 * row + 1) / rows
+        return (xi, -1.0), (xi, 1.0), 4.0 / (rows * columns)
+    low, middle, high = CORNERS[cut[3]], CORNERS[cut[4]], CORNERS[3 - cut[3] - cut[4]]
+    opposite = _between(low, high, below / rows)
+    tip, count, from_tip = low, below, row
+    if row >= below:
+        tip, count, from_tip = high, rows - below, rows - 1 - row
+    u = (from_tip + 0.5) / count
+    return _between(tip, middle, u), _between(tip, opposite, u), (from_tip + 0.5) / (rows * count * columns)
+
+
+@njit
+def _between(a: tuple[float, float], b: tuple[float, float], share: float) -> tuple[float, float]:
+    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
 
 
 @njit

@@ -12,16 +12,19 @@ import numpy as np
 
 from riser_soil.contact.closest_point import Axis, bow_of, nearest
 from riser_soil.contact.facets import QUAD, fill_shape
-from riser_soil.contact.integration_points import area, place
+from riser_soil.contact.integration_points import area, row_of
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.riser.vectors import Vec, add, norm, scale, sub
 
 ROUND_OFF = 1e-6  # by which a reach is widened, and below which a row lies along an element
 FEW = 1024  # points for which there is room at first
 
+Place = tuple[float, float]  # (xi, eta)
+
 
 class Surface(NamedTuple):
-    """facets (nf, nv); their divisions (nf, 2) and the numbers (nf,) of their first integration points; points (np, 3)
+    """facets (nf, nv); their `divisions` (nf, 5) and the numbers (nf,) of their first integration points; points (np, 3)
     [m] where areas are taken, and at a state.
     """
 
@@ -129,55 +132,100 @@ def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, 
     """Write points of some pairs whose gap is less than `within` [m], as far as there is room; how many there are."""
     bow = bow_of(axis)
     room, n, nv = len(out.gap), 0, surface.facets.shape[1]
-    N, dN, kept = np.empty(nv), np.empty((nv, 2)), np.empty_like(pairs.elements)
+    N, dN, hull, kept = np.empty(nv), np.empty((nv, 2)), np.empty((nv, 3)), np.empty_like(pairs.elements)
     for i, f in enumerate(pairs.facets):
-        nodes = surface.facets[f]
-        near = pairs.elements[pairs.begin[i] : pairs.begin[i + 1]]
-        rows, columns, even = 1, surface.parts[f, 0] * surface.parts[f, 1], nv == len(QUAD)
-        if even:
-            rows, columns = surface.parts[f, 0], surface.parts[f, 1]
-            near = _not_beyond(axis, bow, near, surface.deformed, nodes, within)
+        nodes, cut = surface.facets[f], surface.parts[f]
+        rows, columns = cut[0], cut[1]
+        _put_hull(surface.deformed, nodes, hull)
+        near = _not_beyond(axis, bow, pairs.elements[pairs.begin[i] : pairs.begin[i + 1]], hull, within)
         for row in range(rows if near.size > 0 else 0):
-            beside, a, b = near, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-            first, last, clear_of, clearance = 0, columns, a, -np.inf
-            if even:
-                xi = -1.0 + (2 * row + 1) / rows
-                a = point_on(surface.deformed, nodes, xi, -1.0, N, dN)
-                b = point_on(surface.deformed, nodes, xi, 1.0, N, dN)
-                first, last, count = _in_row(axis, bow, near, a, b, columns, within, kept)
-                beside = kept[:count]
-            for column in range(first, last):
-                k = row * columns + column
-                if even:
-                    p = _between(a, b, (column + 0.5) / columns)
-                else:
-                    xi, eta, _ = place(nv, surface.parts[f], k)
-                    p = point_on(surface.deformed, nodes, xi, eta, N, dN)
-                if _distance(p, clear_of) <= clearance - within:
-                    continue
+            first, last, share = row_of(nv, cut, row)
+            a, b, bends = _curve(surface.deformed, nodes, first, last, N, dN)
+            aside = max(norm(bends[0]), norm(bends[1]))
+            column, behind, count = _in_row(axis, bow, near, a, b, columns, within + 0.75 * aside, kept)
+            beside, apart = kept[:count], (norm(sub(b, a)) + 3.0 * aside) / columns
+            while column < behind:
+                part = (column + 0.5) / columns
+                p = _on_curve(a, b, bends, part)
                 e, along, gap, clearance = nearest(axis, bow, beside, p, within)
-                clear_of = p
                 if gap < within:
                     if n < room:
-                        xi, eta, share = place(nv, surface.parts[f], k)
+                        xi, eta = first[0] + part * (last[0] - first[0]), first[1] + part * (last[1] - first[1])
                         fill_shape(xi, eta, N, dN)
-                        out.element[n], out.facet[n], out.number[n] = e, f, surface.first[f] + k
+                        out.element[n], out.facet[n] = e, f
+                        out.number[n] = surface.first[f] + row * columns + column
                         out.along[n], out.xi[n, 0], out.xi[n, 1], out.gap[n] = along, xi, eta, gap
                         out.area[n] = share * area(surface.measured, nodes, dN)
                     n += 1
+                column += 1 + _clear_points(clearance - within, apart, columns)
     return n
 
 
 @njit
-def _not_beyond(
-    axis: Axis, bow: Array, elements: IntArray, points: Array, nodes: IntArray, within: float
-) -> IntArray:
-    """Those elements to which a point between a facet's corners may have a gap less than `within` [m]: seen from the
-    line through the element's ends towards the corners' middle, some corner is no farther than that.
+def _curve(
+    points: Array, nodes: IntArray, first: Place, last: Place, N: Array, dN: Array
+) -> tuple[Vec, Vec, tuple[Vec, Vec]]:
+    """A row on a facet: its ends [m], and by how much the two handles of its Bézier curve between them, a cubic one at
+    most, lie off the thirds of the straight line; from its points at the thirds.
+    """
+    a, b = point_on(points, nodes, *first, N, dN), point_on(points, nodes, *last, N, dN)
+    if len(nodes) == len(QUAD):
+        return a, b, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    third, two = _between(first, last, 1.0 / 3.0), _between(first, last, 2.0 / 3.0)
+    c = sub(point_on(points, nodes, *third, N, dN), add(scale(2.0 / 3.0, a), scale(1.0 / 3.0, b)))
+    d = sub(point_on(points, nodes, *two, N, dN), add(scale(1.0 / 3.0, a), scale(2.0 / 3.0, b)))
+    return a, b, (sub(scale(3.0, c), scale(1.5, d)), sub(scale(3.0, d), scale(1.5, c)))
+
+
+@njit
+def _on_curve(a: Vec, b: Vec, bends: tuple[Vec, Vec], share: float) -> Vec:
+    """The point at a share of the way along a row, see `_curve`: no farther off the straight line than 3/4 of a bend,
+    and faster along than that by three times a bend at most.
+    """
+    rest = 1.0 - share
+    bend = 3.0 * share * rest
+    straight = add(scale(rest, a), scale(share, b))
+    return add(straight, add(scale(bend * rest, bends[0]), scale(bend * share, bends[1])))
+
+
+@njit
+def _between(a: Place, b: Place, share: float) -> Place:
+    """The place at a share of the way from a to b."""
+    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
+
+
+@njit
+def _clear_points(clear: float, apart: float, most: int) -> int:
+    """How many points of a row, no farther apart than that [m], lie within a distance that is clear [m]."""
+    if not clear > 0.0:
+        return 0
+    return int(clear / apart) if clear < most * apart else most
+
+
+@njit
+def _put_hull(points: Array, nodes: IntArray, hull: Array) -> None:
+    """Write points (nv, 3) between which all of a facet lies: its corners, and the Bézier points of tri6's sides and of
+    those of strip8 that run across.
+    """
+    nv = len(nodes)
+    for a in range(nv):
+        for j in range(3):
+            x = points[nodes[a], j]
+            if nv == 6 and a > 2:
+                x = 2.0 * x - 0.5 * (points[nodes[a - 3], j] + points[nodes[(a - 2) % 3], j])
+            elif nv == 8 and a > 3:
+                x = points[nodes[a - 4], j] + (points[nodes[7 - a], j] - x) / 6.0
+            hull[a, j] = x
+
+
+@njit
+def _not_beyond(axis: Axis, bow: Array, elements: IntArray, hull: Array, within: float) -> IntArray:
+    """Those elements to which a point between some (nv, 3) may have a gap less than `within` [m]: seen from the line
+    through the element's ends towards their middle, some of them is no farther than that.
     """
     kept, n = np.empty(len(elements), np.int64), 0
     for e in elements:
-        least = _least_beside(axis.q[e], points, nodes)
+        least = _least_beside(axis.q[e], hull)
         if least < (axis.radius[e] + within + bow[e]) * (1.0 + ROUND_OFF):
             kept[n] = e
             n += 1
@@ -185,13 +233,13 @@ def _not_beyond(
 
 
 @njit
-def _least_beside(q: Array, points: Array, nodes: IntArray) -> float:
-    """Least distance [m] of some points from the line through an element's ends in the direction, square to that line,
-    of the points' mean; no point between them is nearer to the line.
+def _least_beside(q: Array, points: Array) -> float:
+    """Least distance [m] of points (n, 3) from the line through an element's ends in the direction, square to that
+    line, of the points' mean; no point between them is nearer to the line.
     """
     chord = (q[2, 0] - q[0, 0], q[2, 1] - q[0, 1], q[2, 2] - q[0, 2])
     x = y = z = 0.0
-    for a in nodes:
+    for a in range(len(points)):
         x, y, z = x + points[a, 0] - q[0, 0], y + points[a, 1] - q[0, 1], z + points[a, 2] - q[0, 2]
     square = chord[0] ** 2 + chord[1] ** 2 + chord[2] ** 2
     share = (x * chord[0] + y * chord[1] + z * chord[2]) / square if square > 0.0 else 0.0
@@ -199,7 +247,7 @@ def _least_beside(q: Array, points: Array, nodes: IntArray) -> float:
     size, least = math.sqrt(x * x + y * y + z * z), np.inf
     if not size > 0.0:
         return 0.0
-    for a in nodes:
+    for a in range(len(points)):
         beside = x * (points[a, 0] - q[0, 0]) + y * (points[a, 1] - q[0, 1]) + z * (points[a, 2] - q[0, 2])
         least = min(least, beside / size)
     return least
@@ -237,18 +285,13 @@ def _in_row(
         square, tilt, at_a = dd - cd * cd * inverse, wd - cw * cd * inverse, ww - cw * cw * inverse - reach * reach
         root = tilt * tilt - square * at_a
         if square <= ROUND_OFF * dd or not root < np.inf:  # along the element, or nowhere
-            low, high, n = 0.0, 1.0, n + 1
+            if not min(at_a, at_a + 2.0 * tilt + square) > 0.25 * square:
+                low, high, n = 0.0, 1.0, n + 1
         elif root >= 0.0:
             low = min(low, (-tilt - math.sqrt(root)) / square)
             high, n = max(high, (-tilt + math.sqrt(root)) / square), n + 1
     first, last = max(math.floor(low * count - 0.5), 0), min(math.ceil(high * count - 0.5) + 1, count)
     return int(min(first, count)), int(max(last, 0)), n
-
-
-@njit
-def _between(a: tuple[float, float, float], b: tuple[float, float, float], share: float) -> tuple[float, float, float]:
-    """The point at a share of the way from a to b."""
-    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
 
 
 @njit
@@ -265,14 +308,9 @@ def point_on(
     return x, y, z
 
 
-@njit
-def _distance(p: tuple[float, float, float], r: tuple[float, float, float]) -> float:
-    return math.sqrt((p[0] - r[0]) ** 2 + (p[1] - r[1]) ** 2 + (p[2] - r[2]) ** 2)
-
-
 def points_of(first: Surface, second: Surface, chosen: IntArray) -> tuple[IntArray, Array, Array]:
     """Numbers (n,) of the integration points of some facets, and their places (n, 3) on two surfaces of these."""
-    counts = first.parts[chosen].prod(axis=1)
+    counts = first.parts[chosen, :2].prod(axis=1)
     numbers = np.concatenate([np.arange(n) + first.first[f] for f, n in zip(chosen, counts, strict=True)] or [chosen])
     places = np.empty((2, len(numbers), 3))
     for surface, out in zip((first, second), places, strict=True):
@@ -285,5 +323,7 @@ def _put_places(surface: Surface, facets: IntArray, numbers: IntArray, out: Arra
     nv = surface.facets.shape[1]
     N, dN = np.empty(nv), np.empty((nv, 2))
     for i, f in enumerate(facets):
-        xi, eta, _ = place(nv, surface.parts[f], numbers[i] - surface.first[f])
-        out[i, 0], out[i, 1], out[i, 2] = point_on(surface.deformed, surface.facets[f], xi, eta, N, dN)
+        row, column = divmod(numbers[i] - surface.first[f], surface.parts[f, 1])
+        first, last, _ = row_of(nv, surface.parts[f], row)
+        at = _between(first, last, (column + 0.5) / surface.parts[f, 1])
+        out[i, 0], out[i, 1], out[i, 2] = point_on(surface.deformed, surface.facets[f], *at, N, dN)

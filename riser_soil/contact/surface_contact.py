@@ -90,7 +90,7 @@ class SurfaceContact(SoilContact):
             self._soil.smooth(axis)
             self._widths = self._soil.widths(surface.points)
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
-        self._first = np.append(0, np.cumsum(self._parts.prod(axis=1)))[:-1]
+        self._first = np.append(0, np.cumsum(self._parts[:, :2].prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
 
     def evaluate(self, state: State) -> SurfaceState:
