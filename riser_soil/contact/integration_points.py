@@ -1,9 +1,10 @@
 """Integration points of contact on the soil's surface: facets divided evenly, as fine as the contact asks for.
 
-Points are fixed to the soil: each keeps its place on its facet and the area that it stands for. They lie in rows, evenly
-spaced on straight lines in (xi, eta). quad4 and strip8 are cut into rows along eta and these into columns. tri6 is cut
-along the riser, from its corner in the middle across the riser to the side opposite; both parts are cut into rows from
-that line to their last corner, of even height, and each row into as many pieces. The points lie in the middles.
+Points are fixed to the soil: each keeps its place on its facet and the area that it stands for. They lie in rows,
+spaced evenly on straight lines in (xi, eta). quad4 and strip8 are cut into rows along eta and these into columns. tri6
+is cut along the riser, from its corner in the middle across the riser to the side opposite; both parts are cut into
+rows from that line to their last corner, of even height, and each row into as many pieces. The points lie in the
+middles.
 """
 
 from __future__ import annotations

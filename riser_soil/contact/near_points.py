@@ -24,8 +24,8 @@ Place = tuple[float, float]  # (xi, eta)
 
 
 class Surface(NamedTuple):
-    """facets (nf, nv); their `divisions` (nf, 5) and the numbers (nf,) of their first integration points; points (np, 3)
-    [m] where areas are taken, and at a state.
+    """facets (nf, nv); their `divisions` (nf, 5) and the numbers (nf,) of their first integration points; points
+    (np, 3) [m] where areas are taken, and at a state.
     """
 
     facets: IntArray

@@ -76,8 +76,10 @@ def sink(scene: Mapping) -> Sunk:
     first = soil._gradients.weights.sum()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        parts = contact, *([friction] if friction else [])
-        load = -sum(float(part.force_on_soil(stepper.before)[2]) for part in parts) / (thickness * SU * D)
+        forces = [contact.force_on_soil(stepper.before)]
+        if friction is not None:
+            forces.append(friction.force_on_soil(stepper.before))
+        load = -float(np.sum(forces, axis=0)[2]) / (thickness * SU * D)
         rows.append((step.t * deepest, load, step.solution.iterations))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())

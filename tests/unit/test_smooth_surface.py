@@ -127,7 +127,7 @@ def test_strips_reach_to_the_next_nodes_across() -> None:
 
 def test_what_points_remember_goes_over_to_those_that_lie_there_next() -> None:
     """Nodes slide along the surface by half a facet: the tractions of friction stay where they were, and the nodes' way
-    is no slide.
+    is no slide, within what other points take from the pressure.
     """
     made = pipe_on_surface(sagging(0.0), (surface := top("quad4", 60, 40, 0.05)), spacing=0.01)
     surface.moves = True

@@ -108,7 +108,7 @@ def test_a_dug_block_is_in_equilibrium_from_the_start() -> None:
     force = Bench(soil, soil.field.prescribed).force(np.zeros(soil.field.size))
     assert np.abs(force).max() == 0.0
     depth = 1.0 - soil._gradients.points[..., 2].ravel()
-    np.testing.assert_allclose(soil._initial[:, 2], -6.0e3 * depth, rtol=1e-12, atol=1e-12 * 6.0e3)
+    np.testing.assert_allclose(soil._initial[:, 2], -6.0e3 * depth, atol=6.0e3 * 1e-12)  # of depths from 1 m
 
 
 def test_points_of_contact_are_as_near_on_steep_walls() -> None:
@@ -118,7 +118,7 @@ def test_points_of_contact_are_as_near_on_steep_walls() -> None:
     facet = np.array([[0, 1, 2, 0, 1, 2]])
     for points in (level, upright):
         found = divisions(points, facet, np.array([1.0, 0.0]), (0.05, 0.01))
-        np.testing.assert_array_equal(found, [[20, 20]])
+        np.testing.assert_array_equal(found[:, :2], [[20, 20]])
 
 
 def test_points_along_the_riser_are_no_more_than_elements_and_cells_ask_for() -> None:
@@ -127,7 +127,7 @@ def test_points_along_the_riser_are_no_more_than_elements_and_cells_ask_for() ->
     facet, along = np.array([[0, 1, 2, 3]]), np.array([1.0, 0.0])
     for element, wanted in ((0.0, 50), (0.5, 24), (1.0, 12), (7.0, 12), (0.1, 50)):
         found = divisions(points, facet, along, (0.02, 0.01), element)
-        np.testing.assert_array_equal(found, [[wanted, 10]])
+        np.testing.assert_array_equal(found[:, :2], [[wanted, 10]])
 
 
 def test_stretch_of_a_steep_wall_is_that_of_its_own_plane() -> None:
