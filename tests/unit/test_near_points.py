@@ -11,7 +11,10 @@ from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.integration_points import ENOUGH, LARGEST, divisions
 from riser_soil.contact.near_points import NearPoints, Surface, by_facet, fill_near, near_points, points_room
+from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array
+from tests.support.coupled_scenes import LAY, touchdown
+from tests.support.driven_stage import built
 from tests.support.soil_tops import top
 
 RADIUS, WITHIN, PARTS = 0.15, 0.05, 40
@@ -116,3 +119,12 @@ def test_cells_far_larger_than_what_touches_have_no_more_points_along_than_they_
     points = top("tri6", 1, 1, size=1.0)
     parts = divisions(points.points, points.facets, np.array([1.0, 0.0]), (4e-3, 1e-3), element=1.0)
     np.testing.assert_array_equal(parts[:, :2], [[LARGEST, ENOUGH]] * 2)
+
+
+def test_a_riser_on_stiff_clay_of_tetrahedra_has_no_more_points_along_than_it_needs() -> None:
+    """It touches by millimetres on cells of half a metre: as many points along as across would be millions."""
+    contact = built(touchdown(LAY, kind="tet", su=1.0e6)).soil_contact
+    assert isinstance(contact, SurfaceContact)
+    across, along = contact._parts[:, 0], contact._parts[:, 1]
+    assert across.max() > 300
+    assert along.max() < 2 * ENOUGH
