@@ -11,9 +11,9 @@ from mpi4py import MPI
 
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import Mapping
-from riser_soil.accuracy.chain import companions, run_values
+from riser_soil.accuracy.chain import bars_of, companions, run_values
 from riser_soil.accuracy.companions import peaks_of
-from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar, error_bars
+from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.scene.reader import scene_from_mapping
 
@@ -63,7 +63,7 @@ def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
     chain = companions(scene, MPI.COMM_WORLD)
     extra = time.process_time() - began - taken
     run = run_values(headlines(peaks.told("sampled")), peaks)
-    found = error_bars(run, chain, scene.has_ground, scene.has_path_dependent_soil)
+    found = bars_of(scene, run, chain)
     bars = [bar for bar in found if bar.headline.key in reference]
     judged = [_judged(name, bar, *reference[bar.headline.key]) for bar in bars if bar.bar is not None]
     return JudgedScene(name, judged, [bar for bar in bars if bar.bar is None], (taken, extra))

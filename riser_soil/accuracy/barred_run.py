@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from riser_soil.accuracy.chain import companions, run_values
-from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
+from riser_soil.accuracy.chain import bars_of, companions, run_values
+from riser_soil.accuracy.error_bars import ErrorBar, RunValues
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.screen import print_bars
 from riser_soil.assembly.packages import communicator_of
@@ -46,7 +46,7 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
             raise
     if comm.rank != 0:
         return []
-    return error_bars(values_of_run(folder, peaks), chain, scene.has_ground, scene.has_path_dependent_soil)
+    return bars_of(scene, values_of_run(folder, peaks), chain)
 
 
 def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:

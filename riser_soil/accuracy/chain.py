@@ -1,50 +1,100 @@
-"""Companions of a run in a chain: coarser soil, once more, then longer steps too, fewer elements, a softer penalty."""
+"""Companions of a run in a chain, each varied in one source of error: longer steps, then more elements too.
+
+On a rigid floor the penalty goes with the elements: 16 times as stiff with elements half as long, so that both halve
+the length in which a riser sinks in beside an end, (4 EI/k)^(1/4). On soil its cells come first, then all else is
+coarser: contact grows cell by cell there, and finer ones would cost more than the run. Cells a little coarser tell by
+how much contact jumps, coarse ones whether two that agree do so by chance.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from riser_soil.accuracy.companions import peaks_of
-from riser_soil.accuracy.error_bars import SOURCES, Companion, RunValues
+from riser_soil.accuracy.error_bars import Companion, ErrorBar, RunValues, error_bars
+from riser_soil.accuracy.extremes import alone, extremes_of
 from riser_soil.accuracy.headlines import Headline, headlines
-from riser_soil.accuracy.knobs import Knob, knobs_of, varied
+from riser_soil.accuracy.knobs import knobs_of, varied
+from riser_soil.assembly.end_places import periods_of
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import RigidSeabed
+from riser_soil.scene.stages import DynamicStage
 
-Ratios = Mapping[str, Sequence[float]]  # by knob, in order
 
-# The dearest first. Contact with soil grows cell by cell: cells a little coarser tell by how much that jumps, coarse
-# ones whether two that agree do so by chance.
-COARSER: Ratios = {"soil_mesh": (2.0**0.5, 2.0), "time_step": (5.0,), "elements": (2.0,), "penalty": (4.0,)}
+class Variation(NamedTuple):
+    """What a companion differs in from the one before. factors: of fineness by knob, of which the first is told."""
+
+    source: str
+    factors: Mapping[str, float]
+
+
+ON_SOIL = (
+    Variation("soil", {"soil_mesh": 0.5**0.5}),
+    Variation("soil", {"soil_mesh": 0.5}),
+    Variation("time", {"time_step": 0.2}),
+    Variation("mesh", {"elements": 0.5}),
+    Variation("penalty", {"penalty": 0.25}),
+)
+FINER_MESH = Variation("mesh", {"elements": 2.0, "penalty": 16.0})
+# Steps that a companion leaves to the shortest period, as the mesh tells little on longer ones; how many times as long
+# they are at least, at most, and where nothing has a period.
+STEPS_LEFT, LONGER, LONGEST, USUAL = 20.0, 2.0, 4.0, 3.0
 LEAST_RATIO = 1.4  # below it two runs are too much alike
 # Errors that a companion may fail with: those that all ranks meet, and those that one may meet alone.
 OF_ALL, OF_ONE = (SolveError, MemoryShortageError, SceneError, MeshError), (ArithmeticError, ValueError)
 
 
-def companions(scene: Scene, comm: Any, coarser: Ratios = COARSER) -> list[Companion]:
-    """Those of a scene, run one after the other; collective, their values on rank 0.
+def companions(scene: Scene, comm: Any, varying: Sequence[Variation] | None = None) -> list[Companion]:
+    """Those of a scene, run one after the other; collective, their values on rank 0. varying: those of error bars by
+    default.
 
     One that fails leaves nothing to compare the next ones with: they are not run.
     """
     chain: list[Companion] = []
     if scene.soil is not None and "soil_mesh" not in {knob.name for knob in knobs_of(scene)}:
         chain.append(Companion("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
-    for step in _coarser(scene, coarser):
-        if any(before.values is None for before in chain):
-            chain.append(Companion(step.source, step.ratio, None, "a companion before failed"))
+    for step in _steps(scene, variations(scene) if varying is None else varying):
+        if any(before.extremes is None for before in chain):
+            chain.append(Companion(step.source, step.finer, None, "a companion before failed"))
         else:
             chain.append(_run(step, comm))
     return chain
 
 
+def variations(scene: Scene) -> Sequence[Variation]:
+    """For error bars of a run, as cheap as they can be."""
+    if scene.soil is not None:
+        return ON_SOIL
+    return Variation("time", {"time_step": 1.0 / _longer(scene)}), FINER_MESH
+
+
+def _longer(scene: Scene) -> float:
+    """How many times as long a companion's steps are."""
+    steps = [
+        period / stage.time_step
+        for stage in scene.stages
+        if isinstance(stage, DynamicStage) and stage.time_step != "auto"
+        for _, period in periods_of(scene, stage)
+    ]
+    return min(max(min(steps, default=USUAL * STEPS_LEFT) / STEPS_LEFT, LONGER), LONGEST)
+
+
+def bars_of(scene: Scene, run: RunValues, chain: Sequence[Companion]) -> list[ErrorBar]:
+    """The error bars of a run of the scene with its companions."""
+    rigid = scene.soil is None and isinstance(scene.seabed, RigidSeabed)
+    return error_bars(run, chain, rigid, scene.has_path_dependent_soil)
+
+
 def run_values(told: Mapping[str, Headline], peaks: RunPeaks) -> RunValues:
     """Of a run whose peaks were gathered on the way; of the soil, whose peaks may not be, as told."""
     known = {key: headline.value for key, headline in told.items()}
-    of_nodes, between_steps, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "peaks", "smooth"))
-    return RunValues(told, of_nodes, between_steps, smooth)
+    of_nodes, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "smooth"))
+    followed = {key: alone(value) for key, value in known.items()} | extremes_of(peaks)
+    return RunValues(told, of_nodes, followed, smooth)
 
 
 def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
@@ -53,48 +103,52 @@ def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
 
 
 @dataclass(frozen=True)
-class CoarserScene:
-    """What a companion runs: None where it can't be, for the `reason`. ratio: to the scene before."""
+class Step:
+    """The next scene of a chain, None where it can't be, for the `reason`. finer: than the one before, in a source."""
 
     source: str
-    ratio: float
+    finer: float
     scene: Scene | None
     reason: str = ""
 
 
-def _coarser(scene: Scene, coarser: Ratios) -> Iterator[CoarserScene]:
-    """Scenes ever coarser; one that can't be is None, and the next ones follow the one before it."""
-    now = _recording_all(scene)
-    knobs = {knob.name: knob for knob in knobs_of(scene)}
-    for name, ratios in coarser.items():
-        for ratio in ratios if name in knobs else ():
-            step = _step(now, knobs[name], ratio)
+def _steps(scene: Scene, varying: Sequence[Variation]) -> Iterator[Step]:
+    """One scene after the other; one that can't be is None, and the next ones follow the one before it."""
+    now, known = _recording_all(scene), {knob.name for knob in knobs_of(scene)}
+    for source, factors in varying:
+        step = _step(now, source, {name: factor for name, factor in factors.items() if name in known})
+        if step is not None:
             yield step
             now = step.scene or now
 
 
-def _step(scene: Scene, knob: Knob, ratio: float) -> CoarserScene:
-    source = SOURCES[knob.name]
+def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> Step | None:
+    """None where the scene has nothing to vary."""
+    if not factors:
+        return None
+    knobs = {knob.name: knob for knob in knobs_of(scene)}
+    first, other = knobs[next(iter(factors))], scene
     try:
-        coarse = varied(scene, knob, 1.0 / ratio)
+        for name, factor in factors.items():
+            other = varied(other, knobs[name], factor)
     except SceneError as err:
-        return CoarserScene(source, ratio, None, str(err))
-    reached = knob.fineness(scene) / knob.fineness(coarse)
-    if reached < LEAST_RATIO:
-        return CoarserScene(source, ratio, None, f"{knob.told(scene)} can't be coarsened")
-    return CoarserScene(source, reached, coarse)
+        return Step(source, factors[first.name], None, str(err))
+    reached = first.fineness(other) / first.fineness(scene)
+    if max(reached, 1.0 / reached) < LEAST_RATIO:
+        return Step(source, reached, None, f"{first.told(scene)} can't be varied")
+    return Step(source, reached, other)
 
 
-def _run(step: CoarserScene, comm: Any) -> Companion:
+def _run(step: Step, comm: Any) -> Companion:
     if step.scene is None:
-        return Companion(step.source, step.ratio, None, step.reason)
+        return Companion(step.source, step.finer, None, step.reason)
     try:
-        return Companion(step.source, step.ratio, values_of(peaks_of(step.scene, comm), "peaks"))
+        return Companion(step.source, step.finer, extremes_of(peaks_of(step.scene, comm)))
     except (*OF_ALL, *OF_ONE) as err:
         if isinstance(err, OF_ONE) and comm.size > 1:
             raise  # the others are within the companion still
         reason = str(err).partition("\n")[0]
-        return Companion(step.source, step.ratio, None, f"its coarser companion failed: {reason}")
+        return Companion(step.source, step.finer, None, f"its companion failed: {reason}")
 
 
 def _recording_all(scene: Scene) -> Scene:

@@ -1,4 +1,4 @@
-"""Companion of a run: the same scene, coarser, taken in the same process without files, for its peaks."""
+"""Companion of a run: the same scene, coarser or finer, taken in the same process without files, for its peaks."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class PeakObserver(StatelessObserver):
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         first = not self.peaks.stages
         self._schedule.begin_stage(stage.kind)
-        self.peaks.begin_stage(stage.name, stage.kind)
+        self.peaks.begin_stage(stage.name, stage.kind, stage.end)
         if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
             self.peaks.stages[-1].update([0.0], self._seen(stepper))  # not followed: no shape that a step has found
 

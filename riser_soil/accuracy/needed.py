@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, Companion, ErrorBar, RunValues, divisor, gaps, orders
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps
+from riser_soil.accuracy.extremes import apart
 
-MESH = 2.0  # order in which the elements' share falls, gaps between nodes included
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # what fineness costs, as a power
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to
 MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 10.0}  # from one setting to the next
@@ -70,14 +70,13 @@ def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
         return {"mesh": NOT_KNOWN} | ({"time": NOT_KNOWN} if "time" in bar.by_source else {})
     allowed = (MARGIN * accuracy - SMALLEST) * bar.headline.scale
     left, shares = allowed**2, dict(bar.by_source)
-    order = orders(bar.headline.name, shares.keys(), MESH)
     while True:
-        weights = {source: COST[source] / order[source] for source in shares}
+        weights = {source: COST[source] / bar.order[source] for source in shares}
         whole = math.fsum(weights.values())
         aims = {source: math.sqrt(left * weight / whole) for source, weight in weights.items()}
         small = [source for source, aim in aims.items() if shares[source] <= aim]
         if not small:
-            return {source: (shares[source] / aim) ** (1.0 / order[source]) for source, aim in aims.items()}
+            return {source: (shares[source] / aim) ** (1.0 / bar.order[source]) for source, aim in aims.items()}
         left -= math.fsum(shares.pop(source) ** 2 for source in small)
 
 
@@ -87,25 +86,24 @@ def _expected(
     headline = found.told[key]
     if bar is None or bar.bar is None or key not in before.peaks:
         return ErrorBar(headline, None, {}, (bar and bar.reason) or "the run before does not have it")
-    apart = abs(found.peaks[key] - before.peaks[key])
-    larger = max(1.0, apart / bar.bar) if bar.bar > 0.0 else 1.0
+    off = apart(before.peaks[key], found.peaks[key])
+    larger = max(1.0, off / bar.bar) if bar.bar > 0.0 else 1.0
     own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
-    order = orders(headline.name, bar.by_source.keys(), MESH)
-    left = {s: larger * each / factors.get(s, 1.0) ** order[s] for s, each in bar.by_source.items()}
-    left |= _by_the_two_runs(left, headline.relative(apart), factors, order, headline.scale)
+    left = {s: larger * each / factors.get(s, 1.0) ** bar.order[s] for s, each in bar.by_source.items()}
+    left |= _by_the_two_runs(left, off, factors, bar.order)
     shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
     whole = math.hypot(*shares.values()) + SMALLEST * headline.scale
     return replace(bar, headline=headline, bar=whole, by_source=shares)
 
 
 def _by_the_two_runs(
-    left: Mapping[str, float], apart: float, factors: Factors, order: Mapping[str, float], scale: float
+    left: Mapping[str, float], off: float, factors: Factors, order: Mapping[str, float]
 ) -> dict[str, float]:
-    """Shares of the sources that are finer, but for the soil's; apart: the two runs, over the scale."""
+    """Shares of the sources that are finer, but for the soil's; off: how far the two runs are apart."""
     shares, finer = {}, [source for source, ratio in factors.items() if ratio > 1.0]
     for source in finer:
         if source in left and source != "soil":
-            whole = divisor(Companion(source, factors[source], {}), apart, order[source])
-            told = max(SAFETY[source] * apart * scale / whole, BY_CHANCE * left[source])
+            told = SAFETY[source] * off / (factors[source] ** order[source] - 1.0)
+            told = max(told, BY_CHANCE * left[source])
             shares[source] = told if len(finer) == 1 else min(left[source], told)
     return shares

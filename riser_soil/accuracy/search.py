@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any, TypeVar
 
-from riser_soil.accuracy.chain import COARSER, Ratios, companions, run_values
+from riser_soil.accuracy.chain import ON_SOIL, Variation, bars_of, companions, run_values
 from riser_soil.accuracy.companions import peaks_of
 from riser_soil.accuracy.element_sizes import CurveEnvelope
-from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
+from riser_soil.accuracy.error_bars import ErrorBar, RunValues
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.knobs import KNOBS, varied
 from riser_soil.assembly.graded_segments import graded
@@ -22,8 +22,10 @@ from riser_soil.scene.stages import StaticStage
 
 SHAPES = 3  # static runs at most that grade the mesh
 SETTLED = 1.5  # elements at most so many times as long as curvature asks for
-COMPANIONS: Ratios = {**COARSER, "time_step": (2.0,)}  # of the trial, whose steps are long already
-ATTEMPTS, FINER = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
+# Of the trial, whose steps are long already; elements and penalty apart, as the run may need one of them.
+LONGER = Variation("time", {"time_step": 0.5})
+FINER = (LONGER, Variation("mesh", {"elements": 2.0}), Variation("penalty", {"penalty": 16.0}))
+ATTEMPTS, EACH = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
 HELPING = ("elements", "time_step")
 _Found = TypeVar("_Found")
 
@@ -45,12 +47,16 @@ def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     scene, seen, peaks = _computed(scene, comm)
     if _excess(seen, accuracy, comm) > SETTLED:
         scene, _, peaks = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
-    chain = companions(scene, comm, COMPANIONS)
+    chain = companions(scene, comm, FINER if scene.soil is None else _with_longer(ON_SOIL))
     if comm.rank != 0:
         return TriedSetting(scene, None, comm.bcast(None))
     values = run_values(headlines(peaks.told("sampled")), peaks)
-    bars = error_bars(values, chain, scene.has_ground, scene.has_path_dependent_soil)
+    bars = bars_of(scene, values, chain)
     return TriedSetting(scene, values, comm.bcast(bars))
+
+
+def _with_longer(varying: Sequence[Variation]) -> list[Variation]:
+    return [LONGER if each.source == LONGER.source else each for each in varying]
 
 
 def finer(scene: Scene, factors: dict[str, float]) -> Scene:
@@ -84,7 +90,7 @@ def _computed(scene: Scene, comm: Any) -> tuple[Scene, CurveEnvelope, RunPeaks]:
         try:
             return scene, envelope, peaks_of(scene, comm, envelope)
         except SolveError:
-            scene = finer(scene, dict.fromkeys(HELPING, FINER))
+            scene = finer(scene, dict.fromkeys(HELPING, EACH))
     envelope = CurveEnvelope()
     return scene, envelope, peaks_of(scene, comm, envelope)
 

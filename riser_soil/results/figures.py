@@ -39,6 +39,7 @@ _ORDER = (
     "contact_force",
 )
 _FIGURES = outputs.figures(_ORDER)
+FIGURE_NAMES = frozenset(figure.name for _, figure in _FIGURES)
 # Left out where nothing is known of what they need, or they are not wanted.
 _SOMETIMES = frozenset(figure.name for output, figure in _FIGURES if output.needs)
 _SIZE = sum(figure.size for _, figure in _FIGURES)

@@ -121,7 +121,7 @@ class Observer:
             automatic = isinstance(stage, DynamicStage) and stage.time_step == "auto"
             self._recorder.begin_stage(stage.name, stage.kind, automatic)
         if self._peaks is not None:
-            self._peaks.begin_stage(stage.name, stage.kind)
+            self._peaks.begin_stage(stage.name, stage.kind, stage.end)
         if stage is self._assembly.scene.stages[0] and not isinstance(stage, StaticStage):
             self._begin_at(stepper)
         self._show(stage)

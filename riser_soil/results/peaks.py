@@ -3,6 +3,9 @@
 An extreme at the end of a step, or a least tension at a node, misses the peak beside it by up to an eighth of the
 second difference there. The vertex of the parabola through the sample and its two neighbours misses it by higher
 orders. Largest moments and curvatures are told between nodes already (`riser.bending_peaks`).
+
+Of a dynamic stage there are extremes in even windows of its time, too. Two runs of a scene may agree in an extreme by
+chance; they hardly do so in several windows.
 """
 
 from __future__ import annotations
@@ -15,12 +18,13 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot, instants_at
-from riser_soil.results.figures import Extremes, final_state, pack, places_of
+from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places_of
 from riser_soil.results.soil_extremes import places, with_largest
 
 _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates of five steps, in the middle one
 # The middle one, and those after it, without what alternates, if that lasts; cubics stay as they are.
 RINGLESS = np.eye(5)[2:] - np.outer([1.0, -1.0, 1.0], _ALTERNATING)
+WINDOWS = 16  # of a dynamic stage
 UNEVEN = 1e-6  # of five steps' time, by which they may differ
 _TENSION = "min_effective_tension"
 
@@ -50,10 +54,14 @@ def pack_peaks(seen: Instant) -> Array:
 
 
 class StagePeaks:
-    """Extremes of one stage three ways: as recorded, with the tension's between nodes, and between steps as well."""
+    """Extremes of one stage three ways: as recorded, with the tension's between nodes, and between steps as well.
 
-    def __init__(self, name: str, kind: str) -> None:
-        self.name, self.kind = name, kind
+    duration: of a dynamic stage [s].
+    """
+
+    def __init__(self, name: str, kind: str, duration: float) -> None:
+        self.name, self.kind, self._duration = name, kind, duration
+        self._windows: Array = np.empty((2, WINDOWS, 0))  # least and largest figures in windows of time
         self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
         self._seen: Instant | None = None
         self._final: dict[str, Any] | None = None
@@ -79,10 +87,24 @@ class StagePeaks:
         for extremes in (self.of_nodes, self.peaks):
             extremes.update(t, peaked)
         self._t, self._last = [*self._t[-4:], t], [*self._last[-4:], peaked]
-        if self.kind == "dynamic" and len(self._t) >= 3 and self._t[-3] < self._t[-2] < t:
-            self.peaks.update(self._t[-2], vertex(np.array(self._t[-3:]), np.array(self._last[-3:])))
+        if self.kind == "dynamic":
+            self._follow_in_time(t, peaked)
         if self.kind != "static":
             self._follow_smoothly()
+
+    def _follow_in_time(self, t: float, peaked: Array) -> None:
+        self._in_window(t, peaked)
+        if len(self._t) >= 3 and self._t[-3] < self._t[-2] < t:
+            top = vertex(np.array(self._t[-3:]), np.array(self._last[-3:]))
+            self.peaks.update(self._t[-2], top)
+            self._in_window(self._t[-2], top)
+
+    def _in_window(self, t: float, peaked: Array) -> None:
+        if not self._windows.size:
+            self._windows = np.full((2, WINDOWS, peaked.size), np.nan)
+        at = min(int(WINDOWS * t / self._duration), WINDOWS - 1)
+        for extreme, kept in zip((np.fmin, np.fmax), self._windows[:, at], strict=True):
+            extreme(kept, peaked, out=kept)
 
     @property
     def final(self) -> dict[str, Any] | None:
@@ -113,6 +135,14 @@ class StagePeaks:
             ended.update(self._t[2 + n], RINGLESS[n] @ np.array(self._last))
         return ended
 
+    def in_windows(self, figure: str, which: str) -> Array:
+        """A figure's extremes, min or max, in windows of time (WINDOWS,), nan where it is unknown; none (0,) of a
+        static stage, or of what is no figure.
+        """
+        if not self._windows.size or figure not in FIGURE_NAMES:
+            return np.empty(0)
+        return np.asarray(self._windows[("min", "max").index(which), :, places_of(figure).start])
+
     def told(self, which: str) -> dict[str, Any]:
         """As the summary tells the stage; which: sampled, of_nodes, peaks or smooth."""
         if self.final is None:
@@ -128,13 +158,15 @@ class StagePeaks:
 
     def state(self) -> Saved:
         told = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil, "t": self._t}
-        vectors = {"latest": self._latest, "last": np.array(self._last)}
+        told |= {"duration": self._duration}
+        vectors = {"latest": self._latest, "last": np.array(self._last), "windows": self._windows.copy()}
         return gathered(self._extremes) | vectors | {"told": packed(told)}
 
     def restore(self, saved: Saved) -> None:
         told = unpacked(saved["told"])
         self.name, self.kind, self._final, self.soil = (told[name] for name in ("name", "kind", "final", "soil"))
         self._t, self._last, self._latest = told["t"], list(saved["last"]), saved["latest"]
+        self._duration, self._windows = told["duration"], saved["windows"].copy()
         restore_all(self._extremes, saved)
 
     @property
@@ -149,9 +181,11 @@ class RunPeaks:
         self.stages: list[StagePeaks] = []
         self._places = None if mesh is None else places(mesh)
 
-    def begin_stage(self, name: str, kind: str) -> None:
-        """Extremes of a stage along t include the state that it begins with, where a stage came before it."""
-        self.stages.append(StagePeaks(name, kind))
+    def begin_stage(self, name: str, kind: str, duration: float = 1.0) -> None:
+        """Extremes of a stage along t include the state that it begins with, where a stage came before it. duration:
+        of a dynamic one [s].
+        """
+        self.stages.append(StagePeaks(name, kind, duration))
         if kind != "static" and len(self.stages) > 1:
             self.stages[-1].begin(self.stages[-2])
 
@@ -170,7 +204,7 @@ class RunPeaks:
         return gathered(self._numbered)
 
     def restore(self, saved: Saved) -> None:
-        self.stages = [StagePeaks("", "") for name in saved if name.count("/") == 1 and name.endswith("/told")]
+        self.stages = [StagePeaks("", "", 1.0) for name in saved if name.count("/") == 1 and name.endswith("/told")]
         restore_all(self._numbered, saved)
 
     @property
