@@ -1,23 +1,31 @@
 """Calibrate error bars: compute all scenes with companions, and write the page docs/error_bars.md.
 
-Run from the project's folder. `--references` computes the references anew first, which takes about twenty minutes.
+Run from the project's folder. `--references` computes the references anew first, which takes about an hour.
 """
 
 import argparse
 
 from benchmarks.error_bars import references
-from benchmarks.error_bars.calibration import judge
+from benchmarks.error_bars.calibration import JudgedScene, certain_of, judge
 from benchmarks.error_bars.page import PAGE, page
-from benchmarks.error_bars.scenes import SCENES
+from benchmarks.error_bars.random_risers import CALIBRATION, OUT_OF_SAMPLE
+from benchmarks.error_bars.scenes import Mapping
 
 parser = argparse.ArgumentParser(prog="python -m benchmarks.error_bars", description=__doc__)
 parser.add_argument("--references", nargs="*", metavar="SCENE", help="compute references anew: of these, else of all")
 asked = parser.parse_args().references
 if asked is not None:
-    references.write(asked or list(SCENES))
+    references.write(asked or [*CALIBRATION, *OUT_OF_SAMPLE], CALIBRATION | OUT_OF_SAMPLE)
 known = references.read()
-judged = []
-for name, scene in SCENES.items():
-    judged.append(judge(name, scene, known[name]))
-    print(f"{name}: {sum(each.inside for each in judged[-1].judged)} of {len(judged[-1].judged)} inside", flush=True)
-PAGE.write_text(page(judged), encoding="utf-8")
+
+
+def judged(scenes: dict[str, Mapping]) -> list[JudgedScene]:
+    found = []
+    for name, scene in scenes.items():
+        found.append(judge(name, scene, known[name]))
+        certain = certain_of(found[-1].judged)
+        print(f"{name}: {sum(each.inside for each in certain)} of {len(certain)} inside", flush=True)
+    return found
+
+
+PAGE.write_text(page(judged(CALIBRATION), judged(OUT_OF_SAMPLE)), encoding="utf-8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,9 +16,11 @@ from riser_soil.accuracy.chain import bars_of, companions, run_values
 from riser_soil.accuracy.companions import peaks_of
 from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar
 from riser_soil.accuracy.headlines import headlines
+from riser_soil.core import compiled
 from riser_soil.scene.reader import scene_from_mapping
 
-CERTAIN = 0.3  # of the true error, or of the smallest bar: what its reference may be off
+CERTAIN = 0.1  # of the bar, or of the true error where that is larger: what the reference may be off
+UNKNOWN = math.nan, math.inf  # reference that could not be computed
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ class Judged:
     @property
     def certain(self) -> bool:
         """Whether the reference tells the error."""
-        return self.uncertainty <= CERTAIN * max(self.error, SMALLEST * self.bar.headline.scale)
+        return self.bar.bar is not None and self.uncertainty <= CERTAIN * max(self.error, self.bar.bar)
 
     @property
     def ratio(self) -> float | None:
@@ -56,27 +59,40 @@ class JudgedScene:
 
 
 def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
-    """Compute a scene with its companions; quantities that the reference does not have are not judged."""
-    scene, began = scene_from_mapping(mapping), time.process_time()
+    """Compute a scene with its companions, and compare it with its reference."""
+    scene, began = scene_from_mapping(mapping), _processor_time()
     peaks = peaks_of(scene, MPI.COMM_WORLD)
-    taken = time.process_time() - began
+    done = _processor_time()
     chain = companions(scene, MPI.COMM_WORLD)
-    extra = time.process_time() - began - taken
+    seconds = done - began, _processor_time() - done
     run = run_values(headlines(peaks.told("sampled")), peaks)
     found = bars_of(scene, run, chain)
-    bars = [bar for bar in found if bar.headline.key in reference]
-    judged = [_judged(name, bar, *reference[bar.headline.key]) for bar in bars if bar.bar is not None]
-    return JudgedScene(name, judged, [bar for bar in bars if bar.bar is None], (taken, extra))
+    judged = [_judged(name, bar, *reference.get(bar.headline.key, UNKNOWN)) for bar in found if bar.bar is not None]
+    return JudgedScene(name, judged, [bar for bar in found if bar.bar is None], seconds)
 
 
 def _judged(name: str, bar: ErrorBar, true: float, uncertainty: float) -> Judged:
     return Judged(name, bar, abs(bar.headline.value - true), uncertainty)
 
 
+def _processor_time() -> float:
+    """Without the compilation of kernels [s]."""
+    return time.process_time() - compiled.seconds_compiling()
+
+
+def certain_of(judged: Iterable[Judged]) -> list[Judged]:
+    return [each for each in judged if each.certain]
+
+
 def share_inside(judged: Iterable[Judged]) -> float:
-    found = [each.inside for each in judged if each.certain]
+    found = [each.inside for each in certain_of(judged)]
     return sum(found) / len(found)
 
 
+def ratios(judged: Iterable[Judged]) -> list[float]:
+    """Bars over errors, of those above the smallest bar."""
+    return [each.ratio for each in certain_of(judged) if each.ratio is not None]
+
+
 def median_ratio(judged: Iterable[Judged]) -> float:
-    return median(each.ratio for each in judged if each.certain and each.ratio is not None)
+    return median(ratios(judged))

@@ -1,60 +1,92 @@
-"""The page of the calibration, docs/error_bars.md: what was found, scene by scene."""
+"""The page of the calibration, docs/error_bars.md: what was found in it, out of sample, and scene by scene."""
 
 from __future__ import annotations
 
 import datetime
 import os
 import platform
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
 
-from benchmarks.error_bars.calibration import Judged, JudgedScene, median_ratio, share_inside
+from benchmarks.error_bars.calibration import (
+    CERTAIN,
+    Judged,
+    JudgedScene,
+    certain_of,
+    median_ratio,
+    ratios,
+    share_inside,
+)
+from benchmarks.error_bars.random_risers import CALIBRATION, GROUNDS, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import SCENES
+from demos.page import table
 from riser_soil import __version__
-from riser_soil.accuracy.error_bars import ON_PATH, SAFETY, SMALLEST
+from riser_soil.accuracy.error_bars import LARGE, ON_PATH, SAFETY, SMALLEST
 
 PAGE = Path("docs") / "error_bars.md"
+FIGURES, OUT = "error bars", "error bars out of sample"  # blocks of the page that others quote
+ALL = CALIBRATION | OUT_OF_SAMPLE
 
 TEXT = """# Error bars: how they are found, and how often they are right
 
 Written by `make bars`: riser-soil {version}, {date}, Python {python}, {cores} cores.
 
-`riser-soil run SCENE --error-bars`, or `error_bars: true` in the scene, computes coarser companions of the scene
-after the run, in the same process and without files: soil of cells √2 times as large, then twice as large again,
-then steps five times as long too, then half the elements, then a quarter of the penalty, of these what the scene has.
-Each difference has one source; of the two in soil the one that tells more counts. A difference over ratio^order − 1 is
-the error by Richardson's extrapolation: order 4 for the elements of a riser that hangs, 2 for one that touches down, 2
-for time steps, 1 for the soil's cells, ¾ for the penalty; in a contact force on a rigid floor, of which an end held on
-it bears what lies beside it, 1 for the elements and ¼ for the penalty; less where the difference is large. What falls
-between nodes and between steps, by the parabola through three samples, is added to mesh and time, and what rings from
-step to step to the time; largest moments and curvatures are told between nodes, by a cubic whose error is of the
-elements' own order, so that nothing is added. Then there is a factor of safety:
-{factors}.
+`riser-soil run SCENE --error-bars`, or `error_bars: true` in the scene, computes companions of the scene after the run,
+in the same process and without files: one with steps two to four times as long (as long as the shortest period keeps
+20), then one that has twice the elements, too, and on a rigid floor 16 times the penalty. Each difference has one
+source. A finer mesh tells the mesh's error whatever its order is, so that bars hold where elements are far too long;
+finer steps would cost more than the run.
+
+A difference between two runs is the root mean square of those in the extreme itself and in the windows of time, of 16,
+in which the quantity comes within a fifth of its range to the extreme: two runs may agree in one extreme by chance.
+A difference over |fineness^−order − 1| is the error by Richardson's extrapolation: order 2 for elements and time steps;
+in a contact force on a rigid floor, of which an end held on it bears what lies beside it, 1. Where longer steps make a
+large difference, half way at {large:.0%} of the scale, the divisor falls to 1. What falls between nodes and between
+steps, by the parabola through three samples, is added to mesh and time, and what rings from step to step to the time;
+largest moments and curvatures are told between nodes, by a cubic whose error is of the elements' own order, so that
+nothing is added. Then there is a factor of safety: {factors}.
 Different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
 ([headlines.py](../riser_soil/accuracy/headlines.py)).
-[error_bars.py](../riser_soil/accuracy/error_bars.py) has all of it.
 
-The factors are chosen so that over the {scenes} scenes below, of known answers (each computed with 4 to 16 times
-the elements, a tenth of the step and 51200 times the penalty of a rigid floor; on soil with cells of a quarter
-of the size and 32 times the penalty), the bars hold what they say:
+On soil the chain is another: cells √2 times as large, then twice as large again, then steps five times as long, half
+the elements, a quarter of the penalty. Orders are 1 for the soil's cells and ¾ for the penalty, the factor for cells is
+{on_path:g} for soil whose law depends on its path, and of the two soils the one that tells more counts.
+[error_bars.py](../riser_soil/accuracy/error_bars.py) has all of it, [chain.py](../riser_soil/accuracy/chain.py) the
+companions.
 
-| | |
-|---|---:|
-| scenes, headline quantities judged | {scenes}, {quantities} |
-| true error inside its bar | {inside:.1%} |
-| bar over true error, median, of the {larger} errors above the smallest bar | {ratio:.2f} |
-| left out, as the reference is not certain to a third of the error | {uncertain} |
-| bars not given, as a companion failed | {missing} |
-| processor time of the companions over that of the scenes, without start-up and files | {cost:.0%} |
+The factors are chosen so that over {scenes} scenes of known answers the bars hold what they say. {drawn} of them are
+[random risers](../benchmarks/error_bars/random_risers.py): steel and flexible pipes between 12 and 2000 m of water,
+hanging or laid on a rigid floor, springs or hysteretic clay, level and sloping, half of them moving, with 25 to 120
+elements and 30 to 150 steps to a period. References ([references.py](../benchmarks/error_bars/references.py)) have 16
+or 64 times the elements of static scenes and 16 times those of moving ones with a tenth of the step; a quarter as many
+tell how uncertain they are. Quantities whose reference is not certain to {certain:.0%} of the bar are left out.
 
-The same of the {on_soil} scenes on soil alone:
+<!-- {figures_block} -->
+{figures}
+<!-- end of {figures_block} -->
 
-| | |
-|---|---:|
-| headline quantities judged | {soil_quantities} |
-| true error inside its bar | {soil_inside:.1%} |
-| bar over true error, median | {soil_ratio:.2f} |
-| left out, as the reference is not certain to a third of the error | {soil_uncertain} |
+## Out of sample
+
+{out_scenes} more risers of the same generator, {each} on each ground, have chosen nothing: neither a factor nor a way
+to find a bar.
+
+<!-- {out_block} -->
+{out_figures}
+<!-- end of {out_block} -->
+
+{out_quantities}
+
+{out_grounds}
+
+Bars out of sample that were missed, with the true error over the bar:
+
+{out_missed}
+
+## In the calibration
+
+{quantities}
+
+{grounds}
 
 What a run's companions take beside all of it, start-up and files included, the run itself tells at its end.
 
@@ -66,74 +98,100 @@ the soil's share alone holds 95 % of 103 errors (elastic 96 %, clay 94 %), at a 
 of 6.5 would hold 95 %, at a median of 10. On elastic soil bars are wider than they need be, as errors there fall faster
 than by the first order.
 
-The scenes chose the factors, so on other scenes a share a little lower is to be expected. Where the answer hangs on
-a sudden load that excites all modes, or steps are so long that companions show no order, bars are least reliable.
-Bars tell nothing of what is not varied: the model itself, a block of soil that is too small, a pipe modelled with
-wrong numbers.
+Where the answer hangs on a sudden load that excites all modes, or steps are so long that longer ones resolve nothing,
+bars are least reliable; in the latter case they are far too wide more often than too narrow. Bars tell nothing of what
+is not varied: the model itself, a block of soil that is too small, a pipe modelled with wrong numbers.
 
-| scene | inside | bar over true error, median | companions over scene |
-|---|---:|---:|---:|
 {rows}
 
 Bars that were missed, with the true error over the bar:
 
-| scene | quantity | error over bar |
-|---|---|---:|
 {missed}
 
-`python -m benchmarks.error_bars --references` computes the references anew, in about twenty minutes.
+`python -m benchmarks.error_bars --references` computes the references anew, in about an hour.
 """
 
+Kind = Callable[[Judged], str]
 
-def page(scenes: list[JudgedScene]) -> str:
-    judged = [each for scene in scenes for each in scene.judged]
-    certain = [each for each in judged if each.certain]
-    seconds, extra = (sum(scene.seconds[n] for scene in scenes) for n in (0, 1))
+
+def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
     return TEXT.format(
         version=__version__,
         date=datetime.date.today().isoformat(),
         python=platform.python_version(),
         cores=os.cpu_count(),
-        factors=_factors(),
+        factors=", ".join(f"{factor:g} for the {source}" for source, factor in SAFETY.items()),
+        on_path=ON_PATH["soil"],
+        large=LARGE["time"],
         smallest=SMALLEST,
-        scenes=len(SCENES),
-        quantities=len(certain),
-        inside=share_inside(judged),
-        larger=sum(each.ratio is not None for each in certain),
-        ratio=median_ratio(judged),
-        uncertain=len(judged) - len(certain),
-        missing=sum(len(scene.not_known) for scene in scenes),
-        cost=extra / seconds,
-        **_on_soil(scenes),
-        rows="\n".join(_row(scene) for scene in scenes),
-        missed="\n".join(_missed(each) for each in certain if not each.inside),
+        certain=CERTAIN,
+        scenes=len(calibration),
+        drawn=sum(scene.name not in SCENES for scene in calibration),
+        each=len(OUT_OF_SAMPLE) // len(GROUNDS),
+        figures_block=FIGURES,
+        figures=_figures(calibration, "in the calibration"),
+        quantities=_by_kind(calibration, "quantity, in the calibration", lambda each: each.bar.headline.name),
+        grounds=_by_kind(calibration, "ground, in the calibration", _ground),
+        rows=table(["scene", "inside", "bar over true error, median", "companions over scene"], map(_row, calibration)),
+        missed=_missed(calibration),
+        out_scenes=len(out),
+        out_block=OUT,
+        out_figures=_figures(out, "out of sample"),
+        out_quantities=_by_kind(out, "quantity, out of sample", lambda each: each.bar.headline.name),
+        out_grounds=_by_kind(out, "ground, out of sample", _ground),
+        out_missed=_missed(out),
     )
 
 
-def _factors() -> str:
-    of_sources = ", ".join(f"{factor:g} for the {source}" for source, factor in SAFETY.items())
-    return f"{of_sources}, and {ON_PATH['soil']:g} for soil whose law depends on its path"
+def _figures(scenes: list[JudgedScene], where: str) -> str:
+    judged, seconds = _all(scenes), [sum(scene.seconds[n] for scene in scenes) for n in (0, 1)]
+    certain = certain_of(judged)
+    rows = [
+        ["scenes, headline quantities judged", f"{len(scenes)}, {len(certain)}"],
+        ["true error inside its bar", f"{share_inside(judged):.1%}"],
+        [f"bar over true error, median, of the {len(ratios(judged))} errors above the smallest bar", _median(judged)],
+        ["left out, as the reference is not certain", str(len(judged) - len(certain))],
+        ["bars not given, as a companion failed", str(sum(len(scene.not_known) for scene in scenes))],
+        ["processor time of the companions over that of the scenes, without start-up and files",
+         f"{seconds[1] / seconds[0]:.0%}"],
+    ]  # fmt: skip
+    return table([where, ""], rows)
 
 
-def _on_soil(scenes: list[JudgedScene]) -> dict[str, Any]:
-    """Figures of the scenes on soil."""
-    found = [scene for scene in scenes if "soil" in SCENES[scene.name]]
-    judged = [each for scene in found for each in scene.judged]
-    certain = sum(each.certain for each in judged)
-    return {
-        "on_soil": len(found), "soil_quantities": certain, "soil_uncertain": len(judged) - certain,
-        "soil_inside": share_inside(judged), "soil_ratio": median_ratio(judged),
-    }  # fmt: skip
+def _by_kind(scenes: list[JudgedScene], head: str, kind: Kind) -> str:
+    """Share inside and median ratio of each kind, in the order of their names."""
+    found: dict[str, list[Judged]] = {}
+    for each in certain_of(_all(scenes)):
+        found.setdefault(kind(each), []).append(each)
+    rows = [[name, str(len(own)), f"{share_inside(own):.1%}", _median(own)] for name, own in sorted(found.items())]
+    return table([head, "judged", "inside", "bar over true error, median"], rows)
 
 
-def _row(scene: JudgedScene) -> str:
-    certain = [each for each in scene.judged if each.certain]
-    ratios = sum(each.ratio is not None for each in certain)
-    median = f"{median_ratio(certain):.2g}" if ratios else "all below the smallest bar"
-    taken, extra = scene.seconds
-    return f"| {scene.name} | {sum(e.inside for e in certain)} of {len(certain)} | {median} | {extra / taken:.0%} |"
+def _ground(each: Judged) -> str:
+    mapping = ALL[each.scene]
+    if "soil" in mapping:
+        return "block of soil"
+    seabed = mapping.get("seabed")
+    if seabed is None:
+        return "none"
+    return str(seabed["law"]["kind"] if seabed["kind"] == "hysteretic" else seabed["kind"])
 
 
-def _missed(each: Judged) -> str:
-    assert each.bar.bar is not None
-    return f"| {each.scene} | {each.bar.headline.key} | {each.error / each.bar.bar:.2f} |"
+def _all(scenes: Iterable[JudgedScene]) -> list[Judged]:
+    return [each for scene in scenes for each in scene.judged]
+
+
+def _median(judged: list[Judged]) -> str:
+    return f"{median_ratio(judged):.2g}" if ratios(judged) else "all below the smallest bar"
+
+
+def _row(scene: JudgedScene) -> list[str]:
+    certain, (taken, extra) = certain_of(scene.judged), scene.seconds
+    inside = f"{sum(each.inside for each in certain)} of {len(certain)}"
+    return [scene.name, inside, _median(certain), f"{extra / taken:.0%}"]
+
+
+def _missed(scenes: list[JudgedScene]) -> str:
+    found = [each for each in certain_of(_all(scenes)) if not each.inside]
+    rows = [[f"{each.scene}: {each.bar.headline.key}", f"{each.error / (each.bar.bar or 1.0):.2f}"] for each in found]
+    return table(["scene and quantity", "error over bar"], rows)

@@ -11,14 +11,15 @@ import math
 import random
 from typing import Any
 
-from benchmarks.error_bars.scenes import HANG, Mapping, freely, line, moved
+from benchmarks.error_bars.scenes import HANG, SCENES, Mapping, freely, line, moved
 
 Draw = random.Random
 
-GROUNDS = ("none", "rigid", "spring", "randolph-quiggin", "aubeny-biscontin")
+GROUNDS = ("hanging", "rigid", "spring", "randolph-quiggin", "aubeny-biscontin")
 SEA, STEEL = 1025.0, 7850.0  # densities of water and steel [kg/m3]
 YOUNG = 2.07e11  # of steel [Pa]
 G = 9.80665
+EACH = 8  # risers on each ground, in the calibration and out of it
 
 
 def random_riser(seed: int, ground: str, number: int) -> Mapping:
@@ -26,7 +27,7 @@ def random_riser(seed: int, ground: str, number: int) -> Mapping:
     draw = Draw(f"{seed} {ground} {number}")
     pipe = _pipe(draw)
     depth = _depth(draw, pipe)
-    if ground == "none":
+    if ground == "hanging":
         hung, more = _hung(draw, depth), dict[str, Any]()
     else:
         hung, more = _laid(draw, depth, pipe), _on_ground(draw, ground)
@@ -104,7 +105,7 @@ def _upper(draw: Draw, place: list[float]) -> Any:
 def _cut(draw: Draw, length: float, ground: str) -> list[Mapping]:
     """Even elements, or on ground some that are graded away from where the riser touches down."""
     count = round(spread(draw, 25.0, 120.0))
-    if ground == "none" or draw.random() < 0.6:
+    if ground == "hanging" or draw.random() < 0.6:
         return [{"length": length, "elements": count}]
     size = figures(0.5 * length / count)
     lower = figures(draw.uniform(0.3, 0.5) * length)
@@ -154,3 +155,11 @@ def _still(draw: Draw, depth: float) -> Mapping:
     fast, how = spread(draw, 0.1, 1.0), draw.choice([(1.0, 0.0), (-1.0, 0.0), (0.3, 0.9)])
     profile = [[0.0, 0.0, 0.0], [depth, *(figures(fast * part) for part in how)]]
     return {"density": SEA, "current": {"profile": profile}}
+
+
+def _drawn(letter: str, seed: int) -> dict[str, Mapping]:
+    return {f"{ground} {letter}{n}": random_riser(seed, ground, n) for ground in GROUNDS for n in range(EACH)}
+
+
+CALIBRATION = SCENES | _drawn("A", 1)
+OUT_OF_SAMPLE = _drawn("B", 2)

@@ -16,6 +16,8 @@ MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 10.0}  # from one sett
 BEYOND = {"soil": 2.0}
 BY_CHANCE = 0.25  # of a share, that is left at least where two runs agree
 NOT_KNOWN = 2.0  # finer in mesh and time, where a bar is not known
+DOUBT = 0.5  # of the accuracy, below which it does not matter how two runs are apart
+MOST_FALL = 8.0  # times that a bar can be foretold to fall by orders, from one run to the next
 
 Factors = Mapping[str, float]  # by source: how many times as fine
 
@@ -46,14 +48,33 @@ def _asked(bars: Sequence[ErrorBar], accuracy: float) -> Factors:
 def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, factors: Factors) -> list[ErrorBar]:
     """Bars of a run that is finer by factors than the one `before` with its bars.
 
-    Each source's share falls by its order. Where the two runs are further apart than the bar before, that was too
-    small, and so would be the one that follows from it: both are larger in that ratio. A source that is finer alone
-    has the share by which it tells the two apart, by Richardson's extrapolation, be it more or less; of several none
-    has more than if it were alone. But as runs may agree by chance, and sources hide one another, a part of each
-    stays. Of the soil it is all: in its meshes contact grows cell by cell, and two agree by chance often.
+    Each source's share falls by its order. A source that is finer alone has the share by which it tells the two runs
+    apart, by Richardson's extrapolation, be it more or less; of several none has more than if it were alone. But as
+    runs may agree by chance, and sources hide one another, a part of each stays. Of the soil it is all: in its meshes
+    contact grows cell by cell, and two agree by chance often.
     """
     known = {bar.headline.key: bar for bar in bars}
     return [_expected(known.get(key), before, found, factors, key) for key in found.told]
+
+
+def doubtful(
+    bars: Sequence[ErrorBar], before: RunValues, found: RunValues, left: Sequence[ErrorBar], accuracy: float
+) -> bool:
+    """Whether bars that are left to expect of a run can't be relied on: where it is further from the one `before` than
+    that one's bars, by more than a share of the accuracy, or would have fallen by more than orders can foretell.
+    """
+    expected_of = {bar.headline.key: bar for bar in left}
+    return any(_doubtful(bar, before, found, expected_of.get(bar.headline.key), accuracy) for bar in bars)
+
+
+def _doubtful(
+    bar: ErrorBar, before: RunValues, found: RunValues, left: ErrorBar | None, accuracy: float
+) -> bool:
+    key = bar.headline.key
+    if left is None or left.bar is None or bar.bar is None or key not in before.peaks or key not in found.peaks:
+        return True
+    off, telling = apart(before.peaks[key], found.peaks[key]), DOUBT * accuracy * bar.headline.scale
+    return off > max(bar.bar, telling) or bar.bar > MOST_FALL * max(left.bar, telling)
 
 
 def largest(bars: Sequence[ErrorBar]) -> tuple[float, str]:
@@ -86,11 +107,9 @@ def _expected(
     headline = found.told[key]
     if bar is None or bar.bar is None or key not in before.peaks:
         return ErrorBar(headline, None, {}, (bar and bar.reason) or "the run before does not have it")
-    off = apart(before.peaks[key], found.peaks[key])
-    larger = max(1.0, off / bar.bar) if bar.bar > 0.0 else 1.0
     own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
-    left = {s: larger * each / factors.get(s, 1.0) ** bar.order[s] for s, each in bar.by_source.items()}
-    left |= _by_the_two_runs(left, off, factors, bar.order)
+    left = {s: each / factors.get(s, 1.0) ** bar.order[s] for s, each in bar.by_source.items()}
+    left |= _by_the_two_runs(left, apart(before.peaks[key], found.peaks[key]), factors, bar.order)
     shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
     whole = math.hypot(*shares.values()) + SMALLEST * headline.scale
     return replace(bar, headline=headline, bar=whole, by_source=shares)

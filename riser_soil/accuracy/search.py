@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any, TypeVar
 
-from riser_soil.accuracy.chain import ON_SOIL, Variation, bars_of, companions, run_values
+from riser_soil.accuracy.chain import FINER_MESH, Variation, bars_of, companions, run_values, variations
 from riser_soil.accuracy.companions import peaks_of
 from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues
@@ -22,9 +22,8 @@ from riser_soil.scene.stages import StaticStage
 
 SHAPES = 3  # static runs at most that grade the mesh
 SETTLED = 1.5  # elements at most so many times as long as curvature asks for
-# Of the trial, whose steps are long already; elements and penalty apart, as the run may need one of them.
-LONGER = Variation("time", {"time_step": 0.5})
-FINER = (LONGER, Variation("mesh", {"elements": 2.0}), Variation("penalty", {"penalty": 16.0}))
+LONGER = Variation("time", {"time_step": 0.5})  # of the trial, whose steps are long already
+FINER = Variation("mesh", {"elements": 2.0}), Variation("penalty", {"penalty": 16.0})  # a run may need one of them
 ATTEMPTS, EACH = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
 HELPING = ("elements", "time_step")
 _Found = TypeVar("_Found")
@@ -47,16 +46,31 @@ def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     scene, seen, peaks = _computed(scene, comm)
     if _excess(seen, accuracy, comm) > SETTLED:
         scene, _, peaks = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
-    chain = companions(scene, comm, FINER if scene.soil is None else _with_longer(ON_SOIL))
-    if comm.rank != 0:
-        return TriedSetting(scene, None, comm.bcast(None))
-    values = run_values(headlines(peaks.told("sampled")), peaks)
-    bars = bars_of(scene, values, chain)
-    return TriedSetting(scene, values, comm.bcast(bars))
+    values = run_values(headlines(peaks.told("sampled")), peaks) if comm.rank == 0 else None
+    return TriedSetting(scene, values, measured(scene, values, comm, LONGER))
 
 
-def _with_longer(varying: Sequence[Variation]) -> list[Variation]:
-    return [LONGER if each.source == LONGER.source else each for each in varying]
+def measured(scene: Scene, values: RunValues | None, comm: Any, longer: Variation | None = None) -> list[ErrorBar]:
+    """Error bars of a run by companions, elements and penalty apart; collective. values: the run's, on rank 0. longer:
+    steps, if other than usual.
+    """
+    usual = variations(scene)
+    chain = companions(scene, comm, [*_apart(usual if longer is None else _with(longer, usual))])
+    return _on_first(comm, lambda: bars_of(scene, _known(values), chain))
+
+
+def _with(longer: Variation, usual: Sequence[Variation]) -> list[Variation]:
+    return [longer if each.source == longer.source else each for each in usual]
+
+
+def _apart(varying: Sequence[Variation]) -> Iterator[Variation]:
+    for each in varying:
+        yield from FINER if each is FINER_MESH else (each,)
+
+
+def _known(values: RunValues | None) -> RunValues:
+    assert values is not None
+    return values
 
 
 def finer(scene: Scene, factors: dict[str, float]) -> Scene:

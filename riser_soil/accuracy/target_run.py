@@ -1,8 +1,8 @@
 """Run to an accuracy: mesh, steps, soil and penalty are chosen so that all headline quantities reach it.
 
-A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. It is
-compared with the trial before: where it is further away than the bars said, they grow; where they miss the accuracy, a
-finer run follows.
+A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
+bars are left is foretold from the trial before, and measured by companions of the run where that is doubtful
+(`needed.doubtful`). Where they miss the accuracy, a finer run follows, as long as that helps.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ import time
 from pathlib import Path
 from typing import Any
 
-from riser_soil.accuracy.barred_run import values_of_run, write_bars
-from riser_soil.accuracy.error_bars import SOURCES, ErrorBar
+from riser_soil.accuracy.barred_run import LEFT, values_of_run, write_bars
+from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.first_setting import first_setting
 from riser_soil.accuracy.knobs import knobs_of, settings_told
-from riser_soil.accuracy.needed import expected, largest, needed, out_of_reach
+from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, out_of_reach
 from riser_soil.accuracy.screen import print_bars
-from riser_soil.accuracy.search import TriedSetting, finer, trial
+from riser_soil.accuracy.search import TriedSetting, finer, measured, trial
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
 from riser_soil.interruption import handling_signals
@@ -27,6 +27,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
 
 RUNS = 3  # at most that are to reach the accuracy
+HELPS = 0.7  # of the largest bar, to which a finer run has to bring it
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"
 
 
@@ -57,9 +58,10 @@ def _sought(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
 def _run_until(
     accuracy: float, last: TriedSetting, folder: Path, force: bool, comm: Any
 ) -> tuple[TriedSetting, str]:
-    """The last run, and why there is no finer one where it can't be run."""
+    """The last run, and why there is no finer one where it can't be run or would not help."""
     for number in range(RUNS):
         _tell(last, accuracy, comm)
+        before = last
         try:
             last = _finer_run(last, accuracy, folder, force or number > 0, comm)
         except (SceneError, MeshError) as err:
@@ -70,6 +72,8 @@ def _run_until(
             break
         if lost := out_of_reach(last.bars, accuracy):
             return last, f"; what the {lost[0]} asks for is out of reach"
+        if largest(last.bars)[0] > HELPS * largest(before.bars)[0]:
+            return last, "; finer settings hardly help"
     return last, ""
 
 
@@ -80,11 +84,31 @@ def _finer_run(last: TriedSetting, accuracy: float, folder: Path, force: bool, c
     since = time.perf_counter()
     run(scene, folder, force, peaks)
     taken = time.perf_counter() - since
-    if comm.rank != 0:
-        return TriedSetting(scene, None, comm.bcast(None), taken)
+    values = values_of_run(folder, peaks) if comm.rank == 0 else None
+    bars = comm.bcast(_foretold(last, values, by_source, accuracy))
+    if bars is None:
+        bars = _measured(scene, values, folder, comm)
+    return TriedSetting(scene, values, bars, taken)
+
+
+def _foretold(
+    last: TriedSetting, values: RunValues | None, by_source: Factors, accuracy: float
+) -> list[ErrorBar] | None:
+    """The run's bars, from those of the one before; None where that is doubtful, and on other ranks."""
+    if values is None:
+        return None
     assert last.values is not None
-    values = values_of_run(folder, peaks)
-    return TriedSetting(scene, values, comm.bcast(expected(last.bars, last.values, values, by_source)), taken)
+    left = expected(last.bars, last.values, values, by_source)
+    return None if doubtful(last.bars, last.values, values, left, accuracy) else left
+
+
+def _measured(scene: Scene, values: RunValues | None, folder: Path, comm: Any) -> list[ErrorBar]:
+    with handling_signals():
+        try:
+            return measured(scene, values, comm)
+        except Interruption as end:
+            end.place = LEFT.format(folder)
+            raise
 
 
 def _tell(last: TriedSetting, accuracy: float, comm: Any) -> None:

@@ -103,8 +103,9 @@ class StagePeaks:
         if not self._windows.size:
             self._windows = np.full((2, WINDOWS, peaked.size), np.nan)
         at = min(int(WINDOWS * t / self._duration), WINDOWS - 1)
-        for extreme, kept in zip((np.fmin, np.fmax), self._windows[:, at], strict=True):
-            extreme(kept, peaked, out=kept)
+        least, largest = self._windows[:, at]
+        np.fmin(least, peaked, out=least)
+        np.fmax(largest, peaked, out=largest)
 
     @property
     def final(self) -> dict[str, Any] | None:
@@ -157,8 +158,8 @@ class StagePeaks:
         }  # fmt: skip
 
     def state(self) -> Saved:
-        told = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil, "t": self._t}
-        told |= {"duration": self._duration}
+        told: dict[str, Any] = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil}
+        told |= {"t": self._t, "duration": self._duration}
         vectors = {"latest": self._latest, "last": np.array(self._last), "windows": self._windows.copy()}
         return gathered(self._extremes) | vectors | {"told": packed(told)}
 
