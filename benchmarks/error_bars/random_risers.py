@@ -161,5 +161,5 @@ def _drawn(letter: str, seed: int) -> dict[str, Mapping]:
     return {f"{ground} {letter}{n}": random_riser(seed, ground, n) for ground in GROUNDS for n in range(EACH)}
 
 
-CALIBRATION = SCENES | _drawn("A", 1)
-OUT_OF_SAMPLE = _drawn("B", 2)
+CALIBRATION = SCENES | _drawn("A", 1) | _drawn("B", 2)
+OUT_OF_SAMPLE = _drawn("C", 3)

@@ -38,14 +38,14 @@ DYNAMIC: list[Level] = [{"elements": n, "penalty": n**4, "time_step": t} for n, 
 Reference = dict[str, tuple[float, float]]
 
 
-def write(names: Iterable[str], scenes: dict[str, Mapping]) -> None:
+def write(names: Iterable[str], scenes: dict[str, Mapping], file: Path = FILE) -> None:
     """Compute the references of some of the scenes anew; those of the others stay."""
-    known = read() if FILE.exists() else {}
+    known = read(file) if file.exists() else {}
     for name in names:
         known[name] = reference(scenes[name])
         print(f"reference of {name}", flush=True)
         in_order = {each: known[each] for each in scenes if each in known}
-        FILE.write_text(_text(in_order), encoding="utf-8")
+        file.write_text(_text(in_order), encoding="utf-8")
 
 
 def _text(references: dict[str, Reference]) -> str:
@@ -53,8 +53,8 @@ def _text(references: dict[str, Reference]) -> str:
     return "{\n" + ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}" for name, each in references.items()) + "\n}\n"
 
 
-def read() -> dict[str, Reference]:
-    told = json.loads(FILE.read_text(encoding="utf-8"))
+def read(file: Path = FILE) -> dict[str, Reference]:
+    told = json.loads(file.read_text(encoding="utf-8"))
     return {name: {key: (value, off) for key, (value, off) in of_scene.items()} for name, of_scene in told.items()}
 
 

@@ -83,7 +83,7 @@ def finer(scene: Scene, factors: dict[str, float]) -> Scene:
 
 def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
     """By the static stages that the scene begins with; as it is where there is none."""
-    segments, statics = scene.riser.segments, _first_statics(scene)
+    segments, statics = scene.riser.segments, first_statics(scene)
     for _ in range(SHAPES if statics else 0):
         part, seen, _ = _computed(scene.model_copy(update={"stages": statics}), comm)
         scene = scene.model_copy(update={"riser": part.riser})
@@ -93,7 +93,7 @@ def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
     return scene
 
 
-def _first_statics(scene: Scene) -> Sequence[Any]:
+def first_statics(scene: Scene) -> Sequence[Any]:
     return tuple(takewhile(lambda stage: isinstance(stage, StaticStage), scene.stages))
 
 
