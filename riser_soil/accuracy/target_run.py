@@ -2,7 +2,7 @@
 
 A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
 bars are left is foretold from the trial before, and measured by companions of the run where that is doubtful
-(`needed.doubtful`). Where they miss the accuracy, a finer run follows, as long as that helps.
+(`needed.doubtful`). Where they miss the accuracy, a finer run follows.
 """
 
 from __future__ import annotations
@@ -27,7 +27,6 @@ from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
 
 RUNS = 3  # at most that are to reach the accuracy
-HELPS = 0.7  # of the largest bar, to which a finer run has to bring it
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"
 
 
@@ -58,10 +57,9 @@ def _sought(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
 def _run_until(
     accuracy: float, last: TriedSetting, folder: Path, force: bool, comm: Any
 ) -> tuple[TriedSetting, str]:
-    """The last run, and why there is no finer one where it can't be run or would not help."""
+    """The last run, and why there is no finer one where it can't be run."""
     for number in range(RUNS):
         _tell(last, accuracy, comm)
-        before = last
         try:
             last = _finer_run(last, accuracy, folder, force or number > 0, comm)
         except (SceneError, MeshError) as err:
@@ -72,8 +70,6 @@ def _run_until(
             break
         if lost := out_of_reach(last.bars, accuracy):
             return last, f"; what the {lost[0]} asks for is out of reach"
-        if largest(last.bars)[0] > HELPS * largest(before.bars)[0]:
-            return last, "; finer settings hardly help"
     return last, ""
 
 

@@ -93,17 +93,30 @@ class StagePeaks:
             self._follow_smoothly()
 
     def _follow_in_time(self, t: float, peaked: Array) -> None:
-        self._in_window(t, peaked)
+        if not self._windows.size:
+            self._windows = np.full((2, WINDOWS, peaked.size), np.nan)
+        self._at_edges()
+        self._in_window(self._window(t), peaked)
         if len(self._t) >= 3 and self._t[-3] < self._t[-2] < t:
             top = vertex(np.array(self._t[-3:]), np.array(self._last[-3:]))
             self.peaks.update(self._t[-2], top)
-            self._in_window(self._t[-2], top)
+            self._in_window(self._window(self._t[-2]), top)
 
-    def _in_window(self, t: float, peaked: Array) -> None:
-        if not self._windows.size:
-            self._windows = np.full((2, WINDOWS, peaked.size), np.nan)
-        at = min(int(WINDOWS * t / self._duration), WINDOWS - 1)
-        least, largest = self._windows[:, at]
+    def _at_edges(self) -> None:
+        """On the line from the step before to this one, where one window ends and the next begins: long steps miss no
+        more of a window than short ones.
+        """
+        for n in range(self._window(self._t[-2]), self._window(self._t[-1])) if len(self._t) > 1 else ():
+            share = ((n + 1) * self._duration / WINDOWS - self._t[-2]) / (self._t[-1] - self._t[-2])
+            edge = (1.0 - share) * self._last[-2] + share * self._last[-1]
+            self._in_window(n, edge)
+            self._in_window(n + 1, edge)
+
+    def _window(self, t: float) -> int:
+        return min(int(WINDOWS * t / self._duration), WINDOWS - 1)
+
+    def _in_window(self, n: int, peaked: Array) -> None:
+        least, largest = self._windows[:, n]
         np.fmin(least, peaked, out=least)
         np.fmax(largest, peaked, out=largest)
 

@@ -7,7 +7,7 @@ import pytest
 
 from riser_soil.core.snapshot import ExtremeAlong, Instant, stacked
 from riser_soil.results.figures import pack, places_of
-from riser_soil.results.peaks import RunPeaks, least_between_nodes, pack_peaks, vertex
+from riser_soil.results.peaks import WINDOWS, RunPeaks, least_between_nodes, pack_peaks, vertex
 from tests.support.recorded_run import Catenary
 
 ARC = np.linspace(0.0, 150.0, 31)
@@ -71,14 +71,46 @@ def test_extremes_of_a_stage_three_ways() -> None:
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)
 
 
-def of_five(t: np.ndarray, moment: np.ndarray) -> float:
-    """The largest moment of a stage without what rings; moment: at steps t."""
+@pytest.mark.parametrize("steps", [40, 60, 160])
+def test_a_motion_has_extremes_in_windows_of_its_time(steps: int) -> None:
+    """Sixteen of 2 s, between steps too, to second order at their edges; a figure that is none has none."""
+    t = np.linspace(0.0, 2.0, steps + 1)
+    (stage,) = followed(t, 5.0 * np.cos(np.pi * t), duration=2.0).stages
+    edges = 5.0 * np.cos(np.pi * np.arange(WINDOWS + 1) / 8.0)
+    missed = 5.0 / 8.0 * (np.pi * 2.0 / steps) ** 2
+    for which, extreme in (("max", np.maximum), ("min", np.minimum)):
+        found = stage.in_windows("max_bending_moment", which)
+        assert found == pytest.approx(extreme(edges[1:], edges[:-1]), abs=missed)
+    assert stage.in_windows("no figure", "max").size == 0
+
+
+def test_equilibria_have_no_windows_of_time() -> None:
+    t = np.linspace(0.0, 2.0, 21)
+    (still,) = followed(t, t, duration=2.0, kind="quasi-static").stages
+    assert still.in_windows("max_bending_moment", "max").size == 0
+
+
+def test_a_window_knows_what_passes_between_steps() -> None:
+    """A parabola's top, 100 between two steps of 0.3, and 99.8 at the nearest of them."""
+    t = np.arange(7) * 0.3
+    (stage,) = followed(t, 100.0 - 20.0 * (t - 1.0) ** 2, duration=2.0).stages
+    assert stage.in_windows("max_bending_moment", "max")[7] == pytest.approx(100.0)
+
+
+def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str = "dynamic") -> RunPeaks:
+    """Peaks of a stage of a catenary whose largest moment is given at steps t."""
     peaks = RunPeaks()
-    peaks.begin_stage("motion", "dynamic")
+    peaks.begin_stage("motion", kind, duration)
     line = Catenary(32.0, 30.0)
     risers = [line.riser(ARC)._replace(largest_moment=ExtremeAlong(float(size), 0.0)) for size in moment]
     peaks.record(t.tolist(), stacked([Instant(ARC, riser, line.touch(ARC)) for riser in risers]))
-    largest: float = peaks.told("smooth")["stages"][0]["extremes"]["max_bending_moment"]["max"]
+    return peaks
+
+
+def of_five(t: np.ndarray, moment: np.ndarray) -> float:
+    """The largest moment of a stage without what rings; moment: at steps t."""
+    told = followed(t, moment).told("smooth")
+    largest: float = told["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest
 
 
