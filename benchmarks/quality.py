@@ -47,11 +47,9 @@ def _quantity(name: str, each: dict[str, Any]) -> list[str]:
 
 
 def error_bars() -> str:
-    """What the calibration has found, from its page."""
+    """What the calibration has found, and what is out of sample, from its page."""
     page = (DOCS / "error_bars.md").read_text(encoding="utf-8")
-    found = re.search(r"\| \| \|\n\|---\|---:\|\n(.*?)\n\n", page, re.DOTALL)
-    assert found is not None
-    return "| error bars | |\n|---|---:|\n" + found[1]
+    return "\n\n".join(block(page, name) for name in ("error bars", "error bars out of sample"))
 
 
 def asked() -> str:

@@ -30,7 +30,7 @@ for name, scene in by_hand.ASKED.items():
 for name, scene in OTHERS.items():
     others.append(asked(name, scene, of_others[name]))
     judged.append(judge(name, scene, of_others[name]))
-    inside = [each.inside for each in judged[-1].judged if each.certain]
+    inside = [each.inside for each in judged[-1].judged if each.decided]
     print(f"{name}: {others[-1].outcome.value}; {sum(inside)} of {len(inside)} error bars inside", flush=True)
 for name, scene in SOIL.items():
     soil.append(asked(name, scene, known[name]))

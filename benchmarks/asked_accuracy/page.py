@@ -180,11 +180,11 @@ def _left_out(each: AskedScene) -> str:
 
 def _figures_of_others(others: list[AskedScene], judged: list[JudgedScene]) -> str:
     bars = [each for scene in judged for each in scene.judged]
-    inside = f"{share_inside(bars):.1%} of {sum(each.certain for each in bars)}"
+    inside = f"{share_inside(bars):.1%} of {sum(each.decided for each in bars)}"
     return table(["random scenes", ""], [["true error inside its error bar", inside], *_shares(others)])
 
 
 def _rows_of_others(others: list[AskedScene], judged: list[JudgedScene]) -> str:
-    inside = {scene.name: [each.inside for each in scene.judged if each.certain] for scene in judged}
+    inside = {scene.name: [each.inside for each in scene.judged if each.decided] for scene in judged}
     rows = [[*_told(each), f"{sum(inside[each.name])} of {len(inside[each.name])}"] for each in others]
     return table(["scene", "outcome", "true error", "setting", "error bars inside"], rows)

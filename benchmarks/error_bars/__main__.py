@@ -6,7 +6,7 @@ Run from the project's folder. `--references` computes the references anew first
 import argparse
 
 from benchmarks.error_bars import references
-from benchmarks.error_bars.calibration import JudgedScene, certain_of, judge
+from benchmarks.error_bars.calibration import JudgedScene, decided, judge
 from benchmarks.error_bars.page import PAGE, page
 from benchmarks.error_bars.random_risers import CALIBRATION, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import Mapping
@@ -23,8 +23,8 @@ def judged(scenes: dict[str, Mapping]) -> list[JudgedScene]:
     found = []
     for name, scene in scenes.items():
         found.append(judge(name, scene, known[name]))
-        certain = certain_of(found[-1].judged)
-        print(f"{name}: {sum(each.inside for each in certain)} of {len(certain)} inside", flush=True)
+        told = decided(found[-1].judged)
+        print(f"{name}: {sum(each.inside for each in told)} of {len(told)} inside", flush=True)
     return found
 
 

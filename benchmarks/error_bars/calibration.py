@@ -6,7 +6,6 @@ import math
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
-from statistics import median
 
 from mpi4py import MPI
 
@@ -37,15 +36,17 @@ class Judged:
         return self.bar.bar is not None and self.error <= self.bar.bar
 
     @property
-    def certain(self) -> bool:
-        """Whether the reference tells the error."""
-        return self.bar.bar is not None and self.uncertainty <= CERTAIN * max(self.error, self.bar.bar)
+    def decided(self) -> bool:
+        """Whether the reference tells on which side of its bar the error is."""
+        return self.bar.bar is not None and abs(self.error - self.bar.bar) >= self.uncertainty
 
     @property
     def ratio(self) -> float | None:
-        """Bar over error; None for errors below the smallest bar."""
-        below = self.error <= SMALLEST * self.bar.headline.scale
-        return None if below or self.bar.bar is None else self.bar.bar / self.error
+        """Bar over error; None for errors that the reference does not tell, or below the smallest bar."""
+        if self.bar.bar is None or self.error <= SMALLEST * self.bar.headline.scale:
+            return None
+        certain = self.uncertainty <= CERTAIN * max(self.error, self.bar.bar)
+        return self.bar.bar / self.error if certain else None
 
 
 @dataclass(frozen=True)
@@ -80,19 +81,16 @@ def _processor_time() -> float:
     return time.process_time() - compiled.seconds_compiling()
 
 
-def certain_of(judged: Iterable[Judged]) -> list[Judged]:
-    return [each for each in judged if each.certain]
+def decided(judged: Iterable[Judged]) -> list[Judged]:
+    return [each for each in judged if each.decided]
 
 
 def share_inside(judged: Iterable[Judged]) -> float:
-    found = [each.inside for each in certain_of(judged)]
+    found = [each.inside for each in decided(judged)]
     return sum(found) / len(found)
 
 
-def ratios(judged: Iterable[Judged]) -> list[float]:
-    """Bars over errors, of those above the smallest bar."""
-    return [each.ratio for each in certain_of(judged) if each.ratio is not None]
-
-
-def median_ratio(judged: Iterable[Judged]) -> float:
-    return median(ratios(judged))
+def ratios(judged: Iterable[Judged], above: float = SMALLEST) -> list[float]:
+    """Bars over errors, of those above a share of their quantity's scale."""
+    larger = (each for each in judged if each.error > above * each.bar.headline.scale)
+    return [each.ratio for each in larger if each.ratio is not None]
