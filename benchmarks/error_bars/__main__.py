@@ -10,6 +10,7 @@ from benchmarks.error_bars.calibration import JudgedScene, decided, judge
 from benchmarks.error_bars.page import PAGE, page
 from benchmarks.error_bars.random_risers import CALIBRATION, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import Mapping
+from riser_soil.errors import SolveError
 
 parser = argparse.ArgumentParser(prog="python -m benchmarks.error_bars", description=__doc__)
 parser.add_argument("--references", nargs="*", metavar="SCENE", help="compute references anew: of these, else of all")
@@ -20,9 +21,14 @@ known = references.read()
 
 
 def judged(scenes: dict[str, Mapping]) -> list[JudgedScene]:
+    """Those that can be computed."""
     found = []
     for name, scene in scenes.items():
-        found.append(judge(name, scene, known[name]))
+        try:
+            found.append(judge(name, scene, known[name]))
+        except SolveError as err:
+            print(f"{name} fails: {str(err).partition(chr(10))[0]}", flush=True)
+            continue
         told = decided(found[-1].judged)
         print(f"{name}: {sum(each.inside for each in told)} of {len(told)} inside", flush=True)
     return found

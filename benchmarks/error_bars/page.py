@@ -145,7 +145,7 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
         drawn=sum(scene.name not in SCENES for scene in calibration),
         each=len(OUT_OF_SAMPLE) // len(GROUNDS),
         figures_block=FIGURES,
-        figures=_figures(calibration, "in the calibration"),
+        figures=_figures(calibration, "in the calibration", CALIBRATION),
         quantities=_by_kind(calibration, "quantity, in the calibration", lambda each: each.bar.headline.name),
         grounds=_by_kind(calibration, "ground, in the calibration", _ground),
         stages=_by_kind(calibration, "stage, in the calibration", _stage),
@@ -153,7 +153,7 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
         missed=_missed(calibration),
         out_scenes=len(out),
         out_block=OUT,
-        out_figures=_figures(out, "out of sample"),
+        out_figures=_figures(out, "out of sample", OUT_OF_SAMPLE),
         out_quantities=_by_kind(out, "quantity, out of sample", lambda each: each.bar.headline.name),
         out_grounds=_by_kind(out, "ground, out of sample", _ground),
         out_stages=_by_kind(out, "stage, out of sample", _stage),
@@ -162,7 +162,7 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
     )
 
 
-def _figures(scenes: list[JudgedScene], where: str) -> str:
+def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
     judged, seconds = _all(scenes), [sum(scene.seconds[n] for scene in scenes) for n in (0, 1)]
     told, ratio = decided(judged), ratios(judged)
     rows = [
@@ -170,12 +170,18 @@ def _figures(scenes: list[JudgedScene], where: str) -> str:
         ["true error inside its bar", f"{share_inside(judged):.1%}"],
         [f"bar over true error, median, of the {len(ratio)} errors above {SMALLEST:g}", f"{median(ratio):.2f}"],
         [f"the same, of errors above {TELLING:g}", f"{median(ratios(judged, TELLING)):.2f}"],
+        ["scenes that could not be computed", _failed(scenes, of)],
         ["left out, as the reference does not tell the side of the bar", str(len(judged) - len(told))],
         ["bars not given, as a companion failed", str(sum(len(scene.not_known) for scene in scenes))],
         ["processor time of the companions over that of the scenes, without start-up and files",
          f"{seconds[1] / seconds[0]:.0%}"],
     ]  # fmt: skip
     return table([where, ""], rows)
+
+
+def _failed(scenes: list[JudgedScene], of: Iterable[str]) -> str:
+    computed = {scene.name for scene in scenes}
+    return ", ".join(name for name in of if name not in computed) or "none"
 
 
 def _with_other_factors(calibration: list[Judged], out: list[Judged]) -> str:
