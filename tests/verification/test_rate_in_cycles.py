@@ -29,7 +29,7 @@ def lowest(place: Path, law: str, seconds: float = 1.0) -> tuple[Array, float]:
     table = [f"stages.0.motion.{end}.table={place / 'path.csv'}" for end in ("start", "end")]
     times = [f"stages.0.duration={seconds * (len(z) - 1)!r}", f"stages.0.time_step={0.25 * seconds!r}"]
     clay = f"soil.law={{kind: von-mises, su: 5.0e3, E_over_su: 300.0, {law}}}"
-    scene = read_scene(SCENE, (*table, *times, clay, "soil.strain=large", "contact.soil_moves=freely"))
+    scene = read_scene(SCENE, (*table, *times, clay, "contact.method=surface"))
     assembly = built_of(scene)
     forces, lost = {0.0: 0.0}, list[float]()
 
