@@ -103,7 +103,7 @@ def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
 
 
 @dataclass(frozen=True)
-class Step:
+class NextScene:
     """The next scene of a chain, None where it can't be, for the `reason`. finer: than the one before, in a source."""
 
     source: str
@@ -112,7 +112,7 @@ class Step:
     reason: str = ""
 
 
-def _steps(scene: Scene, varying: Sequence[Variation]) -> Iterator[Step]:
+def _steps(scene: Scene, varying: Sequence[Variation]) -> Iterator[NextScene]:
     """One scene after the other; one that can't be is None, and the next ones follow the one before it."""
     now, known = _recording_all(scene), {knob.name for knob in knobs_of(scene)}
     for source, factors in varying:
@@ -122,7 +122,7 @@ def _steps(scene: Scene, varying: Sequence[Variation]) -> Iterator[Step]:
             now = step.scene or now
 
 
-def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> Step | None:
+def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> NextScene | None:
     """None where the scene has nothing to vary."""
     if not factors:
         return None
@@ -132,14 +132,14 @@ def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> Step | Non
         for name, factor in factors.items():
             other = varied(other, knobs[name], factor)
     except SceneError as err:
-        return Step(source, factors[first.name], None, str(err))
+        return NextScene(source, factors[first.name], None, str(err))
     reached = first.fineness(other) / first.fineness(scene)
     if max(reached, 1.0 / reached) < LEAST_RATIO:
-        return Step(source, reached, None, f"{first.told(scene)} can't be varied")
-    return Step(source, reached, other)
+        return NextScene(source, reached, None, f"{first.told(scene)} can't be varied")
+    return NextScene(source, reached, other)
 
 
-def _run(step: Step, comm: Any) -> Companion:
+def _run(step: NextScene, comm: Any) -> Companion:
     if step.scene is None:
         return Companion(step.source, step.finer, None, step.reason)
     try:
