@@ -152,7 +152,7 @@ class NodeContact(SoilContact):
         total = np.zeros((self.line.nodes, 3))
         if self.active:
             touching, d = self.detect(state).touching, self.line.basis.shape[1]
-            on_nodes = -touching.gradient[:, d:].reshape(len(touching.node), -1, 3)
+            on_nodes = -touching.gradient[:, d:].reshape(-1, (touching.gradient.shape[1] - d) // 3, 3)
             np.add.at(total, touching.node, on_nodes.sum(axis=1))
         return np.asarray(total / self.line.tributary_length[:, None])
 

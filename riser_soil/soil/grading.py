@@ -10,8 +10,10 @@ from typing import Any, Literal
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.errors import MeshError
 from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec, TrenchSpec
 
+MOST_CELLS = 100_000  # in one direction away from the riser
 _PIECES = 16  # on either side of the riser, to count cells by
 _EQUAL = 1e-9  # difference of two sizes, over either, that is none
 _ROUNDED = 9  # decimals of a number of cells before it is rounded: halves stay halves in any unit of length
@@ -198,6 +200,11 @@ def growing(length: float, size: float, size_far: float) -> Array:
     count, ratio = steps(length, size, size_far), size_far / size
     if count == 0:
         return np.zeros(1)
+    if count > MOST_CELLS:
+        raise MeshError(
+            f"soil.mesh: {length:.4g} m of the block in cells of {size:.4g} to {size_far:.4g} m are {count:.4g} cells in a row, "
+            f"at most {MOST_CELLS:,} are made; take a smaller soil.block or a larger soil.mesh.size_far"
+        )
     if abs(ratio - 1.0) < _EQUAL:
         return np.linspace(0.0, length, count + 1)
     distances: Array = length * (ratio ** (np.arange(count + 1) / count) - 1.0) / (ratio - 1.0)

@@ -87,7 +87,7 @@ def smoothed(at: Array, columns: Array, layers: Array, across: int) -> Array:
     first, second = _differences(columns), _differences(layers)
     for _ in range(MOST_PASSES):
         moved = _pass(at, first, second, across)
-        largest = float(np.abs(moved - at[1:-1, 1:-1]).max())
+        largest = float(np.abs(moved - at[1:-1, 1:-1]).max(initial=0.0))
         at[1:-1, 1:-1] = moved
         if largest < SETTLED * smallest:
             break

@@ -172,6 +172,10 @@ def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
     np.testing.assert_allclose(case.riser.tributary_length @ along, on_soil, atol=1e-13 * np.abs(on_soil).max())
     np.testing.assert_allclose(-along[:, 2], case.contact.force_per_length(state), rtol=1e-12)
     assert on_riser[2] > 100.0
+    held = case.riser.x[:, -1].min()
+    case.riser.x[:, -1] += 10.0 - held  # off the soil
+    assert not case.contact.force_on_soil_per_length(case.state(small(case))).any()
+    case.riser.x[:, -1] += held - 10.0
     out_of_plane = np.zeros(3) if dimension == 3 else np.array([-np.sin(0.1), np.cos(0.1), 0.0])
     unbalanced = on_riser + on_soil
     unbalanced -= (unbalanced @ out_of_plane) * out_of_plane

@@ -16,6 +16,7 @@ from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.grading import BlockSpec, graded, in_units
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
+from riser_soil.soil.sections import smoothed
 from riser_soil.soil.soil import Soil
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
 
@@ -36,6 +37,17 @@ def test_graded_levels_are_fine_at_the_riser_and_reach_the_far_size() -> None:
     assert 1.5 < steps[0] < 2.0
     np.testing.assert_allclose(steps, steps[::-1])
     assert np.all(np.diff(steps[len(steps) // 2 + 1 :]) > 0.0)
+
+
+def test_more_cells_in_a_row_than_anyone_means_are_refused() -> None:
+    with pytest.raises(MeshError, match=r"1e\+09 m of the block in cells of 0.5 to 2 m are .* at most 100,000 are made"):
+        graded(0.0, 1e9, (0.0, 0.5), 0.5, 2.0)
+
+
+def test_a_section_one_cell_deep_has_no_inner_nodes_to_smooth() -> None:
+    columns, layers = np.array([0.0, 1.0, 3.0]), np.array([-1.0, 0.0])
+    at = np.stack(np.meshgrid([0.5], columns, layers, indexing="ij"), axis=-1)[0]
+    np.testing.assert_array_equal(smoothed(at, columns, layers, 1), at)
 
 
 def test_block_of_hexahedra_is_a_graded_grid_with_a_cell_centred_under_the_riser() -> None:
