@@ -34,7 +34,7 @@ LAID_IN = 8  # load steps on soil, at least
 MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step on soil moves an end; presses it in, on clay
 ROUND_OFF = 1e-9  # of a load step
 MOST_STEPS = 64  # of a stage, but for those that the scene asks for
-MOST_RELAXED = 1  # times in a static stage on soil
+MOST_RELAXED = 1  # times in a static stage on clay
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
@@ -224,16 +224,19 @@ def _walk(run: StageRun, checkpoint: CheckpointWriter | None) -> State:
 def _static_step(run: StageRun) -> AcceptedStep:
     """By Newton's method, in load steps that are halved a few times, else by dynamic relaxation.
 
-    Where relaxation does not get to the load factor that was missed, it all begins again with half the step. On soil
-    it is tried MOST_RELAXED times: clay at the end of its strength creeps on in ever shorter steps.
+    Where relaxation does not get to the load factor that was missed, it all begins again with half the step. On clay,
+    soil or a hysteretic seabed, it is tried MOST_RELAXED times: at the end of its strength it creeps on in ever shorter
+    steps.
     """
     assembly, stepper, control = run.assembly, run.stepper, run.control
+    seabed = assembly.scene.seabed
+    on_clay = assembly.soil is not None or (seabed is not None and seabed.kind == "hysteretic")
     while True:
         try:
             return stepper.advance(control, MOST_CUTS if stepper.depends_on(control) else 0)
         except SolveError:
             run.relaxed += 1
-            if assembly.soil is not None and run.relaxed > MOST_RELAXED:
+            if on_clay and run.relaxed > MOST_RELAXED:
                 raise
             if _relaxed(assembly, stepper, control, run.observer):
                 return stepper.advance(control, 0)

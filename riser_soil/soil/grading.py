@@ -202,8 +202,8 @@ def growing(length: float, size: float, size_far: float) -> Array:
         return np.zeros(1)
     if count > MOST_CELLS:
         raise MeshError(
-            f"soil.mesh: {length:.4g} m of the block in cells of {size:.4g} to {size_far:.4g} m are {count:.4g} cells in a row, "
-            f"at most {MOST_CELLS:,} are made; take a smaller soil.block or a larger soil.mesh.size_far"
+            f"soil.mesh: {length:.4g} m of the block in cells of {size:.4g} to {size_far:.4g} m are {count:.4g} cells "
+            f"in a row, at most {MOST_CELLS:,} are made; take a smaller soil.block or a larger soil.mesh.size_far"
         )
     if abs(ratio - 1.0) < _EQUAL:
         return np.linspace(0.0, length, count + 1)

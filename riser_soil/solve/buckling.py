@@ -16,6 +16,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
 from riser_soil.core.system import System
+from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
 from riser_soil.solve.chain import ChainFactors, is_chain
@@ -43,10 +44,12 @@ def buckling_mode(system: System, part: Relaxation, line: Line, state: State, we
     parts = judged_parts(system)
     assert parts is not None
     system.assemble(state, weights, [part])
-    drag = system.matrix.stored.diagonal()
+    drag, start = system.matrix.stored.diagonal(), _start(system, line)
+    if system.sum([float(start @ (drag * start))])[0] == 0.0:
+        raise SolveError("the equilibrium found is unstable, and no node is free to leave it; take more elements")
     system.assemble(state, weights, parts)
     with _exact_solver(system) as solve:
-        mode = _iterate(system, solve, drag, _start(system, line))
+        mode = _iterate(system, solve, drag, start)
     found = np.zeros(system.numbering.size)
     system.numbering.to_local(mode, found)
     return np.asarray(found / _largest(line.nodal(found)[:, : line.dimension]))

@@ -40,7 +40,7 @@ def test_graded_levels_are_fine_at_the_riser_and_reach_the_far_size() -> None:
 
 
 def test_more_cells_in_a_row_than_anyone_means_are_refused() -> None:
-    with pytest.raises(MeshError, match=r"1e\+09 m of the block in cells of 0.5 to 2 m are .* at most 100,000 are made"):
+    with pytest.raises(MeshError, match=r"1e\+09 m of the block in cells .* at most 100,000 are made"):
         graded(0.0, 1e9, (0.0, 0.5), 0.5, 2.0)
 
 
