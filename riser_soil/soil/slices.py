@@ -1,8 +1,8 @@
 """Sections: soil as independent slices in plane strain across the riser, in the place of a block.
 
 Each slice has the columns and layers of the block's cells, as quadrilaterals; nothing moves along the riser. Slices are
-not joined, so that the soil's share of the matrix falls apart into one block for each. On top a slice is as wide along
-the riser as it stands for: the riser meets one surface, whose nodes share the dofs of their slice.
+not joined, so that the soil's share of the matrix falls apart into one block for each. On top the riser meets one surface,
+linear from slice to slice, and level from the outermost ones to the block's ends.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _cells(columns: int, layers: int) -> IntArray:
 
 
 def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
-    """The surface on rank 0: of each slice two rows of its top nodes, half its thickness before and behind."""
+    """The surface on rank 0: a row of each slice's top nodes, those of the outermost ones at the block's ends, too."""
     along = next(axis for axis in range(2) if axis not in grid.family.axes)
     top = np.flatnonzero(mesh.points[:, 2] > grid.high[2] - 1e-9 * float(np.ptp([grid.low[2], grid.high[2]])))
     if not len(mesh.points):
@@ -64,13 +64,14 @@ def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> Soi
         return SoilTop(mesh.points, none.reshape(0, 4), components(top), none.astype(bool), none, moves)
     columns = len(np.unique(mesh.points[top, 1 - along]))
     rows = top.reshape(-1, columns)
-    points = np.repeat(mesh.points[rows][:, None], 2, axis=1)  # (ns, 2, nc, 3)
-    points[:, 0, :, along] -= 0.5 * grid.family.thickness
-    points[:, 1, :, along] += 0.5 * grid.family.thickness
-    place = np.arange(points.size // 3).reshape(-1, 2, columns)
-    around = place[:, 0, :-1], place[:, 1, :-1], place[:, 1, 1:], place[:, 0, 1:]
+    rows = np.concatenate([rows[:1], rows, rows[-1:]])
+    points = mesh.points[rows]  # (ns + 2, nc, 3)
+    points[0, :, along] -= 0.5 * grid.family.thickness
+    points[-1, :, along] += 0.5 * grid.family.thickness
+    place = np.arange(rows.size).reshape(rows.shape)
+    around = place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:]
     facets = np.stack([each.ravel() for each in (around if along == 0 else around[::-1])], axis=1)
-    number = np.repeat(rows[:, None], 2, axis=1).ravel()
+    number = rows.ravel()
     flat = points.reshape(-1, 3)
     dofs = components(number), grid.supported(flat).ravel()
     return SoilTop(flat, facets, *dofs, np.zeros(len(facets), dtype=np.int64), moves)
