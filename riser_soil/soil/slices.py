@@ -1,8 +1,8 @@
 """Sections: soil as independent slices in plane strain across the riser, in the place of a block.
 
 Each slice has the columns and layers of the block's cells, as quadrilaterals; nothing moves along the riser. Slices are
-not joined, so that the soil's share of the matrix falls apart into one block for each. On top the riser meets one surface,
-linear from slice to slice, and level from the outermost ones to the block's ends.
+not joined, so that the soil's share of the matrix falls apart into one block for each. On top the riser meets one
+surface, linear from slice to slice, and level from the outermost ones to the block's ends.
 """
 
 from __future__ import annotations

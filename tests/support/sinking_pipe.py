@@ -50,13 +50,14 @@ def sinking(cells: int, depth: float, steps: int, law: Mapping = CLAY, **more: A
 
 @dataclass(frozen=True, eq=False)
 class Sunk:
-    """Step by step: embedment over D, load per length over su D, Newton iterations; new meshes that it took; and the
-    area of the slice's section over that at first.
+    """Step by step: embedment over D, load per length over su D, Newton iterations, the stage's t; new meshes that it
+    took; and the area of the slice's section over that at first.
     """
 
     w: Array
     V: Array
     iterations: Array
+    t: Array
     renewals: int
     area: float
 
@@ -65,9 +66,9 @@ class Sunk:
         return float(np.interp(w, self.w, self.V))
 
 
-def sink(scene: Mapping) -> Sunk:
-    """Take the scene's only stage."""
-    assembly, rows = built(scene), list[tuple[float, float, float]]()
+def sink(scene: Mapping, followed: int = 0) -> Sunk:
+    """Take the scene's stages; what is told is of the one of that number. Embedments are those of the first stage."""
+    assembly, rows = built(scene), list[tuple[float, float, float, float]]()
     contact, friction, soil = assembly.soil_contact, assembly.soil_friction, assembly.soil
     assert contact is not None
     assert soil is not None
@@ -80,9 +81,13 @@ def sink(scene: Mapping) -> Sunk:
         if friction is not None:
             forces.append(friction.force_on_soil(stepper.before))
         load = -float(np.sum(forces, axis=0)[2]) / (thickness * SU * D)
-        rows.append((step.t * deepest, load, step.solution.iterations))
+        rows.append((step.t * deepest, load, step.solution.iterations, step.t))
 
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
-    w, V, iterations = np.array(rows).T
+    state = State.at_rest(0.0, assembly.size)
+    for stage in assembly.scene.stages:
+        if stage is assembly.scene.stages[followed]:
+            rows.clear()
+        state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
+    w, V, iterations, t = np.array(rows).T
     renewals = 0 if assembly.mesh_renewal is None else assembly.mesh_renewal.count
-    return Sunk(w, V, iterations, renewals, float(soil._gradients.weights.sum() / first))
+    return Sunk(w, V, iterations, t, renewals, float(soil._gradients.weights.sum() / first))

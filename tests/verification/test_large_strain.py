@@ -7,11 +7,15 @@ memory, as the source could not be read.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from riser_soil.core.arrays import Array
+from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
-from tests.support.sinking_pipe import SU, D, Sunk, sink, sinking
+from tests.support.sinking_pipe import CLAY, SU, D, Sunk, sink, sinking
 
 ROUGH = {"contact": {"friction": {"axial": 0.4, "lateral": 0.4}}}
 FULLY_ROUGH = {"contact": {"friction": {"adhesion": 1.0}}}
@@ -102,6 +106,29 @@ def test_a_pipe_sinks_by_its_diameter() -> None:
     found = sink(sinking(16, 1.0, 200))
     require_a_load_that_rises(found)
     assert found.at(0.7) == pytest.approx(smooth(0.7), rel=0.07)
+
+
+def cycles(scene: Mapping, path: Array, folder: Path) -> Array:
+    """V/(su D) at each row of a path of embedments w/D that follows the scene's stage."""
+    table = folder / "path.csv"
+    rows = (f"{n}, 0, 0, {(path[0] - w) * D!r}" for n, w in enumerate(path))
+    table.write_text("\n".join(["t [-], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")
+    motion = {end: {"table": str(table)} for end in ("start", "end")}
+    stage = {"name": "cycles", "kind": "quasi-static", "duration": len(path) - 1, "time_step": 1, "motion": motion}
+    found = sink(scene | {"stages": [*scene["stages"], stage]}, len(scene["stages"]))
+    return np.interp(np.arange(1.0, len(path)), found.t, found.V)
+
+
+@pytest.mark.verify
+def test_cycles_and_landings_bring_no_noise(tmp_path: Path) -> None:
+    """Ten of D/20, two lift-offs and landings at 0.3 D: at the same depth the load falls a little in each."""
+    path = [0.3, *(0.275, 0.25, 0.275, 0.3) * 10, *(0.2, 0.1, 0.0, -0.1, 0.0, 0.1, 0.2, 0.3) * 2]
+    V = cycles(sinking(8, 0.3, 60, CLAY | {"kind": "iwan"}), np.array(path), tmp_path)
+    tops, landed = V[3:40:4], V[47::8]
+    falls = -np.diff(np.append(tops, landed)) / tops[0]
+    assert tops[0] == pytest.approx(3.73, rel=0.02)
+    assert 0.0 < falls.min() <= falls.max() < 0.02
+    assert not V[43::8].any()
 
 
 @pytest.mark.verify
