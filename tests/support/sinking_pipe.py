@@ -67,7 +67,7 @@ class Sunk:
 
 
 def sink(scene: Mapping, followed: int = 0) -> Sunk:
-    """Take the scene's stages; what is told is of the one of that number. Embedments are those of the first stage."""
+    """Take the scene's stages up to the one of that number, of which it tells; embedments are those of the first."""
     assembly, rows = built(scene), list[tuple[float, float, float, float]]()
     contact, friction, soil = assembly.soil_contact, assembly.soil_friction, assembly.soil
     assert contact is not None
@@ -84,9 +84,8 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
         rows.append((step.t * deepest, load, step.solution.iterations, step.t))
 
     state = State.at_rest(0.0, assembly.size)
-    for stage in assembly.scene.stages:
-        if stage is assembly.scene.stages[followed]:
-            rows.clear()
+    for stage in assembly.scene.stages[: followed + 1]:
+        rows.clear()
         state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
     w, V, iterations, t = np.array(rows).T
     renewals = 0 if assembly.mesh_renewal is None else assembly.mesh_renewal.count

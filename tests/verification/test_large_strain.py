@@ -132,6 +132,17 @@ def test_cycles_and_landings_bring_no_noise(tmp_path: Path) -> None:
 
 
 @pytest.mark.verify
+def test_a_pipe_pulled_out_leaves_the_soil() -> None:
+    """Suction holds it back by less than its cap of 2 su D, then lets go."""
+    scene = sinking(8, 0.3, 60, contact={"suction": {"cap": 2.0 * SU * D, "reach": 0.05}})
+    up = {end: [*place[:2], 1.2 * D] for end, place in scene["stages"][0]["move"].items()}
+    found = sink(scene | {"stages": [*scene["stages"], {"name": "pull", "kind": "static", "move": up}]}, 1)
+    assert -2.0 < found.V.min() < -1.0
+    assert not found.V[-5:].any()
+    assert found.iterations.max() <= 10
+
+
+@pytest.mark.verify
 def test_ranks_agree_across_new_meshes() -> None:
     script = (
         "import numpy as np\n"
