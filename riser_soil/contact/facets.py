@@ -75,9 +75,15 @@ def second_derivatives(nodes: int) -> Array:
 
 
 @njit
+def triangular(nodes: int) -> bool:
+    """Whether facets of so many nodes are tri6."""
+    return nodes == 6
+
+
+@njit
 def inside(nodes: int, xi: float, eta: float, tolerance: float) -> bool:
     """Whether (ξ, η) lies on the facet, its rim widened by the tolerance."""
-    if nodes != 6:
+    if not triangular(nodes):
         return max(abs(xi), abs(eta)) <= 1.0 + tolerance
     return min(xi, eta, 1.0 - xi - eta) >= -tolerance
 
@@ -85,7 +91,7 @@ def inside(nodes: int, xi: float, eta: float, tolerance: float) -> bool:
 @njit
 def centre(nodes: int) -> tuple[float, float]:
     """(ξ, η) of the facet's middle."""
-    if nodes != 6:
+    if not triangular(nodes):
         return (0.0, 0.0)
     return (1.0 / 3.0, 1.0 / 3.0)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.facets import QUAD, strips
+from riser_soil.contact.facets import QUAD, strips, triangular
 from riser_soil.contact.gap import heights
 from riser_soil.contact.pairing import Cover, FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -51,30 +51,25 @@ class DeformedSurface:
     def __init__(self, surface: SoilSurface) -> None:
         self._surface = surface
         self._pairing = FacetSearch(surface.points, surface.facets)
-        self._plain = self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
+        self.corners = self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)  # without those beside strips
 
     @property
     def has_quads(self) -> bool:
         """Whether facets have four nodes."""
-        return self.facets.shape[1] == len(QUAD)
+        return self.corners.shape[1] == len(QUAD)
 
     def smooth(self, along: Array) -> None:
         """Join facets of four nodes across a horizontal direction (2,): to strip8, eta across it."""
-        a, b, c, d = np.moveaxis(self._surface.points[self._plain][:, :, :2] @ along, 1, 0)
+        a, b, c, d = np.moveaxis(self._surface.points[self.corners][:, :, :2] @ along, 1, 0)
         lengthwise = np.abs(c + d - a - b) > np.abs(b + c - a - d)
-        corners = self._plain.copy()
+        corners = self.corners.copy()
         corners[lengthwise] = np.roll(corners[lengthwise], 1, axis=1)
         self.facets = strips(corners)
 
     def widths(self, points: Array) -> Array:
         """Mean length (nf,) of the sides of facets of four that run along eta, nodes at points (np, 3) [m]."""
-        a, b, c, d = np.moveaxis(points[self.facets[:, :4]], 1, 0)
+        a, b, c, d = np.moveaxis(points[self.facets[:, : len(QUAD)]], 1, 0)
         return np.asarray(0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)))
-
-    @property
-    def corners(self) -> IntArray:
-        """Nodes of facets without those beside strips."""
-        return self._plain
 
     @property
     def end(self) -> int:
@@ -120,7 +115,7 @@ class DeformedSurface:
 
     def heights(self, xy: Array, points: Array) -> Array:
         """The same; −inf beside it."""
-        return np.asarray(heights(*self.locate(xy, points), self._plain, points))
+        return np.asarray(heights(*self.locate(xy, points), self.corners, points))
 
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
@@ -138,6 +133,6 @@ class DeformedSurface:
 
 def _area(at: Array) -> Array:
     """Vector area (n, 3) [m2] between the corners of facets (n, nv, 3): along their normal, upwards."""
-    corners = at[:, : 3 if at.shape[1] == 6 else 4]
+    corners = at[:, : 3 if triangular(at.shape[1]) else 4]
     corners = corners - corners[:, :1]
     return np.asarray(0.5 * np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1))

@@ -13,10 +13,12 @@ import math
 
 import numpy as np
 
+from riser_soil.contact.facets import triangular
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
-TRI = range(6)  # nodes of tri6
+Place = tuple[float, float]  # (xi, eta)
+
 LARGEST = 512  # divisions of a facet in each direction
 ENOUGH = 12  # points along a facet or an element, whichever is shorter: they leave 1e-4 of the force, of a cubic gap
 LEVEL = 1e-6  # parts of a triangle's width below which two corners lie side by side
@@ -36,7 +38,7 @@ def divisions(
     for the facet.
     """
     at = points[facets]
-    if facets.shape[1] == len(TRI):
+    if triangular(facets.shape[1]):
         return _of_triangles(at[:, :3], along, spacing[1], element)
     a, b, c, d = at[:, 0], at[:, 1], at[:, 2], at[:, 3]
     sides = 0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1)
@@ -79,23 +81,24 @@ def _unit(v: Array) -> Array:
 
 
 @njit
-def row_of(nodes: int, cut: IntArray, row: int) -> tuple[tuple[float, float], tuple[float, float], float]:
+def row_of(nodes: int, cut: IntArray, row: int) -> tuple[Place, Place, float]:
     """Ends of a facet's row in (xi, eta), and the area there that each of its points stands for."""
     rows, columns, below = cut[0], cut[1], cut[2]
-    if nodes != 6:
+    if not triangular(nodes):
         xi = -1.0 + (2 * row + 1) / rows
         return (xi, -1.0), (xi, 1.0), 4.0 / (rows * columns)
     low, middle, high = CORNERS[cut[3]], CORNERS[cut[4]], CORNERS[3 - cut[3] - cut[4]]
-    opposite = _between(low, high, below / rows)
+    opposite = between(low, high, below / rows)
     tip, count, from_tip = low, below, row
     if row >= below:
         tip, count, from_tip = high, rows - below, rows - 1 - row
     u = (from_tip + 0.5) / count
-    return _between(tip, middle, u), _between(tip, opposite, u), (from_tip + 0.5) / (rows * count * columns)
+    return between(tip, middle, u), between(tip, opposite, u), (from_tip + 0.5) / (rows * count * columns)
 
 
 @njit
-def _between(a: tuple[float, float], b: tuple[float, float], share: float) -> tuple[float, float]:
+def between(a: Place, b: Place, share: float) -> Place:
+    """The place at a share of the way from one to another."""
     return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
 
 

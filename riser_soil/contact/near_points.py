@@ -12,15 +12,13 @@ import numpy as np
 
 from riser_soil.contact.closest_point import Axis, bow_of, nearest
 from riser_soil.contact.facets import QUAD, fill_shape
-from riser_soil.contact.integration_points import area, row_of
+from riser_soil.contact.integration_points import Place, area, between, row_of
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.vectors import Vec, add, norm, scale, sub
 
 ROUND_OFF = 1e-6  # by which a reach is widened, and below which a row lies along an element
 FEW = 1024  # points for which there is room at first
-
-Place = tuple[float, float]  # (xi, eta)
 
 
 class Surface(NamedTuple):
@@ -171,7 +169,7 @@ def _curve(
     a, b = point_on(points, nodes, *first, N, dN), point_on(points, nodes, *last, N, dN)
     if len(nodes) == len(QUAD):
         return a, b, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    third, two = _between(first, last, 1.0 / 3.0), _between(first, last, 2.0 / 3.0)
+    third, two = between(first, last, 1.0 / 3.0), between(first, last, 2.0 / 3.0)
     c = sub(point_on(points, nodes, *third, N, dN), add(scale(2.0 / 3.0, a), scale(1.0 / 3.0, b)))
     d = sub(point_on(points, nodes, *two, N, dN), add(scale(1.0 / 3.0, a), scale(2.0 / 3.0, b)))
     return a, b, (sub(scale(3.0, c), scale(1.5, d)), sub(scale(3.0, d), scale(1.5, c)))
@@ -186,12 +184,6 @@ def _on_curve(a: Vec, b: Vec, bends: tuple[Vec, Vec], share: float) -> Vec:
     bend = 3.0 * share * rest
     straight = add(scale(rest, a), scale(share, b))
     return add(straight, add(scale(bend * rest, bends[0]), scale(bend * share, bends[1])))
-
-
-@njit
-def _between(a: Place, b: Place, share: float) -> Place:
-    """The place at a share of the way from a to b."""
-    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
 
 
 @njit
@@ -325,5 +317,5 @@ def _put_places(surface: Surface, facets: IntArray, numbers: IntArray, out: Arra
     for i, f in enumerate(facets):
         row, column = divmod(numbers[i] - surface.first[f], surface.parts[f, 1])
         first, last, _ = row_of(nv, surface.parts[f], row)
-        at = _between(first, last, (column + 0.5) / surface.parts[f, 1])
+        at = between(first, last, (column + 0.5) / surface.parts[f, 1])
         out[i, 0], out[i, 1], out[i, 2] = point_on(surface.deformed, surface.facets[f], *at, N, dN)

@@ -62,9 +62,8 @@ class SurfaceContact(SoilContact):
 
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
     history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
-    riser [m], see `divisions`. along (2,): horizontal unit vector of the riser on the
-    ground; by default its first axis. reach: by default half a facet above the soil, but no more than a quarter radius
-    around the pipe.
+    riser [m], see `divisions`. along (2,): horizontal unit vector of the riser on the ground; by default its first
+    axis. reach: by default half a facet above the soil, but no more than a quarter radius around the pipe.
     """
 
     def __init__(

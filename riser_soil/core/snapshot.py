@@ -6,11 +6,9 @@ its contact are of one state, or of many, by one axis more in front of all array
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 
@@ -125,12 +123,6 @@ class Instant(NamedTuple):
 def instants_at(seen: Instant, at: Any) -> Instant:
     """Those of many instants that an index of their axis selects: one, by its number, without that axis."""
     return Instant(seen.arc, *(mapped(lambda values: values[at], each) for each in (seen.riser, seen.touch)))
-
-
-def stacked(seen: Sequence[Instant]) -> Instant:
-    """Single instants as many."""
-    risers, touches = zip(*((each.riser, each.touch) for each in seen), strict=True)
-    return Instant(seen[0].arc, *(mapped(lambda *values: np.stack(values), *each) for each in (risers, touches)))
 
 
 def mapped(change: Callable[..., Any], *values: Any) -> Any:

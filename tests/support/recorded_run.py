@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
@@ -24,7 +24,7 @@ from riser_soil.core.snapshot import (
     StepRecord,
     StepStatistics,
     WallSnapshot,
-    stacked,
+    mapped,
 )
 from riser_soil.results.record import Recorder
 from riser_soil.results.schedule import DueOutputs, Schedule
@@ -52,6 +52,12 @@ def _wall(tension: Array, moment: Array) -> WallSnapshot:
     axial, bending, nothing = tension / 0.02, moment / 1.0e-3, np.zeros_like(moment)
     loads = nothing, nothing, -moment, nothing, nothing
     return WallSnapshot(*loads, axial, bending, nothing, axial + bending, (axial + bending) / 3.0e8, axial + bending)
+
+
+def stacked(seen: Sequence[Instant]) -> Instant:
+    """Single instants as many."""
+    risers, touches = zip(*((each.riser, each.touch) for each in seen), strict=True)
+    return Instant(seen[0].arc, *(mapped(lambda *values: np.stack(values), *each) for each in (risers, touches)))
 
 
 @dataclass(frozen=True)

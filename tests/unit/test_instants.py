@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import views
-from riser_soil.core.snapshot import Instant, instants_at, mapped, stacked
+from riser_soil.core.snapshot import Instant, instants_at, mapped
 from riser_soil.results.figures import Extremes, pack
 from riser_soil.riser.wall_sections import wall_sections
 from riser_soil.riser.wall_stress import Wall
-from tests.support.recorded_run import Catenary
+from tests.support.recorded_run import Catenary, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)
 SEEN = [Catenary(a, 60.0 - a).seen(ARC) for a in (30.0, 34.0, 31.0)]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import ExtremeAlong, Instant, stacked
+from riser_soil.core.snapshot import ExtremeAlong, Instant
 from riser_soil.results.figures import pack, places_of
 from riser_soil.results.peaks import WINDOWS, RunPeaks, least_between_nodes, pack_peaks, vertex
-from tests.support.recorded_run import Catenary
+from tests.support.recorded_run import Catenary, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)
 

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from riser_soil.core.snapshot import stacked
 from riser_soil.errors import ResultsError, SceneError, WriteError
 from riser_soil.results import Run
 from riser_soil.results.progress import Progress
@@ -31,6 +30,7 @@ from tests.support.recorded_run import (
     block,
     record,
     soil,
+    stacked,
     step,
 )
 from tests.support.small_disk import files_of_at_most

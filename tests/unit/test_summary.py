@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from riser_soil.core.output import angle_deg
-from riser_soil.core.snapshot import ContactSnapshot, ExtremeAlong, Instant, Ledger, stacked
+from riser_soil.core.snapshot import ContactSnapshot, ExtremeAlong, Instant, Ledger
 from riser_soil.results.figures import Extremes, final_state, pack, unpack
 from riser_soil.results.summary import StageTally, Summary, plain_json
-from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
+from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record, stacked
 
 ARC = np.linspace(0.0, 150.0, 301)
 LINE = Catenary(32.0, 30.0)
