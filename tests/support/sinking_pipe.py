@@ -50,12 +50,13 @@ def sinking(cells: int, depth: float, steps: int, law: Mapping = CLAY, **more: A
 
 @dataclass(frozen=True, eq=False)
 class Sunk:
-    """Step by step: embedment over D, load per length over su D, Newton iterations, the stage's t; new meshes that it
-    took; and the area of the slice's section over that at first.
+    """Step by step: embedment over D, loads down and to the side (+y) per length over su D, Newton iterations, the
+    stage's t; new meshes that it took; and the area of the slice's section over that at first.
     """
 
     w: Array
     V: Array
+    H: Array
     iterations: Array
     t: Array
     renewals: int
@@ -68,11 +69,11 @@ class Sunk:
 
 def sink(scene: Mapping, followed: int = 0) -> Sunk:
     """Take the scene's stages up to the one of that number, of which it tells; embedments are those of the first."""
-    assembly, rows = built(scene), list[tuple[float, float, float, float]]()
+    assembly, rows = built(scene), list[tuple[float, ...]]()
     contact, friction, soil = assembly.soil_contact, assembly.soil_friction, assembly.soil
     assert contact is not None
     assert soil is not None
-    thickness = float(soil.grid.high[0] - soil.grid.low[0])
+    bearing = float(soil.grid.high[0] - soil.grid.low[0]) * SU * D
     deepest = 0.5 - scene["stages"][0]["move"]["start"][2] / D
     first = soil._gradients.weights.sum()
 
@@ -80,13 +81,13 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
         forces = [contact.force_on_soil(stepper.before)]
         if friction is not None:
             forces.append(friction.force_on_soil(stepper.before))
-        load = -float(np.sum(forces, axis=0)[2]) / (thickness * SU * D)
-        rows.append((step.t * deepest, load, step.solution.iterations, step.t))
+        _, side, up = np.sum(forces, axis=0) / bearing
+        rows.append((step.t * deepest, -up, side, step.solution.iterations, step.t))
 
     state = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages[: followed + 1]:
         rows.clear()
         state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
-    w, V, iterations, t = np.array(rows).T
+    w, V, H, iterations, t = np.array(rows).T
     renewals = 0 if assembly.mesh_renewal is None else assembly.mesh_renewal.count
-    return Sunk(w, V, iterations, t, renewals, float(soil._gradients.weights.sum() / first))
+    return Sunk(w, V, H, iterations, t, renewals, float(soil._gradients.weights.sum() / first))
