@@ -48,6 +48,7 @@ class SectionSolver(PythonContext, LinearSystems):
     def __init__(self, system: System, soil: InSections, room: Room) -> None:
         self._system, self._soil, self._room = system, soil, room
         self._by_rows_exchanged = False
+        self._section: IntArray | None = None  # of each row of the system, on all ranks or none
         self._sections: list[SectionFactors] = []
 
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
@@ -61,7 +62,7 @@ class SectionSolver(PythonContext, LinearSystems):
         """Called by PETSc for each new tangent; SingularError where pivots want exchange."""
         comm, csr, first = self._system.comm, self._system.matrix.stored.csr(), self._system.numbering.first
         mine = slice(first, first + len(csr[0]) - 1)
-        if not self._sections:
+        if self._section is None:
             self._section = _section_of_rows(self._system, self._soil)
             self._sections = [SectionFactors(csr, at, first) for at in _runs(self._section[mine])]
         coupled = largest_of(comm, coupled_apart(*csr, first, self._section)) > 0
@@ -71,7 +72,8 @@ class SectionSolver(PythonContext, LinearSystems):
         left = coupled | (self._section < 0)
         self._left, number = np.flatnonzero(left[mine]), np.cumsum(left) - 1
         own = _between(csr, self._left, left, number, first)
-        taken = [_taken_off(number[first + section.border], section.schur) for section in self._sections]
+        touched = [section for section in self._sections if section.border.size]
+        taken = [_taken_off(number[first + section.border], section.schur) for section in touched]
         self._rest = _Rest(comm, _joined([own, *taken]), int(np.count_nonzero(left)))
 
     def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
@@ -97,7 +99,7 @@ class SectionSolver(PythonContext, LinearSystems):
 
     def forget(self) -> None:
         """Drop all factors."""
-        self._sections = []
+        self._section, self._sections = None, []
 
 
 class _Rest:

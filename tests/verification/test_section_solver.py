@@ -74,6 +74,13 @@ def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: py
     assert next(calls) > 200
 
 
+def test_a_rank_without_sections_takes_part(tmp_path: Path) -> None:
+    scene = on_sections("auto")
+    scene["soil"]["block"]["x"] = [4.0, 4.5]
+    one, two = (ran(scene, tmp_path / str(ranks), ranks) for ranks in (1, 2))
+    np.testing.assert_allclose(two["position"], one["position"], rtol=0.0, atol=1e-8)
+
+
 @pytest.mark.parametrize("ranks", [1, 2, pytest.param(3, marks=pytest.mark.verify)])
 def test_runs_are_the_same_on_any_number_of_ranks(ranks: int, tmp_path: Path) -> None:
     direct = ran(on_sections("direct"), tmp_path / "direct")
