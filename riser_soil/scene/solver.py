@@ -49,5 +49,5 @@ class Solver(BaseModel):
         description="how the linear systems of riser and soil are solved, with the same results to the tolerance; "
         "direct: each is factorised; kept: by iterations with the factors of an earlier one, made anew where that "
         "is cheaper; iterative: by GMRES with multigrid on the soil, for soil that is too large to be factorised; "
-        "auto: kept from 4000 unknowns on",
+        "auto: kept from 4000 unknowns on, soil in sections one section after the other",
     )

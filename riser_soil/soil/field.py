@@ -14,7 +14,8 @@ class SoilField:
     """Field "soil": three displacements at every node of this rank, ghosts included.
 
     The bottom is fixed, the block's upright sides slide on rollers (no normal displacement), the top is free.
-    total (size,): committed displacement since the geostatic start [m].
+    total (size,): committed displacement since the geostatic start [m]. section (size,): number of the independent
+    section that each entry lies in; None where the soil has none.
     """
 
     name = "soil"
@@ -28,6 +29,7 @@ class SoilField:
         self.global_index: IntArray = components(nodes.number)
         self.owned: BoolArray = np.arange(self.size) < 3 * nodes.owned
         self.prescribed: BoolArray = grid.supported(nodes.points).ravel()
+        self.section = None if grid.section is None else np.repeat(grid.section, 3)
         self.total: Array = np.zeros(self.size)
 
     def own(self, values: Array) -> Array:

@@ -28,7 +28,8 @@ T = TypeVar("T")
 class DistributedMesh:
     """This rank's nodes and cells, their element family, and the corners of the whole mesh's box [m].
 
-    volume (nc,): of this rank's cells, number of the named volume that each lies in.
+    volume (nc,): of this rank's cells, number of the named volume that each lies in. section (n,): of its nodes, number
+    of the section that each lies in; None where these are joined.
     """
 
     family: Family
@@ -36,6 +37,7 @@ class DistributedMesh:
     low: Array
     high: Array
     volume: IntArray
+    section: IntArray | None = None
 
     def supported(self, points: Array) -> BoolArray:
         """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides and of plane cells."""

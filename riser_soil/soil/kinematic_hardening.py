@@ -207,15 +207,16 @@ class CyclicClay:
         return step
 
     def _tangent(self, step: _Step, backstress: Array, at: IntArray) -> Array:
-        """Consistent: dΔp = 2G n:dε/h; the direction turns with the strain and with what the backstress recalls."""
+        """Consistent: dΔp = 2G n:dε/h; the direction turns with the strain and with what the backstress recalls, by
+        b = 2G P dε + recall α dΔp across n, over |η|.
+        """
         G, n = self.shear[at], step.n
-        recalled = step.recall[:, None] * backstress
-        by_strain = (2.0 * G / step.falls)[:, None] * n
-        eta = 2.0 * G[:, None, None] * mandel.DEVIATOR + recalled[:, :, None] * by_strain[:, None, :]
-        turn = np.eye(6) - n[:, :, None] * n[:, None, :]
-        share = step.slip / mandel.size(step.eta)
-        flow = n[:, :, None] * by_strain[:, None, :] + share[:, None, None] * (turn @ eta)
-        return mandel.stiffness(self.bulk[at], G) - (np.sqrt(6.0) * G)[:, None, None] * flow
+        share = np.sqrt(6.0) * G * step.slip / mandel.size(step.eta)
+        across = backstress - mandel.product(n, backstress)[:, None] * n
+        turns = n + (step.slip / mandel.size(step.eta) * step.recall)[:, None] * across
+        along = (np.sqrt(6.0) * G / step.falls)[:, None] * turns - share[:, None] * n
+        flow = along[:, :, None] * ((2.0 * G)[:, None] * n)[:, None, :]
+        return mandel.stiffness(self.bulk[at], G * (1.0 - share)) - flow
 
     def overstress(self, stress: Array) -> Array:
         return mandel.von_mises(stress) / self.limit

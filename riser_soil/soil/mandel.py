@@ -30,9 +30,16 @@ def mean(a: Array) -> Array:
     return result
 
 
+def plus_mean(a: Array, values: Array) -> Array:
+    """The same tensors (..., 6), with values (...,) added in place to each of their normal components."""
+    for i in range(3):
+        a[..., i] += values
+    return a
+
+
 def deviator(a: Array) -> Array:
     """Deviatoric part (..., 6)."""
-    return a - mean(a)[..., None] * UNIT
+    return plus_mean(a.copy(), -mean(a))
 
 
 def stiffness(bulk: Array, shear: Array) -> Array:
@@ -43,12 +50,12 @@ def stiffness(bulk: Array, shear: Array) -> Array:
 
 def elastic_stress(bulk: Array, shear: Array, strain: Array) -> Array:
     """Stress (n, 6) [Pa] of an elastic strain (n, 6)."""
-    return 3.0 * (bulk * mean(strain))[:, None] * UNIT + (2.0 * shear)[:, None] * deviator(strain)
+    return plus_mean((2.0 * shear)[:, None] * deviator(strain), 3.0 * bulk * mean(strain))
 
 
 def elastic_strain(bulk: Array, shear: Array, stress: Array) -> Array:
     """Elastic strain (n, 6) of a stress (n, 6) [Pa]."""
-    return (mean(stress) / (3.0 * bulk))[:, None] * UNIT + deviator(stress) / (2.0 * shear)[:, None]
+    return plus_mean(deviator(stress) / (2.0 * shear)[:, None], mean(stress) / (3.0 * bulk))
 
 
 def product(a: Array, b: Array) -> Array:

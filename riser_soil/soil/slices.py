@@ -25,8 +25,8 @@ from riser_soil.soil.surface import SoilTop
 
 
 def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
-    """Slices of a plain block under a riser along x or y, as many as it has cells along it; each rank has some of them,
-    one after the other.
+    """Slices of a plain block under a riser along x or y, as many as it has cells along it; ranks take turns, as those
+    in the touchdown zone have the most to do.
     """
     along, across = spec.axis, 1 - spec.axis
     if not spec.lies_along(along):
@@ -34,7 +34,8 @@ def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     (low, high), columns, layers = spec.ends, spec.coordinates(across), spec.coordinates(2)
     count = max(1, len(spec.coordinates(along)) - 1)
     thickness = (high - low) / count
-    mine = np.array_split(np.arange(count), comm.size)[comm.rank]
+    mine = np.arange(comm.rank, count, comm.size)
+    before = sum(len(range(rank, count, comm.size)) for rank in range(comm.rank))
     per_slice = len(columns) * len(layers)
     family = replace(QUAD4, axes=(across, 2), thickness=thickness)
     points = np.zeros((len(mine), len(columns), len(layers), 3))
@@ -42,10 +43,11 @@ def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     points[..., across], points[..., 2] = columns[None, :, None], layers
     cells = _cells(len(columns), len(layers))
     local = (per_slice * np.arange(len(mine))[:, None, None] + cells).reshape(-1, 4)
-    number = per_slice * (mine[0] if len(mine) else 0) + np.arange(len(mine) * per_slice)
+    number = per_slice * before + np.arange(len(mine) * per_slice)
     nodes = Nodes(comm, local, points.reshape(-1, 3), number, len(number))
     corners = np.array([[*spec.x, *spec.y, spec.level - spec.depth, spec.level]]).reshape(3, 2)
-    return DistributedMesh(family, nodes, corners[:, 0], corners[:, 1], np.zeros(len(local), dtype=np.int64))
+    volume = np.zeros(len(local), dtype=np.int64)
+    return DistributedMesh(family, nodes, corners[:, 0], corners[:, 1], volume, np.repeat(mine, per_slice))
 
 
 def _cells(columns: int, layers: int) -> IntArray:
@@ -64,6 +66,7 @@ def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> Soi
         return SoilTop(mesh.points, none.reshape(0, 4), components(top), none.astype(bool), none, moves)
     columns = len(np.unique(mesh.points[top, 1 - along]))
     rows = top.reshape(-1, columns)
+    rows = rows[np.argsort(mesh.points[rows[:, 0], along])]
     rows = np.concatenate([rows[:1], rows, rows[-1:]])
     points = mesh.points[rows]  # (ns + 2, nc, 3)
     points[0, :, along] -= 0.5 * grid.family.thickness

@@ -15,15 +15,12 @@ from riser_soil.__main__ import app
 from riser_soil.assembly import build
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
-from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve import iterative_solver, stability
 from riser_soil.solve.iterative_solver import IterativeSolver
 from riser_soil.stages import LayingCounter, run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.support.on_ranks import mpirun
-
-COMPARED = ("position", "effective_tension", "bending_moment", "contact_force", "end_force")
+from tests.support.run_on_ranks import COMPARED, ran
 
 
 def on_clay(linear: str) -> Mapping:
@@ -31,14 +28,6 @@ def on_clay(linear: str) -> Mapping:
     scene = touchdown(LAY, heave(0.2), su=400.0, tolerance=1e-9)
     scene["solver"] |= {"linear": linear}
     return scene
-
-
-def ran(scene: Mapping, folder: Path, ranks: int = 1) -> Run:
-    folder.mkdir()
-    (folder / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
-    done = mpirun(ranks, "-m", "riser_soil", "run", "scene.yaml", "-o", "out", folder=folder)
-    assert done.returncode == 0, done.stderr
-    return Run(folder / "out")
 
 
 @pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])

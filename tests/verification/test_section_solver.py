@@ -1,0 +1,95 @@
+"""Soil in sections by a solver of its own: steps are those of the general one, on any number of ranks."""
+
+from __future__ import annotations
+
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from petsc4py import PETSc
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.system import System
+from riser_soil.solve import section_factors
+from riser_soil.solve.linear_solver import exact_solver
+from riser_soil.solve.section_factors import SectionFactors
+from riser_soil.solve.section_solver import SectionSolver
+from riser_soil.solve.time_stepper import AcceptedStep
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import built, take
+from tests.support.run_on_ranks import COMPARED, ran
+
+SECTIONS = 14
+FRICTION: Mapping = {"axial": 0.3, "lateral": 0.3}
+
+
+def on_sections(linear: str, tolerance: float = 1e-11, **contact: Any) -> Mapping:
+    """Clay that yields, in so many sections."""
+    scene = touchdown(LAY, heave(0.3), su=1000.0, tolerance=tolerance)
+    scene["soil"] |= {"model": "sections", "mesh": {"kind": "hex", "size_at_riser": 0.1, "size_far": 0.5}}
+    scene["soil"]["mesh"]["size_at_riser"] = {"along": 0.5, "across": 0.06, "strip": 0.15}
+    scene["solver"] |= {"linear": linear}
+    return scene | ({"contact": contact} if contact else {})
+
+
+def steps(scene: Mapping) -> list[Array]:
+    """Increments of all steps."""
+    assembly, found, state = built(scene), list[Array](), None
+
+    def watch(system: System, step: AcceptedStep) -> None:
+        found.append(step.solution.state.u)
+
+    for stage in assembly.scene.stages:
+        state = take(assembly, stage, state, watch)
+    return found
+
+
+@pytest.mark.parametrize("contact", [{}, {"friction": FRICTION}], ids=["smooth", "rough"])
+def test_each_newton_step_is_that_of_the_general_solver(contact: Mapping, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of sections that yield, and of others that don't and keep their factors, from one pattern to the next."""
+    apart, usual, eliminate = list[float](), SectionSolver.apply, section_factors._eliminate
+    made = count()
+
+    def compare(solver: SectionSolver, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
+        usual(solver, pc, load, found)
+        with exact_solver(solver._system) as solve:
+            expected = solve(load.array_r)
+        apart.append(np.abs(found.array_r - expected).max() / np.abs(expected).max())
+
+    monkeypatch.setattr(SectionSolver, "apply", compare)
+    monkeypatch.setattr(section_factors, "_eliminate", lambda *given: next(made) >= 0 and eliminate(*given))
+    steps(on_sections("auto", tolerance=1e-7, **contact))
+    assert max(apart) < 1e-9
+    assert len(apart) > 20
+    assert next(made) < 0.8 * SECTIONS * len(apart)
+
+
+def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+    expected, usual, calls = steps(on_sections("direct")), SectionFactors.take, count()
+    monkeypatch.setattr(SectionFactors, "take", lambda *given: usual(*given) and next(calls) % 100 != 99)
+    for mine, other in zip(steps(on_sections("auto")), expected, strict=True):
+        np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-6 * np.abs(other).max())
+    assert next(calls) > 200
+
+
+def test_a_rank_without_sections_takes_part(tmp_path: Path) -> None:
+    scene = on_sections("auto")
+    scene["soil"]["block"]["x"] = [4.0, 4.5]
+    one, two = (ran(scene, tmp_path / str(ranks), ranks) for ranks in (1, 2))
+    np.testing.assert_allclose(two["position"], one["position"], rtol=0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("ranks", [1, 2, pytest.param(3, marks=pytest.mark.verify)])
+def test_runs_are_the_same_on_any_number_of_ranks(ranks: int, tmp_path: Path) -> None:
+    direct = ran(on_sections("direct"), tmp_path / "direct")
+    sections = ran(on_sections("auto"), tmp_path / "sections", ranks)
+    for name in COMPARED:
+        scale = np.nanmax(np.abs(direct[name]))
+        np.testing.assert_allclose(sections[name], direct[name], rtol=0.0, atol=1e-8 * scale, err_msg=name)
+    for name, values in direct.soil_frame().fields.items():  # ranks write their sections in turn
+        found, expected = (np.sort(each, axis=0) for each in (sections.soil_frame().fields[name], values))
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(values).max(), err_msg=name)
+    assert direct["contact_force"].max() > 0.0
+    assert direct.soil_frame().fields["equivalent_plastic_strain"].max() > 0.0
