@@ -73,14 +73,23 @@ def draw(folder: Path, png: Path, magnify: float | None = None) -> None:
     factor = _factor(still.soil) if magnify is None else magnify
     # VTK tries a display first and warns when there is none, although it then draws without.
     with pv.vtk_verbosity("error"):
+        tall = [([0, 1], 0), *([([0, 1], 1)] if still.soil is None else [])]
         plotter = pv.Plotter(
-            off_screen=True, window_size=list(_SIZE), shape=(1, 2), col_weights=[3, 1], border=False
+            off_screen=True,
+            window_size=list(_SIZE),
+            shape=(2, 2),
+            col_weights=[5, 3],
+            groups=tall,
+            border=False,
         )
         plotter.set_background("white")
         plotter.subplot(0, 0)
         _draw_close(plotter, still, factor)
         plotter.subplot(0, 1)
         _draw_whole(plotter, still)
+        if still.soil is not None:
+            plotter.subplot(1, 1)
+            _draw_section(plotter, still, still.soil)
         plotter.screenshot(str(png))
         plotter.close()
 
@@ -219,6 +228,41 @@ def _tube(position: Array, moment: Array, radius: float) -> pv.PolyData:
     line = pv.lines_from_points(position)
     line.point_data[_MOMENT] = 1e-3 * moment
     return line.tube(radius=radius, n_sides=24)
+
+
+def _draw_section(plotter: pv.Plotter, still: _Frame, soil: pv.UnstructuredGrid) -> None:
+    """Across the riser where the soil has settled most, true to scale."""
+    node = _deepest(still, soil)
+    ahead = along(still.position[max(node - 1, 0) : node + 2])
+    flat = ahead - (ahead @ UP) * UP
+    section = soil.cell_data_to_point_data().slice(normal=flat, origin=still.position[node])
+    moved = section.warp_by_vector("displacement", factor=1.0)
+    top, _ = colour_scale(soil.cell_data[_STRESS])
+    plotter.add_mesh(
+        moved,
+        scalars=_STRESS,
+        cmap=_STRESS_COLOURS,
+        clim=(0.0, top),
+        show_edges=True,
+        edge_opacity=0.2,
+        lighting=False,
+        show_scalar_bar=False,
+    )
+    pipe = pv.Disc(center=still.position[node], inner=0.93 * still.radius, outer=still.radius, normal=flat, c_res=72)
+    plotter.add_mesh(pipe, color="black", lighting=False)
+    plotter.add_text(f"across at arc {still.arc[node]:.4g} m, true to scale", font_size=12, color="black")
+    plotter.enable_parallel_projection()
+    plotter.camera.focal_point = still.position[node] - 0.8 * still.radius * UP
+    plotter.camera.position = plotter.camera.focal_point - 10.0 * still.radius * flat
+    plotter.camera.up = UP
+    plotter.camera.parallel_scale = 2.4 * still.radius
+    plotter.reset_camera_clipping_range()
+
+
+def _deepest(still: _Frame, soil: pv.UnstructuredGrid) -> int:
+    """The riser's node under which the soil has settled most."""
+    sunk = carried_down(soil, still.position, still.arc, still.radius)
+    return int(sunk[:, 2].argmin())
 
 
 def _draw_whole(plotter: pv.Plotter, still: _Frame) -> None:
