@@ -1,4 +1,4 @@
-"""The demo: seconds by part, and a coupled Newton iteration against one bare factorisation of the same matrix."""
+"""The demo on a block: seconds by part, and a coupled Newton iteration against one bare factorisation of the same matrix."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from petsc4py import PETSc
 from benchmarks.stage import last_stage, typical_seconds
 from riser_soil.core.system import Timer
 
-SCENE = Path(__file__).parent.parent / "demos" / "touchdown_clay" / "scene.yaml"
+SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "touchdown_on_block.yaml"
 
 
 def report() -> None:

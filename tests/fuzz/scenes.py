@@ -30,6 +30,7 @@ WRITTEN = (
     "tests/scenes/bend45.yaml",
     "tests/scenes/catenary-three-stages.yaml",
     "tests/scenes/hysteretic.yaml",
+    "tests/scenes/touchdown_on_block.yaml",
 )
 STEPS, MOST_ELEMENTS = 3, 12
 TABLE = "t [s], x [m], y [m], z [m], rx [deg]\n" + "".join(f"{0.1 * n:.1f}, 0, 0, {0.01 * n}, 0\n" for n in range(9))

@@ -9,6 +9,7 @@ from typing import Any
 Mapping = dict[str, Any]
 
 DEMO = Path(__file__).parents[2] / "demos" / "touchdown_clay" / "scene.yaml"
+ON_BLOCK = Path(__file__).parents[1] / "scenes" / "touchdown_on_block.yaml"
 
 LINE = {
     "outer_diameter": 0.30,

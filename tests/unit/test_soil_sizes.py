@@ -23,7 +23,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import Block, CellSizes, GeneratedMesh
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
+from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, heave, touchdown
 
 CLAY = VonMises(kind="von-mises", su=4.0e3, su_gradient=0.0, E_over_su=300.0, nu=0.49)
 SOFT = LinearElastic(kind="linear-elastic", E=1.2e6, nu=0.49)
@@ -140,7 +140,7 @@ def test_the_resolved_scene_tells_the_sizes_and_reads_back(tmp_path: Path) -> No
 
 
 def test_the_demo_stays_below_sixty_thousand_unknowns() -> None:
-    scene = read_scene(DEMO, ["contact.method=surface", "soil.mesh=auto", "soil.block=auto"])
+    scene = read_scene(ON_BLOCK, ["contact.method=surface", "soil.mesh=auto", "soil.block=auto"])
     assert 30e3 < size_of(scene).soil_unknowns < 60e3
     block = chosen(scene)[0]
     assert block.x == pytest.approx((16.4, 41.9))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.coupled_scenes import DEMO
+from tests.support.coupled_scenes import ON_BLOCK
 from tests.support.on_ranks import HANGS
 
 if TYPE_CHECKING:
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture(scope="session")
-def demo(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> WatchedRun:
-    """The demo, some 20 s of computing, run once: pytest-xdist's other processes wait for the first that asks."""
+def on_block(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> WatchedRun:
+    """The touchdown demo on a block, some 20 s of computing, run once: xdist's other processes wait for the first asking."""
     own = tmp_path_factory.getbasetemp()
-    place = (own.parent if hasattr(request.config, "workerinput") else own) / "demo"
+    place = (own.parent if hasattr(request.config, "workerinput") else own) / "on_block"
     try:
         place.mkdir()
     except FileExistsError:
@@ -37,7 +37,7 @@ def compute(place: Path) -> None:
     from riser_soil.scene.reader import read_scene
     from tests.support.watched_run import watched_run
 
-    found = watched_run(read_scene(DEMO), place / "results")
+    found = watched_run(read_scene(ON_BLOCK), place / "results")
     (place / "watched").write_bytes(pickle.dumps(found))
 
 

@@ -18,14 +18,14 @@ from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from tests.support.automatic_cells import scaled
-from tests.support.coupled_scenes import DEMO
+from tests.support.coupled_scenes import ON_BLOCK
 from tests.support.driven_stage import take
 
 BLOCK = ("soil.block.x=[24.5,28.5]",)
 
 
 def on_block(*changes: str) -> Scene:
-    return read_scene(DEMO, [*BLOCK, *changes])
+    return read_scene(ON_BLOCK, [*BLOCK, *changes])
 
 
 def laid(scene: Scene) -> Array:

@@ -23,7 +23,7 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import LAID_IN
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import DEMO, LAY, Mapping, touchdown
+from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, touchdown
 from tests.support.driven_stage import built, take
 from tests.support.watched_run import WatchedRun
 
@@ -181,18 +181,18 @@ def pressed(kind: str) -> list[list[Drop]]:
 # The demo
 
 
-def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
-    steps = demo.of_kind(static=False)
+def test_riser_on_block_needs_few_newton_iterations(on_block: WatchedRun) -> None:
+    steps = on_block.of_kind(static=False)
     assert len(steps) == 120
-    assert sum(s.cuts for s in demo.steps) == 0
+    assert sum(s.cuts for s in on_block.steps) == 0
     assert max(s.iterations for s in steps) <= 8
     assert np.mean([s.iterations for s in steps]) <= 4.0
 
 
-def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
+def test_riser_on_block_lays_down_the_weight_that_does_not_hang(on_block: WatchedRun) -> None:
     """Contact and the start's support bear the weight of what lies; the catenary tells it, less 1.5 % by current."""
-    final = Run(demo.folder).summary["stages"][0]["final"]
-    assembly = built_demo()
+    final = Run(on_block.folder).summary["stages"][0]["final"]
+    assembly = built_on_block()
     w = float(assembly.elements.weight[0])
     lying = (final["contact_force"] + final["start"]["force"][2]) / w
     shape = catenary(assembly.line.arc, np.array([0.0, 0.0, 0.15]), np.array([80.0, 0.0, 100.0]), w, 3.0e8, 0.15)
@@ -201,16 +201,16 @@ def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
 
 
 @pytest.mark.parametrize("part", ["contact", "soil"])
-def test_demo_contact_and_soil_only_take_energy(demo: WatchedRun, part: str) -> None:
+def test_riser_on_block_contact_and_soil_only_take_energy(on_block: WatchedRun, part: str) -> None:
     """Once nodes have moved, energy stored in the soil is told by the new volumes, which are off by what is elastic."""
-    dissipated = np.array([s.dissipated[part] for s in demo.of_kind(static=False)])
+    dissipated = np.array([s.dissipated[part] for s in on_block.of_kind(static=False)])
     assert dissipated.min() > (-1e-5 if part == "soil" else -1e-9) * dissipated.sum()
     assert dissipated.sum() > 1.0
 
 
-def test_demo_balances_its_energy(demo: WatchedRun) -> None:
+def test_riser_on_block_balances_its_energy(on_block: WatchedRun) -> None:
     """Measured: 4 J off at most on the way, 0.3 J in a step, of 97 kJ turned over; the floater puts in some 10 kJ."""
-    run = Run(demo.folder)
+    run = Run(on_block.folder)
     energy = run.summary["stages"][1]["energy"]
     each = run["energy_residual"][-120:]
     assert np.abs(each).max() < 1.0
@@ -220,8 +220,8 @@ def test_demo_balances_its_energy(demo: WatchedRun) -> None:
 
 
 @cache
-def built_demo() -> Assembly:
-    return build(read_scene(DEMO), MPI.COMM_SELF)
+def built_on_block() -> Assembly:
+    return build(read_scene(ON_BLOCK), MPI.COMM_SELF)
 
 
 LIFTED: Mapping = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.5]}}

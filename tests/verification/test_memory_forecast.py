@@ -10,7 +10,7 @@ import pytest
 
 from riser_soil.checks.estimate import WITHIN, size_of
 from riser_soil.scene.reader import read_scene
-from tests.support.coupled_scenes import DEMO
+from tests.support.coupled_scenes import ON_BLOCK
 from tests.support.on_ranks import ROOT, environment
 
 SHORT = ("stages.1.duration=0.2", "solver.tolerance=1e-4")
@@ -36,7 +36,7 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 def peak(overrides: tuple[str, ...], folder: Path) -> float:
     """Largest resident memory of a run [bytes]."""
     given = [word for override in overrides for word in ("--set", override)]
-    run = [sys.executable, "-m", "riser_soil", "run", str(DEMO), "-o", str(folder), "--force", *given]
+    run = [sys.executable, "-m", "riser_soil", "run", str(ON_BLOCK), "-o", str(folder), "--force", *given]
     call = [sys.executable, "-c", BETWEEN, *run]
     done = subprocess.run(call, check=True, cwd=ROOT, env=environment(), stdout=subprocess.PIPE, text=True)
     return 1024.0 * float(done.stdout)
@@ -47,7 +47,7 @@ def peak(overrides: tuple[str, ...], folder: Path) -> float:
 def test_memory_is_foretold_within_thirty_per_cent(mesh: str, tmp_path: Path) -> None:
     """The second of two runs, as the first may compile kernels."""
     overrides = SHORT + MESHES[mesh]
-    foretold = size_of(read_scene(DEMO, overrides)).memory(1)
+    foretold = size_of(read_scene(ON_BLOCK, overrides)).memory(1)
     peak(overrides, tmp_path / "out")
     taken = peak(overrides, tmp_path / "out")
     assert foretold / WITHIN < taken < foretold * WITHIN, f"{foretold / 1e6:.0f} MB foretold, {taken / 1e6:.0f} taken"

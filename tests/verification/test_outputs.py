@@ -32,9 +32,9 @@ WHOLE = ("touchdown_arc", "touchdown_points", "max_penetration", "contact_force"
 PLACED = ("max_bending_moment", "max_curvature", "min_bend_radius", "min_effective_tension", "max_embedment")
 
 
-def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
-    run = Run(demo.folder)
-    times, frames = read_by_vtk(demo.folder / "riser.xdmf")
+def test_vtk_reads_the_riser(on_block: WatchedRun) -> None:
+    run = Run(on_block.folder)
+    times, frames = read_by_vtk(on_block.folder / "riser.xdmf")
     assert len(times) == 1 + 24, "the laid riser, then every half second"
     rows = np.searchsorted(run.time, np.array(times) - 1e-9)
     np.testing.assert_allclose(run.time[rows], times, atol=1e-12)
@@ -46,10 +46,10 @@ def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
     assert frames[-1]["point:contact_force"].max() > 500.0
 
 
-def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
-    run = Run(demo.folder)
-    times, frames = read_by_vtk(demo.folder / "soil.xdmf")
-    riser_times, _ = read_by_vtk(demo.folder / "riser.xdmf")
+def test_vtk_reads_the_soil(on_block: WatchedRun) -> None:
+    run = Run(on_block.folder)
+    times, frames = read_by_vtk(on_block.folder / "soil.xdmf")
+    riser_times, _ = read_by_vtk(on_block.folder / "riser.xdmf")
     assert times == riser_times, "both on one time axis"
     volume = 16.0 * 4.0 * 1.5
     for number, frame in enumerate(frames):
@@ -70,13 +70,13 @@ def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
     assert last["cell:equivalent_plastic_strain"].min() >= 0.0
 
 
-def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
+def test_pipe_lies_on_the_soil_in_the_files(on_block: WatchedRun) -> None:
     """The settlement told is that of the surface in the file, the underside lies in it by what force compresses, and by
     what the smooth surface of contact dips below flat facets.
 
     The first is f/k at a chord as wide as the diameter, with k ten times the soil's modulus, more on a narrower one.
     """
-    run, k = Run(demo.folder), 10.0 * 300.0 * 2.0e3
+    run, k = Run(on_block.folder), 10.0 * 300.0 * 2.0e3
     frame = run.soil_frame()
     assert frame.time == run.time[-1]
     top = np.flatnonzero(frame.points[:, 2] > -1e-9)
@@ -92,8 +92,8 @@ def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
     assert compressed.max() < 0.03 * 0.075, "of a cell's width"
 
 
-def test_xarray_opens_the_series(demo: WatchedRun) -> None:
-    with xarray.open_dataset(demo.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
+def test_xarray_opens_the_series(on_block: WatchedRun) -> None:
+    with xarray.open_dataset(on_block.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
         nodes = 150
         sizes = {"time": 121, "step": 128, "arc": nodes, "component": 3, "section": 1, "offset": 61}
         assert dict(data.sizes) == sizes
@@ -110,13 +110,13 @@ def test_xarray_opens_the_series(demo: WatchedRun) -> None:
             assert variable.attrs["long_name"]
             assert variable.attrs["units"]
         assert float(data["effective_tension"].sel(arc=148.0).isel(time=-1)) > 5e4
-        np.testing.assert_array_equal(data["newton_iterations"][1:], [s.iterations for s in demo.steps[1:]])
-        assert data["newton_iterations"][0] >= demo.steps[0].iterations, "with those of dynamic relaxation"
+        np.testing.assert_array_equal(data["newton_iterations"][1:], [s.iterations for s in on_block.steps[1:]])
+        assert data["newton_iterations"][0] >= on_block.steps[0].iterations, "with those of dynamic relaxation"
         assert np.isnan(data["energy_residual"][0])
 
 
-def test_summary_is_as_documented(demo: WatchedRun) -> None:
-    summary = json.loads((demo.folder / "summary.json").read_text(encoding="utf-8"))
+def test_summary_is_as_documented(on_block: WatchedRun) -> None:
+    summary = json.loads((on_block.folder / "summary.json").read_text(encoding="utf-8"))
     expected = {"title", "finished", "version", "versions", "ranks", "parts", "dofs", "stages", "seconds", "warnings"}
     assert set(summary) == expected
     assert (summary["finished"], summary["version"], summary["ranks"]) == (True, __version__, 1)
@@ -165,8 +165,8 @@ def assert_extremes(extremes: Any) -> None:
         assert extremes[name]["min"] <= extremes[name]["max"]
 
 
-def test_summary_agrees_with_the_series(demo: WatchedRun) -> None:
-    run = Run(demo.folder)
+def test_summary_agrees_with_the_series(on_block: WatchedRun) -> None:
+    run = Run(on_block.folder)
     final, extremes = (run.summary["stages"][1][key] for key in ("final", "extremes"))
     np.testing.assert_array_equal(final["end"]["force"], run["end_force"][-1])
     assert final["touchdown_arc"] == run["touchdown_arc"][-1]

@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from tests.support.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
+from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, heave, touchdown
 from tests.support.on_ranks import mpirun
 from tests.support.riser_scenes import in_waves
 
@@ -42,7 +42,7 @@ def scene(name: str) -> Mapping:
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
     if name == "demo held":
         return held_demo()
-    given: Mapping = YAML(typ="safe").load({"demo": DEMO, "riser": CATENARY, "clay": CLAY}[name])
+    given: Mapping = YAML(typ="safe").load({"demo": ON_BLOCK, "riser": CATENARY, "clay": CLAY}[name])
     given["stages"][1]["duration"] = {"demo": 0.5, "riser": 10.0, "clay": 3.0}[name]
     return given | {"solver": {"tolerance": 1e-10}, "output": {"interval": 0.1}}
 

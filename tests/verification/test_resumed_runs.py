@@ -20,6 +20,7 @@ ROOT = Path(__file__).parents[2]
 MIDPOINT = "stages.1.scheme={midpoint: {}}"
 IN_SPACE = ("dimension=3", "line_types.flexible.GJ=4.0e4")
 STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
+SHORT_BLOCK = "soil.block.x=[25.5,29.5]"
 COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.0", "stages.1.time_step=0.2")
 
 
@@ -74,7 +75,8 @@ SHORT = {
     "catenary, static stages": (lambda: read_scene(ROOT / "demos/catenary/three_stages.yaml"), (2,)),
     "tank": (lambda: shortened("demos/tank/scene.yaml", 0.5), (6,)),
     "waves": (two_storms, (4, 7)),
-    "touchdown on clay": (lambda: shortened("demos/touchdown_clay/scene.yaml", 1.0, *COARSE), (4,)),
+    "touchdown on clay": (lambda: shortened("tests/scenes/touchdown_on_block.yaml", 1.0, *COARSE), (4,)),
+    "touchdown in sections": (lambda: shortened("demos/touchdown_clay/scene.yaml", 0.4, SHORT_BLOCK), (4,)),
     "plastic clay in space": (plastic_clay_in_space, (4,)),
     "surface contact on plastic clay": (surface_on_clay, (4, 10)),
     "kept factors": (kept_factors, (4, 10, 12)),
