@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.condensation import why_whole
 from riser_soil.assembly.packages import communicator_of
-from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory
+from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
@@ -114,5 +114,6 @@ def memory(assembly: Assembly) -> float:
     if assembly.soil is not None and assembly.scene.soil is not None:
         cells, rows, cols = assembly.soil.blocks()["soil"].shape
         factor = soil_factor(assembly.scene, assembly.scene.soil, unknowns(comm, assembly.soil.field))
-        total += soil_memory(comm.size, comm.allreduce(cells), rows * cols, factor)
+        entries = worth(assembly.scene.soil, rows * cols)
+        total += soil_memory(comm.size, comm.allreduce(cells), entries, factor)
     return total

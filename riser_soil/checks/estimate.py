@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 # histories), a time at which output is due, an element in a wave component.
 PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP, PER_WAVE = 0.24e9, 0.14e9, 2e3, 55.0, 150.0, 150.0
 PER_UNKNOWN = 1.5e3  # bytes of multigrid and of GMRES' vectors
+PLANE = 3  # times as much has a cell in plane strain for an entry, as its law knows all components
+PER_LAYER = 60.0  # bytes of the factors of an unknown in a section, whose band is as wide as two nodes of each layer
 WITHIN = 1.3  # memory is, times or over this, what it is foretold to be
 
 # Parts whose tangents are not symmetric, so that the soil's factor is twice as large.
@@ -111,12 +113,19 @@ def soil_memory(ranks: int, cells: float, entries: int, factor: float) -> float:
     return ranks * SOIL_PROCESS + factor + PER_CELL_ENTRY * entries * cells
 
 
+def worth(soil: SoilScene, entries: int) -> int:
+    """Entries of a hexahedron's matrix that take the memory of so many of a cell's."""
+    return PLANE * entries if soil.model == "sections" else entries
+
+
 def soil_factor(scene: Scene, soil: SoilScene, unknowns: float) -> float:
     """Bytes of the factorisation of soil with so many unknowns, or of what takes its place; factors that are kept are
     those of the upper triangle.
     """
     if scene.solver.linear == "iterative" and not _condensed(scene, soil):
         return PER_UNKNOWN * unknowns
+    if soil.model == "sections":
+        return PER_LAYER * _block(scene, soil).layers()[2] * unknowns
     halved = scene.solver.linear != "direct" or _condensed(scene, soil) or _symmetric(scene, soil)
     return factor_memory(_sides(scene, soil), unknowns, halved)
 
@@ -152,7 +161,8 @@ def size_of(scene: Scene) -> ProblemSize:
     waves = scene.water.waves if scene.water else None
     components = waves.count if waves else 0
     of_riser = STEP + elements * (ELEMENT + WAVE * components)
-    of_soil = cells * CELL + FACTORED * unknowns**2
+    apart = scene.soil is not None and scene.soil.model == "sections"
+    of_soil = cells * CELL + (0.0 if apart else FACTORED * unknowns**2)
     condensed = scene.soil is not None and _condensed(scene, scene.soil)
     seconds = BUILD * elements + steps * of_riser + (of_soil + ON_CONDENSED * steps if condensed else of_soil * steps)
     dofs = 3 if resolved_dimension(scene) == 2 else 6
@@ -204,6 +214,8 @@ def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
     block = _block(scene, soil)
     if block.kind == "hex":
         x, y, z = block.layers()
+        if soil.model == "sections":
+            return float(x) * y * z, 2.0 * (x, y)[block.axis] * ((x, y)[1 - block.axis] + 1) * z, worth(soil, 12 * 12)
         return float(x) * y * z, 3.0 * (x + 1) * (y + 1) * z, 24 * 24
     cells = TETRAHEDRA * block.cubes()
     return cells, 3.0 * NODES_OF_TETRAHEDRA * cells, 30 * 30

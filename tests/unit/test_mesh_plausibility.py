@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,16 @@ def test_cells_and_elements_longer_than_the_bend_on_soil_are_told() -> None:
     (told,) = warned(scene)
     assert told.startswith("elements of the riser over the soil of 1 m are long beside the 0.577 m")
     assert "take at most 0.29 m" in told
+
+
+def test_sections_deep_beside_the_bend_on_soil_are_told() -> None:
+    """3 m below a bend of 0.58 m; the block's depth of 1 m has no more effect than the sections' own."""
+    block = {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 3.0}
+    (told,) = warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections", block=block))
+    excess = math.log(3.0 / (2.516 * 0.577)) / (math.log(12.0 / 0.0236) - 0.5)
+    assert f"within 0.577 m on 3 m of soil, it settles by about {excess:.0%} more than on a block" in told
+    assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), block=block)) == []
+    assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections")) == []
 
 
 def test_long_cells_under_an_oblique_riser_are_told() -> None:

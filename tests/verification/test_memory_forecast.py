@@ -21,6 +21,7 @@ MESHES = {
         "soil.mesh={kind: hex, size_at_riser: {along: 0.5, across: 0.05, strip: 0.15}, size_far: 0.5}",
         "solver.linear=iterative",
     ),
+    "automatic, in sections": ("soil.mesh=auto", "soil.model=sections"),
     "of tetrahedra": ("soil.mesh={kind: tet, size_at_riser: 0.2, size_far: 1.0}",),
 }
 
