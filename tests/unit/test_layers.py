@@ -28,7 +28,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("results",),
     ("seating", "statistics"),
     ("stages", "plots"),
-    ("whole_run", "material", "calibration", "modes", "hang_off", "moordyn", "fatigue"),
+    ("whole_run", "material", "calibration", "modes", "hang_off", "moordyn", "drafts", "fatigue"),
     ("accuracy",),
     ("stress", "cases", "report"),
     ("api",),
