@@ -6,11 +6,13 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, Field, model_validator
 
 from riser_soil.core.quantities import FROZEN, SHORTEST, Coordinate, Density, Length, TimeOrNone, Velocity, wrong
-from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, WaveKind
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 
 KINDS = ("airy", "jonswap", "pierson_moskowitz", "spectrum", "record")
+ALONE = ("regular", "trains")
 _MOST_TRAINS = 10
-_AIRY = "a regular wave: height, period, direction_deg, phase_deg"
+_AIRY = "a regular linear wave: height, period, direction_deg, phase_deg"
+_REGULAR = "a regular wave of finite height: height, period, theory, direction_deg, phase_deg"
 _JONSWAP = "an irregular sea: Hs, Tp, gamma, seed, components, direction_deg, spreading"
 _PIERSON_MOSKOWITZ = "an irregular, fully developed sea: as jonswap, without gamma"
 _SPECTRUM = "an irregular sea with the spectrum in a file: file, seed, components, direction_deg, spreading"
@@ -54,7 +56,10 @@ class Train(BaseModel):
 
 
 class Waves(BaseModel):
-    """Linear waves, regular or irregular, or the sum of several trains of them; they act in dynamic stages."""
+    """Linear waves, regular or irregular, or the sum of several trains of them, or a regular wave of finite height.
+
+    They act in dynamic stages.
+    """
 
     model_config = FROZEN
 
@@ -63,13 +68,14 @@ class Waves(BaseModel):
     pierson_moskowitz: PiersonMoskowitz | None = Field(default=None, description=_PIERSON_MOSKOWITZ)
     spectrum: GivenSpectrum | None = Field(default=None, description=_SPECTRUM)
     record: Record | None = Field(default=None, description=_RECORD)
+    regular: Regular | None = Field(default=None, description=_REGULAR)
     trains: Annotated[tuple[Train, ...], Field(min_length=2, max_length=_MOST_TRAINS)] | None = Field(
         default=None, description="several trains that add up, as swell and wind sea, [{jonswap: ...}, ...]"
     )
-    stretching: Literal["wheeler", "vertical"] = Field(
-        default="wheeler",
-        description="motion up to the surface: wheeler (heights are stretched with the surface) or vertical (above the "
-        "mean level as at that level)",
+    stretching: Literal["wheeler", "vertical"] | None = Field(
+        default=None,
+        description="motion of linear waves up to the surface: wheeler (heights are stretched with the surface, the "
+        "default) or vertical (above the mean level as at that level)",
     )
     ramp: TimeOrNone = Field(
         default=0.0,
@@ -86,7 +92,9 @@ class Waves(BaseModel):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        _only_one({kind: getattr(self, kind) for kind in (*KINDS, "trains")}, "leave out one of the two")
+        _only_one({kind: getattr(self, kind) for kind in (*KINDS, *ALONE)}, "leave out one of the two")
+        if self.regular is not None and self.stretching is not None:
+            raise wrong("stretching", "a wave of finite height knows the motion up to its surface", "leave it out")
         return self
 
     @model_validator(mode="after")
@@ -96,6 +104,8 @@ class Waves(BaseModel):
     @property
     def each(self) -> tuple[tuple[tuple[str | int, ...], WaveKind], ...]:
         """All trains, each with its path."""
+        if self.regular is not None:
+            return ((("regular",), self.regular),)
         trains = {(): self} if self.trains is None else {("trains", n): train for n, train in enumerate(self.trains)}
         found = (((*path, kind), getattr(train, kind)) for path, train in trains.items() for kind in KINDS)
         return tuple((path, given) for path, given in found if given is not None)

@@ -54,6 +54,7 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
     "xarray": ("riser_soil.results", "riser_soil.cases", "riser_soil.modes"),
     "distributed": "riser_soil.cases",
     "dask": "riser_soil.cases",
+    "raschii": "riser_soil.sea",
 }
 
 
