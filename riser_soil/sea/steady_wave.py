@@ -9,8 +9,8 @@ In water of depth h a wave of height H and wave number k runs with the speed c. 
 z being the height above the mean surface: an exact solution of Laplace's equation over the bed, whatever the D_j, which
 each theory finds from the conditions at the surface. The mean velocity at a fixed place below all troughs is zero
 (Stokes's first definition of c). Sources: Fenton, Journal of Waterway, Port, Coastal and Ocean Engineering 111,
-1985, 216-234, for the fifth order of Stokes's theory; Rienecker and Fenton, Journal of Fluid Mechanics 104, 1981, 119-137,
-for stream functions; both by the library raschii of T. Landet, which is asked in units of g T^2/2 pi.
+1985, 216-234, for the fifth order of Stokes's theory; Rienecker and Fenton, Journal of Fluid Mechanics 104, 1981,
+119-137, for stream functions; both by the library raschii of T. Landet, which is asked in units of g T^2/2 pi.
 """
 
 from __future__ import annotations
