@@ -77,13 +77,13 @@ class _BodyLoads:
 
     @cached_property
     def surface(self) -> WaterSurface | None:
-        """Where the water has one; it is level without waves."""
+        """Where the water has one: that of the water that moves, or still water's."""
         if self.water.surface_level is None:
             return None
+        if self.stream is not None:
+            return self.stream
         from riser_soil.sea.wetting import CalmSurface
 
-        if self.waves and self.stream is not None:
-            return self.stream
         return CalmSurface(self.body.pipe, self.water.surface_level)
 
     @property
