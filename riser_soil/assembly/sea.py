@@ -16,6 +16,8 @@ from riser_soil.scene.water import Current
 from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 
 if TYPE_CHECKING:
+    from riser_soil.core.arrays import Array
+    from riser_soil.sea.changing_current import ChangingCurrent
     from riser_soil.sea.components import Components
     from riser_soil.sea.current import SteadyCurrent
     from riser_soil.sea.sea import FlowComponent
@@ -118,6 +120,15 @@ def wave_age(scene: Scene, stage: Stage) -> float:
     return age
 
 
+def current_times(scene: Scene, stage: Stage) -> list[float]:
+    """Times [s] in a stage at which the current's history is given; none in stages that have no time."""
+    current = scene.water.current if scene.water is not None else None
+    if current is None or current.history is None or not isinstance(stage, DynamicStage):
+        return []
+    times = (each.time - wave_clock(scene, stage) for each in current.history)
+    return [t for t in times if 0.0 < t < stage.duration]
+
+
 def _flows(scene: Scene, stage: Stage) -> Iterator[FlowComponent]:
     assert scene.water is not None
     if scene.water.current is not None:
@@ -126,13 +137,24 @@ def _flows(scene: Scene, stage: Stage) -> Iterator[FlowComponent]:
         yield _waves(scene, stage)
 
 
-def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent:
+def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent | ChangingCurrent:
     """It grows with the load factor when the run begins with a static stage; else it is there in full."""
-    from riser_soil.sea.current import SteadyCurrent
-
-    profile = np.array(given.profile)
     grows = isinstance(stage, StaticStage) and stage.name == scene.stages[0].name
-    return SteadyCurrent(profile[:, 0].copy(), profile[:, 1:].copy(), grows)
+    level = np.unique([z for _, profile in given.each for z, _, _ in profile])
+    velocity = np.array([_at_levels(np.array(profile), level) for _, profile in given.each])
+    if given.history is None:
+        from riser_soil.sea.current import SteadyCurrent
+
+        return SteadyCurrent(level, velocity[0], grows)
+    from riser_soil.sea.changing_current import ChangingCurrent
+
+    time, runs = np.array([each.time for each in given.history]), isinstance(stage, DynamicStage)
+    return ChangingCurrent(level, time, velocity, wave_clock(scene, stage), runs, grows)
+
+
+def _at_levels(profile: Array, level: Array) -> Array:
+    """Velocity (m, 2) of a profile (n, 3) at the levels (m,), its own among them."""
+    return np.stack([np.interp(level, profile[:, 0], profile[:, 1 + i]) for i in range(2)], axis=-1)
 
 
 def _waves(scene: Scene, stage: Stage) -> WaveField | SteadyFlow:

@@ -3,9 +3,21 @@
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, Field, model_validator
+from pydantic import AfterValidator, BaseModel, Field, model_validator
+from pydantic_core import PydanticCustomError
 
-from riser_soil.core.quantities import FROZEN, SHORTEST, Coordinate, Density, Length, TimeOrNone, Velocity, wrong
+from riser_soil.core.quantities import (
+    FROZEN,
+    NEAREST,
+    SHORTEST,
+    Coordinate,
+    Density,
+    Instant,
+    Length,
+    TimeOrNone,
+    Velocity,
+    wrong,
+)
 from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 
 KINDS = ("airy", "jonswap", "pierson_moskowitz", "spectrum", "record")
@@ -19,23 +31,60 @@ _SPECTRUM = "an irregular sea with the spectrum in a file: file, seed, component
 _RECORD = "a sea that repeats a record of the surface: file, position, direction_deg, shortest_period, longest_period"
 
 
-class Current(BaseModel):
-    """A horizontal current that is steady and changes with height only."""
+def _rising(points: tuple[tuple[float, float, float], ...] | None) -> tuple[tuple[float, float, float], ...] | None:
+    if any(b[0] - a[0] < SHORTEST for a, b in pairwise(points or ())):
+        text = f"the heights z must increase, by {SHORTEST:g} m at least; sort the points [z, ux, uy] by z"
+        raise PydanticCustomError("conflict", "{text}", {"text": text})
+    return points
 
-    model_config = FROZEN
 
-    profile: tuple[tuple[Coordinate, Velocity, Velocity], ...] = Field(
+Profile = Annotated[
+    tuple[tuple[Coordinate, Velocity, Velocity], ...],
+    AfterValidator(_rising),
+    Field(
         min_length=1,
         description="velocity by height, [[z, ux, uy], ...] [m, m/s, m/s], z increasing; linear between the heights, "
         "constant beyond",
+    ),
+]
+
+
+class CurrentAtTime(BaseModel):
+    """A current at a time."""
+
+    model_config = FROZEN
+
+    time: Instant = Field(description="time on the clock of the waves, from the first dynamic stage on [s]")
+    profile: Profile
+
+
+class Current(BaseModel):
+    """A horizontal current by height, steady or changing in time."""
+
+    model_config = FROZEN
+
+    profile: Profile | None = None
+    history: Annotated[tuple[CurrentAtTime, ...], Field(min_length=2)] | None = Field(
+        default=None,
+        description="in place of profile: a current that changes in time, [{time, profile}, ...], a cubic spline in "
+        "time, level at its ends and beyond",
     )
 
     @model_validator(mode="after")
-    def _rises(self) -> Self:
-        if any(b[0] - a[0] < SHORTEST for a, b in pairwise(self.profile)):
-            allowed = f"the heights z must increase, by {SHORTEST:g} m at least"
-            raise wrong("profile", allowed, "sort the points [z, ux, uy] by z")
+    def _one_of_both(self) -> Self:
+        if (self.profile is None) == (self.history is None):
+            what = "profile is missing" if self.profile is None else "profile and history are both given"
+            raise wrong("profile", what, "give profile: [[z, ux, uy], ...], or a history of profiles in its place")
+        if any(b.time - a.time < NEAREST for a, b in pairwise(self.history or ())):
+            raise wrong("history", f"times must increase, by {NEAREST:g} s at least", "sort the profiles by time")
         return self
+
+    @property
+    def each(self) -> tuple[tuple[tuple[str | int, ...], tuple[tuple[float, float, float], ...]], ...]:
+        """All profiles, each with its path."""
+        if self.profile is not None:
+            return ((("profile",), self.profile),)
+        return tuple((("history", n, "profile"), each.profile) for n, each in enumerate(self.history or ()))
 
 
 class Train(BaseModel):
@@ -148,7 +197,9 @@ class Water(BaseModel):
         default=None,
         description="depth for the waves [m]; by default down to the seabed, or deep water in a scene without one",
     )
-    current: Current | None = Field(default=None, description="current, {profile: [[z, ux, uy], ...]}; none by default")
+    current: Current | None = Field(
+        default=None, description="current, {profile: [[z, ux, uy], ...]} or {history: [...]}; none by default"
+    )
     waves: Waves | None = Field(
         default=None, description="waves, {airy: ...}, {jonswap: ...} or another kind; none by default"
     )

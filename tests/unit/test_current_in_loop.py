@@ -10,6 +10,7 @@ import pytest
 from tests.support.riser_scenes import IN_WAVES, dynamic, prescribed, riser_scene, stage_histories, static
 
 STEADY = {"profile": [[0.0, 0.2, 0.0], [20.0, 1.5, 0.0]]}
+CHANGING = {"history": [{"time": 0.0, **STEADY}, {"time": 2.0, "profile": [[0.0, -0.5, 0.0]]}]}
 STILL = {"profile": [[0.0, 0.0, 0.0]]}
 MODULE = [{"at": 12.0, "mass": 50.0, "volume": 0.1, "drag_area": 0.6, "added_mass": 0.5}]
 
@@ -31,7 +32,7 @@ def end_of(current: Any, newton: str, attachments: Any) -> np.ndarray:
     return np.asarray(stage_histories(scene)[-1].position[-1])
 
 
-@pytest.mark.parametrize("current", [STEADY], ids=["steady"])
+@pytest.mark.parametrize("current", [STEADY, CHANGING], ids=["steady", "changing"])
 @pytest.mark.parametrize("attachments", [[], MODULE], ids=["pipe", "module"])
 def test_both_solvers_see_the_current(current: Any, attachments: Any) -> None:
     compiled, snes = (end_of(current, newton, attachments) for newton in ("compiled", "snes"))
