@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz mutants bench bench-peers parts bars asked quality verify-fresh docs docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz mutants bench bench-peers parts bars asked quality verify-fresh docs dist docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -82,6 +82,9 @@ verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for 
 
 docs: setup ## a site of all pages, with search: build/site
 	@scripts/site.sh
+
+dist: setup ## wheel and source distribution, checked: build/dist
+	$(PYTHON) scripts/dist.py
 
 docker: ## the image riser_soil, on Debian 12 or on BASE=debian:trixie
 	$(DOCKER) build$(if $(BASE), --build-arg BASE=$(BASE)) -t riser_soil -f docker/Dockerfile .

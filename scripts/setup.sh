@@ -24,7 +24,7 @@ test_packages=(
     chromium-headless-shell # opens the pages that riser_soil writes
 )
 run_modules=(
-    dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib jinja2
+    dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib jinja2 raschii
 )
 dev_modules=(pytest xdist hypothesis xarray ruff mypy)
 

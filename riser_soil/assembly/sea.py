@@ -9,15 +9,20 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from riser_soil.errors import SceneError
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.scene.water import Current
-from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, WaveKind
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 
 if TYPE_CHECKING:
+    from riser_soil.core.arrays import Array
+    from riser_soil.sea.changing_current import ChangingCurrent
     from riser_soil.sea.components import Components
     from riser_soil.sea.current import SteadyCurrent
     from riser_soil.sea.sea import FlowComponent
+    from riser_soil.sea.steady_flow import SteadyFlow
+    from riser_soil.sea.steady_wave import SteadyWave
     from riser_soil.sea.water import Water
     from riser_soil.sea.wave_field import WaveField
 
@@ -38,7 +43,9 @@ def water_of(scene: Scene, stage: Stage) -> Water | None:
 
 
 def components_of(scene: Scene) -> Components | None:
-    """The scene's waves; None where it has none. Waves that move a vessel are these very waves."""
+    """The scene's waves, of one of finite height its first harmonic; None where it has none. Waves that move a vessel
+    are these very waves.
+    """
     waves = scene.water.waves if scene.water is not None else None
     if waves is None:
         return None
@@ -51,6 +58,12 @@ def components_of(scene: Scene) -> Components | None:
 def _train(train: WaveKind, number: int, g: float, h: float) -> Components:
     """Waves of one train; seas of the same seed differ by the train's number."""
     match train:
+        case Regular():
+            from riser_soil.sea.components import Components
+
+            wave = steady_wave_of(train, g, h)
+            parts = 0.5 * train.height, wave.w, wave.k, train.toward[0], math.radians(train.phase_deg)
+            return Components(*(np.array([part]) for part in parts))
         case Airy():
             from riser_soil.sea.components import regular
 
@@ -77,6 +90,16 @@ def _train(train: WaveKind, number: int, g: float, h: float) -> Components:
     assert_never(train)
 
 
+def steady_wave_of(train: Regular, g: float, h: float) -> SteadyWave:
+    """A wave of finite height; SceneError where there is none."""
+    from riser_soil.sea.steady_wave import steady_wave
+
+    try:
+        return steady_wave(train.theory, train.height, train.period, g, h)
+    except SceneError as err:
+        raise SceneError(f"water.waves.regular.{err}") from err
+
+
 def _seed(seed: int, number: int) -> list[int]:
     return [seed, number] if number else [seed]
 
@@ -97,6 +120,15 @@ def wave_age(scene: Scene, stage: Stage) -> float:
     return age
 
 
+def current_times(scene: Scene, stage: Stage) -> list[float]:
+    """Times [s] in a stage at which the current's history is given; none in stages that have no time."""
+    current = scene.water.current if scene.water is not None else None
+    if current is None or current.history is None or not isinstance(stage, DynamicStage):
+        return []
+    times = (each.time - wave_clock(scene, stage) for each in current.history)
+    return [t for t in times if 0.0 < t < stage.duration]
+
+
 def _flows(scene: Scene, stage: Stage) -> Iterator[FlowComponent]:
     assert scene.water is not None
     if scene.water.current is not None:
@@ -105,23 +137,39 @@ def _flows(scene: Scene, stage: Stage) -> Iterator[FlowComponent]:
         yield _waves(scene, stage)
 
 
-def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent:
+def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent | ChangingCurrent:
     """It grows with the load factor when the run begins with a static stage; else it is there in full."""
-    from riser_soil.sea.current import SteadyCurrent
-
-    profile = np.array(given.profile)
     grows = isinstance(stage, StaticStage) and stage.name == scene.stages[0].name
-    return SteadyCurrent(profile[:, 0].copy(), profile[:, 1:].copy(), grows)
+    level = np.unique([z for _, profile in given.each for z, _, _ in profile])
+    velocity = np.array([_at_levels(np.array(profile), level) for _, profile in given.each])
+    if given.history is None:
+        from riser_soil.sea.current import SteadyCurrent
+
+        return SteadyCurrent(level, velocity[0], grows)
+    from riser_soil.sea.changing_current import ChangingCurrent
+
+    time, runs = np.array([each.time for each in given.history]), isinstance(stage, DynamicStage)
+    return ChangingCurrent(level, time, velocity, wave_clock(scene, stage), runs, grows)
 
 
-def _waves(scene: Scene, stage: Stage) -> WaveField:
-    from riser_soil.sea.wave_field import WaveField
+def _at_levels(profile: Array, level: Array) -> Array:
+    """Velocity (m, 2) of a profile (n, 3) at the levels (m,), its own among them."""
+    return np.stack([np.interp(level, profile[:, 0], profile[:, 1 + i]) for i in range(2)], axis=-1)
 
-    components = components_of(scene)
-    assert components is not None
+
+def _waves(scene: Scene, stage: Stage) -> WaveField | SteadyFlow:
     assert scene.water is not None
     assert scene.water.waves is not None
     assert scene.water.surface_level is not None
     waves, level = scene.water.waves, scene.water.surface_level
-    times = wave_clock(scene, stage), wave_age(scene, stage)
-    return WaveField(components, scene.water_depth, level, waves.stretching, waves.ramp, *times)
+    times = waves.ramp, wave_clock(scene, stage), wave_age(scene, stage)
+    if waves.regular is not None:
+        from riser_soil.sea.steady_flow import SteadyFlow
+
+        wave = steady_wave_of(waves.regular, scene.gravity, scene.water_depth)
+        return SteadyFlow(wave, waves.regular.toward[0], math.radians(waves.regular.phase_deg), level, *times)
+    from riser_soil.sea.wave_field import WaveField
+
+    components = components_of(scene)
+    assert components is not None
+    return WaveField(components, scene.water_depth, level, waves.stretching or "wheeler", *times)

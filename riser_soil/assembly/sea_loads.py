@@ -57,12 +57,18 @@ class _BodyLoads:
     def act(self) -> bool:
         """Whether the water does more than carry: in motion, or in a stage in which the riser moves."""
         if isinstance(self.stage, DynamicStage):
-            return self.body.drags or self.body.adds_mass or self.waves
+            return self.body.drags or self.body.adds_mass or self.accelerates
         return self.body.drags and self.water.current is not None
 
     @property
     def waves(self) -> bool:
         return self.water.waves is not None and isinstance(self.stage, DynamicStage)
+
+    @property
+    def accelerates(self) -> bool:
+        """Whether the water itself does: by waves, or a current that changes."""
+        changes = self.water.current is not None and self.water.current.history is not None
+        return self.waves or (changes and isinstance(self.stage, DynamicStage))
 
     @cached_property
     def stream(self) -> FlowAtStations | None:
@@ -77,13 +83,13 @@ class _BodyLoads:
 
     @cached_property
     def surface(self) -> WaterSurface | None:
-        """Where the water has one; it is level without waves."""
+        """Where the water has one: that of the water that moves, or still water's."""
         if self.water.surface_level is None:
             return None
+        if self.stream is not None:
+            return self.stream
         from riser_soil.sea.wetting import CalmSurface
 
-        if self.waves and self.stream is not None:
-            return self.stream
         return CalmSurface(self.body.pipe, self.water.surface_level)
 
     @property
@@ -105,7 +111,7 @@ class _BodyLoads:
         from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag
 
         drag = RelativeDrag(self.body.still, stream)
-        return AcceleratedWater(drag, stream, self.body.mass, self.body.displaced) if self.waves else drag
+        return AcceleratedWater(drag, stream, self.body.mass, self.body.displaced) if self.accelerates else drag
 
     @property
     def buoyancy(self) -> Buoyancy:

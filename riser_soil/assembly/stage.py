@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from riser_soil.assembly.riser import spins_freely
+from riser_soil.assembly.sea import current_times
 from riser_soil.core.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
@@ -46,11 +47,12 @@ def scheme_of(stage: Stage) -> Scheme:
 
 
 def times_to_hit(scene: Scene, stage: TimedStage) -> list[float]:
-    """Times [s] in a stage where output is due, a motion's ramp ends or a load's history bends."""
+    """Times [s] in a stage where output is due, a motion's ramp ends, or the history of a load or current bends."""
     motions = stage.motion.by_end.values() if stage.motion else ()
     ramps = [way.ramp for motion in motions for way in motion.ways.values() if way.ramp]
     bends = [t for load in stage.loads for t, _ in load.history or ()]
     paces = {scene.output.interval, scene.output.xdmf_interval} - {None}
+    bends += current_times(scene, stage)
     return [*ramps, *bends, *(t for pace in paces if pace for t in _multiples(pace, stage.duration))]
 
 

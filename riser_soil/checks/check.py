@@ -39,11 +39,21 @@ def _counted(number: int, name: str) -> str:
     return f"{number} {name}" if number == 1 else f"{number} {name}s"
 
 
+def told_waves(assembly: Assembly) -> Iterator[str]:
+    """What theory a regular wave follows, where the scene has one of finite height."""
+    water = assembly.scene.water
+    if water is not None and water.waves is not None:
+        from riser_soil.checks.wave_plausibility import told_regular
+
+        yield from told_regular(assembly.scene)
+
+
 def _parts(assembly: Assembly) -> Iterator[str]:
     stages = len(assembly.scene.stages)
     yield f"{assembly.scene.title}: {_counted(stages, 'stage')}, riser in {assembly.line.dimension} dimensions"
     yield "built: " + ", ".join(built(assembly.scene))
     yield from (f"left out: {name}: {reason}" for name, reason in left_out(assembly.scene).items())
+    yield from told_waves(assembly)
 
 
 def _unknowns(assembly: Assembly) -> Iterator[str]:

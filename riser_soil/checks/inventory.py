@@ -128,7 +128,8 @@ def _no_morison(scene: Scene) -> str:
         return "no stage is dynamic, and still water does not load a riser at rest"
     types, attachments = scene.used_line_types.values(), scene.riser.attachments
     resist = any(t.drag or t.added_mass for t in types) or any(a.drag_area or a.added_mass for a in attachments)
-    if resist or (scene.water.waves and has_dynamics(scene)):
+    changes = scene.water.current is not None and scene.water.current.history is not None
+    if resist or ((scene.water.waves or changes) and has_dynamics(scene)):
         return ""
     return "no line type has drag or added mass, nor any attachment"
 

@@ -6,16 +6,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from riser_soil.assembly.sea import steady_wave_of
 from riser_soil.checks.inventory import has_dynamics
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.wave_kinds import Airy, WaveKind
+from riser_soil.scene.wave_kinds import Airy, Regular, WaveKind
 from riser_soil.sea.dispersion import wave_number
 
 # Height over Miche's breaking height from which linear theory is well off: Stokes's crests are a tenth higher there.
 STEEP = 0.5
 # Ursell's number H L^2/h^3 from which waves in shallow water are cnoidal.
 SHALLOW = 40.0
+# Theories of regular waves in words.
+NAMES = {"airy": "linear theory", "stokes": "Stokes's theory of fifth order", "stream-function": "stream function"}
 # Part by which a given depth may differ from the height of the surface above the seabed.
 OTHER_DEPTH = 0.05
 
@@ -28,6 +31,8 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
     for path, train in waves.each:
         k = float(wave_number(np.array([2.0 * np.pi / train.period]), scene.gravity, h)[0])
         place = dotted(("water", "waves", *path))
+        if isinstance(train, Regular):
+            continue
         if isinstance(train, Airy):
             yield from _steep(place, train, k, h)
         else:
@@ -36,6 +41,21 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
     yield from _other_depth(scene)
     if not has_dynamics(scene):
         yield "water.waves: waves act in dynamic stages, and no stage is dynamic: nothing will come of them"
+
+
+def told_regular(scene: Scene) -> Iterator[str]:
+    """The theory and shape of a regular wave of finite height, where the scene has one."""
+    waves = scene.water.waves if scene.water is not None else None
+    if waves is None or waves.regular is None:
+        return
+    from riser_soil.sea.steady_wave import highest
+
+    wave = steady_wave_of(waves.regular, scene.gravity, scene.water_depth)
+    share = waves.regular.height / highest(wave.length, scene.water_depth)
+    yield (
+        f"waves: {NAMES[wave.theory]}: {wave.length:.4g} m long, crest {wave.crest:.4g} m above and trough "
+        f"{wave.trough:.4g} m below the mean surface, {share:.0%} of the height at which it breaks"
+    )
 
 
 def _steep(place: str, wave: Airy, k: float, h: float) -> Iterator[str]:

@@ -23,6 +23,7 @@ EXTRAS = {
     "dask": "cases",
     "distributed": "cases",
     "jinja2": "report",
+    "raschii": "waves",
 }
 # Packages that PyPI has none of that work together.
 ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "basix", "gmsh")

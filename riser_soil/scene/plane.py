@@ -125,8 +125,8 @@ def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
 def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
     """Directions of current and waves."""
     current = scene.water.current if scene.water else None
-    for n, (_, ux, uy) in enumerate(current.profile if current else ()):
-        yield ("water", "current", "profile", n), (ux, uy, 0.0)
+    for path, profile in current.each if current else ():
+        yield from ((("water", "current", *path, n), (ux, uy, 0.0)) for n, (_, ux, uy) in enumerate(profile))
     waves = scene.water.waves if scene.water else None
     if waves:
         for path, train in waves.each:

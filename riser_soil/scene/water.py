@@ -3,37 +3,88 @@
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, Field, model_validator
+from pydantic import AfterValidator, BaseModel, Field, model_validator
+from pydantic_core import PydanticCustomError
 
-from riser_soil.core.quantities import FROZEN, SHORTEST, Coordinate, Density, Length, TimeOrNone, Velocity, wrong
-from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, WaveKind
+from riser_soil.core.quantities import (
+    FROZEN,
+    NEAREST,
+    SHORTEST,
+    Coordinate,
+    Density,
+    Instant,
+    Length,
+    TimeOrNone,
+    Velocity,
+    wrong,
+)
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 
 KINDS = ("airy", "jonswap", "pierson_moskowitz", "spectrum", "record")
+ALONE = ("regular", "trains")
 _MOST_TRAINS = 10
-_AIRY = "a regular wave: height, period, direction_deg, phase_deg"
+_AIRY = "a regular linear wave: height, period, direction_deg, phase_deg"
+_REGULAR = "a regular wave of finite height: height, period, theory, direction_deg, phase_deg"
 _JONSWAP = "an irregular sea: Hs, Tp, gamma, seed, components, direction_deg, spreading"
 _PIERSON_MOSKOWITZ = "an irregular, fully developed sea: as jonswap, without gamma"
 _SPECTRUM = "an irregular sea with the spectrum in a file: file, seed, components, direction_deg, spreading"
 _RECORD = "a sea that repeats a record of the surface: file, position, direction_deg, shortest_period, longest_period"
 
 
-class Current(BaseModel):
-    """A horizontal current that is steady and changes with height only."""
+def _rising(points: tuple[tuple[float, float, float], ...] | None) -> tuple[tuple[float, float, float], ...] | None:
+    if any(b[0] - a[0] < SHORTEST for a, b in pairwise(points or ())):
+        text = f"the heights z must increase, by {SHORTEST:g} m at least; sort the points [z, ux, uy] by z"
+        raise PydanticCustomError("conflict", "{text}", {"text": text})
+    return points
 
-    model_config = FROZEN
 
-    profile: tuple[tuple[Coordinate, Velocity, Velocity], ...] = Field(
+Profile = Annotated[
+    tuple[tuple[Coordinate, Velocity, Velocity], ...],
+    AfterValidator(_rising),
+    Field(
         min_length=1,
         description="velocity by height, [[z, ux, uy], ...] [m, m/s, m/s], z increasing; linear between the heights, "
         "constant beyond",
+    ),
+]
+
+
+class CurrentAtTime(BaseModel):
+    """A current at a time."""
+
+    model_config = FROZEN
+
+    time: Instant = Field(description="time on the clock of the waves, from the first dynamic stage on [s]")
+    profile: Profile
+
+
+class Current(BaseModel):
+    """A horizontal current by height, steady or changing in time."""
+
+    model_config = FROZEN
+
+    profile: Profile | None = None
+    history: Annotated[tuple[CurrentAtTime, ...], Field(min_length=2)] | None = Field(
+        default=None,
+        description="in place of profile: a current that changes in time, [{time, profile}, ...], a cubic spline in "
+        "time, level at its ends and beyond",
     )
 
     @model_validator(mode="after")
-    def _rises(self) -> Self:
-        if any(b[0] - a[0] < SHORTEST for a, b in pairwise(self.profile)):
-            allowed = f"the heights z must increase, by {SHORTEST:g} m at least"
-            raise wrong("profile", allowed, "sort the points [z, ux, uy] by z")
+    def _one_of_both(self) -> Self:
+        if (self.profile is None) == (self.history is None):
+            what = "profile is missing" if self.profile is None else "profile and history are both given"
+            raise wrong("profile", what, "give profile: [[z, ux, uy], ...], or a history of profiles in its place")
+        if any(b.time - a.time < NEAREST for a, b in pairwise(self.history or ())):
+            raise wrong("history", f"times must increase, by {NEAREST:g} s at least", "sort the profiles by time")
         return self
+
+    @property
+    def each(self) -> tuple[tuple[tuple[str | int, ...], tuple[tuple[float, float, float], ...]], ...]:
+        """All profiles, each with its path."""
+        if self.profile is not None:
+            return ((("profile",), self.profile),)
+        return tuple((("history", n, "profile"), each.profile) for n, each in enumerate(self.history or ()))
 
 
 class Train(BaseModel):
@@ -54,7 +105,10 @@ class Train(BaseModel):
 
 
 class Waves(BaseModel):
-    """Linear waves, regular or irregular, or the sum of several trains of them; they act in dynamic stages."""
+    """Linear waves, regular or irregular, or the sum of several trains of them, or a regular wave of finite height.
+
+    They act in dynamic stages.
+    """
 
     model_config = FROZEN
 
@@ -63,13 +117,14 @@ class Waves(BaseModel):
     pierson_moskowitz: PiersonMoskowitz | None = Field(default=None, description=_PIERSON_MOSKOWITZ)
     spectrum: GivenSpectrum | None = Field(default=None, description=_SPECTRUM)
     record: Record | None = Field(default=None, description=_RECORD)
+    regular: Regular | None = Field(default=None, description=_REGULAR)
     trains: Annotated[tuple[Train, ...], Field(min_length=2, max_length=_MOST_TRAINS)] | None = Field(
         default=None, description="several trains that add up, as swell and wind sea, [{jonswap: ...}, ...]"
     )
-    stretching: Literal["wheeler", "vertical"] = Field(
-        default="wheeler",
-        description="motion up to the surface: wheeler (heights are stretched with the surface) or vertical (above the "
-        "mean level as at that level)",
+    stretching: Literal["wheeler", "vertical"] | None = Field(
+        default=None,
+        description="motion of linear waves up to the surface: wheeler (heights are stretched with the surface, the "
+        "default) or vertical (above the mean level as at that level)",
     )
     ramp: TimeOrNone = Field(
         default=0.0,
@@ -86,7 +141,9 @@ class Waves(BaseModel):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        _only_one({kind: getattr(self, kind) for kind in (*KINDS, "trains")}, "leave out one of the two")
+        _only_one({kind: getattr(self, kind) for kind in (*KINDS, *ALONE)}, "leave out one of the two")
+        if self.regular is not None and self.stretching is not None:
+            raise wrong("stretching", "a wave of finite height knows the motion up to its surface", "leave it out")
         return self
 
     @model_validator(mode="after")
@@ -96,6 +153,8 @@ class Waves(BaseModel):
     @property
     def each(self) -> tuple[tuple[tuple[str | int, ...], WaveKind], ...]:
         """All trains, each with its path."""
+        if self.regular is not None:
+            return ((("regular",), self.regular),)
         trains = {(): self} if self.trains is None else {("trains", n): train for n, train in enumerate(self.trains)}
         found = (((*path, kind), getattr(train, kind)) for path, train in trains.items() for kind in KINDS)
         return tuple((path, given) for path, given in found if given is not None)
@@ -138,7 +197,9 @@ class Water(BaseModel):
         default=None,
         description="depth for the waves [m]; by default down to the seabed, or deep water in a scene without one",
     )
-    current: Current | None = Field(default=None, description="current, {profile: [[z, ux, uy], ...]}; none by default")
+    current: Current | None = Field(
+        default=None, description="current, {profile: [[z, ux, uy], ...]} or {history: [...]}; none by default"
+    )
     waves: Waves | None = Field(
         default=None, description="waves, {airy: ...}, {jonswap: ...} or another kind; none by default"
     )

@@ -8,7 +8,7 @@ from riser_soil.scene.problem import Problem
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.scene.water import Waves
-from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, WaveKind
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 
 # A wave breaks at the latest at this height over its length, times tanh kh (Miche 1944).
 _BREAKING = 0.142
@@ -33,6 +33,8 @@ def _possible(scene: Scene, waves: Waves) -> Iterator[Problem]:
         yield Problem(("water", "waves"), "there are no waves without gravity", "give gravity, or leave out waves")
         return
     for path, train in waves.each:
+        if isinstance(train, Regular):  # solved for as it is; where there is none, that is told
+            continue
         if train.height > (highest := _highest(scene.gravity, scene.water_depth, train.period)):
             which = f"waves of {train.period:.4g} s{_where(scene.water_depth)}"
             allowed = f"must not exceed {highest:.4g} m: higher {which} break"
@@ -44,7 +46,7 @@ def _possible(scene: Scene, waves: Waves) -> Iterator[Problem]:
 
 def _height_key(train: WaveKind) -> tuple[str, ...]:
     match train:
-        case Airy():
+        case Airy() | Regular():
             return ("height",)
         case Jonswap() | PiersonMoskowitz():
             return ("Hs",)

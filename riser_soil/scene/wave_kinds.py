@@ -2,7 +2,7 @@
 
 import math
 from functools import cached_property
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
 
@@ -38,8 +38,8 @@ class Spreading(BaseModel):
         return relative_directions(self.s, self.directions)
 
 
-class Airy(BaseModel):
-    """A regular linear wave; its crest is at x = y = 0 as its clock starts, unless phase_deg says else."""
+class OneWave(BaseModel):
+    """What regular waves have; the crest is at x = y = 0 as their clock starts, unless phase_deg says else."""
 
     model_config = FROZEN
 
@@ -59,6 +59,20 @@ class Airy(BaseModel):
     def toward(self) -> tuple[float, ...]:
         """Directions [rad]."""
         return (math.radians(self.direction_deg),)
+
+
+class Airy(OneWave):
+    """A regular linear wave."""
+
+
+class Regular(OneWave):
+    """A regular wave of finite height, which runs without changing shape."""
+
+    theory: Literal["auto", "stokes", "stream-function"] = Field(
+        default="auto",
+        description="stokes (of fifth order), stream-function, or auto: by height, period and depth, linear where that "
+        "will do",
+    )
 
 
 class DrawnSea(BaseModel):
@@ -217,4 +231,4 @@ class Record(BaseModel):
         return (math.radians(self.direction_deg),)
 
 
-WaveKind = Airy | Jonswap | PiersonMoskowitz | GivenSpectrum | Record
+WaveKind = Airy | Regular | Jonswap | PiersonMoskowitz | GivenSpectrum | Record

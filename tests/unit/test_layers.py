@@ -28,7 +28,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("results",),
     ("seating", "statistics"),
     ("stages", "plots"),
-    ("whole_run", "material", "calibration", "modes", "hang_off", "moordyn", "fatigue"),
+    ("whole_run", "material", "calibration", "modes", "hang_off", "moordyn", "drafts", "fatigue"),
     ("accuracy",),
     ("stress", "cases", "report"),
     ("api",),
@@ -54,6 +54,7 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
     "xarray": ("riser_soil.results", "riser_soil.cases", "riser_soil.modes"),
     "distributed": "riser_soil.cases",
     "dask": "riser_soil.cases",
+    "raschii": "riser_soil.sea",
 }
 
 

@@ -1,0 +1,1 @@
+"""Drafts: first scenes of common lines, written from a few numbers, for `riser-soil new`."""

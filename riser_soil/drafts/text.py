@@ -1,0 +1,137 @@
+"""Text of a draft: YAML with comments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from riser_soil.drafts.layout import Cut, LineLayout, Place
+from riser_soil.drafts.pipes import NU_STEEL, OIL, WATER, YIELD, CrossSection
+from riser_soil.drafts.wishes import SeaState
+
+RESPONSE = 0.25  # amplitude of the floater over Hs, where its RAOs are not known
+WAVES, STEPS = 10, 40  # periods that the dynamic stage lasts, steps in one
+COMMENT = 40  # column at which comments begin
+BEDS = {
+    "spring": ("seabed: {kind: spring, stiffness: 1.0e5}", "N/m2: force per length and penetration"),
+    "rigid": ("seabed: {kind: rigid}", ""),
+    "hysteretic": (
+        "seabed: {kind: hysteretic, law: {kind: randolph-quiggin, su: 2.0e3, su_gradient: 1.5e3}}",
+        "clay: Pa, Pa/m",
+    ),
+}
+Coded = tuple[str, str]  # a line of the file, its comment
+
+
+def text(title: str, call: str, layout: LineLayout, sea: SeaState, ground: str | None) -> str:
+    """The scene file; call: the command that wrote it."""
+    head = (
+        f"# {title}: a first draft by `{call}`. Units are SI; z = 0 is the seabed.",
+        "# Its numbers are common ones, not yours: go through them.",
+        f"title: {title}",
+    )
+    parts = _water(sea), _line_types(layout), _riser(layout), _seabed(ground), _stages(layout, sea)
+    lines = (f"{code:<{COMMENT - 2}}  # {told}" if told else code for part in parts for code, told in part)
+    return "\n".join([*head, *lines]) + "\n"
+
+
+def number(value: float, figures: int = 4) -> str:
+    """A float in so many figures that every reader of YAML takes for one: it has a point, and its exponent a sign."""
+    told = f"{value:.{figures}g}"
+    if "e" not in told and abs(value) >= 1e5:
+        told = f"{value:.{figures - 1}e}"
+    mantissa, _, exponent = told.partition("e")
+    if exponent:
+        mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+    whole = mantissa if "." in mantissa else f"{mantissa}.0"
+    return f"{whole}e{int(exponent):+d}" if exponent else whole
+
+
+def _metres(value: float) -> str:
+    """To the centimetre, lengths below 10 m to six figures."""
+    return number(round(value, 2) if value > 10.0 else value, 6)
+
+
+def _place(place: Place) -> str:
+    return f"[{', '.join(map(_metres, place))}]"
+
+
+def _water(sea: SeaState) -> Iterator[Coded]:
+    yield "water:", ""
+    yield f"  density: {number(WATER)}", "kg/m3"
+    yield f"  surface_level: {_metres(sea.depth)}", "m"
+    if sea.current:
+        profile = f"[[0.0, 0.0, 0.0], [{_metres(sea.depth)}, {number(sea.current)}, 0.0]]"
+        yield f"  current: {{profile: {profile}}}", "z, u_x, u_y"
+    if sea.Hs:
+        yield "  waves:", "they act in dynamic stages"
+        height, period = number(sea.Hs), number(sea.Tp)
+        yield f"    jonswap: {{Hs: {height}, Tp: {period}, seed: 1, direction_deg: 180.0}}", "m, s; towards -x"
+
+
+def _line_types(layout: LineLayout) -> Iterator[Coded]:
+    yield "line_types:", ""
+    for name, pipe in layout.pipes.items():
+        yield from _line_type(name, pipe)
+
+
+def _line_type(name: str, pipe: CrossSection) -> Iterator[Coded]:
+    across, along = pipe.drag
+    yield f"  {name}:", pipe.source
+    yield f"    outer_diameter: {number(pipe.outer)}", "m"
+    if pipe.inner:
+        yield f"    inner_diameter: {number(pipe.inner)}", ""
+    yield f"    mass: {number(pipe.mass)}", "kg/m, empty, in air"
+    yield f"    EA: {number(pipe.EA)}", "N"
+    yield f"    EI: {number(pipe.EI)}", "N.m2"
+    if pipe.EI:
+        yield f"    GJ: {number(pipe.EI / (1.0 + NU_STEEL))}", "N.m2; counts where the line leaves its plane"
+    yield f"    drag: {{normal: {number(across)}, tangential: {number(along)}}}", ""
+    yield f"    added_mass: {{normal: {number(pipe.added_mass)}}}", ""
+    if pipe.wall:
+        yield f"    wall: {{yield_stress: {number(YIELD)}, design_factor: 0.67}}", "Pa; with it stress is told"
+
+
+def _riser(layout: LineLayout) -> Iterator[Coded]:
+    yield "riser:", ""
+    if any(pipe.inner for pipe in layout.pipes.values()):
+        yield f"  contents: {{density: {number(OIL)}}}", "kg/m3"
+    yield "  segments:", "from start to end; elements in m, or [first, last] of them"
+    yield from ((f"    - {_segment(cut)}", "") for cut in layout.cuts)
+    yield f"  start: {{position: {_place(layout.start)}}}", "free to turn"
+    if layout.tension is None:
+        yield f"  end: {{position: {_place(layout.end)}}}", "at the floater"
+        return
+    yield "  end:", "held sideways, pulled up with one force at any height"
+    yield f"    position: {_place(layout.end)}", ""
+    yield f"    tensioner: {{tension: {number(layout.tension, 3)}}}", "N"
+
+
+def _segment(cut: Cut) -> str:
+    first, last = number(cut.first, 3), number(cut.last, 3)
+    elements = first if first == last else f"[{first}, {last}]"
+    return f"{{line_type: {cut.line_type}, length: {_metres(cut.length)}, element_length: {elements}}}"
+
+
+def _seabed(ground: str | None) -> Iterator[Coded]:
+    if ground is not None:
+        yield BEDS[ground]
+
+
+def _stages(layout: LineLayout, sea: SeaState) -> Iterator[Coded]:
+    yield "stages:", ""
+    yield "  - {name: rest, kind: static}", ""
+    if not sea.Hs:
+        return
+    yield "  - name: storm", ""
+    yield "    kind: dynamic", ""
+    yield f"    duration: {number(WAVES * sea.Tp)}", "s; extremes of a storm take hours, or several seeds"
+    yield f"    time_step: {number(sea.Tp / STEPS, 3)}", ""
+    yield "    motion:", "stands for the floater's; {vessel: {rao: rao.csv, ...}} follows the waves"
+    yield f"      end: {{harmonic: {_harmonic(layout, sea)}}}", ""
+    yield f"output: {{interval: {number(sea.Tp / STEPS, 3)}}}", "s"
+
+
+def _harmonic(layout: LineLayout, sea: SeaState) -> str:
+    surge, period = number(RESPONSE * sea.Hs, 3), number(sea.Tp)
+    heave = surge if layout.tension is None else "0.0"
+    return f"{{amplitude: [{surge}, 0.0, {heave}], period: {period}, phase_deg: [90.0, 0.0, 0.0], ramp: {period}}}"
