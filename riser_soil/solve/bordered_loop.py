@@ -28,7 +28,7 @@ from riser_soil.solve.riser_loop import (
     StepNumbers,
     StopLimits,
     decide,
-    line_norm,
+    line_norms,
 )
 
 
@@ -67,10 +67,11 @@ def judge_with_border(
     """As `riser_loop.judge`, of all unknowns; OUTGROWN where something touches what is not watched or not reached."""
     if progress.ending[0] != GOING_ON:
         return
-    square = line_norm(dofs) ** 2
+    norm, apart = line_norms(forces, dofs)
+    square = norm**2
     for residual in border.residual:
         square += residual * residual
-    decide(math.sqrt(square), forces, dofs, limits, progress)
+    decide(math.sqrt(square), apart, forces, dofs, limits, progress)
     if room.found[LEFT] or room.met.any():
         progress.ending[0] = OUTGROWN
 

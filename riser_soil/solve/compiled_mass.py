@@ -85,12 +85,13 @@ class CompiledMass:
         """Bind the kernels of the mass at rest."""
         at = self._placed.at
         here, room, dofs, mass = map(Packed, (at, self._room, self._dofs, self._mass))
-        K, progress = Packed(self._room.K), Packed(NewtonProgress(np.zeros(1), np.zeros(2, dtype=np.int64)))
+        K, none = Packed(self._room.K), np.zeros(1)
+        progress = Packed(NewtonProgress(none, none, np.zeros(2, dtype=np.int64)))
         maps, weights = Packed(maps_for(self._line)._replace(shift_a=1.0)), Packed(LineWeights(1.0, 0.0))
         self._find_matrices = in_turn(
             *(bound(find_water, numbers, here) for numbers in inertial if type(numbers) in find_water.kernels),
             bound(put_maps, at, maps),
-            Bound(loop.clear_tangent, room),
+            Bound(loop.clear_tangent, K),
             *(bound(add_tangent, numbers, here, maps, weights, K) for numbers in inertial),
             Bound(weigh, room, mass),
         )

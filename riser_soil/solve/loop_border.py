@@ -10,10 +10,11 @@ from riser_soil.solve import riser_loop as loop
 class LoopBorder:
     """Nothing beside the line. One with unknowns of its own overrides all of this; kernels are bound to what they take.
 
-    knows_round_off: whether a residual can be told from its round-off by `riser_loop.judge_round_off`.
+    knows_round_off: whether a residual can be told from its round-off by `riser_loop.judge_round_off`; smooth: whether
+    nothing touches it.
     """
 
-    knows_round_off = True
+    knows_round_off = smooth = True
 
     def forces(self, at: Packed, forces: Packed) -> list[Bound]:
         """Kernels that add to the line's residual, and write that of the border."""

@@ -10,13 +10,15 @@ from riser_soil.core.part import State, Work
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import add_work, keep
 
+Numbers = tuple[Any, ...]
+
 
 class NumberedParts:
     """Parts with their numbers; t: the time [s] that what depends on it was written for last; committed: parts whose
     history no kernel keeps.
     """
 
-    def __init__(self, numbered: Sequence[tuple[Any, tuple[Any, ...]]]) -> None:
+    def __init__(self, numbered: Sequence[tuple[Any, Numbers]]) -> None:
         self.numbered, self.t = numbered, math.nan
         self.parts: list[LinePart] = [part for part, _ in numbered]
         self.numbers = [held for _, held in numbered]
@@ -35,7 +37,7 @@ class NumberedParts:
         if self.t != t:
             self.bring(t, t)
 
-    def in_groups(self, groups: str) -> list[tuple[Any, ...]]:
+    def in_groups(self, groups: str) -> list[Numbers]:
         """Numbers of the parts with forces in some of the groups."""
         return [held for part, held in self.numbered if set(part.traits.groups) & set(groups)]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -34,16 +33,15 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.loop_border import LoopBorder
+from riser_soil.solve.numbered_parts import NumberedParts, Numbers
 from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
-
-Numbers = tuple[Any, ...]
 
 
 class PackedRiser:
     """A line and its parts, whose arrays it shares; at, step, forces, dofs, room, progress: what the loop writes to.
 
-    placed: the line where it is accepted; numbers: of the parts; prescribed, levers (size,): of the line's dofs; most:
+    placed: the line where it is accepted; parts: that act on it; prescribed, levers (size,): of the line's dofs; most:
     iterations of a step; border: what stands beside them.
     """
 
@@ -51,7 +49,7 @@ class PackedRiser:
         self,
         line: Line,
         placed: PlacedLine,
-        numbers: Sequence[Numbers],
+        parts: NumberedParts,
         prescribed: BoolArray,
         levers: Array,
         most: int,
@@ -61,16 +59,16 @@ class PackedRiser:
         self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), matrix_room(line)
         self._begun = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
-        self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
+        self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(most + 1), np.zeros(2, dtype=np.int64))
         self._maps, self._weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
         self._weighed = Weights(0.0, 0.0, 0.0, 0.0)  # as in both
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
         self._border = LoopBorder() if border is None else border
-        self._bind(numbers)
-        self._bind_account(numbers)
+        self._bind(parts.numbers, parts.in_groups("E"))
+        self._bind_account(parts.numbers)
 
-    def _bind(self, numbers: Sequence[Numbers]) -> None:
-        """Bind the kernels of the loop to where they read and write."""
+    def _bind(self, numbers: Sequence[Numbers], touching: Sequence[Numbers]) -> None:
+        """Bind the kernels of the loop to where they read and write. touching: whose tangent may jump."""
         at, border = room_for(self._line), self._border
         self.at = at
         written = self.step, self.forces, self.dofs, self.room, self.progress
@@ -87,28 +85,38 @@ class PackedRiser:
             border.judge(forces, dofs, limits, progress),
         ]
 
-        def tangent(maps: Packed) -> list[Bound]:
+        others = [each for each in numbers if all(each is not one for one in touching)]
+        contact = len(touching) > 0 or not border.smooth
+        bulk = Packed(np.empty_like(self.room.K)) if contact else K
+
+        def bulk_tangent(maps: Packed) -> list[Bound]:
             return [
                 bound(put_maps, at, maps),
-                Bound(loop.clear_tangent, room),
-                *(bound(add_tangent, each, now, maps, weights, K) for each in numbers),
-                *border.tangent(now, K),
+                Bound(loop.clear_tangent, bulk),
+                *(bound(add_tangent, each, now, maps, weights, bulk) for each in others),
                 Bound(loop.weigh, forces, weights, room),
                 bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
-                Bound(loop.turn, room),
+                Bound(loop.turn, room, bulk),
             ]
 
-        at_held_rates = tangent(Packed(maps.value))  # without shifts
+        def contact_tangent(maps: Packed) -> list[Bound]:
+            added = (bound(add_tangent, each, now, maps, weights, K) for each in touching)
+            return [Bound(loop.begin_with, bulk, K), *added, *border.tangent(now, K)] if contact else []
+
+        held = Packed(maps.value)  # without shifts
         put_sizes = bound(put_magnitudes, at, Packed(self.dofs.sizes))
-        probe = [*at_held_rates, put_sizes, Bound(loop.judge_round_off, room, dofs, progress)]
-        put_tangent = [*tangent(maps), Bound(loop.fill, room, dofs)]
-        renew = [*put_tangent, border.factorise(room, dofs, progress)]
-        each = evaluate, probe if border.knows_round_off else [], renew, [border.improve(room, step, dofs)]
+        judged = Bound(loop.judge_round_off, room, dofs, progress)
+        probe = [*bulk_tangent(held), *contact_tangent(held), put_sizes, judged]
+        factors = [Bound(loop.fill, room, dofs), border.factorise(room, dofs, progress)]
+        renew = [*bulk_tangent(maps), *contact_tangent(maps), *factors]
+        touch = [*contact_tangent(maps), *factors] if contact else []
+        each = evaluate, probe if border.knows_round_off else [], renew, touch, [border.improve(room, step, dofs)]
         tables = (Packed(calls(*kernels)) for kernels in each)
         self._tangled = np.zeros(2, dtype=np.int64)
         solve = Bound(loop.solve_step, *tables, limits, progress)
         self._solve = in_turn(solve, bound(put_tangled, at, self._placed.base, Packed(self._tangled)))
-        self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
+        self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*renew[:-1], put_sizes)
+        self.renew_contact = in_turn(*touch)
         self.keep = in_turn(*(bound(keep, each, now) for each in numbers if type(each) in keep.kernels))
 
     def _bind_account(self, numbers: Sequence[Numbers]) -> None:

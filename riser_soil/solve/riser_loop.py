@@ -64,7 +64,12 @@ class MatrixRoom(NamedTuple):
 
 
 class StopLimits(NamedTuple):
-    """When to stop, see `NewtonSettings` and `Newton`."""
+    """When to stop, see `NewtonSettings` and `Newton`.
+
+    reuse: an iteration that leaves less than this share of the residual leaves its tangent to the next, but contact's
+    share, which is found anew, as contact has corners. Where the residual does not even fall to STALLED, so that it may
+    be probed, in the tangent's room, all is.
+    """
 
     tolerance: float
     floor: float
@@ -75,20 +80,29 @@ class StopLimits(NamedTuple):
 
 
 class NewtonProgress(NamedTuple):
-    """norms (most + 1,): of the residuals [N] so far; ending (2,): the outcome, and the iterations taken."""
+    """norms (most + 1,): of the residuals [N] so far; apart (most + 1,): of their share at nodes that nothing touches;
+    ending (2,): the outcome, and the iterations taken.
+    """
 
     norms: Array
+    apart: Array
     ending: IntArray
 
 
 @njit
 def solve_step(
-    evaluate: Calls, probe: Calls, renew: Calls, improve: Calls, limits: StopLimits, progress: NewtonProgress
+    evaluate: Calls,
+    probe: Calls,
+    renew: Calls,
+    touch: Calls,
+    improve: Calls,
+    limits: StopLimits,
+    progress: NewtonProgress,
 ) -> None:
-    """Solve a step. Kernels to call at each trial, where the residual's norm stays as it is, for a new tangent, and for
-    its answer to the residual.
+    """Solve a step. Kernels to call at each trial, where the residual's norm stays as it is, for a new tangent, for one
+    in which contact's share alone is new, and for its answer to the residual.
     """
-    norms, ending = progress
+    norms, _, ending = progress
     ending[0], ending[1] = GOING_ON, 0
     while True:
         call_each(evaluate)
@@ -97,8 +111,8 @@ def solve_step(
             call_each(probe)
         if ending[0] == GOING_ON:
             ending[0] = _given_up(norms, taken, limits)
-        if ending[0] == GOING_ON and (taken == 0 or not norms[taken] < limits.reuse * norms[taken - 1]):
-            call_each(renew)
+        if ending[0] == GOING_ON:
+            call_each(touch if keeps(progress, limits) else renew)
         if ending[0] != GOING_ON:
             return
         call_each(improve)
@@ -111,6 +125,18 @@ def _stays(norms: Array, taken: int) -> bool:
     if taken < 2:
         return False
     return norms[taken] > STALLED * norms[taken - 1] and norms[taken - 1] > STALLED * norms[taken - 2]
+
+
+@njit
+def keeps(progress: NewtonProgress, limits: StopLimits) -> bool:
+    """Whether the last iteration leaves its tangent, but contact's share, to the next: where it has left little of the
+    residual, or little of it where nothing touches.
+    """
+    norms, apart, ending = progress
+    taken = ending[1]
+    if taken == 0 or not norms[taken] < STALLED * norms[taken - 1]:
+        return False
+    return min(norms[taken] / norms[taken - 1], apart[taken] / norms[taken]) < limits.reuse
 
 
 @njit
@@ -164,15 +190,18 @@ def combine(forces: LineForces, step: StepNumbers, weights: LineWeights, dofs: D
 @njit
 def judge(forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress) -> None:
     """Write the norm of the residual, and whether it is small enough or none."""
-    decide(line_norm(dofs), forces, dofs, limits, progress)
+    norm, apart = line_norms(forces, dofs)
+    decide(norm, apart, forces, dofs, limits, progress)
 
 
 @njit
-def decide(norm: float, forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress) -> None:
-    """The same of a norm [N]."""
-    norms, ending = progress
+def decide(
+    norm: float, apart: float, forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress
+) -> None:
+    """The same of norms [N]."""
+    norms, _, ending = progress
     taken = ending[1]
-    norms[taken] = norm
+    norms[taken], progress.apart[taken] = norm, apart
     if not math.isfinite(norm):
         ending[0] = NOT_FINITE
     elif taken >= limits.least:
@@ -182,14 +211,18 @@ def decide(norm: float, forces: LineForces, dofs: Dofs, limits: StopLimits, prog
 
 
 @njit
-def line_norm(dofs: Dofs) -> float:
-    """Norm [N] of the residual of what is free, moments over the lever."""
-    square = 0.0
+def line_norms(forces: LineForces, dofs: Dofs) -> tuple[float, float]:
+    """Norm [N] of the residual of what is free, moments over the lever; and of its share where nothing touches."""
+    square, apart = 0.0, 0.0
     for n in range(dofs.fixed.shape[0]):
+        own, touched = 0.0, False
         for i in range(dofs.fixed.shape[1]):
+            touched |= forces.end[n, i] != 0.0
             if not dofs.fixed[n, i]:
-                square += (dofs.residual[n, i] / dofs.levers[n, i]) ** 2
-    return math.sqrt(square)
+                own += (dofs.residual[n, i] / dofs.levers[n, i]) ** 2
+        square += own
+        apart += 0.0 if touched else own
+    return math.sqrt(square), math.sqrt(apart)
 
 
 @njit
@@ -207,9 +240,15 @@ def _scale(forces: LineForces, dofs: Dofs) -> float:
 
 
 @njit
-def clear_tangent(room: MatrixRoom) -> None:
+def clear_tangent(K: Array) -> None:
     """Write zero."""
-    room.K[:] = 0.0
+    K[:] = 0.0
+
+
+@njit
+def begin_with(bulk: Array, K: Array) -> None:
+    """Write the element matrices of all but contact."""
+    K[:] = bulk
 
 
 @njit
@@ -224,9 +263,9 @@ def weigh(forces: LineForces, weights: LineWeights, room: MatrixRoom) -> None:
 
 
 @njit
-def turn(room: MatrixRoom) -> None:
+def turn(room: MatrixRoom, K: Array) -> None:
     """Add what the turning of the tangents gives to the element matrices."""
-    add_geometric(room.K, 1.0, room.turning, room.conjugate.shape[2])
+    add_geometric(K, 1.0, room.turning, room.conjugate.shape[2])
 
 
 @njit

@@ -25,7 +25,15 @@ from riser_soil.solve.element_forces import AcceptedForces, ElementForces
 from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.placed_line import PlacedLine
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
+from riser_soil.solve.solution import (
+    BESIDE_CONTACT,
+    NewtonSettings,
+    NotConvergedError,
+    Solution,
+    Step,
+    largest_at,
+    told,
+)
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -56,13 +64,13 @@ class RiserNewton:
         (line,) = system.model.lines
         assert isinstance(line, Line)
         self._line, most = line, settings.max_iterations
-        self._placed, numbers = PlacedLine(line), [held for _, held in parts]
-        self._riser = PackedRiser(line, self._placed, numbers, system.prescribed, system.levers, most)
+        self._placed, self._parts = PlacedLine(line), NumberedParts(parts)
+        self._riser = PackedRiser(line, self._placed, self._parts, system.prescribed, system.levers, most)
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._committed: Array | None = None  # the line's places, where its last step was solved here
         self._looked_at: State | None = None  # the accepted state whose forces were found last
         self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # how they tell their results, and where to
-        self._parts, self._free = NumberedParts(parts), np.flatnonzero(~system.prescribed)
+        self._free = np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
         self._no_work = {part.name: Work() for part, _ in parts}
         self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
@@ -207,11 +215,11 @@ class RiserNewton:
 
 @lru_cache(maxsize=8)
 def _limits(settings: NewtonSettings, smooth: bool, answers_load: bool) -> riser_loop.StopLimits:
-    """As in `Newton`: without contact the guess continues a smooth motion, whose tangent can be reused."""
+    """As in `Newton`: without contact the guess continues a smooth motion, whose factors can be reused."""
     return riser_loop.StopLimits(
         settings.tolerance,
         settings.floor,
-        settings.reuse if smooth else 0.0,
+        settings.reuse if smooth else BESIDE_CONTACT,
         settings.max_iterations,
         max(settings.least_iterations, int(smooth)),
         answers_load,

@@ -56,7 +56,7 @@ class SoilBorder(LoopBorder):
     the step accounted for last [J].
     """
 
-    knows_round_off = False
+    knows_round_off = smooth = False
 
     def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchNumbers) -> None:
         self._line, self._contact, self._soil, self._top = line, contact, soil, soil.top

@@ -21,6 +21,7 @@ from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import CONVERGED, StopLimits
@@ -57,7 +58,7 @@ class Compiled:
 
     def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
-        numbers, free = [part.numbers() for part in parts], np.zeros(line.size, dtype=bool)
+        numbers, free = NumberedParts([(part, part.numbers()) for part in parts]), np.zeros(line.size, dtype=bool)
         self.riser = PackedRiser(line, PlacedLine(line), numbers, free, np.ones(line.size), most=1)
         for part in parts:
             part.renew_numbers(before.t, state.t)
@@ -205,12 +206,20 @@ def require_contact_results(stage: TimedStage) -> None:
             np.testing.assert_allclose(getattr(found, name), values, rtol=0.0, atol=1e-9 * scale, err_msg=name)
 
 
+def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
+    """As many as SNES takes; some more with contact, whose share of the tangent may then be all that is found anew."""
+    if compiled.system.smooth:
+        assert compiled.iterations == snes.iterations
+    else:
+        assert snes.iterations <= compiled.iterations <= 1.2 * snes.iterations
+
+
 def require_steps_of_snes(case: str) -> None:
     """Iterations, states and energy turned over of a scene's steps by the loop are those by SNES."""
     compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
     assert isinstance(compiled.newton, RiserNewton)
     assert isinstance(snes.newton, Newton)
-    assert compiled.iterations == snes.iterations
+    require_iterations(compiled, snes)
     place, expected_place = (stage.assembly.line.positions3(stage.stepper.before) for stage in (compiled, snes))
     np.testing.assert_allclose(place, expected_place, rtol=0.0, atol=1e-9)
     found, expected = compiled.stepper, snes.stepper

@@ -6,21 +6,30 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_banded
 
 from benchmarks.stage import last_stage
+from riser_soil.contact.law import Penalty
+from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core import banded
+from riser_soil.core.arrays import Array
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
+from riser_soil.seabed.grounds import Plane
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.riser_loop import GOING_ON, NewtonProgress, StopLimits, keeps
 from riser_soil.solve.solution import NotConvergedError
+from tests.support.dense_chain import tangent
+from tests.support.differences import WEIGHTS, error
 from tests.support.riser_loop import (
     CASES,
     SCENES,
+    Compiled,
     all_parts,
     require_kernels_of_parts,
     require_mass,
@@ -28,7 +37,7 @@ from tests.support.riser_loop import (
     require_tangles,
     walked,
 )
-from tests.support.sample_line import sample
+from tests.support.sample_line import START, sample
 
 
 def test_kernels_in_a_plane_are_those_of_the_parts() -> None:
@@ -137,3 +146,58 @@ def test_a_step_that_fails_says_why_as_snes_does() -> None:
             stage.walk(200)
         told.append(str(failure.value))
     assert told[0] == told[1]
+
+
+@pytest.mark.parametrize(
+    ("norms", "apart", "kept"),
+    [
+        ([1.0], [1.0], False),
+        ([1.0, 0.02], [1.0, 0.02], True),  # it falls fast
+        ([1.0, 0.2], [1.0, 0.2], False),
+        ([1.0, 0.2], [1.0, 0.002], True),  # contact alone keeps it from falling
+        ([1.0, 0.6], [1.0, 0.002], False),  # nor does it fall
+        ([1.0, np.nan], [1.0, np.nan], False),
+    ],
+)
+def test_the_tangent_beside_contact_is_kept_while_little_is_left_there(
+    norms: list[float], apart: list[float], kept: bool
+) -> None:
+    progress = NewtonProgress(np.array(norms), np.array(apart), np.array([GOING_ON, len(norms) - 1]))
+    assert keeps(progress, StopLimits(0.0, 0.0, 0.03, 20, 0, True)) == kept
+
+
+def test_contact_alone_is_found_anew_beside_a_kept_tangent() -> None:
+    """The sum of contact's tangent where the line is, and of all others' where it was; of translations, as what turns
+    with the ends counts among the others.
+    """
+    at = sample(2)
+    others: list[Any] = [at.beam(), at.inertia()]
+    places = np.arange(at.line.size) % 3 < 2
+    contact = SeabedContact(at.line, np.full(at.line.length.size, 0.1), Plane.level(START[2]), Penalty(1e6, 0.3))
+    first, moved = at.state(1), at.state(1)
+    compiled = Compiled(at, [*others, contact], at.state(3), first)
+    change = 0.1 * np.sin(np.arange(at.line.nodes))
+    for u in (compiled.riser.step.u, at.line.nodal(moved.u)):
+        u[:, 1] += change
+    compiled.riser.evaluate()
+    compiled.riser.renew_contact()
+    found, own, stale, rest = (
+        matrix[places][:, places]
+        for matrix in (
+            assembled(compiled.riser.room.K),
+            tangent([contact], moved, WEIGHTS),
+            tangent([contact], first, WEIGHTS),
+            tangent(others, first, WEIGHTS),
+        )
+    )
+    assert error(found, rest + own) < 1e-12
+    assert error(found, rest + stale) > 1e-4
+
+
+def assembled(K: Array) -> Array:
+    """A chain's matrix (n, n) from those of its elements (ne, m, m)."""
+    ne, m, _ = K.shape
+    out = np.zeros(2 * ((ne + 1) * (m // 2),))
+    for e in range(ne):
+        out[e * m // 2 : e * m // 2 + m, e * m // 2 : e * m // 2 + m] += K[e]
+    return out
