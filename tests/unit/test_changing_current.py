@@ -25,7 +25,7 @@ from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.on_ranks import ROOT
 from tests.support.riser_scenes import dynamic, riser_scene, stage_histories
 from tests.support.sample_line import sample
-from tests.unit.test_water_scene import MIDDLE, scene_in
+from tests.support.water_scenes import MIDDLE, scene_in
 
 LEVEL, TIME = np.array([-100.0, -20.0, 0.0]), np.array([10.0, 30.0, 35.0])
 VELOCITY = np.array(
@@ -161,7 +161,8 @@ def test_bad_input_is_told_in_a_line(current: dict[str, Any], told: str) -> None
 
 def test_a_steady_current_imports_nothing_of_it() -> None:
     code = (
-        "import sys; from tests.unit.test_water_scene import *; s = scene_in({'current': CURRENT});"
+        "import sys; from riser_soil.assembly.sea import water_of; from tests.support.water_scenes import *;"
+        "s = scene_in({'current': CURRENT});"
         "water_of(s, s.stages[1])(0.0, MIDDLE); print('riser_soil.sea.changing_current' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)

@@ -31,7 +31,7 @@ from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import sample
-from tests.unit.test_water_scene import scene_in
+from tests.support.water_scenes import scene_in
 
 G, T, LEVEL, DIRECTION = 9.81, 10.0, 7.0, 0.6
 CASES = [

@@ -14,25 +14,12 @@ from riser_soil.assembly.sea import components_of, water_of, wave_age, wave_cloc
 from riser_soil.checks.wave_plausibility import wave_warnings
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
-from riser_soil.scene.reader import read_scene, scene_from_mapping
-from riser_soil.scene.scene import Scene
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from riser_soil.scene.reader import read_scene
+from tests.support.riser_scenes import dynamic, static
+from tests.support.water_scenes import CURRENT, MIDDLE, scene_in
 
-PIPE = {"outer_diameter": 0.3, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4, "GJ": 4.0e4}
 AIRY = {"airy": {"height": 3.0, "period": 8.0}}
-CURRENT = {"profile": [[0.0, 0.2, 0.0], [100.0, 1.0, 0.0]]}
-STAGES = (static("lay"), dynamic(20.0, 0.1, "calm"), static("rest"), dynamic(30.0, 0.1, "storm"))
 ROOT = Path(__file__).parents[2]
-MIDDLE = np.array([[10.0, 0.0, 50.0]])
-
-
-def scene_in(water: Any, *stages: Any, **more: Any) -> Scene:
-    ends = {"start": prescribed(0.0, 0.0, 1.0), "end": prescribed(80.0, 0.0, 100.0)}
-    given = {"gravity": 9.81, "water": water, **more}
-    return scene_from_mapping(
-        riser_scene(*(stages or STAGES), pipe=PIPE, length=148.0, elements=10, **ends)
-        | {key: value for key, value in given.items() if value is not None}
-    )
 
 
 @pytest.mark.parametrize("water", [None, {}, {"density": 1000.0}])
