@@ -1,4 +1,4 @@
-"""The demo on a block: seconds by part, and a coupled Newton iteration against one bare factorisation of the same matrix."""
+"""The demo on a block: seconds by part, and a coupled Newton iteration against a bare factorisation of its matrix."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="session")
 def on_block(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> WatchedRun:
-    """The touchdown demo on a block, some 20 s of computing, run once: xdist's other processes wait for the first asking."""
+    """The touchdown demo on a block, some 20 s of computing, once: xdist's other processes wait for the first."""
     own = tmp_path_factory.getbasetemp()
     place = (own.parent if hasattr(request.config, "workerinput") else own) / "on_block"
     try:
