@@ -63,7 +63,7 @@ class Current(BaseModel):
 
     model_config = FROZEN
 
-    profile: Profile | None = None
+    profile: Profile | None = Field(default=None, description="of a steady current: velocity by height")
     history: Annotated[tuple[CurrentAtTime, ...], Field(min_length=2)] | None = Field(
         default=None,
         description="in place of profile: a current that changes in time, [{time, profile}, ...], a cubic spline in "

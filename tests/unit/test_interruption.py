@@ -207,7 +207,7 @@ MESHING = """
 import os, signal, sys
 from riser_soil.__main__ import main
 
-sys.argv = ["riser-soil", "run", "demos/touchdown_clay/scene.yaml", "-o", sys.argv[1]]
+sys.argv = ["riser-soil", "run", "tests/scenes/touchdown_on_block.yaml", "-o", sys.argv[1]]
 
 def interrupt(frame, event, argument):
     if event == "call" and frame.f_code.co_name == "BEGIN" and "riser_soil" in frame.f_code.co_filename:

@@ -29,7 +29,7 @@ SCENES = {
     "catenary": ROOT / "tests/scenes/catenary.yaml",
     "stages": ROOT / "tests/scenes/catenary-three-stages.yaml",
     "tank": ROOT / "tests/scenes/tank.yaml",
-    "clay": ROOT / "demos/touchdown_clay/scene.yaml",
+    "clay": ROOT / "tests/scenes/touchdown_on_block.yaml",
 }
 
 
