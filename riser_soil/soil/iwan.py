@@ -27,9 +27,10 @@ if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array
-    from riser_soil.soil import mandel
+    from riser_soil.soil import kernels, mandel
 else:
-    np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
+    np, kernels = LazyModule("numpy"), LazyModule("riser_soil.soil.kernels")
+    mandel = LazyModule("riser_soil.soil.mandel")
 
 SMALLEST, LARGEST = 0.05, 200.0  # corners of the hyperbola, over su/G0
 STRAIGHT = 1e-12  # change of slope over G0 that is none
@@ -170,7 +171,7 @@ class Overlay:
         moduli = mandel.stiffness(self.bulk, np.einsum("nk,nk->n", self.moduli, shrink))
         yields = shrink < 1.0
         weight = np.where(yields, 3.0 * self.moduli * (shrink - slope) / np.where(yields, q, 1.0) ** 2, 0.0)
-        moduli -= np.einsum("nk,nki,nkj->nij", weight, trial, trial, optimize=True)
+        kernels.subtract_products(weight, trial, moduli)
         return moduli
 
     def overstress(self, stress: Array) -> Array:

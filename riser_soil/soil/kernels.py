@@ -140,3 +140,16 @@ def _product(weight: float, C: Array, B: Array, CB: Array) -> None:
             if factor != 0.0:
                 for j in range(row.shape[0]):
                     row[j] += factor * B[m, j]
+
+
+@njit
+def subtract_products(weights: Array, tensors: Array, out: Array) -> None:
+    """Subtract Σ w a⊗a, of weights (n, N) and tensors a (n, N, 6), from out (n, 6, 6)."""
+    for n in range(weights.shape[0]):
+        for k in range(weights.shape[1]):
+            w, a = weights[n, k], tensors[n, k]
+            if w == 0.0:
+                continue
+            for i in range(6):
+                for j in range(6):
+                    out[n, i, j] -= w * a[i] * a[j]
