@@ -23,7 +23,17 @@ from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.failed_step import place_of_largest
 from riser_soil.solve.line_search import step_length
-from riser_soil.solve.loops import CONVERGED, DIVERGED, ITERATING, LOOSE, NOT_FINITE, OUTGROWN, ChainLoop, Loop
+from riser_soil.solve.loops import (
+    CONVERGED,
+    DIVERGED,
+    ITERATING,
+    LOOSE,
+    NOT_FINITE,
+    OUTGROWN,
+    TOO_MANY,
+    ChainLoop,
+    Loop,
+)
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
@@ -37,6 +47,7 @@ TIGHT = 1e-10  # least share of the residual that a linear system solved by iter
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
+PATIENCE, LONGEST = 10, 4  # iterations in which a static residual halves that goes on; times as many at most
 
 
 class Newton:
@@ -163,13 +174,15 @@ class Newton:
         return state, self._step.scheme.combine(self._forces, self._past)
 
     def _iterate(self) -> str:
-        """Iterate, from wherever the pattern was outgrown with a wider one, and from wherever factors found too little
-        room with more; "" where that converges, else why not.
+        """Iterate, from wherever the pattern was outgrown with a wider one, from wherever factors found too little
+        room with more, and on where a static residual still falls; "" where that converges, else why not.
         """
         while True:
             ending = self._run()
             if ending == OUTGROWN:
                 self._renew(self._balanced)
+            elif ending == TOO_MANY and self._still_falls():
+                self._most += self.settings.max_iterations
             elif not self.loop.again:
                 self.iterations += self._taken
                 return "" if ending == CONVERGED else self._reason(ending)
@@ -178,9 +191,15 @@ class Newton:
     def _run(self) -> str:
         """Iterate until that converges, the pattern is outgrown or it fails: how it ends."""
         began, counted = time.perf_counter(), self.system.clock.total
-        ending = self.loop.iterate(self._x, self.settings.max_iterations - self._taken)
+        ending = self.loop.iterate(self._x, self._most - self._taken)
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         return ending
+
+    def _still_falls(self) -> bool:
+        """Whether a static step nears its end, if slowly, as where stiff ground opens and closes point after point."""
+        before, lately = self._norms[:-PATIENCE], self._norms[-PATIENCE:]
+        limit = LONGEST * self.settings.max_iterations
+        return self._weights.inertia == 0.0 and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
 
     @property
     def _taken(self) -> int:
@@ -252,6 +271,7 @@ class Newton:
 
     def _begin(self, step: Step) -> None:
         self._step, self._norms, self._first = step, list[float](), 0
+        self._most = self.settings.max_iterations
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
         still = self._still
@@ -358,7 +378,7 @@ class Newton:
 
     def _next_tangent(self) -> str:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
-        if self._taken >= self.settings.max_iterations or self._reusable():
+        if self._taken >= self._most or self._reusable():
             return ITERATING
         self._trial(self._x)
         self._assemble(self._balanced)

@@ -14,12 +14,12 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
-from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import LAID_IN, run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, heave, touchdown
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_on_soil import CLAY, ELASTIC, MIDDLE, D, falling
 
@@ -178,3 +178,15 @@ def forces(scene: Mapping) -> Array:
     stage: Stage = assembly.scene.stages[0]
     take(assembly, stage, watch=lambda _, step: found.append(-float(contact.force_on_soil(step.solution.state)[2])))
     return np.array(found)
+
+
+@pytest.mark.parametrize("su", [5.0e5, 2.0e6])
+def test_clay_as_stiff_as_rock_takes_the_riser_by_newton_alone(su: float, tmp_path: Path) -> None:
+    """It opens and closes point after point: 30 and 46 iterations in the first load step, whose residual falls on. The
+    largest moment, in the sag bend, is that on softer clay.
+    """
+    only_laid = "stages=[{name: lay, kind: static}]"
+    run(read_scene(ON_BLOCK, [only_laid, f"soil.law.su={su}", "soil.law.su_gradient=0.0"]), tmp_path)
+    (lay,) = Run(tmp_path).summary["stages"]
+    assert (lay["relaxations"], lay["step_cuts"], lay["steps"]) == (0, 0, LAID_IN)
+    assert lay["final"]["max_bending_moment"]["value"] == pytest.approx(2.1404e3, rel=1e-3)
