@@ -36,6 +36,16 @@ def out_of_reach(bars: Sequence[ErrorBar], accuracy: float) -> list[str]:
     return [source for source, most in BEYOND.items() if found.get(source, 1.0) > most]
 
 
+def too_dear(bars: Sequence[ErrorBar], accuracy: float, runs: int) -> float:
+    """How many times as many elements and steps all bars ask for together, where so many runs, each at most so much
+    finer as `MOST`, don't get there in mesh or time; 0 where they do.
+    """
+    found = {source: factor for source, factor in _asked(bars, accuracy).items() if source in ("mesh", "time")}
+    if all(factor <= MOST[source] ** runs for source, factor in found.items()):
+        return 0.0
+    return math.prod(found.values())
+
+
 def _asked(bars: Sequence[ErrorBar], accuracy: float) -> Factors:
     """The largest factors that any of the quantities asks for, however large."""
     found: dict[str, float] = {}

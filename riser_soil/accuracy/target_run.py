@@ -2,7 +2,7 @@
 
 A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
 bars are left is foretold from the trial before, and measured by companions of the run where that is doubtful
-(`needed.doubtful`). Where they miss the accuracy, a finer run follows.
+(`needed.doubtful`). Where they miss the accuracy, a finer run follows, unless the runs that are left would, too.
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ from riser_soil.accuracy.barred_run import LEFT, values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.first_setting import first_setting
 from riser_soil.accuracy.knobs import knobs_of, settings_told
-from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, out_of_reach
+from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, out_of_reach, too_dear
 from riser_soil.accuracy.screen import print_bars
 from riser_soil.accuracy.search import TriedSetting, finer, measured, trial
 from riser_soil.assembly.packages import communicator_of
+from riser_soil.checks.limits import in_words
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
 from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
@@ -71,6 +72,9 @@ def _run_until(
             break
         if lost := out_of_reach(last.bars, accuracy):
             return last, f"; what the {lost[0]} asks for is out of reach"
+        if times := too_dear(last.bars, accuracy, RUNS - 1 - number):
+            taken = in_words(times * last.seconds)
+            return last, f"; to reach it would take at least {times:.0f} times as long, {taken}"
     return last, ""
 
 

@@ -161,6 +161,20 @@ def test_accuracy_that_is_not_reached_is_told(tmp_path: Path, monkeypatch: pytes
     assert told["finished"]
 
 
+def test_an_impact_that_hardly_converges_ends_the_search_early(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With what it would take, as the run that is left would not reach it."""
+    monkeypatch.setattr(target_run, "RUNS", 2)
+    scene = scene_from_mapping(asking("cantilever under a sudden load", "1 %"))
+    with pytest.raises(AccuracyError, match=r"; to reach it would take at least \d+ times as long, .*run has that"):
+        run_to_accuracy(scene, tmp_path / "run")
+    told, elements = summary(tmp_path / "run"), read_scene(tmp_path / "run" / "scene.yaml").riser.segments
+    assert told["accuracy"]["reached"] is False
+    assert told["finished"]
+    assert sum(part.elements or 0 for part in elements) < 200  # a second run has some 400
+
+
 def test_a_run_too_large_to_follow_leaves_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     name, limits = "cantilever under a sudden load", [SceneError("needs 4 TB of memory"), None]
 

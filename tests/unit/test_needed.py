@@ -9,7 +9,7 @@ import pytest
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues
 from riser_soil.accuracy.extremes import alone
 from riser_soil.accuracy.headlines import Headline
-from riser_soil.accuracy.needed import doubtful, expected, largest, needed, out_of_reach
+from riser_soil.accuracy.needed import doubtful, expected, largest, needed, out_of_reach, too_dear
 
 VALUE = 1000.0
 ORDERS = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}  # in which shares fall
@@ -80,6 +80,18 @@ def test_soil_that_would_have_to_be_far_finer_stays_as_it_is() -> None:
     assert not out_of_reach([bar(soil=0.015)], 0.01)
     assert set(needed([bar(soil=0.03, time=0.03)], 0.01)) == {"time"}
     assert out_of_reach([bar(soil=0.03, time=0.03)], 0.01) == ["soil"]
+
+
+def test_what_the_runs_that_are_left_can_not_reach_is_too_dear() -> None:
+    """By the elements and the steps that it asks for, four times as many a run; soil has limits of its own."""
+    aim = MARGIN * 0.01 - SMALLEST
+    for given in (bar(mesh=15.0 * aim), bar(time=15.0 * aim), bar(soil=1.0)):
+        assert too_dear([given], 0.01, 1) == 0.0
+    far = bar(time=100.0 * aim)
+    assert too_dear([far], 0.01, 1) == pytest.approx(10.0)
+    assert too_dear([far], 0.01, 2) == 0.0
+    both = [bar(mesh=100.0 * aim), far]
+    assert too_dear(both, 0.01, 1) == pytest.approx(100.0)
 
 
 def test_unknown_bars_ask_for_a_finer_setting() -> None:
