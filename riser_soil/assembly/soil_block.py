@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import assert_never
 
+from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed_features import Groove, Trench
 from riser_soil.scene.soil import Block, GeneratedMesh, SoilScene
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.grading import BlockSpec, Point
 from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec, TrenchSpec
+
+NONE = 1e-9  # slope in plan, and part of the block's width, that is none
 
 
 def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> BlockSpec:
@@ -29,7 +32,31 @@ def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> Block
         strip=soil.mesh.strip,
         boundaries=boundaries(soil.layers or ()),
         feature=_feature_of(scene, soil.block),
+        half=not why_all(scene, soil),
     )
+
+
+def why_all(scene: Scene, soil: SoilScene) -> str:
+    """Why all of the soil is computed; empty where half is, as it and the riser are symmetric about the riser's plane.
+    Sizes are chosen.
+    """
+    plane = vertical_plane(scene)
+    across = int(abs(plane.direction[1]) < abs(plane.direction[0]))
+    if soil.symmetry == "whole":
+        return "soil.symmetry is whole"
+    if not isinstance(soil.mesh, GeneratedMesh) or soil.mesh.kind != "hex":
+        return "it is no block of hexahedra"
+    if soil.is_linear:
+        return "it is linear, and may be condensed"
+    if resolved_dimension(scene) == 3:
+        return "the riser moves in three dimensions"
+    if abs(plane.direction[across]) > NONE:
+        return "the riser runs across x and y"
+    assert isinstance(soil.block, Block)
+    low, high = (soil.block.x, soil.block.y)[across]
+    if abs(0.5 * (low + high) - plane.origin[across]) > NONE * (high - low):
+        return f"the riser does not lie in the middle of soil.block.{'xy'[across]}"
+    return ""
 
 
 def _feature_of(scene: Scene, block: Block) -> FeatureSpec | None:

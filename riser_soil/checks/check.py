@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.condensation import why_whole
 from riser_soil.assembly.packages import communicator_of
+from riser_soil.assembly.soil_block import why_all
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
@@ -74,6 +75,7 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
     if assembly.soil is not None:
         cells = assembly.comm.allreduce(assembly.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(assembly.comm, assembly.soil.field)} unknowns"
+        yield from _computed(assembly.scene)
         yield from _condensed(assembly, assembly.soil)
         yield from resolution(assembly)
         from riser_soil.checks.soil_edge import edge_report
@@ -83,6 +85,13 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
         yield from edge_report(assembly)
     for ground, stiffness in assembly.contact_stiffness.items():
         yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
+
+
+def _computed(scene: Scene) -> Iterator[str]:
+    """Why all of the soil is computed, where it is."""
+    assert scene.soil is not None
+    if why := why_all(scene, scene.soil):
+        yield f"soil: all of it is computed, not half: {why}"
 
 
 def _condensed(assembly: Assembly, soil: Soil) -> Iterator[str]:

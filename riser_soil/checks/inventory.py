@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.assembly.pressures import no_wall_tension
+from riser_soil.assembly.soil_block import why_all
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
 from riser_soil.scene.plane import resolved_dimension
@@ -19,7 +20,7 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 def left_out(scene: Scene) -> dict[str, str]:
     """Parts and results that the scene leaves out, each with its reason."""
-    told = {**_reasons(scene), "wall tension": no_wall_tension(scene)}
+    told = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": no_wall_tension(scene)}
     return {name: reason for name, reason in told.items() if reason}
 
 
@@ -97,6 +98,11 @@ def _no_new_mesh(scene: Scene) -> str:
     if scene.soil.strain == "small":
         return "soil.strain: small keeps the cells where they are"
     return "" if scene.soil_moves else "at contact.method: node cells stay where they are"
+
+
+def _no_half(scene: Scene) -> str:
+    """The scene's sizes are chosen."""
+    return "by symmetry" if scene.soil is not None and not why_all(scene, scene.soil) else ""
 
 
 def _no_friction(scene: Scene, ground: str) -> str:

@@ -66,6 +66,9 @@ def csr_pattern(keys: IntArray, first: int, count: int, n: int) -> tuple[IntArra
 
 @njit
 def add_at(data: Array, places: IntArray, values: Array) -> None:
-    """Add values to those at places, which may be the same."""
+    """Add values to those at places, which may be the same; at -1 - place they are taken off."""
     for k in range(places.size):
-        data[places[k]] += values[k]
+        if places[k] >= 0:
+            data[places[k]] += values[k]
+        else:
+            data[-1 - places[k]] -= values[k]

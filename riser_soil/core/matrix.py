@@ -64,7 +64,8 @@ class Matrix:
         if numbering.comm.size == 1:
             keys = np.union1d(keys, np.arange(n) * (n + 1))
         self._data, self.changes = np.zeros(len(keys) + 1), 0
-        self._places = {key: _places(keys, rows[key], cols[key], n) for key in self.values}
+        minus = {key: _is_minus(numbering, block) for key, block in blocks.items()}
+        self._places = {key: _places(keys, rows[key], cols[key], n, minus[key]) for key in self.values}
         self.stored = _store(numbering, keys, symmetric, self._data[:-1])
 
     @property
@@ -129,6 +130,12 @@ def _in_system(numbering: Numbering, local: IntArray) -> IntArray:
     return np.ascontiguousarray(rows, dtype=np.int32)
 
 
+def _is_minus(numbering: Numbering, block: MatrixBlock) -> tuple[BoolArray, BoolArray]:
+    """Which rows (m, nr) and columns (m, nc) of blocks are minus what the system has."""
+    minus = np.append(numbering.sign < 0.0, False)
+    return minus[block.rows], minus[block.cols]
+
+
 def _keys(rows: IntArray, cols: IntArray, n: int) -> IntArray:
     """Sorted distinct entries row·n + col of a batch of blocks, found some of them at a time."""
     found = [_distinct(rows[some], cols[some], n) for some in _some_at_a_time(len(rows))]
@@ -157,10 +164,16 @@ def _merge(parts: Iterable[IntArray]) -> IntArray:
     return merged
 
 
-def _places(keys: IntArray, rows: IntArray, cols: IntArray, n: int) -> IntArray:
-    """Position of every block entry in the CSR values; absent entries go to a slot behind the last."""
+def _places(
+    keys: IntArray, rows: IntArray, cols: IntArray, n: int, minus: tuple[BoolArray, BoolArray]
+) -> IntArray:
+    """Position of every block entry in the CSR values, -1 less it where the entry is minus that; absent entries go to a
+    slot behind the last.
+    """
     places = np.empty((*rows.shape, cols.shape[1]), dtype=np.int32)
     for some in _some_at_a_time(len(rows)):
         wanted, there = _entries(rows[some], cols[some], n)
         places[some] = np.where(there, np.searchsorted(keys, wanted), len(keys))
+        turned = minus[0][some][:, :, None] != minus[1][some][:, None, :]
+        places[some] = np.where(turned, -1 - places[some], places[some])
     return places.reshape(-1)

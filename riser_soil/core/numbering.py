@@ -1,26 +1,29 @@
 """Global numbering of the free dofs of all fields, and exchange between the system's unknowns and local arrays.
 
 Every rank holds local arrays over its fields' entries: owned ones, copies of other ranks' (ghosts), and second views of
-the same dof (the soil's surface). Prescribed entries have no number: the system holds no row that it doesn't solve for.
-The system's unknowns, and all that has its rows, are arrays over the rows that this rank owns.
+the same dof (the soil's surface), in a mirror also of minus that dof. Prescribed entries have no number: the system
+holds no row that it doesn't solve for. The system's unknowns, and all that has its rows, are arrays over the rows that
+this rank owns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.communicator import Communicator, largest_of
-from riser_soil.core.part import Field
+from riser_soil.core.part import Field, MirroredField
 
 
 class Numbering:
     """Numbers of local entries in the monolithic system.
 
     size: entries of a local array. free: rows of the system, all ranks. owned: rows that this rank owns.
-    index (size,): row of each local entry, -1 where prescribed. bounds (ranks + 1,): the ranks' first rows, and `free`.
+    index (size,): row of each local entry, -1 where prescribed. sign (size,): -1. of entries that are minus what their
+    row has, else 1. bounds (ranks + 1,): the ranks' first rows, and `free`.
     """
 
     def __init__(self, comm: Communicator, fields: Sequence[Field]) -> None:
@@ -28,12 +31,13 @@ class Numbering:
         self.size = _set_offsets(fields)
         index, self.owned = _number(comm, fields, self.size)
         self.index: IntArray = index
+        self.sign: Array = np.concatenate([_sign(field) for field in fields])
         self.bounds: IntArray = np.cumsum([0, *comm.allgather(self.owned)])
         self.free = int(self.bounds[-1])
         self.first = first = int(self.bounds[comm.rank])
         self._free_local = np.flatnonzero(index >= 0)
-        self._rows = index[self._free_local]
-        self._owned_local = np.flatnonzero((index >= first) & (index < first + self.owned))
+        self._rows, self._signs = index[self._free_local], self.sign[self._free_local]
+        self._owned_local = np.flatnonzero((index >= first) & (index < first + self.owned) & (self.sign > 0.0))
         self._owned_rows = index[self._owned_local] - first
         self._scatter = None
         if comm.size > 1:
@@ -53,11 +57,17 @@ class Numbering:
 
     def to_local(self, x: Array, out: Array) -> None:
         """Copy the system's unknowns (owned,) into the free entries of a local array; collective."""
-        out[self._free_local] = x[self._rows] if self._scatter is None else self._scatter.from_all(x)
+        out[self._free_local] = self._signs * (x[self._rows] if self._scatter is None else self._scatter.from_all(x))
 
     def add_to_global(self, values: Array) -> Array:
         """Sums (owned,) of local contributions in their rows; entries of prescribed dofs stay behind; collective."""
-        mine = values[self._free_local]
+        return self._summed(self._signs * values[self._free_local])
+
+    def sizes_to_global(self, sizes: Array) -> Array:
+        """The same of sizes, which have no sign."""
+        return self._summed(sizes[self._free_local])
+
+    def _summed(self, mine: Array) -> Array:
         if self._scatter is not None:
             return self._scatter.summed(mine)
         return np.asarray(np.bincount(self._rows, mine, minlength=self.owned), dtype=float)
@@ -65,6 +75,10 @@ class Numbering:
     def destroy(self) -> None:
         if self._scatter is not None:
             self._scatter.destroy()
+
+
+def _sign(field: Field) -> Array:
+    return cast(MirroredField, field).sign if hasattr(field, "sign") else np.ones(field.size)
 
 
 def _set_offsets(fields: Sequence[Field]) -> int:

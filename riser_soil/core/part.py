@@ -189,7 +189,10 @@ class Part(Protocol):
 
 
 class Field(Protocol):
-    """Owner of dofs. Fields of one `space` share a numbering (the soil and its surface as seen by contact)."""
+    """Owner of dofs. Fields of one `space` share a numbering (the soil and its surface as seen by contact).
+
+    A field may view dofs in a mirror, see `MirroredField`.
+    """
 
     name: str
     space: str
@@ -224,6 +227,14 @@ class Field(Protocol):
     def describe(self, entry: int) -> str:
         """Description of a local entry's place, for messages."""
         ...
+
+
+class MirroredField(Field, Protocol):
+    """A field some of whose entries view others in a mirror. sign (size,): -1. of those that are minus the dof that
+    they view, else 1.
+    """
+
+    sign: Array
 
 
 class LineField(Field, Protocol):

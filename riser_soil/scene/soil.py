@@ -192,6 +192,11 @@ class SoilScene(BaseModel):
         description="block: one continuum; sections: independent slices across the riser in plane strain, as long as "
         "the cells of the block along it",
     )
+    symmetry: Literal["auto", "whole"] = Field(
+        default="auto",
+        description="auto: half of a block of hexahedra is computed, where it and the riser are symmetric about the "
+        "riser's plane; whole: all of it is",
+    )
     strain: Literal["auto", "small", "large"] = Field(
         default="auto",
         description="whether cells move with the soil (large) or stay where they were (small); auto: large where the "

@@ -14,8 +14,8 @@ class SoilField:
     """Field "soil": three displacements at every node of this rank, ghosts included.
 
     The bottom is fixed, the block's upright sides slide on rollers (no normal displacement), the top is free.
-    total (size,): committed displacement since the geostatic start [m]. section (size,): number of the independent
-    section that each entry lies in; None where the soil has none.
+    Nodes behind a mirror view their twins' dofs. total (size,): committed displacement since the geostatic start [m].
+    section (size,): number of the independent section that each entry lies in; None where the soil has none.
     """
 
     name = "soil"
@@ -26,8 +26,10 @@ class SoilField:
         self.points = nodes.points
         self.size = 3 * len(nodes.points)
         self.offset = 0
-        self.global_index: IntArray = components(nodes.number)
-        self.owned: BoolArray = np.arange(self.size) < 3 * nodes.owned
+        twins, self.sign = grid.twins(), grid.signs().ravel()
+        self.global_index: IntArray = components(nodes.number[twins])
+        own = (twins == np.arange(len(twins))) & (np.arange(len(twins)) < nodes.owned)
+        self.owned: BoolArray = np.repeat(own, 3)
         self.prescribed: BoolArray = grid.supported(nodes.points).ravel()
         self.section = None if grid.section is None else np.repeat(grid.section, 3)
         self.total: Array = np.zeros(self.size)

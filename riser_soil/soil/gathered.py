@@ -8,9 +8,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.soil.field import components
 from riser_soil.soil.grid import DistributedMesh
+from riser_soil.soil.mirror import Unfolding
 from riser_soil.soil.surface import SoilTop
 
 T = TypeVar("T", bound=np.generic)
@@ -19,19 +20,22 @@ T = TypeVar("T", bound=np.generic)
 @dataclass(frozen=True, eq=False)
 class GatheredMesh:
     """Points (n, 3) [m] by global node number, cells (nc, nn), rank by rank, and number (nc,) of the named volume that
-    each lies in; empty on the other ranks.
+    each lies in; behind them what a mirror adds, see `Unfolding`. Empty on the other ranks.
     """
 
     points: Array
     cells: IntArray
     volume: IntArray
+    unfolding: Unfolding
 
 
 def gather(grid: DistributedMesh) -> GatheredMesh:
     """Bring the mesh to rank 0 (collective)."""
     nodes = grid.nodes
     points = gather_rows(grid, nodes.points[: nodes.owned])
-    return GatheredMesh(points, gather_rows(grid, nodes.number[nodes.cells]), gather_rows(grid, grid.volume))
+    cells, volume = gather_rows(grid, nodes.number[nodes.cells]), gather_rows(grid, grid.volume)
+    all_of = Unfolding.of(grid.mirror, points, cells)
+    return GatheredMesh(all_of.points(points), all_of.connected(cells), all_of.of_cells(volume), all_of)
 
 
 def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
@@ -45,8 +49,13 @@ def top_of(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
     facets, cells = top_facets(grid, mesh)
     used = np.unique(facets)
     points = mesh.points[used]
-    dofs = components(used), grid.supported(points).ravel()
-    return SoilTop(points, np.searchsorted(used, facets), *dofs, mesh.volume[cells], moves)
+    return SoilTop(points, np.searchsorted(used, facets), *views(grid, mesh, used), mesh.volume[cells], moves)
+
+
+def views(grid: DistributedMesh, mesh: GatheredMesh, nodes: IntArray) -> tuple[IntArray, Array, BoolArray]:
+    """Dofs of nodes (n,) of all, three each: number, sign, and whether they are supported."""
+    unfolding, held = mesh.unfolding, grid.supported(mesh.points[nodes])
+    return components(unfolding.source[nodes]), unfolding.sign[nodes].ravel(), held.ravel()
 
 
 def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> tuple[IntArray, IntArray]:

@@ -34,7 +34,8 @@ class BlockSpec:
     along: of hexahedra, length of the cells along a riser that runs along x or y, where it is another than their size
     across it; strip: width across the riser, and half of it downwards, within which they do not grow yet. boundaries:
     depths below the level at which layers of soil meet, increasing; cells end there. feature: of the top, along a riser
-    that runs along x or y.
+    that runs along x or y. half: whether only the half beyond the riser's line is meshed, of a block that is symmetric
+    about it, with the cells that the line's plane cuts.
     """
 
     x: Point
@@ -49,6 +50,7 @@ class BlockSpec:
     strip: float = 0.0
     boundaries: tuple[float, ...] = ()
     feature: FeatureSpec | None = None
+    half: bool = False
 
     @property
     def axis(self) -> int:
@@ -104,6 +106,8 @@ class BlockSpec:
     def coordinates(self, axis: int) -> Array:
         """Where the layers of hexahedra meet along x, y or z (axis 2), rising; in z also where layers of soil do."""
         found = graded(*self._grading(axis))
+        if self.half and axis == 1 - self.axis:
+            return found[(len(found) - 1) // 2 :]
         return found if axis < 2 else landing(found, [self.level - depth for depth in self.boundaries[::-1]])
 
     def _grading(self, axis: int) -> tuple[float, float, Point, float, float]:
@@ -148,6 +152,8 @@ def in_units(spec: BlockSpec, unit: float) -> BlockSpec:
 
 def _in_units(lengths: Any, unit: float) -> Any:
     match lengths:
+        case bool():
+            return lengths
         case float() | int():
             return round(lengths / unit, _DIGITS)
         case tuple():

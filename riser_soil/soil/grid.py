@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -20,6 +20,7 @@ from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.families import HEX8, TET10, Family
 from riser_soil.soil.mesh_file import HEXAHEDRON, cell_type, read_mesh
+from riser_soil.soil.mirror import Mirror, mirror_of
 
 T = TypeVar("T")
 
@@ -28,8 +29,9 @@ T = TypeVar("T")
 class DistributedMesh:
     """This rank's nodes and cells, their element family, and the corners of the whole mesh's box [m].
 
-    volume (nc,): of this rank's cells, number of the named volume that each lies in. section (n,): of its nodes, number
-    of the section that each lies in; None where these are joined.
+    volume (nc,): of this rank's cells, number of the named volume that each lies in. mirror: the plane of a mesh that
+    stands for a whole which is symmetric about it; the box is that of the whole. section (n,): of its nodes, number of
+    the section that each lies in; None where these are joined.
     """
 
     family: Family
@@ -37,21 +39,48 @@ class DistributedMesh:
     low: Array
     high: Array
     volume: IntArray
+    mirror: Mirror | None = None
     section: IntArray | None = None
 
     def supported(self, points: Array) -> BoolArray:
-        """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides and of plane cells."""
+        """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides, in the mirror and of
+        plane cells.
+        """
         near = 1e-6 * float(np.max(self.high - self.low))
         at_side = (points < self.low + near) | (points > self.high - near)
         bottom = points[:, 2] < self.low[2] + near
         prescribed: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
         prescribed[:, [axis for axis in range(3) if axis not in self.family.axes]] = True
+        if self.mirror is not None:
+            prescribed[:, self.mirror.axis] |= self.mirror.holds(points)
         return prescribed
+
+    def twins(self) -> IntArray:
+        """Number (n,) of the node of this rank whose dofs each of its nodes has: behind a mirror of its twin."""
+        points = self.nodes.points
+        return np.arange(len(points)) if self.mirror is None else self.mirror.twins(points)
+
+    def signs(self) -> Array:
+        """Of the components (n, 3) of a node's displacement, over its twin's."""
+        out = np.ones((len(self.nodes.points), 3))
+        if self.mirror is not None:
+            out[self.mirror.behind(self.nodes.points)] = self.mirror.signs
+        return out
+
+    def shares(self) -> Array:
+        """How often each of this rank's cells counts (nc,)."""
+        out = np.ones(len(self.nodes.cells))
+        if self.mirror is not None:
+            out += ~self.mirror.behind(self.nodes.points)[self.nodes.cells].any(axis=1)
+        return out
 
 
 def block_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     """Mesh a plain block (collective)."""
-    return _grid(comm, lambda: make_block(spec))
+    grid, mirror = _grid(comm, lambda: make_block(spec)), mirror_of(spec)
+    if mirror is None:
+        return grid
+    return replace(grid, low=np.minimum(grid.low, mirror.images(grid.high[None])[0]), mirror=mirror)
 
 
 def file_grid(comm: MPI.Intracomm, path: Path, volumes: Sequence[str] = ()) -> DistributedMesh:

@@ -17,10 +17,10 @@ from riser_soil.core.snapshot import SoilMesh
 from riser_soil.errors import MeshError
 from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.families import QUAD4
-from riser_soil.soil.field import components
-from riser_soil.soil.gathered import GatheredMesh
+from riser_soil.soil.gathered import GatheredMesh, views
 from riser_soil.soil.grading import BlockSpec
 from riser_soil.soil.grid import DistributedMesh
+from riser_soil.soil.mirror import mirror_of
 from riser_soil.soil.surface import SoilTop
 
 
@@ -47,7 +47,8 @@ def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     nodes = Nodes(comm, local, points.reshape(-1, 3), number, len(number))
     corners = np.array([[*spec.x, *spec.y, spec.level - spec.depth, spec.level]]).reshape(3, 2)
     volume = np.zeros(len(local), dtype=np.int64)
-    return DistributedMesh(family, nodes, corners[:, 0], corners[:, 1], volume, np.repeat(mine, per_slice))
+    low, high, section = *corners.T, np.repeat(mine, per_slice)
+    return DistributedMesh(family, nodes, low, high, volume, mirror_of(spec), section)
 
 
 def _cells(columns: int, layers: int) -> IntArray:
@@ -63,10 +64,9 @@ def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> Soi
     top = np.flatnonzero(mesh.points[:, 2] > grid.high[2] - 1e-9 * float(np.ptp([grid.low[2], grid.high[2]])))
     if not len(mesh.points):
         none = np.zeros(0, dtype=np.int64)
-        return SoilTop(mesh.points, none.reshape(0, 4), components(top), none.astype(bool), none, moves)
+        return SoilTop(mesh.points, none.reshape(0, 4), *views(grid, mesh, top), none, moves)
     columns = len(np.unique(mesh.points[top, 1 - along]))
-    rows = top.reshape(-1, columns)
-    rows = rows[np.argsort(mesh.points[rows[:, 0], along])]
+    rows = top[np.lexsort(mesh.points[top][:, [1 - along, along]].T)].reshape(-1, columns)
     rows = np.concatenate([rows[:1], rows, rows[-1:]])
     points = mesh.points[rows]  # (ns + 2, nc, 3)
     points[0, :, along] -= 0.5 * grid.family.thickness
@@ -74,10 +74,8 @@ def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> Soi
     place = np.arange(rows.size).reshape(rows.shape)
     around = place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:]
     facets = np.stack([each.ravel() for each in (around if along == 0 else around[::-1])], axis=1)
-    number = rows.ravel()
-    flat = points.reshape(-1, 3)
-    dofs = components(number), grid.supported(flat).ravel()
-    return SoilTop(flat, facets, *dofs, np.zeros(len(facets), dtype=np.int64), moves)
+    dofs = views(grid, mesh, rows.ravel())
+    return SoilTop(points.reshape(-1, 3), facets, *dofs, np.zeros(len(facets), dtype=np.int64), moves)
 
 
 def slabs(grid: DistributedMesh, mesh: GatheredMesh) -> SoilMesh:

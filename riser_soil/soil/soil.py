@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Limited
 from riser_soil.core.saved_state import Saved, Stateful, within
@@ -28,6 +28,8 @@ from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.transfer import nearest_rows
 
 FOLDS = 0.1  # skewness of a cell
+DEPTH_AND_SLOPE = ("depth", "slope_x", "slope_y", "slope_z")
+NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 STRAINED = 1e-4  # of its size, that a cell's nodes move against each other before its gradients are made anew
 
 
@@ -63,14 +65,13 @@ class Soil:
         self.field = SoilField(grid)
         self.mesh: GatheredMesh = gather(grid)
         self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
-        self._cells = np.ascontiguousarray(grid.nodes.cells)
-        self._gradients = on_all_ranks(
-            grid.nodes.comm, lambda: cell_gradients(grid.family, grid.nodes.points, self._cells)
-        )
+        self._cells, self._shares = np.ascontiguousarray(grid.nodes.cells), grid.shares()
+        self._gradients = on_all_ranks(grid.nodes.comm, lambda: self._gradients_of(grid.nodes.points[self._cells]))
         self._shape = self._gradients.weights.shape
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
         self._ground = _Ground(law, weight, K0, start == "geostatic")
-        self._depth = np.maximum(level - grid.nodes.points[:, 2], 0.0)  # of the nodes, before anything moved
+        depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
+        self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
         self._take_material()
         self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful))
         self._check_start(self._initial, self._at_points(self._depth), K0)
@@ -89,6 +90,14 @@ class Soil:
         depth = self._at_points(self._depth)
         self._initial, self._unit_weight = self._ground.stress(depth), self._ground.weight.at(depth)
         self.law = self._ground.law(depth, self._initial)
+
+    def _gradients_of(self, corners: Array, cells: IntArray | slice = slice(None)) -> Gradients:
+        """Of some cells, all by default, with their nodes at corners (nc, nn, 3)."""
+        nc, nn, _ = corners.shape
+        apart = np.arange(nc * nn).reshape(nc, nn)
+        found = cell_gradients(self.grid.family, corners.reshape(-1, 3), apart)
+        found.weights[:] *= self._shares[cells][:, None]
+        return found
 
     def _at_points(self, nodal: Array) -> Array:
         """Values (n, ...) at quadrature points of those (nodes, ...) at nodes."""
@@ -175,7 +184,7 @@ class Soil:
         if not strained.size:
             return
         self._made_at[strained] = at[strained]
-        made = cell_gradients(self.grid.family, points, self._cells[strained])
+        made = self._gradients_of(at[strained], strained)
         for name, values in vars(made).items():
             vars(self._gradients)[name][strained] = values
         if "_stiffness" in vars(self):
@@ -188,7 +197,7 @@ class Soil:
 
     def gathered_points(self) -> Array:
         """Where all nodes are (n, 3) [m], on rank 0; collective."""
-        return gather_rows(self.grid, self.points[: self.grid.nodes.owned])
+        return self.mesh.unfolding.points(gather_rows(self.grid, self.points[: self.grid.nodes.owned]))
 
     @property
     def skewed(self) -> float:
@@ -213,21 +222,20 @@ class Soil:
         self.field.total = (after - self.grid.nodes.points).ravel()
         self._move_to(before, after)
         if len(number):
-            self.surface.committed = points[number] - self.mesh.points[number]
+            moved = points[number] - self.mesh.points[number]
+            self.surface.committed = self.surface.sign.reshape(-1, 3) * moved
         self._stored = self._stores(self._found)
 
     def _move_to(self, before: Array, after: Array) -> None:
-        nh = len(self.law.columns)
         slope = np.einsum("cqni,cn->cqi", self._gradients.full, self._depth[self._cells]).reshape(-1, 3)
-        old, rows = self._at_points(before), [self._found.history, self._at_points(self._depth)[:, None], slope]
-        held = np.column_stack(rows)
-        of_nodes, way = nearest_rows(self.grid, old, after, held[:, nh:])
-        moved = np.any(after != before, axis=1) & (self._depth > 0.0)
+        old, held = self._at_points(before), np.column_stack([self._at_points(self._depth)[:, None], slope])
+        of_nodes, way = nearest_rows(self.grid, old, after, held, DEPTH_AND_SLOPE)
         depth = np.maximum(of_nodes[:, 0] + np.einsum("ni,ni->n", of_nodes[:, 1:], way), 0.0)
-        history, way = nearest_rows(self.grid, old, self._at_points(after), held[:, :nh])
+        moved = (np.abs(after - before).max(axis=1) > self._none) & (self._depth > 0.0)
         self._depth = np.where(moved, depth, self._depth)
+        history, way = nearest_rows(self.grid, old, self._at_points(after), self._found.history, self.law.columns)
         self._made_at = self._corners(after)
-        self._gradients = cell_gradients(self.grid.family, after, self._cells)
+        self._gradients = self._gradients_of(self._made_at)
         self._volumes = self._gradients.weights.ravel()
         vars(self).pop("_stiffness", None)
         self._take_material()
@@ -259,10 +267,11 @@ class Soil:
     def output_fields(self) -> SoilSnapshot:
         """Committed displacement and cell averages on rank 0, empty elsewhere (collective)."""
         owned = self.field.total[: 3 * self.grid.nodes.owned].reshape(-1, 3)
-        moved = gather_rows(self.grid, owned)
+        all_of = self.mesh.unfolding
+        moved = all_of.vectors(gather_rows(self.grid, owned))
         return SoilSnapshot(
             np.concatenate([moved, moved]) if self.grid.family.plane else moved,
-            *(gather_rows(self.grid, self._cell_mean(values)) for values in self._invariants()),
+            *(all_of.of_cells(gather_rows(self.grid, self._cell_mean(values))) for values in self._invariants()),
         )
 
     def stress_change(self) -> Array:
@@ -354,10 +363,8 @@ class Soil:
             self._load = self._held + self._weight()
 
     def _restore_geometry(self, made_at: Array) -> None:
-        nc, nn, _ = made_at.shape
         self._made_at = made_at.copy()
-        apart = np.arange(nc * nn).reshape(nc, nn)
-        self._gradients = cell_gradients(self.grid.family, made_at.reshape(-1, 3), apart)
+        self._gradients = self._gradients_of(self._made_at)
         vars(self).pop("_stiffness", None)
 
 

@@ -30,9 +30,10 @@ class SoilTop:
     """Field "surface": views, on rank 0, of the soil's dofs at the top; it owns none.
 
     points (np, 3) [m]: undeformed. facets (nf, nv): indexes into points, counter-clockwise from above, of 4 corners or
-    of 3 and then the midpoints of the sides 12, 23, 31. global_index, prescribed (3 np,): of its dofs, x, y, z of each
-    point. volume (nf,): number of the named volume below each facet. committed (np, 3) [m]: displacement since the
-    geostatic start at the last accepted step. moves: whether the geometry follows that, as at large strain.
+    of 3 and then the midpoints of the sides 12, 23, 31. global_index, sign, prescribed (3 np,): of its dofs, x, y, z of
+    each point; see `MirroredField`. volume (nf,): number of the named volume below each facet. committed (np, 3) [m]:
+    displacement since the geostatic start at the last accepted step. moves: whether the geometry follows that, as at
+    large strain.
     """
 
     name = "surface"
@@ -43,12 +44,13 @@ class SoilTop:
         points: Array,
         facets: IntArray,
         global_index: IntArray,
+        sign: Array,
         prescribed: BoolArray,
         volume: IntArray,
         moves: bool = False,
     ) -> None:
         self.points, self.facets, self.volume, self.moves = points, facets, volume, moves
-        self.global_index, self.prescribed = global_index, prescribed
+        self.global_index, self.sign, self.prescribed = global_index, sign, prescribed
         self.committed: Array = np.zeros_like(points)
         self.size = points.size
         self.offset = 0

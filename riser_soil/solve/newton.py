@@ -373,7 +373,7 @@ class Newton:
     def _at_round_off(self) -> bool:
         """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
         self._trial(self._x)
-        sizes = self.system.numbering.add_to_global(self.system.magnitudes(self._balanced, self._weights))
+        sizes = self.system.numbering.sizes_to_global(self.system.magnitudes(self._balanced, self._weights))
         return not any_of(self.system.comm, bool((np.abs(self._f) > ROUND_OFF * sizes).any()))
 
     def _next_tangent(self) -> str:

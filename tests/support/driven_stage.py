@@ -108,16 +108,15 @@ class FirstStep:
 
     def state(self, x: Array) -> State:
         """The trial state of x, prescribed motion included."""
-        index = self.system.numbering.index
-        u = np.where(index >= 0, np.append(x, 0.0)[index], 0.0)
+        u = np.zeros(self.assembly.size)
+        self.system.numbering.to_local(x, u)
         state = self.scheme.trial(self._before, self._dt, self._dt, u)
         self.system.prescribe(state)
         return state
 
     def residual(self, x: Array) -> Array:
         local = self.scheme.combine(self.system.forces(self.state(x)), self.scheme.past(self._start))
-        index = self.system.numbering.index
-        return np.asarray(np.bincount(index[index >= 0], local[index >= 0], minlength=self.free), dtype=float)
+        return self.system.numbering.add_to_global(local)
 
     def slope(self, x: Array, direction: Array, h: float) -> Array:
         """Derivative of the residual at x along a direction, by differences of fourth order in the step h."""

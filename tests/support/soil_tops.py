@@ -20,4 +20,4 @@ def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> SoilTop:
     upper = [[c[0, 0], c[-1, -1], c[0, -1], c[n // 2, n // 2], c[n // 2, -1], c[0, n // 2]] for c in cells]
     facets = np.array(quads if kind == "quad4" else lower + upper)
     free, one = np.zeros(points.size, dtype=bool), np.zeros(len(facets), dtype=np.int64)
-    return SoilTop(points, facets, np.arange(points.size), free, one)
+    return SoilTop(points, facets, np.arange(points.size), np.ones(points.size), free, one)

@@ -62,9 +62,10 @@ def test_a_scene_without_doubts() -> None:
 
 
 def test_unknowns_of_the_soil_are_those_that_are_free() -> None:
-    """A block of one cell: of its 8 nodes the bottom is fixed, the top slides down its sides."""
-    one_cell = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
-    assert "soil: 1 cells, 4 unknowns" in report(with_value(touchdown(), "soil", "mesh", value=one_cell))
+    """A block of one cell: of its 8 nodes the bottom is fixed, the top slides down its sides; half of it are images."""
+    one_cell = with_value(touchdown(), "soil", "mesh", value={"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0})
+    assert "soil: 1 cells, 2 unknowns" in report(one_cell)
+    assert "soil: 1 cells, 4 unknowns" in report(with_value(one_cell, "soil", "symmetry", value="whole"))
 
 
 @pytest.mark.parametrize(

@@ -59,14 +59,17 @@ class Laid:
 
     @property
     def soil_reactions(self) -> Array:
-        """Force (3,) of the bottom and the sides on the soil [N]; contact pushes the upper edges of the sides, too."""
+        """Force (3,) of the bottom and the sides on the soil [N], of half a soil with their images; contact pushes the
+        upper edges of the sides, too.
+        """
         soil = self.assembly.soil
         assert soil is not None
         out = np.zeros(3)
         for field in (soil.field, soil.surface):
             own = self.forces[field.offset : field.offset + field.size]
             out += np.where(field.prescribed, own, 0.0).reshape(-1, 3).sum(axis=0)
-        return out
+        mirror = soil.grid.mirror
+        return out if mirror is None else 0.5 * (out + mirror.signs * out)
 
 
 @cache
