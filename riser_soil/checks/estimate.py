@@ -137,8 +137,8 @@ def _sides(scene: Scene, soil: SoilScene) -> tuple[float, float, float]:
     """The block's sides, in proportion to its nodes along x, y and z; those of a cube where only a file knows."""
     if isinstance(soil.mesh, MeshFile):
         return 1.0, 1.0, 1.0
-    x, y, z = _block(scene, soil).layers()
-    return x + 1.0, y + 1.0, float(z)
+    x, y, z = _block(scene, soil).free_nodes()
+    return float(x), float(y), float(z)
 
 
 def size_of(scene: Scene) -> ProblemSize:
@@ -203,8 +203,7 @@ def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
         return cells, 3.0 * cells, 24 * 24
     block = _block(scene, soil)
     if block.kind == "hex":
-        x, y, z = block.layers()
-        return float(x) * y * z, 3.0 * (x + 1) * (y + 1) * z, 24 * 24
+        return float(math.prod(block.layers())), 3.0 * math.prod(block.free_nodes()), 24 * 24
     cells = TETRAHEDRA * block.cubes()
     return cells, 3.0 * NODES_OF_TETRAHEDRA * cells, 30 * 30
 
