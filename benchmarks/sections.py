@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 
 from benchmarks.coupled import SCENE
@@ -36,4 +37,5 @@ def report() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m benchmarks.sections", description=__doc__).parse_args()
     report()

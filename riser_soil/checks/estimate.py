@@ -146,8 +146,8 @@ def _sides(scene: Scene, soil: SoilScene) -> tuple[float, float, float]:
     """The block's sides, in proportion to its nodes along x, y and z; those of a cube where only a file knows."""
     if isinstance(soil.mesh, MeshFile):
         return 1.0, 1.0, 1.0
-    x, y, z = _block(scene, soil).layers()
-    return x + 1.0, y + 1.0, float(z)
+    x, y, z = _block(scene, soil).free_nodes()
+    return float(x), float(y), float(z)
 
 
 def size_of(scene: Scene) -> ProblemSize:
@@ -213,10 +213,11 @@ def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
         return cells, 3.0 * cells, 24 * 24
     block = _block(scene, soil)
     if block.kind == "hex":
-        x, y, z = block.layers()
+        cells, (x, y, z) = float(math.prod(block.layers())), block.free_nodes()
         if soil.model == "sections":
-            return float(x) * y * z, 2.0 * (x, y)[block.axis] * ((x, y)[1 - block.axis] + 1) * z, worth(soil, 12 * 12)
-        return float(x) * y * z, 3.0 * (x + 1) * (y + 1) * z, 24 * 24
+            nodes = float(block.layers()[block.axis]) * (x, y)[1 - block.axis] * z
+            return cells, 2.0 * nodes, worth(soil, 12 * 12)
+        return cells, 3.0 * x * y * z, 24 * 24
     cells = TETRAHEDRA * block.cubes()
     return cells, 3.0 * NODES_OF_TETRAHEDRA * cells, 30 * 30
 

@@ -103,6 +103,13 @@ class BlockSpec:
         x, y, z = (len(self.coordinates(axis)) - 1 for axis in range(3))
         return x, y, z
 
+    def free_nodes(self) -> tuple[int, int, int]:
+        """How many nodes along x, y and z move by themselves: neither those of the bottom nor, of a half, images."""
+        counts = [n + 1 for n in self.layers()]
+        counts[2] -= 1
+        counts[1 - self.axis] -= self.half
+        return counts[0], counts[1], counts[2]
+
     def coordinates(self, axis: int) -> Array:
         """Where the layers of hexahedra meet along x, y or z (axis 2), rising; in z also where layers of soil do."""
         found = graded(*self._grading(axis))
