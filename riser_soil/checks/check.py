@@ -11,7 +11,7 @@ from riser_soil.assembly.condensation import why_whole
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.soil_block import why_all
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth
-from riser_soil.checks.inventory import built, left_out, unknowns
+from riser_soil.checks.inventory import built, left_out, no_new_mesh, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.scene.scene import Scene
@@ -88,8 +88,10 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
 
 
 def _computed(scene: Scene) -> Iterator[str]:
-    """Why all of the soil is computed, where it is."""
+    """At large strain or small, and why; and why all of the soil is computed, where it is."""
     assert scene.soil is not None
+    asked = "as soil.strain asks" if scene.soil.strain == "large" else "as it yields under contact with its surface"
+    yield f"soil: at large strain, {asked}" if scene.soil_moves else f"soil: at small strain: {no_new_mesh(scene)}"
     if why := why_all(scene, scene.soil):
         yield f"soil: all of it is computed, not half: {why}"
 

@@ -44,7 +44,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "friction": _no_friction(scene, "seabed"),
         "soil friction": _no_friction(scene, "soil"),
         "soil": "" if scene.soil is not None else "the scene has no soil",
-        "new mesh": _no_new_mesh(scene),
+        "new mesh": no_new_mesh(scene),
         "cushion": _no_cushion(scene),
         "contact": "" if ground else "the scene has neither seabed nor soil",
     }
@@ -90,11 +90,11 @@ def _no_cushion(scene: Scene) -> str:
     return "" if scene.stages[0].kind == "static" else "the riser is not laid in a static stage"
 
 
-def _no_new_mesh(scene: Scene) -> str:
+def no_new_mesh(scene: Scene) -> str:
     if scene.soil is None:
         return "the scene has no soil"
     if scene.soil.is_linear:
-        return "elastic soil is computed at small strain"
+        return "the soil is elastic"
     if scene.soil.strain == "small":
         return "soil.strain: small keeps the cells where they are"
     return "" if scene.soil_moves else "at contact.method: node cells stay where they are"

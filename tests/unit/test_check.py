@@ -57,6 +57,14 @@ def test_a_whole_scene() -> None:
     assert "touches the soil at its nodes only, 0.5 m apart, on cells of 0.5 m" in at_nodes[-3]
 
 
+def test_strain_of_the_soil_is_told_with_its_reason() -> None:
+    clay = {**touchdown(), "contact": {"method": "surface"}}
+    assert "soil: at large strain, as it yields under contact" in report(clay)
+    assert "soil: at small strain: soil.strain: small" in report(with_value(clay, "soil", "strain", value="small"))
+    law = {"kind": "linear-elastic", "E": 1e6, "nu": 0.4}
+    assert "soil: at small strain: the soil is elastic" in report(with_value(clay, "soil", "law", value=law))
+
+
 def test_a_scene_without_doubts() -> None:
     assert report(without_soil(LAY, heave(1.0))).splitlines()[-1] == "no warnings"
 
