@@ -9,7 +9,7 @@ from riser_soil.commands.accuracy import study
 from riser_soil.commands.cases import cases
 from riser_soil.commands.fatigue import fatigue
 from riser_soil.commands.ground import calibrate, material
-from riser_soil.commands.imports import import_
+from riser_soil.commands.imports import export, import_
 from riser_soil.commands.modes import modes
 from riser_soil.commands.new import new
 from riser_soil.commands.pictures import plot, report
@@ -27,7 +27,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-OF_SCENES = (new, run, check, import_, cases, study, stress, modes, material, calibrate, schema)
+OF_SCENES = (new, run, check, import_, export, cases, study, stress, modes, material, calibrate, schema)
 OF_RUNS = (statistics, stiffness, fatigue, film, plot, report)
 for command in (*OF_SCENES, *OF_RUNS):
     app.command(command.__name__.rstrip("_"))(command if command in PRINTING else telling(command))

@@ -1,4 +1,4 @@
-"""Command that makes scenes of other programs' files: riser-soil import."""
+"""Commands for other programs' files: riser-soil import and export."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -33,12 +33,45 @@ def import_(
         scene = output or Path(f"{file.stem}.yaml")
         found = _imported(file, line, scene.stem)
         for name in (scene.name, *found.files):
-            if (scene.parent / name).exists() and not force:
-                there = scene.parent / name
-                raise SceneError(f"{there}: is there already; choose another with -o, or overwrite it with --force")
+            _refuse(scene.parent / name, force)
         lost = [f"{file.name}:{number}: not carried over: {text}" for number, text in found.remarks]
         _write(found, scene, [f"From {file.name}.", *lost], file)
         typer.echo("\n".join([*lost, f"{scene}: written; {len(lost)} entries of the file are not carried over"]))
+
+
+def export(
+    scene: Annotated[Path, typer.Argument(metavar="SCENE", help="scene file (.yaml)")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DECK", help="deck; by default the scene's name with .dat, here"),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="overwrite a deck, which is refused otherwise")] = False,
+) -> None:
+    """Write the MoorDyn v2 deck of a scene's riser at rest, and tell line by line what it leaves out."""
+    with expected_errors():
+        from riser_soil.moordyn.deck_of import deck_of
+        from riser_soil.moordyn.left_out import left_out
+        from riser_soil.results.whole_file import written_whole
+        from riser_soil.scene.reader import checked, read_document, with_place_in
+
+        if rank() > 0:
+            return
+        deck, document = output or Path(f"{scene.stem}.dat"), read_document(scene)
+        _refuse(deck, force)
+        model = checked(document, scene.parent)
+        try:
+            text = deck_of(model)
+        except SceneError as err:
+            raise SceneError(with_place_in(document, str(err))) from err
+        lost = [f"{scene.name}:{line}: not in the deck: {what}" for line, what in left_out(document, model)]
+        with written_whole(deck) as part:
+            part.write_text(text, encoding="utf-8")
+        typer.echo("\n".join([*lost, f"{deck}: written; {len(lost)} entries of the scene are not in it"]))
+
+
+def _refuse(file: Path, force: bool) -> None:
+    if file.exists() and not force:
+        raise SceneError(f"{file}: is there already; choose another with -o, or overwrite it with --force")
 
 
 def _imported(file: Path, line: str | None, stem: str) -> "ImportedScene":
