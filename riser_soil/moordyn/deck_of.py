@@ -17,6 +17,8 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import SpringSeabed
 
 _SAME_ARC = 1e-9  # of the riser's length
+_DAMPING = -0.8  # of MoorDyn's own time steps: axial, over the critical one of an element
+_STEP = 0.5  # over the time of the fastest element's own motion, 1/w; a step of explicit schemes is stable to about 2
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,8 @@ def deck_of(scene: Scene) -> str:
     lines += [_row(n, *row) for n, row in enumerate(_points(scene, arcs, level), start=1)]
     lines += _head("LINES", "ID LineType AttachA AttachB UnstrLen NumSegs Outputs", "(#) (name) (#) (#) (m) (-) (-)")
     lines += [_row(n, names[p.line_type], n, n + 1, p.length, p.elements, "-") for n, p in enumerate(pieces, start=1)]
-    lines += [*_head("OPTIONS"), *(_row(value, key) for key, value in _options(scene, level).items())]
+    options = {"dtM": _time_step(scene, pieces)} | _options(scene, level)
+    lines += [*_head("OPTIONS"), *(_row(value, key) for key, value in options.items())]
     return "\n".join([*lines, *_head("OUTPUTS"), *_head("need this line")]) + "\n"
 
 
@@ -66,7 +69,7 @@ def _surface(scene: Scene) -> float:
 
 
 def _properties(scene: Scene, name: str, line: LineType) -> list[float]:
-    """Diam to CaAx; contents are part of the mass, and axial damping is none."""
+    """Diam to CaAx; contents are part of the mass."""
     path, (about_y, about_z) = f"line_types.{name}", line.bending_stiffness
     if line.outer_diameter is None or line.mass is None:
         raise SceneError(f"{path}: has no outer_diameter or no mass, which a deck needs; give both")
@@ -77,7 +80,17 @@ def _properties(scene: Scene, name: str, line: LineType) -> list[float]:
     filled = scene.riser.contents.density * math.pi / 4.0 * line.inner_diameter**2 if scene.riser.contents else 0.0
     drag = (line.drag.normal, line.drag.tangential) if line.drag else (0.0, 0.0)
     added = (line.added_mass.normal, line.added_mass.tangential) if line.added_mass else (0.0, 0.0)
-    return [line.outer_diameter, line.mass + filled, line.EA, 0.0, about_y, drag[0], added[0], drag[1], added[1]]
+    return [line.outer_diameter, line.mass + filled, line.EA, _DAMPING, about_y, drag[0], added[0], drag[1], added[1]]
+
+
+def _time_step(scene: Scene, pieces: list[_Piece]) -> float:
+    """Time step [s] to two digits, by the fastest motion of a node: stretching, bending, or on the bed's springs."""
+    rates, bed = [0.0], scene.seabed.stiffness if isinstance(scene.seabed, SpringSeabed) else 0.0
+    for piece in pieces:
+        _, mass, EA, _, EI, *_ = _properties(scene, piece.line_type, scene.line_types[piece.line_type])
+        size = piece.length / piece.elements
+        rates += [4.0 * EA / size**2 / mass, 16.0 * EI / size**4 / mass, bed / mass]
+    return float(f"{_STEP / math.sqrt(max(rates)):.1e}")
 
 
 def _pieces(scene: Scene) -> tuple[list[_Piece], list[float]]:

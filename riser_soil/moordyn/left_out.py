@@ -47,8 +47,10 @@ def left_out(document: Document, scene: Scene) -> Iterator[Remark]:
 def _has(path: Path, value: Any) -> bool:
     if path[0] == "stages" and path[-1] in ("kind", "name"):
         return path[-1] == "name" or value == "static"
-    if path[:1] == ("riser",) and path[-1] == "rotation":
+    if path[0] == "riser" and path[-1] == "rotation":
         return bool(value == "free")
+    if path[-1] == "element_length":
+        return not isinstance(value, list)
     plain = ("line_types", "name", *path[2:]) if path[0] == "line_types" else path  # a name may have points
     return _HAS.fullmatch(dotted(plain)) is not None
 

@@ -201,7 +201,15 @@ def test_a_scene_comes_back_from_its_deck(line: str, friction: str, tmp_path: Pa
     back = scene_of(read_deck(tmp_path / "back.dat"))
     assert scene_from_mapping(back.data) == scene
     assert back.data == first.data
-    assert [text.split()[0] for _, text in back.remarks] == (["kBot"] if line == "1" else [])
+    told = {text.split()[0] for _, text in back.remarks}
+    assert told == {"BA/-zeta", "dtM"} | ({"kBot"} if line == "1" else set())  # MoorDyn's own, and of two diameters
+
+
+def test_the_step_of_a_deck_is_short_enough(tmp_path: Path) -> None:
+    """Half of 1/w of the fastest node: w^2 = 4 EA/m l^2, elements of 4.2 m."""
+    text = deck_of(scene_from_mapping(scene_of(deck(tmp_path), "4").data))
+    (step,) = (line.split()[0] for line in text.splitlines() if line.endswith("dtM"))
+    assert float(step) == pytest.approx(0.25 * 4.2 * math.sqrt(72.0 / 6.0e8), rel=0.05)
 
 
 def test_contents_and_attachments_within_a_segment(tmp_path: Path) -> None:
