@@ -110,6 +110,8 @@ def histories(
 ) -> None:
     """Print outputs of a run in time as CSV, time in the first column, as qats and pandas read it."""
     with expected_errors():
+        if rank() > 0:
+            return
         from riser_soil.results.read import Run
         from riser_soil.results.whole_file import written_whole
         from riser_soil.statistics.histories import write_histories

@@ -30,7 +30,7 @@ def chosen(file: DataFile, name: str | None) -> Item:
     found = [each for each in lines if name is None or each.word("Name") == name]
     if not found:
         known = ", ".join(each.word("Name") for each in lines)
-        raise file.section("General").error("Lines", f"there is no line {name}; it has {known or 'none'}")
+        raise file.section("General").error("Lines", f"there is no line {name or 'at all'}; it has {known or 'none'}")
     for n, each in enumerate(lines):
         if each.word("Name") != found[0].word("Name"):
             each.left("Name", f"a scene has one riser; --line {each.word('Name')!r} imports this one")

@@ -16,7 +16,7 @@ _ITS_OWN = re.compile(
     r"Draw|Default|Shaded|.*Pen$|Log|TargetLog|Jacobian|Restart|Statics(Step|Min|Max|Damping|Tol)|.*Policy$"
     r"|WholeSystemStatics|BuoysIncluded|TimeHistoryImport|FirstStage|.*Warn|Ramp(Start|Finish)Time|StartTime"
     r"|WaveCalculation|Name$|Explicit|Implicit|.*LoadingFactor$|Selected|KinematicViscosity|SeaTemperature|Reynolds"
-    r"|Air|Wind(Type|Ramping|Direction)|Include.*WindLoads|SeabedSlopeDirection"
+    r"|Calculat|Air|Wind(Type|Ramping|Direction)|Include.*WindLoads|SeabedSlopeDirection"
 )
 # What a scene has in any case.
 _ALIKE = {
@@ -26,7 +26,7 @@ _ALIKE = {
     "IncludedInStatics": "Yes", "ContentsMethod": "Uniform", "IncludeAxialContentsInertia": "Yes",
     "CurrentModel": "Variation scheme", "Connection": "Free", "PrimaryMotion": "None",
     "ConnectionShortestViableSegmentFactor": 0.001, "ConnectionApplyRamp": "Yes",
-    "ConnectionUseSmoothGrowth": "Yes", "WaveType": "Airy",
+    "ConnectionUseSmoothGrowth": "Yes", "VerticalDensityVariation": "Constant",
 }  # fmt: skip
 # Sections of which no more than what was asked for matters: RAOs tell all of a vessel's motion.
 _ASKED_ALONE = ("VesselTypes", "VariableData", "Groups", "RayleighDampingCoefficients", "SolidFrictionCoefficients")

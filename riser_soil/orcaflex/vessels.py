@@ -89,16 +89,19 @@ def _unlike(kind: Item, raos: Item) -> tuple[Item, str, str] | None:
 
 def _table(kind: Item, raos: Item) -> Table:
     found: Table = {}
+    limits = list[Item]()
     for direction, row in _rows(raos):
         frequency = _FREQUENCY[kind.word("WavesReferredToBy")](row.stiffness("RAOPeriodOrFrequency"))
         if not 0.0 < frequency < math.inf:
-            row.left("RAOPeriodOrFrequency", "responses to waves of no frequency, or an infinite one: not in a table")
+            limits.append(row)
             continue
         responses = [_response(kind, row, mode) for mode in MODES]
         found[frequency, direction % 360.0] = responses
         if kind.word("Symmetry") == "xz plane":
             mirrored = [sign * each for sign, each in zip(_MIRRORED, responses, strict=True)]
             found.setdefault((frequency, -direction % 360.0), mirrored)
+    for row in limits[:1]:
+        row.left("RAOPeriodOrFrequency", "waves of no frequency, or an infinite one, in all directions: not in a table")
     return found
 
 
