@@ -86,7 +86,8 @@ def _train(train: WaveKind, number: int, g: float, h: float) -> Components:
 
             w, density = np.array(train.table.frequency), np.array(train.table.density)
             seed, toward = _seed(train.seed, number), np.array(train.toward)
-            return given_spectrum.components(w, density, train.components, seed, toward, g, h)
+            by_direction = np.array(train.table.parts) if train.table.parts else None
+            return given_spectrum.components(w, density, train.components, seed, toward, g, h, by_direction)
     assert_never(train)
 
 

@@ -9,17 +9,17 @@ from riser_soil.commands.accuracy import study
 from riser_soil.commands.cases import cases
 from riser_soil.commands.fatigue import fatigue
 from riser_soil.commands.ground import calibrate, material
-from riser_soil.commands.imports import import_
+from riser_soil.commands.imports import export, import_
 from riser_soil.commands.modes import modes
 from riser_soil.commands.new import new
 from riser_soil.commands.pictures import plot, report
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
-from riser_soil.commands.statistics import statistics
+from riser_soil.commands.statistics import histories, statistics
 from riser_soil.commands.stress import stress
 from riser_soil.commands.telling import telling
 
-PRINTING = (schema, statistics, stiffness)  # what they print is their result
+PRINTING = (schema, statistics, histories, stiffness)  # what they print is their result
 app = typer.Typer(
     help="Static and dynamic analysis of a riser on the seabed.",
     epilog="Exit status: 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, "
@@ -27,8 +27,8 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-OF_SCENES = (new, run, check, import_, cases, study, stress, modes, material, calibrate, schema)
-OF_RUNS = (statistics, stiffness, fatigue, film, plot, report)
+OF_SCENES = (new, run, check, import_, export, cases, study, stress, modes, material, calibrate, schema)
+OF_RUNS = (statistics, histories, stiffness, fatigue, film, plot, report)
 for command in (*OF_SCENES, *OF_RUNS):
     app.command(command.__name__.rstrip("_"))(command if command in PRINTING else telling(command))
 

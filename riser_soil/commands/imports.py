@@ -1,46 +1,102 @@
-"""Command that makes scenes of other programs' files: riser-soil import."""
+"""Commands for other programs' files: riser-soil import and export."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from riser_soil.commands.endings import expected_errors, rank
 from riser_soil.errors import SceneError
 
+if TYPE_CHECKING:
+    from riser_soil.imported_scene import ImportedScene
+
 
 def import_(
-    deck: Annotated[Path, typer.Argument(metavar="DECK", help="deck of MoorDyn v2 (.dat, .txt)")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="deck of MoorDyn v2 (.dat, .txt), or text data of OrcaFlex (.yml)")
+    ],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="SCENE", help="scene file; by default the deck's name with .yaml, here"),
+        typer.Option("-o", "--output", metavar="SCENE", help="scene file; by default the file's name with .yaml, here"),
     ] = None,
     line: Annotated[
         str | None,
-        typer.Option("--line", metavar="ID", help="line of the deck, with those joined to it; by default the first"),
+        typer.Option("--line", metavar="ID", help="line of the file, with those joined to it; by default the first"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite a scene file, which is refused otherwise")] = False,
 ) -> None:
-    """Write the scene of a MoorDyn v2 deck's line, and tell what of the deck it does not have, line by line."""
+    """Write the scene of a line of a MoorDyn v2 deck or of OrcaFlex data, and tell line by line what it leaves out."""
     with expected_errors():
-        from riser_soil.moordyn.deck import read_deck
-        from riser_soil.moordyn.scene_of import scene_of
+        if rank() > 0:
+            return
+        scene = output or Path(f"{file.stem}.yaml")
+        found = _imported(file, line, scene.stem)
+        for name in (scene.name, *found.files):
+            _refuse(scene.parent / name, force)
+        lost = [f"{file.name}:{number}: not carried over: {text}" for number, text in found.remarks]
+        _write(found, scene, [f"From {file.name}.", *lost], file)
+        typer.echo("\n".join([*lost, f"{scene}: written; {len(lost)} entries of the file are not carried over"]))
+
+
+def export(
+    scene: Annotated[Path, typer.Argument(metavar="SCENE", help="scene file (.yaml)")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DECK", help="deck; by default the scene's name with .dat, here"),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="overwrite a deck, which is refused otherwise")] = False,
+) -> None:
+    """Write the MoorDyn v2 deck of a scene's riser at rest, and tell line by line what it leaves out."""
+    with expected_errors():
+        from riser_soil.moordyn.deck_of import deck_of
+        from riser_soil.moordyn.left_out import left_out
         from riser_soil.results.whole_file import written_whole
-        from riser_soil.scene.dump import yaml_text
-        from riser_soil.scene.reader import scene_from_mapping
+        from riser_soil.scene.reader import checked, read_document, with_place_in
 
         if rank() > 0:
             return
-        file = output or Path(f"{deck.stem}.yaml")
-        if file.exists() and not force:
-            raise SceneError(f"{file}: is there already; choose another with -o, or overwrite it with --force")
-        found = scene_of(read_deck(deck), line)
+        deck, document = output or Path(f"{scene.stem}.dat"), read_document(scene)
+        _refuse(deck, force)
+        model = checked(document, scene.parent)
         try:
-            scene_from_mapping(found.data)
+            text = deck_of(model)
         except SceneError as err:
-            raise SceneError(f"{deck}: gives no scene: {err}") from err
-        lost = [f"{deck.name}:{number}: not carried over: {text}" for number, text in found.remarks]
-        with written_whole(file) as part:
-            head = [f"From {deck.name}.", *lost]
-            part.write_text("".join(f"# {each}\n" for each in head) + yaml_text(found.data), encoding="utf-8")
-        typer.echo("\n".join([*lost, f"{file}: written; {len(lost)} entries of the deck are not carried over"]))
+            raise SceneError(with_place_in(document, str(err))) from err
+        lost = [f"{scene.name}:{line}: not in the deck: {what}" for line, what in left_out(document, model)]
+        with written_whole(deck) as part:
+            part.write_text(text, encoding="utf-8")
+        typer.echo("\n".join([*lost, f"{deck}: written; {len(lost)} entries of the scene are not in it"]))
+
+
+def _refuse(file: Path, force: bool) -> None:
+    if file.exists() and not force:
+        raise SceneError(f"{file}: is there already; choose another with -o, or overwrite it with --force")
+
+
+def _imported(file: Path, line: str | None, stem: str) -> "ImportedScene":
+    if file.suffix.lower() in (".yml", ".yaml"):
+        from riser_soil.orcaflex import data_file, scene_of
+
+        return scene_of.scene_of(data_file.read_data(file), line, stem)
+    from riser_soil.moordyn import deck
+    from riser_soil.moordyn.scene_of import scene_of as scene_of_deck
+
+    return scene_of_deck(deck.read_deck(file), line)
+
+
+def _write(found: "ImportedScene", scene: Path, head: list[str], source: Path) -> None:
+    """The scene and the files that it names, if it is one."""
+    from riser_soil.results.whole_file import written_together
+    from riser_soil.scene.dump import yaml_text
+    from riser_soil.scene.reader import scene_from_mapping
+
+    with written_together(scene.parent, [scene.name, *found.files]) as folder:
+        for name, text in found.files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        try:
+            scene_from_mapping(found.data, folder)
+        except SceneError as err:
+            raise SceneError(f"{source}: gives no scene: {err}") from err
+        comments = "".join(f"# {each}\n" for each in head)
+        (folder / scene.name).write_text(comments + yaml_text(found.data), encoding="utf-8")

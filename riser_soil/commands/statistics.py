@@ -1,11 +1,12 @@
-"""The command about outputs in time: riser-soil statistics."""
+"""Commands about outputs in time: riser-soil statistics | histories."""
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from riser_soil.commands.arguments import StageName, positive
+from riser_soil.commands.arguments import RunFolder, StageName, positive
 from riser_soil.commands.endings import expected_errors, rank
 from riser_soil.errors import ResultsError
 
@@ -14,23 +15,28 @@ if TYPE_CHECKING:
     from riser_soil.statistics.report import Place
 
 
+Of = Annotated[
+    list[str], typer.Option("--of", metavar="OUTPUT", help="e.g. effective_tension, end_force.x; may be repeated")
+]
+Arcs = Annotated[
+    list[float] | None,
+    typer.Option("--arc", metavar="METRES", help="arc length; may be repeated; by default all nodes"),
+]
+At = Annotated[
+    list[str] | None, typer.Option("--at", metavar="END", help="start or end of the riser; may be repeated")
+]
+Since = Annotated[
+    float, typer.Option("--since", metavar="SECONDS", help="of the stage that are cut off, its transient")
+]
+
+
 def statistics(
     folders: Annotated[list[Path], typer.Argument(metavar="RUN...", help="folders of runs, one for each seed")],
-    of: Annotated[
-        list[str],
-        typer.Option("--of", metavar="OUTPUT", help="e.g. effective_tension, end_force.x; may be repeated"),
-    ],
-    arc: Annotated[
-        list[float] | None,
-        typer.Option("--arc", metavar="METRES", help="arc length; may be repeated; by default all nodes"),
-    ] = None,
-    at: Annotated[
-        list[str] | None, typer.Option("--at", metavar="END", help="start or end of the riser; may be repeated")
-    ] = None,
+    of: Of,
+    arc: Arcs = None,
+    at: At = None,
     stage: StageName = None,
-    since: Annotated[
-        float, typer.Option("--since", metavar="SECONDS", help="of the stage that are cut off, its transient")
-    ] = 0.0,
+    since: Since = 0.0,
     duration: Annotated[
         float, typer.Option("--duration", metavar="SECONDS", help="time that extremes are foretold for")
     ] = 10800.0,
@@ -89,6 +95,35 @@ def statistics(
         if output is not None:
             write(output, places, levels, wanted)
         typer.echo("\n".join(told))
+
+
+def histories(
+    folder: RunFolder,
+    of: Of,
+    arc: Arcs = None,
+    at: At = None,
+    stage: StageName = None,
+    since: Since = 0.0,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="CSV file; by default standard output")
+    ] = None,
+) -> None:
+    """Print outputs of a run in time as CSV, time in the first column, as qats and pandas read it."""
+    with expected_errors():
+        if rank() > 0:
+            return
+        from riser_soil.results.read import Run
+        from riser_soil.results.whole_file import written_whole
+        from riser_soil.statistics.histories import write_histories
+        from riser_soil.statistics.records import records_of
+
+        run = Run(folder)
+        found = [records_of([run], name, _arcs([run], arc or [], at or []), stage, since) for name in of]
+        if output is None:
+            write_histories(found, sys.stdout)
+        else:
+            with written_whole(output) as part, part.open("w", encoding="utf-8") as file:
+                write_histories(found, file)
 
 
 def _arcs(runs: "list[Run]", arc: list[float], at: list[str]) -> list[float] | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from riser_soil.errors import SceneError
+from riser_soil.imported_scene import text_of
 
 # Words of a section's header -> the section, as MoorDyn knows it by several names.
 SECTIONS = {
@@ -22,7 +23,6 @@ SECTIONS = {
 }  # fmt: skip
 WITH_HEADS = {*SECTIONS.values()} - {"options", "outputs"}  # they begin with a row of names and one of units
 COLUMNS = {"line types": 10, "bodies": 8, "rods": 9, "points": 9, "lines": 6, "options": 2}
-MOST_BYTES = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,7 @@ class Deck:
 
 def read_deck(file: Path) -> Deck:
     """The deck in a file; SceneError where it can't be read, or is none of MoorDyn v2."""
-    try:
-        if file.stat().st_size > MOST_BYTES:
-            raise SceneError(f"{file}: larger than {MOST_BYTES / 1e6:g} MB: no deck of MoorDyn; check the file's name")
-        text = file.read_text(encoding="utf-8-sig", errors="replace")
-    except OSError as err:
-        raise SceneError(f"{file}: can't be read ({err.strerror}); check the file's name") from err
-    deck = _in_sections(text.splitlines(), file.name)
+    deck = _in_sections(text_of(file).splitlines(), file.name)
     for section in ("line types", "lines"):
         if not deck.of(section):
             raise SceneError(f"{file}: has no section {section.upper()}; give a deck of MoorDyn v2")

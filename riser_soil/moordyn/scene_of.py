@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import Any
 
+from riser_soil.imported_scene import ImportedScene, Remark, friction
 from riser_soil.moordyn.chain import COUPLED, Chain, chain_with, elsewhere, is_free, place, point
 from riser_soil.moordyn.deck import Deck, DeckRow
 
@@ -22,14 +22,6 @@ PHYSICAL = {
     "seafloorfile": "the seabed's shape; it is level here",
 }
 TOLD_APART = ("line types", "rod types", "points", "lines", "options", "bodies", "rods")
-
-
-@dataclass
-class ImportedScene:
-    """The scene as a mapping, and remarks on what it lacks: (line of the deck, text)."""
-
-    data: dict[str, Any]
-    remarks: list[tuple[int, str]] = field(default_factory=list)
 
 
 def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
@@ -53,8 +45,8 @@ def _ends(chain: Chain) -> tuple[tuple[str, DeckRow], tuple[str, DeckRow]]:
     return (chain.joints[0], chain.lines[0]), (chain.joints[-1], chain.lines[-1])
 
 
-def _options(deck: Deck) -> tuple[dict[str, float], list[tuple[int, str]]]:
-    values, remarks, known = dict(DEFAULTS), list[tuple[int, str]](), (*DEFAULTS, *ALONG_AND_ACROSS)
+def _options(deck: Deck) -> tuple[dict[str, float], list[Remark]]:
+    values, remarks, known = dict(DEFAULTS), list[Remark](), (*DEFAULTS, *ALONG_AND_ACROSS)
     for row in deck.of("options"):
         key = ALIASES.get(row.words[1].lower(), row.words[1].lower())
         if key in PHYSICAL and row.words[0] not in ("0", "0.0"):
@@ -68,20 +60,17 @@ def _options(deck: Deck) -> tuple[dict[str, float], list[tuple[int, str]]]:
 
 def _seabed(
     deck: Deck, chain: Chain, options: dict[str, float]
-) -> tuple[dict[str, Any], list[tuple[int, str]]]:
+) -> tuple[dict[str, Any], list[Remark]]:
     """A bed of springs: kBot [Pa/m] times the diameter; MoorDyn's nodes touch with their axis."""
     if options["wtrdpth"] <= 0.0:
         return {}, [(deck.of("lines")[0].line, "no WtrDpth in the options: the scene has no seabed")]
     diameters = [_diameter(deck, row) for row in chain.lines]
     bed = {"kind": "spring", "stiffness": options["kbot"] * diameters[0], "level": -options["wtrdpth"]}
     data: dict[str, Any] = {"seabed": bed | {"contact_at": "axis"}}
-    axial, lateral = (options.get(key, options["frictioncoefficient"]) for key in ALONG_AND_ACROSS)
-    remarks = list[tuple[int, str]]()
-    if axial and lateral:
-        data["contact"] = {"friction": {"axial": axial, "lateral": lateral}}
-    elif axial or lateral:
-        row = next(row for row in deck.of("options") if row.words[1].lower() in ALONG_AND_ACROSS)
-        remarks.append((row.line, f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"))
+    contact, told = friction(*(options.get(key, options["frictioncoefficient"]) for key in ALONG_AND_ACROSS))
+    rows = (row.line for row in deck.of("options") if row.words[1].lower() in ALONG_AND_ACROSS)
+    remarks = [(next(rows), told)] if told else []
+    data |= contact
     told = f"kBot times the diameter differs along the riser; the seabed has that of line {chain.lines[0].words[0]}"
     if len(set(diameters)) > 1:
         remarks.append((chain.lines[0].line, told))
@@ -101,8 +90,8 @@ def _diameter(deck: Deck, row: DeckRow) -> float:
     return deck.number(_type_row(deck, row), 1, "Diam")
 
 
-def _line_types(deck: Deck, chain: Chain) -> tuple[dict[str, Any], list[tuple[int, str]]]:
-    types, remarks = dict[str, Any](), list[tuple[int, str]]()
+def _line_types(deck: Deck, chain: Chain) -> tuple[dict[str, Any], list[Remark]]:
+    types, remarks = dict[str, Any](), list[Remark]()
     for row in dict.fromkeys(_type_row(deck, line) for line in chain.lines):
         name, *stiffnesses = row.words[0], row.words[3], row.words[5]
         first, *more = stiffnesses[0].split("|")
@@ -156,7 +145,7 @@ def _end(deck: Deck, joint: str, line: DeckRow) -> Any:
     return "free" if is_free(deck, joint) else {"position": list(place(deck, joint, line))}
 
 
-def _about_ends(deck: Deck, chain: Chain) -> Iterator[tuple[int, str]]:
+def _about_ends(deck: Deck, chain: Chain) -> Iterator[Remark]:
     for joint, line in _ends(chain):
         row = point(deck, joint)
         if row is None:
@@ -168,7 +157,7 @@ def _about_ends(deck: Deck, chain: Chain) -> Iterator[tuple[int, str]]:
             yield row.line, f"mass, volume and drag of point {joint}, which is held"
 
 
-def _left_out(deck: Deck, chain: Chain) -> Iterator[tuple[int, str]]:
+def _left_out(deck: Deck, chain: Chain) -> Iterator[Remark]:
     for row in elsewhere(deck, chain):
         yield row.line, f"line {row.words[0]}: a scene has one riser; --line {row.words[0]} imports this one"
     for row in chain.lines:

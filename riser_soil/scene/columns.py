@@ -9,9 +9,10 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
-from riser_soil.core.quantities import FARTHEST
+from riser_soil.core.quantities import FARTHEST, NEAREST
 from riser_soil.scene.bounded import content
 from riser_soil.scene.files import wrong_file
 from riser_soil.scene.problem import hint, shown
@@ -65,6 +66,13 @@ def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> CsvColu
     sizes = [known[name][unit] for name, unit in units.items()]
     values = {name: tuple(row[i] * sizes[i] for row in rows) for i, name in enumerate(units)}
     return CsvColumns(file, lines[0][0], values, units, tuple(number for number, _ in lines[1:]))
+
+
+def increasing(columns: CsvColumns, values: tuple[float, ...], name: str) -> None:
+    """PydanticCustomError, with the line, where a column's values do not increase."""
+    for line, (a, b) in zip(columns.lines[1:], pairwise(values), strict=True):
+        if b - a < NEAREST:
+            raise wrong_file(f"{columns.file}:{line}: {name} must increase, but {b:g} follows {a:g}; sort the rows")
 
 
 def lines_of(file: Path) -> Iterator[_Line]:

@@ -20,7 +20,9 @@ from riser_soil.core.quantities import (
 )
 from riser_soil.scene.columns import ANGLE, LENGTH, CsvColumns
 from riser_soil.scene.files import GivenByName, NamedFile, wrong_file
+from riser_soil.scene.netcdf_variables import is_netcdf
 from riser_soil.scene.rao import MODES, ROTATIONS, TRANSLATIONS, Rao, read_rao, vessel_axis
+from riser_soil.scene.rao_files import read_capytaine
 from riser_soil.scene.time_history import read_history
 
 PLANES: dict[str, Vector] = {"xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0), "xy": (0.0, 0.0, 1.0)}
@@ -147,7 +149,7 @@ class Vessel(BaseModel):
     rao: NamedFile = Field(
         description="CSV file with columns frequency [rad/s or Hz] or period [s], direction [deg or rad], and of each "
         "mode that responds its amplitude and phase: surge [m/m], surge phase [deg], ..., yaw [deg/m or rad/m], yaw "
-        "phase [deg]; a relative name is sought beside the scene file"
+        "phase [deg]; or netCDF (.nc) with capytaine's RAO; a relative name is sought beside the scene file"
     )
     reference: Position = Field(description="point that the RAOs belong to, the vessel at rest, [x, y, z] [m]")
     heading_deg: Angle = Field(default=0.0, description="direction of the vessel's bow, from x towards y [deg]")
@@ -165,7 +167,7 @@ class Vessel(BaseModel):
     @cached_property
     def table(self) -> Rao:
         """What the file holds."""
-        return read_rao(self.rao)
+        return read_capytaine(self.rao) if is_netcdf(self.rao) else read_rao(self.rao)
 
     def axes(self, mode: str) -> Vector:
         """Global direction of a mode's displacement, or axis of its rotation."""

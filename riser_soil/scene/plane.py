@@ -13,6 +13,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import ArcShape, PointsShape
 from riser_soil.scene.stages import StaticStage
 from riser_soil.scene.vectors import cross, dot, minus, plus
+from riser_soil.scene.wave_kinds import GivenSpectrum
 
 # Relative distance from the plane that round-off may leave.
 _FLAT = 1e-9
@@ -130,10 +131,10 @@ def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
     waves = scene.water.waves if scene.water else None
     if waves:
         for path, train in waves.each:
-            angles = {"direction_deg": math.radians(train.direction_deg)}
-            if len(train.toward) > 1:
-                angles["spreading"] = train.toward[0]
-            for key, angle in angles.items():
+            key = "direction_deg" if len(train.toward) == 1 else "spreading"
+            if isinstance(train, GivenSpectrum) and train.table.toward:
+                key = "file"
+            for angle in train.toward:
                 yield ("water", "waves", *path, key), (math.cos(angle), math.sin(angle), 0.0)
 
 

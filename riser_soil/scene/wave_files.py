@@ -1,15 +1,13 @@
-"""Files of waves: a spectrum as a table, a record of the surface's elevation."""
+"""Files of waves: a record of the surface's elevation."""
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from riser_soil.core.lazy import LazyModule
-from riser_soil.core.quantities import NEAREST
-from riser_soil.scene.columns import LENGTH, TIME, CsvColumns, read_columns
+from riser_soil.scene.columns import LENGTH, TIME, increasing, read_columns
 from riser_soil.scene.files import wrong_file
 
 if TYPE_CHECKING:
@@ -17,29 +15,8 @@ if TYPE_CHECKING:
 else:
     np = LazyModule("numpy")
 
-_FREQUENCY = {"Hz": 2.0 * math.pi, "rad/s": 1.0}
-_DENSITY = {"m2/Hz": 1.0 / (2.0 * math.pi), "m2 s/rad": 1.0}
 _UNEVEN = 1e-3  # of the mean step: what rounding of the times in a file may leave
 _LEAST_ROWS = 16
-
-
-@dataclass(frozen=True)
-class SpectrumTable:
-    """Spectral density of the surface [m2 s/rad] by increasing frequency [rad/s], linear between the rows, 0 beyond."""
-
-    frequency: tuple[float, ...]
-    density: tuple[float, ...]
-
-    @cached_property
-    def energy(self) -> float:
-        """Variance of the surface [m2], by the trapezoidal rule, which is exact for straight pieces."""
-        pieces = zip(pairwise(self.frequency), pairwise(self.density), strict=True)
-        return math.fsum(0.5 * (b - a) * (p + q) for (a, b), (p, q) in pieces)
-
-    @property
-    def peak(self) -> float:
-        """Frequency of the largest density [rad/s]."""
-        return self.frequency[self.density.index(max(self.density))]
 
 
 @dataclass(frozen=True)
@@ -71,30 +48,13 @@ class ElevationRecord:
         return ElevationRecord(self.step, tuple(map(float, np.fft.irfft(waves, len(self.elevation)))))
 
 
-def read_spectrum(file: Path) -> SpectrumTable:
-    """PydanticCustomError, with the file and its line, for what is wrong."""
-    columns = read_columns(file, {"frequency": _FREQUENCY, "density": _DENSITY}, ("frequency", "density"))
-    w, density = columns.values["frequency"], columns.values["density"]
-    if columns.rows < 2:
-        raise wrong_file(f"{file}: a spectrum of {columns.rows} rows; it takes two at least")
-    _increasing(columns, w, "frequency")
-    if w[0] < NEAREST:
-        raise wrong_file(f"{file}:{columns.lines[0]}: frequencies must be greater than 0; leave the row out")
-    for line, value in zip(columns.lines, density, strict=True):
-        if value < 0.0:
-            raise wrong_file(f"{file}:{line}: density {value:g} is negative; correct it")
-    if not any(density):
-        raise wrong_file(f"{file}: all densities are 0: that is no sea; correct them")
-    return SpectrumTable(w, density)
-
-
 def read_elevation(file: Path) -> ElevationRecord:
     """PydanticCustomError, with the file and its line, for what is wrong."""
     columns = read_columns(file, {"t": TIME, "elevation": LENGTH}, ("t", "elevation"))
     t, z = columns.values["t"], columns.values["elevation"]
     if columns.rows < _LEAST_ROWS:
         raise wrong_file(f"{file}: a record of {columns.rows} rows; it takes {_LEAST_ROWS} at least")
-    _increasing(columns, t, "t")
+    increasing(columns, t, "t")
     step = (t[-1] - t[0]) / (len(t) - 1)
     for line, (a, b) in zip(columns.lines[1:], pairwise(t), strict=True):
         if abs(b - a - step) > _UNEVEN * step:
@@ -104,9 +64,3 @@ def read_elevation(file: Path) -> ElevationRecord:
     if not any(value != mean for value in z):
         raise wrong_file(f"{file}: all elevations are the same: that is no sea; correct them")
     return ElevationRecord(step, tuple(value - mean for value in z))
-
-
-def _increasing(columns: CsvColumns, values: tuple[float, ...], name: str) -> None:
-    for line, (a, b) in zip(columns.lines[1:], pairwise(values), strict=True):
-        if b - a < NEAREST:
-            raise wrong_file(f"{columns.file}:{line}: {name} must increase, but {b:g} follows {a:g}; sort the rows")

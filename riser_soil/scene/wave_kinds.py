@@ -8,8 +8,9 @@ from pydantic import BaseModel, Field, model_validator
 
 from riser_soil.core.quantities import FROZEN, Angle, Coordinate, Count, Length, Real, Time, wrong
 from riser_soil.scene.files import NamedFile
+from riser_soil.scene.spectrum_files import SpectrumTable, read_spectrum
 from riser_soil.scene.spreading import relative_directions
-from riser_soil.scene.wave_files import ElevationRecord, SpectrumTable, read_elevation, read_spectrum
+from riser_soil.scene.wave_files import ElevationRecord, read_elevation
 
 # A sea of more components is no better, and each costs time at every point in every iteration.
 MOST_COMPONENTS = 10000
@@ -136,22 +137,37 @@ class PiersonMoskowitz(PeakedSea):
 
 
 class GivenSpectrum(DrawnSea):
-    """An irregular sea with a spectrum from a file, linear between its rows, nothing beyond them."""
+    """An irregular sea with a spectrum from a file, linear between its rows, nothing beyond them; of netCDF with its
+    own directions.
+    """
 
     file: NamedFile = Field(
-        description="CSV file with the columns frequency [Hz] (or rad/s) and density [m2/Hz] (or m2 s/rad); a relative "
-        "name is sought beside the scene file"
+        description="CSV file with the columns frequency [Hz] (or rad/s) and density [m2/Hz] (or m2 s/rad), or netCDF "
+        "(.nc) with freq, dir and efth, as wavespectra writes it; a relative name is sought beside the scene file"
+    )
+    at: dict[str, Count | Literal[0]] = Field(
+        default_factory=dict, description="which sea of a netCDF file that has several, {time: 12}, counted from 0"
+    )
+    north_deg: Angle = Field(
+        default=90.0, description="direction of north, from x towards y, for a file's directions [deg]"
     )
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:
-        _ = self.table
+        given = [key for key in ("direction_deg", "spreading") if getattr(self, key)]  # 0 and none are written, too
+        if self.table.toward and given:
+            raise wrong(given[0], "the file has directions of its own", "leave the key out")
         return self
 
     @cached_property
     def table(self) -> SpectrumTable:
         """What the file holds."""
-        return read_spectrum(self.file)
+        return read_spectrum(self.file, self.at, math.radians(self.north_deg))
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        return self.table.toward or super().toward
 
     @property
     def height(self) -> float:

@@ -41,6 +41,11 @@ def drawn(draw: np.random.Generator, variance: float, w: Array, toward: Array, g
     direction = np.full(w.size, toward[0])
     if toward.size > 1:
         direction = np.concatenate([draw.permutation(toward) for _ in range(w.size // toward.size)])
+    return alike(variance, w, direction, phase, g, h)
+
+
+def alike(variance: float, w: Array, direction: Array, phase: Array, g: float, h: float) -> Components:
+    """Waves of the same amplitude; the sum of a^2/2 is the variance [m2]."""
     return Components(np.sqrt(2.0 * variance / w.size) * np.ones(w.size), w, wave_number(w, g, h), direction, phase)
 
 

@@ -4,22 +4,48 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
-from riser_soil.sea.components import Components, drawn
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.sea.components import Components, alike, drawn
+
+_GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 
 
 def components(
-    frequency: Array, density: Array, count: int, seed: int | list[int], toward: Array, g: float, h: float
+    frequency: Array,
+    density: Array,
+    count: int,
+    seed: int | list[int],
+    toward: Array,
+    g: float,
+    h: float,
+    parts: Array | None = None,
 ) -> Components:
     """A sea of `count` waves, drawn as those of `jonswap.components`; the same seed gives the same sea.
 
     density: (n,) [m2 s/rad] at increasing frequencies (n,) [rad/s], linear between them and zero beyond. The sum of
-    a^2/2 is its integral.
+    a^2/2 is its integral. toward: directions (m,) [rad] of equal energy, unless parts (n, m) tell how much of the
+    density each has.
     """
     draw = np.random.default_rng(seed)
     share = (np.arange(count) + draw.random(count)) / count
-    energy = _energy(frequency, density)
-    return drawn(draw, float(energy[-1]), quantiles(share, frequency, density), toward, g, h)
+    energy = float(_energy(frequency, density)[-1])
+    w = quantiles(share, frequency, density)
+    if parts is None:
+        return drawn(draw, energy, w, toward, g, h)
+    phase = 2.0 * np.pi * draw.random(count)
+    return alike(energy, w, toward[_directions(draw.random(), w, frequency, parts)], phase, g, h)
+
+
+def _directions(first: float, w: Array, frequency: Array, parts: Array) -> IntArray:
+    """Numbers of directions (n,) of waves of increasing frequencies w.
+
+    Each wave goes where a share of the energy at its own frequency lies: the first one's is given, and it grows by the
+    golden section from wave to wave, modulo 1, so that any band of frequencies has the energy of all its directions.
+    """
+    share = (first + _GOLDEN * np.arange(w.size)) % 1.0
+    cumulative = np.cumsum(parts, axis=1)
+    at_w = np.array([np.interp(w, frequency, column) for column in cumulative.T])
+    return np.minimum((at_w <= share * at_w[-1]).sum(axis=0), parts.shape[1] - 1)
 
 
 def quantiles(share: Array, frequency: Array, density: Array) -> Array:

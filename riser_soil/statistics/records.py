@@ -22,13 +22,14 @@ class Records(NamedTuple):
     """An output of several runs, such as one for each seed of the waves.
 
     name: with its component. units. step: between values [s], the same in all runs: that between most records of the
-    coarsest. arc (m,): of the places along the riser [m]; one that is nan of an output of the riser as a whole. values:
-    of each run (n, m).
+    coarsest. begin: time of the first run's first values, from its stage's beginning on [s]. arc (m,): of the places
+    along the riser [m]; one that is nan of an output of the riser as a whole. values: of each run (n, m).
     """
 
     name: str
     units: str
     step: float
+    begin: float
     arc: Array
     values: list[Array]
 
@@ -71,7 +72,7 @@ def records_of(
                 f"{run.folder}: has {len(values)} values at the step of the coarsest run, {step:g} s, fewer than "
                 f"{FEWEST}; take runs of like output.interval together"
             )
-    return Records(name, output.units, step, places, evened)
+    return Records(name, output.units, step, float(sampled[0].time[0]), places, evened)
 
 
 def _places(runs: Sequence[Run], arcs: Sequence[float] | None) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,7 +13,9 @@ from typer.testing import CliRunner
 from riser_soil.commands.app import app
 from riser_soil.errors import SceneError
 from riser_soil.moordyn.deck import Deck, read_deck
+from riser_soil.moordyn.deck_of import deck_of
 from riser_soil.moordyn.scene_of import scene_of
+from riser_soil.scene.dump import yaml_text
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from tests.support.coupled_scenes import Mapping
 
@@ -186,3 +189,79 @@ def test_friction_in_one_direction_alone_is_told(tmp_path: Path) -> None:
     found = scene_of(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", "0.6 MU_KT")))
     assert "contact" not in found.data
     assert (38, "friction of 0 along and 0.6 across: neither may be 0 here") in found.remarks
+
+
+@pytest.mark.parametrize("friction", ["0.3           Fric", "0.3           mu_kA\n0.5 mu_kT\n0.1 Fric"])
+@pytest.mark.parametrize("line", ["1", "4"])
+def test_a_scene_comes_back_from_its_deck(line: str, friction: str, tmp_path: Path) -> None:
+    """The scene of a deck, its deck, and that one's scene, which has all its numbers to the last digit."""
+    first = scene_of(deck(tmp_path, DECK.replace("0.3           Fric", friction)), line)
+    scene = scene_from_mapping(first.data)
+    (tmp_path / "back.dat").write_text(deck_of(scene))
+    back = scene_of(read_deck(tmp_path / "back.dat"))
+    assert scene_from_mapping(back.data) == scene
+    assert back.data == first.data
+    told = {text.split()[0] for _, text in back.remarks}
+    assert told == {"BA/-zeta", "dtM"} | ({"kBot"} if line == "1" else set())  # MoorDyn's own, and of two diameters
+
+
+def test_the_step_of_a_deck_is_short_enough(tmp_path: Path) -> None:
+    """Half of 1/w of the fastest node: w^2 = 4 EA/m l^2, elements of 4.2 m."""
+    text = deck_of(scene_from_mapping(scene_of(deck(tmp_path), "4").data))
+    (step,) = (line.split()[0] for line in text.splitlines() if line.endswith("dtM"))
+    assert float(step) == pytest.approx(0.25 * 4.2 * math.sqrt(72.0 / 6.0e8), rel=0.05)
+
+
+def test_contents_and_attachments_within_a_segment(tmp_path: Path) -> None:
+    """Contents count in the mass; what sits within a segment cuts it; a bed that bears the outside is half a diameter
+    higher for the axis; heights count from the surface.
+    """
+    data = scene_of(deck(tmp_path), "4").data
+    (segment,), kind = data["riser"]["segments"], data["line_types"]["cable"]
+    kind["inner_diameter"], data["seabed"]["contact_at"] = 0.1, "outer"
+    data["riser"]["contents"] = {"density": 900.0}
+    data["riser"]["attachments"] = [{"at": [63.0, 84.0], "mass": 70.0, "volume": 0.1}]
+    data["water"]["surface_level"] = 20.0
+    (tmp_path / "back.dat").write_text(deck_of(scene_from_mapping(data)))
+    back = scene_of(read_deck(tmp_path / "back.dat")).data
+    assert back["line_types"]["cable"]["mass"] == pytest.approx(kind["mass"] + 900.0 * math.pi / 4.0 * 0.1**2)
+    assert [each["length"] for each in back["riser"]["segments"]] == pytest.approx([63.0, 21.0, 126.0])
+    assert [each["elements"] for each in back["riser"]["segments"]] == [15, 5, 30]
+    assert [each["at"] for each in back["riser"]["attachments"]] == pytest.approx([63.0, 84.0])
+    assert back["seabed"]["level"] == -100.0 - 20.0 + 0.1
+    assert back["riser"]["start"]["position"][2] == data["riser"]["start"]["position"][2] - 20.0
+    assert segment["elements"] == 50
+
+
+def test_the_export_tells_what_a_deck_lacks(tmp_path: Path) -> None:
+    text = tmp_path / "scene.yaml"
+    data = scene_of(deck(tmp_path), "4").data
+    data["water"] |= {"current": {"profile": [[0.0, 0.5, 0.0]]}}
+    data["line_types"]["cable"] |= {"GJ": 100.0, "damping": {"ratio": 0.01, "frequency": 0.1}}
+    data["stages"] += [{"name": "later", "kind": "dynamic", "duration": 2.0, "time_step": 0.1}]
+    text.write_text(yaml_text(data))
+    done = CliRunner().invoke(app, ["export", str(text), "-o", str(tmp_path / "out.dat")])
+    assert done.exit_code == 0, done.output
+    told = [line.split("not in the deck: ")[1].split()[0] for line in done.output.splitlines() if "not in the" in line]
+    assert told == [
+        "water.current.profile", "line_types.cable.GJ", "line_types.cable.damping.ratio",
+        "line_types.cable.damping.frequency", "stages.1.kind", "stages.1.duration", "stages.1.time_step",
+    ]  # fmt: skip
+    again = CliRunner().invoke(app, ["export", str(text), "-o", str(tmp_path / "out.dat")])
+    assert (again.exit_code, "--force" in again.output) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"water": {"density": 1000.0}}, "water.surface_level: is missing"),
+        ({"seabed": {"kind": "rigid", "level": -101.0}}, "seabed: only kind spring"),
+    ],
+)
+def test_scenes_that_give_no_deck(change: Mapping, told: str, tmp_path: Path) -> None:
+    data = scene_of(deck(tmp_path), "4").data | change
+    (tmp_path / "scene.yaml").write_text(yaml_text(data))
+    done = CliRunner().invoke(app, ["export", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out.dat")])
+    assert done.exit_code == 2
+    assert told in done.output
+    assert not (tmp_path / "out.dat").exists()

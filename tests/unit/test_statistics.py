@@ -188,6 +188,22 @@ def test_records_of_places_and_components(tmp_path: Path) -> None:
     assert records_of([run], "end_force.size", [5.0]).values[0][:, 0] == pytest.approx(5.0 * x)
 
 
+def test_histories_are_columns_beside_time(tmp_path: Path) -> None:
+    """Names without blanks or commas; time from the stage's beginning, the transient cut off."""
+    run, file = run_of(tmp_path / "run", np.arange(40.0)), tmp_path / "x.csv"
+    words = [str(run), "--of", "effective_tension", "--at", "end", "--arc", "5", "--of", "end_force.x"]
+    words += ["--since", "2.5"]
+    done = CliRunner().invoke(app, ["histories", *words, "-o", str(file)])
+    assert done.exit_code == 0, done.output
+    head, *rows = list(csv.reader(file.open()))
+    assert head == ["time_s", "effective_tension_at_5m_N", "effective_tension_at_20m_N", "end_force.x_N"]
+    found = np.array(rows, dtype=float)
+    n = found[:, 0] / STEP - 1.0
+    assert found[0, 0] == pytest.approx(2.5)
+    assert found[:, 1:] == pytest.approx(n[:, None] * [1.5, 3.0, 3.0])
+    assert CliRunner().invoke(app, ["histories", *words]).output == file.read_text()
+
+
 def test_what_does_not_vary_has_no_extremes(tmp_path: Path) -> None:
     file, run = tmp_path / "still.json", run_of(tmp_path / "run", np.full(40, 7.0))
     asked = "--of", "end_force.y", "--above", "1", "-o", str(file), "--plot", str(tmp_path / "still.png")

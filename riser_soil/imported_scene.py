@@ -1,0 +1,40 @@
+"""What an importer of another program's files hands over: a scene, files beside it, and what they lack."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from riser_soil.errors import SceneError
+from riser_soil.scene.bounded import content
+
+MOST_BYTES = 10_000_000
+
+Remark = tuple[int, str]
+"""Line of the file, and what of it the scene does not have."""
+
+
+@dataclass
+class ImportedScene:
+    """The scene as a mapping, remarks on what it lacks, and texts of the files that it names, by their names."""
+
+    data: dict[str, Any]
+    remarks: list[Remark] = field(default_factory=list)
+    files: dict[str, str] = field(default_factory=dict)
+
+
+def text_of(file: Path) -> str:
+    """The text of another program's file; SceneError where it can't be read."""
+    try:
+        return content(file, MOST_BYTES).decode("utf-8-sig", errors="replace")
+    except OSError as err:
+        raise SceneError(f"{file}: can't be read ({err.strerror}); check the file's name") from err
+
+
+def friction(axial: float, lateral: float) -> tuple[dict[str, Any], str]:
+    """The part `contact` of a scene with these coefficients along and across, and a remark where it can't have them."""
+    if axial and lateral:
+        return {"contact": {"friction": {"axial": axial, "lateral": lateral}}}, ""
+    told = f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"
+    return {}, told if axial or lateral else ""
