@@ -33,7 +33,7 @@ from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.sample_line import Sample, sample
 
-TURNING = "morison", "buoyancy", "seabed", "friction"  # parts whose kernels say what they turn over
+TURNING = "morison", "vortices", "buoyancy", "seabed", "friction"  # parts whose kernels say what they turn over
 IN_WATER = (
     sample_water.current,
     sample_water.half_out_in_waves,
