@@ -121,7 +121,7 @@ def shedding_rate(
     v: Array, own: Array, a: Array, tau: Array, phase: float, rate: float, diameter: float, middle: float, width: float
 ) -> float:
     """Rate of the phase [1/s] at one station. v: velocity through the water, own: the pipe's, a: its acceleration;
-    rate: that of the step before.
+    rate: as it is foreseen.
     """
     speed, across = _speed(v, tau), _cross(v, tau)
     if speed == 0.0:
@@ -170,8 +170,9 @@ def advance(
     wake: Wake, shed: Shedding, t: float, phase: float, e: int, g: int, v: Array, own: Array, a: Array, tau: Array
 ) -> None:
     """Keep phase and rate of one station at the end t of an accepted step; the time is the caller's to keep."""
-    of_pipe = shed.diameter[e], shed.middle[e], shed.width[e]
-    rate, since = shedding_rate(v, own, a, tau, phase, wake.rate[e, g], *of_pipe), t - wake.time[0]
+    of_pipe, since = (shed.diameter[e], shed.middle[e], shed.width[e]), t - wake.time[0]
+    foreseen = max(wake.rate[e, g] + since * wake.growth[e, g], 0.0)
+    rate = shedding_rate(v, own, a, tau, phase, foreseen, *of_pipe)
     wake.growth[e, g] = (rate - wake.rate[e, g]) / since if since > 0.0 else 0.0
     wake.phase[e, g], wake.rate[e, g] = phase % (2.0 * math.pi), rate
 

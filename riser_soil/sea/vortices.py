@@ -6,6 +6,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Traits, Weights, Work
+from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.stations import POINTS, Derivatives
@@ -30,16 +31,16 @@ class VortexLoads:
         self.wake = self._new_wake()
 
     def _new_wake(self) -> law.Wake:
-        """At the stage's start: phases once around along the line, so that no shape is left out, and the rate of a pipe
-        at rest.
-        """
+        """Phases once around along the line, so that no shape is left out; the rates follow."""
         line, shape = self.pipe.line, self.pipe.share.shape
         arc = line.arc[:-1, None] + line.length[:, None] * POINTS
-        wake = law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
-        if line.active:
-            rest = line.trial(State.at_rest(0.0, line.offset + line.size))
-            law.advance_all(wake, self.shed, 0.0, *self._motion(rest))
-        return wake
+        return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
+
+    def begin(self, trial: Trial) -> None:
+        """Shed as behind a pipe at rest, then as behind one in this motion."""
+        through, own, a, tau = self._motion(trial)
+        law.advance_all(self.wake, self.shed, trial.state.t, through, 0.0 * own, 0.0 * a, tau)
+        self.advance(trial)
 
     def _motion(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
         """Velocity through the water, own velocity and acceleration, tangent; each (ne, ng, 3)."""
@@ -83,7 +84,7 @@ class Vortices(LinePart):
     """
 
     name = "vortices"
-    traits = Traits("F", symmetric=False, follows=True, keeps_way=True, roles=(Stateful,))
+    traits = Traits("F", symmetric=False, follows=True, keeps_way=True, roles=(Stateful, Starting))
 
     def __init__(self, pipe: Pipe, loads: StationLoads, vortices: VortexLoads) -> None:
         super().__init__(pipe.line)
@@ -113,6 +114,9 @@ class Vortices(LinePart):
         bring(self._in_loop.flow.seen, start, end)
         for phases, t in zip(self._in_loop.phases, (start, end), strict=True):
             phases[:] = law.phases_at(self._in_loop.wake, t)
+
+    def begin_stage(self, state: State) -> None:
+        self._vortices.begin(self.line.trial(state))
 
     def commit(self, state: State) -> None:
         """Keep the wake."""

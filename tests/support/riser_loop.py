@@ -88,6 +88,7 @@ CASES = {
     "sway, damped": ("catenary", (*IN_SPACE, SWAYING, PIPE + "damping={ratio: 0.2, frequency: 0.1}")),
     "hose on a floor": ("tank", ("riser.segments.0.elements=40",)),
     "storm over clay": ("storm", ()),
+    "vortices in a storm": ("storm", (PIPE + "vortex_force={}",)),
 }
 
 

@@ -10,6 +10,7 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.riser import hermite
+from riser_soil.riser.trial import Trial
 from riser_soil.sea import vortex_law as law
 from riser_soil.sea import wet_section
 from riser_soil.sea.moving_water import FlowAtStations
@@ -33,18 +34,25 @@ def shedding(n: int = 1, Cv: float = 1.2) -> law.Shedding:
     return law.Shedding(*(np.full(n, value) for value in (lift, D, MIDDLE, WIDTH)))
 
 
+def underway(part: Vortices, at: Sample) -> Vortices:
+    """After a first step, so that phases, rates and their growth are all there."""
+    part.begin_stage(at.state(7, size=0.0, t=0.0))
+    part.commit(at.state(8, size=0.0, t=0.05))
+    return part
+
+
 def behind(at: Sample) -> Vortices:
     """In uneven, unsteady water."""
     pipe = Pipe(at.line)
     loads = VortexLoads(pipe, FlowAtStations(pipe, sample_water.water), shedding(at.line.length.size))
-    return Vortices(pipe, loads, loads)
+    return underway(Vortices(pipe, loads, loads), at)
 
 
 def behind_half_out(at: Sample) -> Vortices:
     pipe = Pipe(at.line)
     stream = FlowAtStations(pipe, sample_water.water)
     loads = VortexLoads(pipe, stream, shedding(at.line.length.size))
-    return Vortices(pipe, PartlyWet(loads, Wetting(pipe, stream)), loads)
+    return underway(Vortices(pipe, PartlyWet(loads, Wetting(pipe, stream)), loads), at)
 
 
 both = pytest.mark.parametrize("make", [behind, behind_half_out])
@@ -52,7 +60,7 @@ both = pytest.mark.parametrize("make", [behind, behind_half_out])
 
 @pytest.mark.parametrize("phase", [0.0, 0.4, 2.0])
 def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
-    """An upright pipe in a flow along x is pushed towards y, 1/2 rho D Cv U^2 at its most; a flow along it does nothing."""
+    """An upright pipe in a flow along x is pushed towards y by at most 1/2 rho D Cv U^2; flow along it does nothing."""
     k = np.full((1, 1), shedding().lift[0] * np.cos(phase))
     found = -law.resistance(-U * ALONG_X[None, None], TAU[None, None], k)[0, 0]
     np.testing.assert_allclose(found, [0.0, 0.5 * RHO * D * 1.2 * U**2 * np.cos(phase), 0.0], atol=1e-12)
@@ -104,6 +112,16 @@ def test_a_pipe_at_rest_sheds_at_the_middle_frequency() -> None:
     assert np.abs(rates - 0.2).max() < 1e-3
 
 
+def test_the_phase_of_a_flow_that_grows_steadily_is_exact() -> None:
+    """Once two rates are known: then of the second order in time, behind a pipe at rest."""
+    wake, still, dt = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3))), np.zeros((1, 1, 3)), 0.1
+    for t in dt * np.arange(10):
+        law.advance_all(wake, shedding(), t, -(U + t) * ALONG_X[None, None], still, still, TAU[None, None])
+    turned = 2.0 * np.pi * MIDDLE / D * (U * t + 0.5 * t**2)
+    first = 0.5 * 2.0 * np.pi * MIDDLE / D * dt**2  # of the first step, whose rate stays as it begins
+    assert wake.phase[0, 0] == pytest.approx((turned - first) % (2.0 * np.pi), rel=1e-12)
+
+
 def test_nothing_is_shed_without_flow() -> None:
     wake = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3)))
     still = np.zeros((1, 1, 3))
@@ -141,8 +159,8 @@ def without_wet_slope(monkeypatch: pytest.MonkeyPatch) -> None:
 def without_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
     usual = FlowAtStations.at
 
-    def at(stream: FlowAtStations, trial: object) -> WaterMotion:
-        motion = usual(stream, trial)  # type: ignore[arg-type]
+    def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
+        motion = usual(stream, trial)
         return motion._replace(velocity_gradient=0.0 * motion.velocity_gradient)
 
     monkeypatch.setattr(FlowAtStations, "at", at)
@@ -171,7 +189,7 @@ def test_kernels_are_those_of_the_methods() -> None:
 @both
 def test_the_loop_keeps_the_wake_as_the_method_does(make: Callable[[Sample], Vortices]) -> None:
     at = sample(3)
-    part, before, state = make(at), at.state(2, t=0.0), at.state(1, t=0.02)
+    part, before, state = make(at), at.state(2, t=0.05), at.state(1, t=0.07)
     begun = part.state()
     part.commit(state)
     expected = part.state()
@@ -181,6 +199,27 @@ def test_the_loop_keeps_the_wake_as_the_method_does(make: Callable[[Sample], Vor
     for name, found in part.state().items():
         np.testing.assert_allclose(found, expected[name], rtol=1e-9, err_msg=name)
         assert not np.array_equal(found, begun[name]), name
+
+
+def test_a_stage_begins_with_the_rate_of_its_motion() -> None:
+    """As a step of no length does that has known the rate; a pipe at rest sheds at the middle frequency."""
+    at = sample(3)
+    part, state = behind(at), at.state(2, size=0.0, t=0.0)
+    rest = State(0.0, 0.0 * state.u, 0.0 * state.v, 0.0 * state.a)
+    part.begin_stage(rest)
+    trial = at.line.trial(rest)
+    loads = part._vortices
+    speed = np.linalg.norm(np.cross(loads._stream.through(trial).v, at_stations(loads, trial)), axis=-1)
+    np.testing.assert_allclose(part.state()["rate"], 2.0 * np.pi * MIDDLE * speed / D, rtol=1e-12)
+    part.begin_stage(state)
+    begun = part.state()
+    part.commit(state)
+    np.testing.assert_allclose(part.state()["rate"], begun["rate"], rtol=0.2)
+    assert not begun["growth"].any()
+
+
+def at_stations(loads: VortexLoads, trial: Trial) -> Array:
+    return loads.pipe.flow(trial).tau
 
 
 def test_a_trial_leaves_no_trace_and_a_commit_continues() -> None:
@@ -200,8 +239,8 @@ def test_the_power_of_the_force_is_external_work() -> None:
     """Over a short step: minus the resistance times the way."""
     at = sample(3)
     part, start, h = behind(at), at.state(3), 1e-4
-    before = State(0.0, 0.0 * start.u, start.v, start.a)
-    after = State(h, h * start.v, start.v, start.a)
+    before = State(0.05, 0.0 * start.u, start.v, start.a)
+    after = State(0.05 + h, h * start.v, start.v, start.a)
     work = part.work(before, after)
     expected = -residual([part], before, Weights(0.0, 1.0, 0.0, 0.0)) @ start.v * h
     assert work.external == pytest.approx(expected, rel=1e-3)
