@@ -90,6 +90,8 @@ def _diameter_needed(scene: Scene, line: LineType) -> str | None:
         return "buoyancy follows from the outer diameter, unless submerged_weight is given"
     if line.rotary_inertia is True and any(stage.kind == "dynamic" for stage in scene.stages):
         return "rotary inertia follows from the diameters, unless it is given in kg.m"
+    if scene.water and scene.water.marine_growth:
+        return "marine growth lies around the outer diameter"
     if line.drag or line.added_mass or line.sheds:
         return "drag, added mass and vortices follow from the outer diameter"
     if scene.contact and scene.contact_at == "outer":
