@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from riser_soil.sea.buoyancy import LostBuoyancy
     from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.still_water import StillWater
+    from riser_soil.sea.vortex_law import Shedding
     from riser_soil.sea.wetting import WaterSurface, Wetting
 
 
@@ -45,6 +46,11 @@ class Body(ABC):
     @abstractmethod
     def adds_mass(self) -> bool:
         """Whether it has added mass."""
+
+    @property
+    def shedding(self) -> Shedding | None:
+        """Its vortices, of a body that sheds any."""
+        return None
 
     @property
     @abstractmethod
@@ -89,6 +95,16 @@ class PipeInWater(Body):
     @property
     def adds_mass(self) -> bool:
         return bool(self.elements.added_mass.any())
+
+    @property
+    def shedding(self) -> Shedding | None:
+        coefficient, middle, width = self.elements.vortices.T.copy()
+        if not coefficient.any():
+            return None
+        from riser_soil.sea.vortex_law import Shedding
+
+        diameter = self.elements.outer_diameter
+        return Shedding(0.5 * self.rho * diameter * coefficient, diameter, middle, width)
 
     @property
     def still(self) -> StillWater:

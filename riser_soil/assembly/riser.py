@@ -11,6 +11,7 @@ import numpy as np
 from riser_soil.assembly.shape import initial_shape, unstressed_shape
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State
+from riser_soil.errors import SceneError
 from riser_soil.riser import sections, shapes
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import UP, Line
@@ -19,6 +20,9 @@ from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.riser import Riser, RotationSpring, Support
 from riser_soil.scene.scene import Scene
+
+MOST_SHAPES = 30  # tried for marine growth
+SETTLED = 1e-9  # of the riser's length: change of the first shape by which its growth is no other
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
@@ -32,7 +36,29 @@ def elements_of(scene: Scene) -> sections.Elements:
         contents=scene.riser.contents.density if scene.riser.contents else 0.0,
         water=scene.water.density if scene.water else 0.0,
     )
-    return elements_along(scene.riser, scene.used_line_types, around)
+    bare = elements_along(scene.riser, scene.used_line_types, around)
+    given = scene.water.marine_growth if scene.water else None
+    return bare if given is None else _grown(scene, bare, np.array(given), around)
+
+
+def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections.Surroundings) -> sections.Elements:
+    """With the marine growth, rows of z, thickness and density, of the heights at which the first shape hangs with it.
+
+    SceneError where shape and growth do not settle.
+    """
+    from riser_soil.riser.marine_growth import Growth, with_growth
+
+    growth, attachments, grown = Growth(*given.T), attachments_of(scene), bare
+    unstressed, before = unstressed_shape(scene.riser, bare.arc), np.full(bare.arc.size, np.inf)
+    for _ in range(MOST_SHAPES):
+        z = initial_shape(scene, grown, attachments, unstressed)[1].position[:, 2]
+        if np.abs(z - before).max() < SETTLED * bare.arc[-1]:
+            return grown
+        grown, before = with_growth(bare, growth, z, around), z
+    raise SceneError(
+        "water.marine_growth: it changes the riser's first shape, and this the growth, without end; give riser.initial "
+        "as points, or less growth"
+    )
 
 
 def elements_along(
@@ -63,6 +89,7 @@ def _line_type(given: LineType) -> sections.SectionProperties:
         "EI_z": EI_z,
         "drag": (given.drag.normal, given.drag.tangential) if given.drag else (0.0, 0.0),
         "added_mass": (given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
+        "vortices": tuple(given.vortex_force.model_dump().values()) if given.vortex_force else (0.0, 0.0, 0.0),
         "rotary_inertia": None if given.rotary_inertia is True else float(given.rotary_inertia),
         "damping": given.damping.time if given.damping else 0.0,
         "wall_outer_diameter": outer,

@@ -22,13 +22,15 @@ if TYPE_CHECKING:
     from riser_soil.sea.morison import Morison
     from riser_soil.sea.moving_water import FlowAtStations
     from riser_soil.sea.still_water import StationLoads
+    from riser_soil.sea.vortex_law import Shedding
+    from riser_soil.sea.vortices import Vortices
     from riser_soil.sea.wetting import WaterSurface
 
 
 def sea_loads(
     scene: Scene, line: Line, elements: Elements, stage: Stage, attachments: Sequence[PointAttachment] = ()
 ) -> list[Part]:
-    """The parts "morison" and "buoyancy" of a stage, of the pipe and of the modules on it."""
+    """The parts "morison", "vortices" and "buoyancy" of a stage, of the pipe and of the modules on it."""
     if scene.water is None:
         return []
     bodies: list[Body] = [PipeInWater(scene.water.density, line, elements)]
@@ -50,6 +52,8 @@ class _BodyLoads:
     def parts(self) -> Iterator[Part]:
         if self.act:
             yield self.morison
+        if (shedding := self.body.shedding) is not None and isinstance(self.stage, DynamicStage):
+            yield self._vortices(shedding)
         if self.surface is not None:
             yield self.buoyancy
 
@@ -75,11 +79,15 @@ class _BodyLoads:
         """Water that moves."""
         if self.water.current is None and not self.waves:
             return None
-        from riser_soil.sea.moving_water import FlowAtStations
+        return self._flow
 
-        water = water_of(self.scene, self.stage)
-        assert water is not None
-        return FlowAtStations(self.body.pipe, water)
+    @cached_property
+    def _flow(self) -> FlowAtStations:
+        """The water around the pipe, which may stand still."""
+        from riser_soil.sea.moving_water import FlowAtStations
+        from riser_soil.sea.sea import Sea
+
+        return FlowAtStations(self.body.pipe, water_of(self.scene, self.stage) or Sea(None))
 
     @cached_property
     def surface(self) -> WaterSurface | None:
@@ -101,11 +109,20 @@ class _BodyLoads:
     def _at_stations(self) -> StationLoads:
         """Each thing that the water has adds to what is there without it."""
         loads = self._in_motion(self.stream) if self.stream is not None else self.body.still
+        return self._where_wet(loads)
+
+    def _where_wet(self, loads: StationLoads) -> StationLoads:
         if self.surface is None:
             return loads
         from riser_soil.sea.wetting import PartlyWet
 
         return PartlyWet(loads, self.body.wetting(self.surface))
+
+    def _vortices(self, shedding: Shedding) -> Vortices:
+        from riser_soil.sea.vortices import VortexLoads, Vortices
+
+        loads = VortexLoads(self.body.pipe, self._flow, shedding)
+        return Vortices(self.body.pipe, self._where_wet(loads), loads)
 
     def _in_motion(self, stream: FlowAtStations) -> StationLoads:
         from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag

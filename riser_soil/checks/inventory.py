@@ -39,6 +39,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "rotary inertia": _no_rotary_inertia(scene),
         "structural damping": _no_structural_damping(scene),
         "morison": _no_morison(scene),
+        "vortices": _no_vortices(scene),
         "buoyancy": _no_buoyancy(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
         "friction": _no_friction(scene, "seabed"),
@@ -60,7 +61,7 @@ SPLIT = {
     "seabed": ("seabed", "seabed_time_scheme"),
     "contact": ("contact", "contact_time_scheme"),
 }
-WORKING = ("loads", "morison", "buoyancy")
+WORKING = ("loads", "morison", "vortices", "buoyancy")
 
 
 def dissipating(scene: Scene) -> tuple[str, ...]:
@@ -138,6 +139,12 @@ def _no_morison(scene: Scene) -> str:
     if resist or ((scene.water.waves or changes) and has_dynamics(scene)):
         return ""
     return "no line type has drag or added mass, nor any attachment"
+
+
+def _no_vortices(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "no stage is dynamic"
+    return "" if any(t.sheds for t in scene.used_line_types.values()) else "no line type has a vortex_force"
 
 
 def _no_buoyancy(scene: Scene) -> str:

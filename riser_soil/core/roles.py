@@ -1,4 +1,4 @@
-"""Optional roles of parts in the time stepping: adaptive sparsity pattern, predictor, momentum correction, new mesh.
+"""Optional roles of parts in the time stepping: adaptive pattern, predictor, start, momentum correction, new mesh.
 
 A role that is declared without its methods, such as a misspelt one, is an error at the stage's start, and so are the
 methods of a role that is not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
@@ -29,6 +29,15 @@ class Predictor(Protocol):
     """A part with a predictor: a better first guess of a step than the increments of `guess`."""
 
     def predict(self, guess: State) -> Array: ...
+
+
+@runtime_checkable
+class Starting(Protocol):
+    """A part whose history begins with the motion that a stage starts from."""
+
+    def begin_stage(self, state: State) -> None:
+        """Take note of the accepted state before the first step; not where a stage goes on from a saved state."""
+        ...
 
 
 @runtime_checkable
@@ -66,7 +75,7 @@ class Limited(Protocol):
         ...
 
 
-ROLES = (Adaptive, Predictor, Stateful, MomentumCorrecting, Renewing, Limited)
+ROLES = (Adaptive, Predictor, Stateful, Starting, MomentumCorrecting, Renewing, Limited)
 
 
 def with_role(parts: Iterable[Part], role: type) -> list[Any]:

@@ -25,6 +25,7 @@ from riser_soil.results.netcdf_layout import Variable, lay_out, values_in
 
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "morison": "drag and other forces of the water's motion",
+    "vortices": "force of shed vortices across the flow",
     "buoyancy": "buoyancy in waves",
     "contact": "contact of the riser with the soil",
     "soil_plasticity": "plastic flow of the soil",

@@ -90,8 +90,10 @@ def _diameter_needed(scene: Scene, line: LineType) -> str | None:
         return "buoyancy follows from the outer diameter, unless submerged_weight is given"
     if line.rotary_inertia is True and any(stage.kind == "dynamic" for stage in scene.stages):
         return "rotary inertia follows from the diameters, unless it is given in kg.m"
-    if line.drag or line.added_mass:
-        return "drag and added mass follow from the outer diameter"
+    if scene.water and scene.water.marine_growth:
+        return "marine growth lies around the outer diameter"
+    if line.drag or line.added_mass or line.sheds:
+        return "drag, added mass and vortices follow from the outer diameter"
     if scene.contact and scene.contact_at == "outer":
         return "the pipe's outer surface touches the ground, unless seabed.contact_at is axis"
     return None
@@ -108,8 +110,10 @@ def _describe(key: str) -> str:
 
 def _water_where_it_acts(scene: Scene) -> Iterator[Problem]:
     for name, line in scene.used_line_types.items():
-        for key, coefficients in {"drag": line.drag, "added_mass": line.added_mass}.items():
-            if coefficients and not scene.water and (coefficients.normal or coefficients.tangential):
+        given = {"drag": line.drag, "added_mass": line.added_mass}
+        acting = {key: each is not None and bool(each.normal or each.tangential) for key, each in given.items()}
+        for key, acts in (acting | {"vortex_force": line.sheds}).items():
+            if acts and not scene.water:
                 remedy = f"add water: {{density: 1025.0}}, or leave out {key}"
                 yield Problem(
                     ("line_types", name, key), "acts in water only, and the scene has no water", remedy

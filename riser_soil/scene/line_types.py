@@ -45,6 +45,24 @@ class AddedMass(BaseModel):
     tangential: Coefficient = Field(default=0.0, description="added mass coefficient along the pipe [-]")
 
 
+class VortexForce(BaseModel):
+    """Force of shed vortices across the flow."""
+
+    model_config = FROZEN
+
+    coefficient: Coefficient = Field(default=1.2, description="of the force, on the outer diameter [-]; 0: none")
+    frequency: Ratio = Field(
+        default=0.18, description="middle of the frequencies that shedding locks to, times diameter over speed [-]"
+    )
+    width: NonNegative = Field(default=0.08, description="half the width of their range, below frequency [-]")
+
+    @model_validator(mode="after")
+    def _frequencies_above_zero(self) -> Self:
+        if self.width >= self.frequency:
+            raise wrong("width", f"must be below frequency ({self.frequency:g})", "lower it")
+        return self
+
+
 class Damping(BaseModel):
     """Structural damping in proportion to the stiffness."""
 
@@ -128,6 +146,11 @@ class LineType(BaseModel):
     )
     drag: Drag | None = Field(default=None, description="drag coefficients; none by default")
     added_mass: AddedMass | None = Field(default=None, description="added mass coefficients; none by default")
+    vortex_force: VortexForce | None = Field(
+        default=None,
+        description="force of shed vortices across the flow, {coefficient, frequency, width}, in dynamic stages in "
+        "three dimensions; none by default, as for straked pipe",
+    )
     damping: Damping | None = Field(
         default=None, description="structural damping in motion, {ratio, frequency}; none by default"
     )
@@ -190,6 +213,11 @@ class LineType(BaseModel):
         if self.wall.yield_stress is None and self.wall.design_factor is not None:
             raise wrong("wall", "has a design_factor without a yield_stress", "give wall.yield_stress [Pa]")
         return self
+
+    @property
+    def sheds(self) -> bool:
+        """Whether vortices act on it."""
+        return self.vortex_force is not None and self.vortex_force.coefficient > 0.0
 
     @property
     def wall_diameters(self) -> tuple[float, float]:

@@ -67,11 +67,13 @@ def resolved_dimension(scene: Scene) -> Literal[2, 3]:
 
 
 def leaving_the_plane(scene: Scene) -> Iterator[Path]:
-    """Paths of the values that lead out of the vertical plane."""
+    """Paths of the values that lead out of the vertical plane; vortices do wherever the water flows."""
     plane = vertical_plane(scene)
     yield from (path for path, point in positions(scene) if not plane.holds_point(point))
     yield from (path for path, vector in _vectors(scene) if not plane.holds_vector(vector))
     yield from (path for path, axis in _axes(scene) if not plane.holds_axis(axis))
+    if any(stage.kind == "dynamic" for stage in scene.stages):
+        yield from (("line_types", name, "vortex_force") for name, t in scene.used_line_types.items() if t.sheds)
 
 
 def _ends(scene: Scene) -> tuple[Vector, ...]:

@@ -14,6 +14,7 @@ from riser_soil.core.quantities import (
     Density,
     Instant,
     Length,
+    LengthOrNone,
     TimeOrNone,
     Velocity,
     wrong,
@@ -33,7 +34,7 @@ _RECORD = "a sea that repeats a record of the surface: file, position, direction
 
 def _rising(points: tuple[tuple[float, float, float], ...] | None) -> tuple[tuple[float, float, float], ...] | None:
     if any(b[0] - a[0] < SHORTEST for a, b in pairwise(points or ())):
-        text = f"the heights z must increase, by {SHORTEST:g} m at least; sort the points [z, ux, uy] by z"
+        text = f"the heights z must increase, by {SHORTEST:g} m at least; sort the points [z, ...] by z"
         raise PydanticCustomError("conflict", "{text}", {"text": text})
     return points
 
@@ -46,6 +47,13 @@ Profile = Annotated[
         description="velocity by height, [[z, ux, uy], ...] [m, m/s, m/s], z increasing; linear between the heights, "
         "constant beyond",
     ),
+]
+
+
+MarineGrowth = Annotated[
+    tuple[tuple[Coordinate, LengthOrNone, Density], ...],
+    AfterValidator(_rising),
+    Field(min_length=1),
 ]
 
 
@@ -199,6 +207,11 @@ class Water(BaseModel):
     )
     current: Current | None = Field(
         default=None, description="current, {profile: [[z, ux, uy], ...]} or {history: [...]}; none by default"
+    )
+    marine_growth: MarineGrowth | None = Field(
+        default=None,
+        description="growth on the riser by height, [[z, thickness, density], ...] [m, m, kg/m3], z increasing; linear "
+        "between the heights, constant beyond; none by default",
     )
     waves: Waves | None = Field(
         default=None, description="waves, {airy: ...}, {jonswap: ...} or another kind; none by default"

@@ -72,6 +72,15 @@ class FlowAtStations:
         motion = self.at(trial)
         return motion.immersion, motion.immersion_gradient
 
+    def through(self, trial: Trial) -> StationFlow:
+        """The pipe's motion through the water: its velocity is the relative one."""
+        flow: StationFlow = trial.once((self, "through"), self._relative)
+        return flow
+
+    def _relative(self, trial: Trial) -> StationFlow:
+        flow = self.pipe.flow(trial)
+        return flow._replace(v=flow.v - self.at(trial).velocity)
+
     def _find(self, trial: Trial) -> WaterMotion:
         t, x = trial.state.t, self.pipe.position(trial)
         for seen in (self._latest, self._before):
@@ -103,10 +112,10 @@ class RelativeDrag:
         self._still, self._stream = still, stream
 
     def forces(self, trial: Trial) -> tuple[Array, Array]:
-        return self._still.resist(self._through(trial))
+        return self._still.resist(self._stream.through(trial))
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        by = self._still.linearise(self._through(trial), weights)
+        by = self._still.linearise(self._stream.through(trial), weights)
         return by._replace(position=-by.rate @ self._stream.at(trial).velocity_gradient)
 
     def numbers(self) -> MovingWaterNumbers:
@@ -117,14 +126,6 @@ class RelativeDrag:
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._still.momentum(trial, v)
-
-    def _through(self, trial: Trial) -> StationFlow:
-        flow: StationFlow = trial.once((self, "flow"), self._evaluate)
-        return flow
-
-    def _evaluate(self, trial: Trial) -> StationFlow:
-        flow = self._still.pipe.flow(trial)
-        return flow._replace(v=flow.v - self._stream.at(trial).velocity)
 
 
 class AcceleratedWater:

@@ -105,7 +105,7 @@ def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> Mo
 
 
 @njit
-def _move(part: MovingWaterNumbers, at: Configuration, m: int, g: int, room: FlowRoom) -> float:
+def move(part: MovingWaterNumbers, at: Configuration, m: int, g: int, room: FlowRoom) -> float:
     """Motion and tangent of the pipe at a station; the stretch |x'|."""
     e, p = part.element[m], m * part.share.shape[1] + g
     v, a = stations.value_at(part.at.N, p, at.rate, e, at.D), stations.value_at(part.at.N, p, at.acceleration, e, at.D)
@@ -129,7 +129,7 @@ def _resist(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, room: 
 
 
 @njit
-def _wet(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int) -> float:
+def wet(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int) -> float:
     """The wet share of a station."""
     if not part.partly:
         return 1.0
@@ -149,9 +149,9 @@ def _forces(part: MovingWaterNumbers, at: Configuration, out: LineForces) -> Non
     for m in range(part.element.size):
         e = part.element[m]
         for g in range(part.share.shape[1]):
-            _move(part, at, m, g, room)
+            move(part, at, m, g, room)
             _resist(part, water, m, g, room, at.D)
-            share = _wet(part, water, m, g)
+            share = wet(part, water, m, g)
             for i in range(len(at.D)):
                 room.inertia[i] *= share
                 room.force[i] *= share
@@ -167,7 +167,7 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
         e = part.element[m]
         part.change[:] = 0.0
         for g in range(part.share.shape[1]):
-            stretch = _move(part, at, m, g, part.room)
+            stretch = move(part, at, m, g, part.room)
             _resist(part, part.seen.end, m, g, part.room, at.D)
             _differentiate(part, part.seen.end, m, g, stretch, weights, at.D)
             N, places = part.at.N[m, g], maps.place_rows[e]
@@ -183,7 +183,7 @@ def _differentiate(
 ) -> None:
     """Write the weighted derivatives of the force at a station whose resistance is known."""
     room, by, p = part.room, part.by, m * part.share.shape[1] + g
-    share, steep = _wet(part, water, m, g), 0.0
+    share, steep = wet(part, water, m, g), 0.0
     if part.partly:
         steep = wet_slope(water.immersion[p], part.span[m, g])
     axis, force = (room.tau, stretch), share * weights.force
@@ -206,9 +206,9 @@ def _energy(part: MovingWaterNumbers, at: Configuration, energy: Array) -> None:
     room = part.room
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
-            _move(part, at, m, g, room)
+            move(part, at, m, g, room)
             law.put_added(room.v, room.tau, part.mass[m], room.f, at.D)
-            share = part.share[m, g] * _wet(part, part.seen.end, m, g)
+            share = part.share[m, g] * wet(part, part.seen.end, m, g)
             for i in range(len(at.D)):
                 energy[0] += 0.5 * share * room.v[i] * room.f[i]
 
@@ -220,12 +220,12 @@ def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, w
     resisted, changed, seen = 0.0, 0.0, part.seen
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
-            _move(part, first, m, g, part.first)
+            move(part, first, m, g, part.first)
             _resist(part, seen.start, m, g, part.first, last.D)
-            _move(part, last, m, g, part.room)
+            move(part, last, m, g, part.room)
             _resist(part, seen.end, m, g, part.room, last.D)
-            before, after = _wet(part, seen.start, m, g), _wet(part, seen.end, m, g)
-            resisted += part.share[m, g] * _resisted(part, first, last, m, g, before, after)
+            before, after = wet(part, seen.start, m, g), wet(part, seen.end, m, g)
+            resisted += part.share[m, g] * resisted_at(part, first, last, m, g, before, after)
             changed += part.share[m, g] * _changed(part, m, before, after, last.D)
     if part.dissipative:
         work[0] += resisted
@@ -236,7 +236,7 @@ def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, w
 
 
 @njit
-def _resisted(
+def resisted_at(
     part: MovingWaterNumbers, first: Configuration, last: Configuration, m: int, g: int, before: float, after: float
 ) -> float:
     """Work per length against the mean force of a step, at a station."""

@@ -11,7 +11,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
 from riser_soil.core.part import Energy, Forces, LineField, State, Work, local
-from riser_soil.core.roles import MomentumCorrecting, Predictor, Renewing, with_role
+from riser_soil.core.roles import MomentumCorrecting, Predictor, Renewing, Starting, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
@@ -101,6 +101,9 @@ class TimeStepper:
         self.restart()
         if self.scheme.dynamic:
             self._start_rates(before)
+        for part in with_role(self.system.model.parts, Starting):
+            if part.active:
+                part.begin_stage(self.before)
         self._begin_step()
         self._history = self.system.forces(self.before) if self._renews_history else None
         self.energy = self.system.energy(self.before)

@@ -33,7 +33,7 @@ from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.sample_line import Sample, sample
 
-TURNING = "morison", "buoyancy", "seabed", "friction"  # parts whose kernels say what they turn over
+TURNING = "morison", "vortices", "buoyancy", "seabed", "friction"  # parts whose kernels say what they turn over
 IN_WATER = (
     sample_water.current,
     sample_water.half_out_in_waves,
@@ -88,6 +88,7 @@ CASES = {
     "sway, damped": ("catenary", (*IN_SPACE, SWAYING, PIPE + "damping={ratio: 0.2, frequency: 0.1}")),
     "hose on a floor": ("tank", ("riser.segments.0.elements=40",)),
     "storm over clay": ("storm", ()),
+    "vortices in a storm": ("storm", (PIPE + "vortex_force={}",)),
 }
 
 

@@ -100,6 +100,16 @@ def test_a_smooth_riser_has_no_hydrodynamics() -> None:
     assert "left out: morison: no line type has drag or added mass, nor any attachment" in report(smooth).splitlines()
 
 
+def test_vortices_are_shed_in_motion_and_make_the_scene_spatial() -> None:
+    shed = with_value(without_soil(heave(1.0)), "line_types", "flexible", "vortex_force", value={})
+    assert "left out: vortices: no line type has a vortex_force" in report(without_soil(heave(1.0))).splitlines()
+    told = report(with_value(shed, "dimension", value="auto"))
+    assert ", morison, vortices, " in told
+    assert "riser in 3 dimensions" in told
+    at_rest = with_value(shed, "stages", value=[LAY])
+    assert "left out: vortices: no stage is dynamic" in report(at_rest).splitlines()
+
+
 @pytest.mark.parametrize(
     ("water", "told"),
     [

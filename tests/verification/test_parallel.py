@@ -40,6 +40,10 @@ def scene(name: str) -> Mapping:
         return yielding | {"contact": contact, "solver": {"tolerance": 1e-10, "linear": "kept"}}
     if name == "sea":
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
+    if name == "vortices":
+        shaken = in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
+        shaken["line_types"]["pipe"] |= {"GJ": 2.0e3, "vortex_force": {}}
+        return shaken
     if name == "demo held":
         return held_demo()
     given: Mapping = YAML(typ="safe").load({"demo": ON_BLOCK, "riser": CATENARY, "clay": CLAY}[name])
@@ -155,9 +159,9 @@ def test_kept_factors_agree_on_two_ranks() -> None:
     assert_same("kept", 2)
 
 
-@pytest.mark.parametrize("name", ["sea", "clay"])
+@pytest.mark.parametrize("name", ["sea", "vortices", "clay"])
 def test_a_riser_alone_agrees_on_two_ranks(name: str) -> None:
-    """At sea; and on hysteretic clay, with friction."""
+    """At sea, in space by its vortices, too; and on hysteretic clay, with friction."""
     assert_same(name, 2)
 
 

@@ -19,6 +19,7 @@ from tests.support.sinking_pipe import sinking
 ROOT = Path(__file__).parents[2]
 MIDPOINT = "stages.1.scheme={midpoint: {}}"
 IN_SPACE = ("dimension=3", "line_types.flexible.GJ=4.0e4")
+VORTICES = ("water.current={profile: [[0.0, 0.8, 0.1]]}", "line_types.flexible.vortex_force={}")
 STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
 SHORT_BLOCK = "soil.block.x=[25.5,29.5]"
 COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.0", "stages.1.time_step=0.2")
@@ -87,6 +88,7 @@ SHORT = {
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
     "automatic steps on a seabed": (lambda: shortened("demos/first_scene.yaml", 1.0, "stages.1.time_step=auto"), (12,)),
+    "vortices": (lambda: shortened("tests/scenes/catenary.yaml", 1.0, *IN_SPACE, *VORTICES), (4,)),
     "friction on hysteretic clay": (lambda: shortened("tests/scenes/hysteretic.yaml", 1.5, *IN_SPACE), (8,)),
 }
 

@@ -1,0 +1,165 @@
+"""Marine growth by height: against a line type with the same numbers by hand, integrals, and the shape it hangs in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from copy import deepcopy
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.assembly import Assembly, build
+from riser_soil.assembly import riser as assembled
+from riser_soil.core.part import Part
+from riser_soil.errors import SceneError
+from riser_soil.riser import marine_growth
+from riser_soil.riser.marine_growth import Growth, with_growth
+from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.scene.reader import scene_from_mapping
+from tests.support.coupled_scenes import Mapping
+from tests.support.dense_chain import tangent
+from tests.support.differences import WEIGHTS, difference_tangent, error
+from tests.support.riser_scenes import IN_WAVES, in_waves, prescribed, riser_scene, stage_histories, static
+from tests.support.sample_line import Sample, sample
+
+RHO, G, D, T, DENSITY = 1025.0, 9.81, 0.3, 0.05, 1325.0
+EVERYWHERE = [[0.0, T, DENSITY]]
+LAYER = math.pi * T * (D + T)  # m2
+
+
+def by_hand(scene: Mapping) -> Mapping:
+    """The same with the growth in the line type."""
+    given = deepcopy(scene)
+    pipe = given["line_types"]["pipe"]
+    pipe["outer_diameter"] += 2.0 * T
+    pipe["mass"] += DENSITY * LAYER
+    if "submerged_weight" in pipe:
+        pipe["submerged_weight"] += G * (DENSITY - RHO) * LAYER
+    return given
+
+
+def grown(scene: Mapping, growth: list[list[float]]) -> Mapping:
+    given = deepcopy(scene)
+    given["water"]["marine_growth"] = growth
+    return given
+
+
+@pytest.mark.parametrize("weight", [{}, {"submerged_weight": 400.0}])
+def test_an_even_layer_is_a_line_type_by_hand(weight: Mapping) -> None:
+    """In current, waves and at the surface: every place of every step."""
+    bare = in_waves(0.1, 21.0)
+    bare["line_types"]["pipe"] |= weight
+    found, expected = stage_histories(grown(bare, EVERYWHERE)), stage_histories(by_hand(bare))
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(np.array(one.position), np.array(other.position), rtol=0.0, atol=1e-11)
+    plain = stage_histories(bare)
+    assert np.abs(np.array(found[1].position) - np.array(plain[1].position)).max() > 0.01
+
+
+def hanging(growth: list[list[float]] | None, n: int = 20, **more: object) -> Mapping:
+    given: Mapping = {"length": 120.0, "start": prescribed(0.0, 0.0, 5.0), "end": prescribed(60.0, 0.0, 80.0)} | more
+    scene = riser_scene(static(), pipe=IN_WAVES, elements=n, gravity=G, water={"density": RHO}, **given)
+    return scene if growth is None else grown(scene, growth)
+
+
+def built(scene: Mapping) -> Assembly:
+    return build(scene_from_mapping(scene), MPI.COMM_SELF)
+
+
+def test_growth_is_integrated_along_the_elements() -> None:
+    """On an upright pipe: thickness linear in height, density too, from the integrals by hand."""
+    z, H = np.array([0.0, 10.0]), 10.0
+    pipe = SectionProperties(EA=1e8, EI_y=1e4, EI_z=1e4, outer_diameter=D, mass=100.0)
+    around = Surroundings(gravity=G, water=RHO)
+    bare = elements([MeshedSegment.even(pipe, H, 1)], around)
+    got = with_growth(bare, Growth(z, np.array([0.02, 0.1]), np.array([1200.0, 1400.0])), z, around)
+    t, density = np.polynomial.Polynomial([0.02, 0.008]), np.polynomial.Polynomial([1200.0, 20.0])
+    section = math.pi * t * (D + t)
+    volume, mass = (float(p.integ()(H)) for p in (section, density * section))
+    assert got.mass[0] * H == pytest.approx(100.0 * H + mass, rel=1e-13)
+    assert got.weight[0] * H == pytest.approx(bare.weight[0] * H + G * (mass - RHO * volume), rel=1e-13)
+    assert 0.25 * math.pi * (got.outer_diameter[0] ** 2 - D**2) * H == pytest.approx(volume, rel=1e-13)
+    assert got.pipe_diameter[0] == D
+
+
+def test_growth_ends_where_the_profile_has_none() -> None:
+    assembly, bare = built(hanging([[30.0, T, DENSITY], [40.0, 0.0, DENSITY]])), built(hanging(None))
+    z = assembly.line.x[:, 1]
+    above, below = (z[:-1] > 40.0) & (z[1:] > 40.0), (z[:-1] < 30.0) & (z[1:] < 30.0)
+    assert above.any()
+    assert below.any()
+    np.testing.assert_array_equal(assembly.elements.outer_diameter[above], D)
+    np.testing.assert_allclose(assembly.elements.outer_diameter[below], D + 2.0 * T, rtol=1e-12)
+    np.testing.assert_allclose(assembly.elements.mass[below] - bare.elements.mass[below], DENSITY * LAYER, rtol=1e-12)
+
+
+def test_shape_and_growth_belong_together() -> None:
+    """The growth is that of the heights of the shape in which the riser hangs with it, not without."""
+    rows = [[-20.0, 0.1, 1600.0], [60.0, 0.0, 1600.0]]
+    assembly, bare = built(hanging(rows)), built(hanging(None))
+    growth, around = Growth(*np.array(rows).T), Surroundings(gravity=G, water=RHO)
+    ends = [with_growth(bare.elements, growth, each.line.x[:, 1], around) for each in (assembly, bare)]
+    own, first = (np.abs(each.weight / assembly.elements.weight - 1.0).max() for each in ends)
+    assert own < 1e-7
+    assert first > 1e-3
+
+
+def test_the_ends_bear_the_weight_of_the_growth() -> None:
+    (run,) = stage_histories(hanging(EVERYWHERE))
+    (bare,) = stage_histories(hanging(None))
+    more = [each.end.end_force[2] + each.end.start_force[2] for each in (run, bare)]
+    assert more[0] - more[1] == pytest.approx(120.0 * G * (DENSITY - RHO) * LAYER, rel=1e-6)
+
+
+PARTS: list[Callable[[Sample], Part]] = [Sample.beam, Sample.inertia, Sample.morison]
+
+
+@pytest.mark.parametrize("make", PARTS)
+def test_tangents_stay_exact(make: Callable[[Sample], Part]) -> None:
+    at = sample(3)
+    growth = Growth(np.array([3.0, 7.0]), np.array([0.1, 0.02]), np.array([1300.0, 1300.0]))
+    around = Surroundings(gravity=G, water=RHO)
+    more: Elements = with_growth(at.elements, growth, at.line.to_global(at.line.x)[:, 2], around)
+    part, state = make(Sample(at.line, more)), at.state(1)
+    K = tangent([part], state, WEIGHTS)
+    assert error(K, difference_tangent(part, state, WEIGHTS)) < 1e-7
+    assert error(tangent([make(at)], state, WEIGHTS), K) > (0.0 if make is Sample.beam else 1e-3)
+
+
+def test_growth_without_end_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(assembled, "MOST_SHAPES", 2)
+    with pytest.raises(SceneError, match=r"water\.marine_growth: it changes the riser's first shape"):
+        built(hanging([[-20.0, 0.1, 1600.0], [60.0, 0.0, 1600.0]]))
+
+
+def test_a_riser_without_growth_does_not_look_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(marine_growth, "with_growth")
+    built(hanging(None))
+    with pytest.raises(ImportError):
+        built(hanging(EVERYWHERE))
+
+
+@pytest.mark.parametrize(
+    ("growth", "told"),
+    [
+        ([[10.0, 0.1, 1300.0], [0.0, 0.1, 1300.0]], "the heights z must increase"),
+        ([[0.0, -0.1, 1300.0]], r"water\.marine_growth\.0\.1"),
+        ([[0.0, 0.1]], r"water\.marine_growth\.0"),
+        ([[0.0, 0.1, 0.0]], r"water\.marine_growth\.0\.2"),
+        ([], r"water\.marine_growth"),
+    ],
+)
+def test_growth_that_is_none_is_told(growth: list[list[float]], told: str) -> None:
+    with pytest.raises(SceneError, match=told):
+        scene_from_mapping(hanging(growth))
+
+
+def test_growth_needs_a_diameter() -> None:
+    scene = hanging(EVERYWHERE)
+    pipe = scene["line_types"]["pipe"]
+    del pipe["outer_diameter"], pipe["drag"], pipe["added_mass"]
+    pipe["submerged_weight"] = 100.0
+    with pytest.raises(SceneError, match="marine growth lies around the outer diameter"):
+        scene_from_mapping(scene)

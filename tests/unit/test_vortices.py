@@ -1,0 +1,257 @@
+"""Force of shed vortices: its formula, its phase, its tangent, its kernels and its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, State, Weights
+from riser_soil.riser import hermite
+from riser_soil.riser.trial import Trial
+from riser_soil.sea import vortex_law as law
+from riser_soil.sea import wet_section
+from riser_soil.sea.moving_water import FlowAtStations
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.vortices import VortexLoads, Vortices
+from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.wetting import PartlyWet, Wetting
+from tests.support import sample_water
+from tests.support.dense_chain import residual, tangent
+from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation
+from tests.support.riser_loop import Compiled, require_kernels
+from tests.support.sample_line import RHO, Sample, sample
+
+D, U, MIDDLE, WIDTH = 0.3, 0.8, 0.18, 0.08
+TAU = np.array([0.0, 0.0, 1.0])
+ALONG_X = np.array([1.0, 0.0, 0.0])
+
+
+def shedding(n: int = 1, Cv: float = 1.2) -> law.Shedding:
+    lift = 0.5 * RHO * D * Cv
+    return law.Shedding(*(np.full(n, value) for value in (lift, D, MIDDLE, WIDTH)))
+
+
+def underway(part: Vortices, at: Sample) -> Vortices:
+    """After a first step, so that phases, rates and their growth are all there."""
+    part.begin_stage(at.state(7, size=0.0, t=0.0))
+    part.commit(at.state(8, size=0.0, t=0.05))
+    return part
+
+
+def behind(at: Sample) -> Vortices:
+    """In uneven, unsteady water."""
+    pipe = Pipe(at.line)
+    loads = VortexLoads(pipe, FlowAtStations(pipe, sample_water.water), shedding(at.line.length.size))
+    return underway(Vortices(pipe, loads, loads), at)
+
+
+def behind_half_out(at: Sample) -> Vortices:
+    pipe = Pipe(at.line)
+    stream = FlowAtStations(pipe, sample_water.water)
+    loads = VortexLoads(pipe, stream, shedding(at.line.length.size))
+    return underway(Vortices(pipe, PartlyWet(loads, Wetting(pipe, stream)), loads), at)
+
+
+both = pytest.mark.parametrize("make", [behind, behind_half_out])
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.4, 2.0])
+def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
+    """An upright pipe in a flow along x is pushed towards y by at most 1/2 rho D Cv U^2; flow along it does nothing."""
+    k = np.full((1, 1), shedding().lift[0] * np.cos(phase))
+    found = -law.resistance(-U * ALONG_X[None, None], TAU[None, None], k)[0, 0]
+    np.testing.assert_allclose(found, [0.0, 0.5 * RHO * D * 1.2 * U**2 * np.cos(phase), 0.0], atol=1e-12)
+    skew = -law.resistance(-U * (ALONG_X + 2.0 * TAU)[None, None], TAU[None, None], k)[0, 0]
+    np.testing.assert_allclose(skew, found, rtol=1e-12, atol=1e-12)
+    assert not law.resistance(-U * TAU[None, None], TAU[None, None], k).any()
+
+
+def locked(frequency: float, steps: int, amplitude: float = 0.05) -> tuple[Array, Array]:
+    """Phase of an oscillation's velocity less that of the vortices, and the latter's frequency times D/U, over the last
+    of thirty periods; steps: of a period; amplitude: over D.
+    """
+    wake = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3)))
+    w, v, y = 2.0 * np.pi * frequency * U / D, -U * ALONG_X[None, None], np.array([0.0, 1.0, 0.0])
+    ahead, rates = [], []
+    for t in np.arange(30 * steps) * (2.0 * np.pi / w / steps):
+        own, a = (amplitude * D * w * s * y[None, None] for s in (np.cos(w * t), -w * np.sin(w * t)))
+        law.advance_all(wake, shedding(), t, v, own, a, TAU[None, None])
+        ahead.append(w * t - wake.phase[0, 0])
+        rates.append(wake.rate[0, 0] * D / (2.0 * np.pi * U))
+    return np.array(ahead[-steps:]), np.array(rates[-steps:])
+
+
+@pytest.mark.parametrize("frequency", [0.11, 0.15, 0.18, 0.22, 0.25])
+def test_the_phase_locks_where_its_frequency_is_the_oscillations(frequency: float) -> None:
+    """sin(theta) = (f - f0)/df, but for LEAST_MOTION; of the second order in the step."""
+    expected = (frequency - MIDDLE) / WIDTH
+    errors = []
+    for steps in (40, 80):
+        ahead, rates = locked(frequency, steps)
+        errors.append(np.abs(np.sin(ahead) - expected).max())
+        assert np.cos(ahead).min() > 0.0
+        np.testing.assert_allclose(rates, frequency, rtol=2e-3)
+    assert errors[1] < 1e-3
+    assert errors[1] < 0.35 * errors[0] or errors[0] < 1e-3
+
+
+@pytest.mark.parametrize("frequency", [0.06, 0.32])
+def test_beyond_its_range_the_phase_slips(frequency: float) -> None:
+    ahead, _ = locked(frequency, 80)
+    assert np.ptp(ahead) > 1.0
+
+
+def test_a_pipe_at_rest_sheds_at_the_middle_frequency() -> None:
+    """A motion of a billionth of the diameter changes nothing that counts."""
+    for amplitude, changes in ((0.0, 0.0), (1e-9, 1e-5), (0.05, 1.0)):
+        _, rates = locked(0.2, 80, amplitude)
+        assert np.abs(rates - MIDDLE).max() <= changes
+    assert np.abs(rates - 0.2).max() < 1e-3
+
+
+def test_the_phase_of_a_flow_that_grows_steadily_is_exact() -> None:
+    """Once two rates are known: then of the second order in time, behind a pipe at rest."""
+    wake, still, dt = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3))), np.zeros((1, 1, 3)), 0.1
+    for t in dt * np.arange(10):
+        law.advance_all(wake, shedding(), t, -(U + t) * ALONG_X[None, None], still, still, TAU[None, None])
+    turned = 2.0 * np.pi * MIDDLE / D * (U * t + 0.5 * t**2)
+    first = 0.5 * 2.0 * np.pi * MIDDLE / D * dt**2  # of the first step, whose rate stays as it begins
+    assert wake.phase[0, 0] == pytest.approx((turned - first) % (2.0 * np.pi), rel=1e-12)
+
+
+def test_nothing_is_shed_without_flow() -> None:
+    wake = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3)))
+    still = np.zeros((1, 1, 3))
+    for t in (0.0, 0.1, 0.2):
+        law.advance_all(wake, shedding(), t, still, still, still, TAU[None, None])
+    assert not any(values.any() for values in wake[1:])
+
+
+@both
+def test_tangent_is_the_derivative_of_the_residual(make: Callable[[Sample], Vortices]) -> None:
+    at = sample(3)
+    part, state = make(at), at.state(1)
+    assert error(tangent([part], state, WEIGHTS), difference_tangent(part, state, WEIGHTS)) < 1e-7
+
+
+def without_slope(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = law.derivatives
+    monkeypatch.setattr(law, "derivatives", lambda *at: (usual(*at)[0], 0.0 * usual(*at)[1]))
+
+
+def without_rate(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = law.derivatives
+    monkeypatch.setattr(law, "derivatives", lambda *at: (0.0 * usual(*at)[0], usual(*at)[1]))
+
+
+def without_turning(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hermite, "add_geometric", no_operation)
+
+
+def without_wet_slope(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = wet_section.wet_shares
+    monkeypatch.setattr(wet_section, "wet_shares", lambda h, b: (usual(h, b)[0], 0.0 * h))
+
+
+def without_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = FlowAtStations.at
+
+    def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
+        motion = usual(stream, trial)
+        return motion._replace(velocity_gradient=0.0 * motion.velocity_gradient)
+
+    monkeypatch.setattr(FlowAtStations, "at", at)
+
+
+@pytest.mark.parametrize(
+    "leave_out", [without_slope, without_rate, without_turning, without_wet_slope, without_gradient]
+)
+def test_each_term_of_the_tangent_matters(
+    leave_out: Callable[[pytest.MonkeyPatch], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at = sample(3)
+    part, state = behind_half_out(at), at.state(1)
+    whole = tangent([part], state, WEIGHTS)
+    leave_out(monkeypatch)
+    at.line.forget()
+    assert error(tangent([part], state, WEIGHTS), whole) > 1e-5
+
+
+def test_kernels_are_those_of_the_methods() -> None:
+    at = sample(3)
+    require_kernels(at, [behind(at), at.morison()])
+    require_kernels(at, [behind_half_out(at)])
+
+
+@both
+def test_the_loop_keeps_the_wake_as_the_method_does(make: Callable[[Sample], Vortices]) -> None:
+    at = sample(3)
+    part, before, state = make(at), at.state(2, t=0.05), at.state(1, t=0.07)
+    begun = part.state()
+    part.commit(state)
+    expected = part.state()
+    part.restore(begun)
+    compiled = Compiled(at, [part], before, state)
+    compiled.riser.keep()
+    for name, found in part.state().items():
+        np.testing.assert_allclose(found, expected[name], rtol=1e-9, err_msg=name)
+        assert not np.array_equal(found, begun[name]), name
+
+
+def test_a_stage_begins_with_the_rate_of_its_motion() -> None:
+    """As a step of no length does that has known the rate; a pipe at rest sheds at the middle frequency."""
+    at = sample(3)
+    part, state = behind(at), at.state(2, size=0.0, t=0.0)
+    rest = State(0.0, 0.0 * state.u, 0.0 * state.v, 0.0 * state.a)
+    part.begin_stage(rest)
+    trial = at.line.trial(rest)
+    loads = part._vortices
+    speed = np.linalg.norm(np.cross(loads._stream.through(trial).v, at_stations(loads, trial)), axis=-1)
+    np.testing.assert_allclose(part.state()["rate"], 2.0 * np.pi * MIDDLE * speed / D, rtol=1e-12)
+    part.begin_stage(state)
+    begun = part.state()
+    part.commit(state)
+    np.testing.assert_allclose(part.state()["rate"], begun["rate"], rtol=0.2)
+    assert not begun["growth"].any()
+
+
+def at_stations(loads: VortexLoads, trial: Trial) -> Array:
+    return loads.pipe.flow(trial).tau
+
+
+def test_a_trial_leaves_no_trace_and_a_commit_continues() -> None:
+    """Forces depend on the trial alone; those of an accepted step are those that the next one starts from."""
+    at = sample(3)
+    part, state = behind(at), at.state(5, t=0.05)
+    first = residual([part], state, WEIGHTS)
+    residual([part], at.state(6, t=0.3), WEIGHTS)
+    np.testing.assert_array_equal(residual([part], state, WEIGHTS), first)
+    part.commit(state)
+    at.line.commit(state)
+    anew = residual([part], State(state.t, 0.0 * state.u, state.v, state.a), WEIGHTS)
+    assert error(at.line.in_new_axes(first, state.u), anew) < 1e-12
+
+
+def test_the_power_of_the_force_is_external_work() -> None:
+    """Over a short step: minus the resistance times the way."""
+    at = sample(3)
+    part, start, h = behind(at), at.state(3), 1e-4
+    before = State(0.05, 0.0 * start.u, start.v, start.a)
+    after = State(0.05 + h, h * start.v, start.v, start.a)
+    work = part.work(before, after)
+    expected = -residual([part], before, Weights(0.0, 1.0, 0.0, 0.0)) @ start.v * h
+    assert work.external == pytest.approx(expected, rel=1e-3)
+    assert work.dissipated == work.inertial == 0.0
+
+
+def test_element_forces_add_up_to_the_residual() -> None:
+    at = sample(3)
+    part, state, total = behind(at), at.state(6), Forces.zeros(at.line.size)
+    part.residual(state, total)
+    _, force = part.element_forces(state)
+    collected = np.zeros(at.line.size)
+    at.line.scatter(force, collected)
+    np.testing.assert_allclose(collected, total.force, atol=1e-12 * np.abs(total.force).max())
