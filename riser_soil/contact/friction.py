@@ -49,7 +49,7 @@ class CoulombFriction(LinePart):
     """
 
     name = "friction"
-    traits = Traits("E", symmetric=False, keeps_way=True, roles=(Stateful,))
+    traits = Traits("E", symmetric=False, keeps_way=True, gradual=True, roles=(Stateful,))
 
     def __init__(
         self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array, adhesion: Adhesion | None = None

@@ -138,6 +138,7 @@ class Traits:
     symmetric: its tangent.
     follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
     keeps_way: its state depends on the path that the riser took, and is no part of its present configuration.
+    gradual: its forces in E grow along a curve, as clay's do; at a penalty's corner Newton's method may go astray.
     roles: what it does beyond the contract of a part, see `roles`.
     """
 
@@ -145,6 +146,7 @@ class Traits:
     symmetric: bool
     follows: bool = False
     keeps_way: bool = False
+    gradual: bool = False
     roles: tuple[type, ...] = ()
 
     def __post_init__(self) -> None:

@@ -28,7 +28,7 @@ from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
-from riser_soil.solve.solution import BESIDE_CONTACT, NewtonSettings, Solution, Step
+from riser_soil.solve.solution import NewtonSettings, Solution, Step
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -72,8 +72,7 @@ class CondensedNewton:
         given = system.prescribed[self._at], system.levers[self._at], most
         self._placed = PlacedLine(line)
         self._riser = PackedRiser(line, self._placed, parts, *given, border)
-        limits = settings.tolerance, settings.floor, BESIDE_CONTACT, most, settings.least_iterations
-        self._limits = StopLimits(*limits, answers_load=False)
+        self._limits = StopLimits(settings.tolerance, settings.floor, 0.0, most, settings.least_iterations, False)
         self._nothing = np.zeros(system.numbering.size)
         self._reached = soil.top.reached  # as the system has it
         self._solved: State | None = None  # by the compiled loop

@@ -26,7 +26,7 @@ from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.solution import (
-    BESIDE_CONTACT,
+    BESIDE_CLAY,
     NewtonSettings,
     NotConvergedError,
     Solution,
@@ -72,6 +72,7 @@ class RiserNewton:
         self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # how they tell their results, and where to
         self._free = np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
+        self._gradual = all(part.traits.gradual for part, _ in parts if "E" in part.traits.groups)
         self._no_work = {part.name: Work() for part, _ in parts}
         self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
 
@@ -185,7 +186,7 @@ class RiserNewton:
     def _limits(self, step: Step) -> riser_loop.StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
         smooth = self.system.smooth
-        return _limits(self.settings, smooth, smooth or self.rests or bool(step.guess[self._free].any()))
+        return _limits(self.settings, smooth, self._gradual, smooth or self.rests or bool(step.guess[self._free].any()))
 
     def _found(self) -> Forces:
         """The forces of the last trial."""
@@ -214,12 +215,15 @@ class RiserNewton:
 
 
 @lru_cache(maxsize=8)
-def _limits(settings: NewtonSettings, smooth: bool, answers_load: bool) -> riser_loop.StopLimits:
+def _limits(
+    settings: NewtonSettings, smooth: bool, gradual: bool, answers_load: bool
+) -> riser_loop.StopLimits:
     """As in `Newton`: without contact the guess continues a smooth motion, whose factors can be reused."""
+    beside = BESIDE_CLAY if gradual else 0.0
     return riser_loop.StopLimits(
         settings.tolerance,
         settings.floor,
-        settings.reuse if smooth else BESIDE_CONTACT,
+        settings.reuse if smooth else beside,
         settings.max_iterations,
         max(settings.least_iterations, int(smooth)),
         answers_load,

@@ -10,7 +10,7 @@ from riser_soil.core.part import Forces, State
 from riser_soil.solve.time_scheme import Scheme
 
 REUSE = 0.1
-BESIDE_CONTACT = 0.03  # the same in contact, of the tangent of all else: its corners take iterations, not the line
+BESIDE_CLAY = 0.01  # the same of the tangent of all else beside clay, whose curves take most of the iterations
 
 
 class NotConvergedError(Exception):
@@ -45,7 +45,7 @@ class NewtonSettings:
     reuse: an iteration that leaves less than this share of the residual leaves its factorised tangent to the next of
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
-    corners, and an equilibrium may be far away. With it the compiled loops reuse the tangent of all else, see
+    corners, and an equilibrium may be far away. Beside clay the compiled loop reuses the tangent of all else, see
     `riser_loop.StopLimits`. least_iterations: before a residual counts as small.
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
     step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
