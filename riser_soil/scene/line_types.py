@@ -31,7 +31,9 @@ class Drag(BaseModel):
 
     model_config = FROZEN
 
-    normal: Coefficient = Field(default=0.0, description="normal drag coefficient, on the outer diameter [-]")
+    normal: Coefficient | None = Field(
+        default=None, description="normal drag coefficient, on the outer diameter [-]; or give by_reynolds"
+    )
     tangential: Coefficient = Field(
         default=0.0, description="tangential drag coefficient, on the circumference [-]"
     )
@@ -43,10 +45,9 @@ class Drag(BaseModel):
 
     @model_validator(mode="after")
     def _normal_once(self) -> Self:
-        given = "normal" in self.model_fields_set
-        if not given and self.by_reynolds is None:
+        if self.normal is None and self.by_reynolds is None:
             raise wrong("normal", "the normal drag coefficient is missing", "give normal, or by_reynolds")
-        if given and self.by_reynolds is not None:
+        if self.normal is not None and self.by_reynolds is not None:
             raise wrong("by_reynolds", "the normal drag coefficient is given twice", "leave out normal or by_reynolds")
         if any(b[0] <= a[0] for a, b in pairwise(self.by_reynolds or ())):
             raise wrong("by_reynolds", "Reynolds's numbers must increase", "sort the points [Re, Cd] by Re")

@@ -7,10 +7,12 @@ from copy import deepcopy
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 from riser_soil.core.compiled import fixed
 from riser_soil.errors import SceneError
 from riser_soil.riser.trial import Trial
+from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import reynolds_drag as law
 from riser_soil.sea import through, through_kernels
@@ -160,6 +162,11 @@ def test_a_scene_with_one_value_is_that_of_a_constant_coefficient() -> None:
         np.testing.assert_allclose(np.array(found.position), np.array(expected.position), rtol=0.0, atol=1e-9)
         np.testing.assert_allclose(found.work, expected.work, rtol=1e-6, atol=1e-4)
     assert np.abs(np.array(drop[1].position) - np.array(one[1].position)).max() > 1e-3
+
+
+def test_a_resolved_scene_is_read_as_the_same() -> None:
+    scene = scene_from_mapping(sea({"by_reynolds": [[1e5, 1.1], [3e5, 0.4]]}))
+    assert scene_from_mapping(YAML(typ="safe").load(dump_scene(scene))) == scene
 
 
 def test_segments_without_a_table_have_none() -> None:
