@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import LostBuoyancy
     from riser_soil.sea.pipe import Pipe
+    from riser_soil.sea.reynolds_drag import ReynoldsTables
     from riser_soil.sea.still_water import StillWater
     from riser_soil.sea.vortex_law import Shedding
     from riser_soil.sea.wetting import WaterSurface, Wetting
@@ -53,6 +54,11 @@ class Body(ABC):
         return None
 
     @property
+    def reynolds(self) -> ReynoldsTables | None:
+        """Its drag by Reynolds's number, where it has any."""
+        return None
+
+    @property
     @abstractmethod
     def still(self) -> StillWater:
         """Its loads in still water."""
@@ -81,6 +87,7 @@ class PipeInWater(Body):
     """The pipe."""
 
     elements: Elements
+    tables: ReynoldsTables | None = None
 
     @cached_property
     def pipe(self) -> Pipe:
@@ -90,11 +97,15 @@ class PipeInWater(Body):
 
     @property
     def drags(self) -> bool:
-        return bool(self.elements.drag.any())
+        return bool(self.elements.drag.any()) or self.tables is not None
 
     @property
     def adds_mass(self) -> bool:
         return bool(self.elements.added_mass.any())
+
+    @property
+    def reynolds(self) -> ReynoldsTables | None:
+        return self.tables
 
     @property
     def shedding(self) -> Shedding | None:

@@ -16,11 +16,14 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.scene.water import Water
 
+NO_DRAG = ((1.0, 0.0),)
+
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Buoyancy
     from riser_soil.sea.morison import Morison
     from riser_soil.sea.moving_water import FlowAtStations
+    from riser_soil.sea.reynolds_drag import ReynoldsTables
     from riser_soil.sea.still_water import StationLoads
     from riser_soil.sea.vortex_law import Shedding
     from riser_soil.sea.vortices import Vortices
@@ -33,11 +36,23 @@ def sea_loads(
     """The parts "morison", "vortices" and "buoyancy" of a stage, of the pipe and of the modules on it."""
     if scene.water is None:
         return []
-    bodies: list[Body] = [PipeInWater(scene.water.density, line, elements)]
+    bodies: list[Body] = [PipeInWater(scene.water.density, line, elements, tables_of(scene, scene.water, elements))]
     modules = [attachment for attachment in attachments if attachment.volume or attachment.drag_area]
     if modules:
         bodies.append(ModulesInWater(scene.water.density, line, modules))
     return [part for body in bodies for part in _BodyLoads(scene, scene.water, body, stage).parts()]
+
+
+def tables_of(scene: Scene, water: Water, elements: Elements) -> ReynoldsTables | None:
+    """Drag by Reynolds's number; None where no line type has it."""
+    drags = {name: line.drag for name, line in scene.used_line_types.items()}
+    rows = {name: drag.by_reynolds for name, drag in drags.items() if drag is not None and drag.by_reynolds}
+    if not rows:
+        return None
+    from riser_soil.sea import reynolds_drag
+
+    of_each = [rows.get(s.line_type) or NO_DRAG for s in scene.riser.segments for _ in range(s.element_count)]
+    return reynolds_drag.tables_of(water.density, water.kinematic_viscosity, elements.outer_diameter, of_each)
 
 
 @dataclass(frozen=True)
@@ -52,6 +67,8 @@ class _BodyLoads:
     def parts(self) -> Iterator[Part]:
         if self.act:
             yield self.morison
+            if (tables := self.body.reynolds) is not None:
+                yield self._reynolds_drag(tables)
         if (shedding := self.body.shedding) is not None and isinstance(self.stage, DynamicStage):
             yield self._vortices(shedding)
         if self.surface is not None:
@@ -118,11 +135,18 @@ class _BodyLoads:
 
         return PartlyWet(loads, self.body.wetting(self.surface))
 
-    def _vortices(self, shedding: Shedding) -> Vortices:
-        from riser_soil.sea.vortices import VortexLoads, Vortices
+    def _reynolds_drag(self, tables: ReynoldsTables) -> Morison:
+        from riser_soil.sea.reynolds_drag import reynolds_drag
+        from riser_soil.sea.through import ThroughLoads
 
-        loads = VortexLoads(self.body.pipe, self._flow, shedding)
-        return Vortices(self.body.pipe, self._where_wet(loads), loads)
+        loads = ThroughLoads(self._flow, lambda t: tables, dissipative=self.stream is None)
+        return reynolds_drag(self.body.pipe, self._where_wet(loads), tables)
+
+    def _vortices(self, shedding: Shedding) -> Vortices:
+        from riser_soil.sea.vortices import Shed, Vortices
+
+        shed = Shed(self._flow, shedding)
+        return Vortices(self._where_wet(shed.loads), shed)
 
     def _in_motion(self, stream: FlowAtStations) -> StationLoads:
         from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag

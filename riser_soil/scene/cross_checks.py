@@ -111,7 +111,7 @@ def _describe(key: str) -> str:
 def _water_where_it_acts(scene: Scene) -> Iterator[Problem]:
     for name, line in scene.used_line_types.items():
         given = {"drag": line.drag, "added_mass": line.added_mass}
-        acting = {key: each is not None and bool(each.normal or each.tangential) for key, each in given.items()}
+        acting = {key: each is not None and each.acts for key, each in given.items()}
         for key, acts in (acting | {"vortex_force": line.sheds}).items():
             if acts and not scene.water:
                 remedy = f"add water: {{density: 1025.0}}, or leave out {key}"

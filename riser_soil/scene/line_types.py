@@ -1,6 +1,7 @@
 """Scene language: line types, the properties of the pipe's cross-section."""
 
 import math
+from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
@@ -30,10 +31,31 @@ class Drag(BaseModel):
 
     model_config = FROZEN
 
-    normal: Coefficient = Field(description="normal drag coefficient, on the outer diameter [-]")
+    normal: Coefficient | None = Field(
+        default=None, description="normal drag coefficient, on the outer diameter [-]; or give by_reynolds"
+    )
     tangential: Coefficient = Field(
         default=0.0, description="tangential drag coefficient, on the circumference [-]"
     )
+    by_reynolds: Annotated[tuple[tuple[Ratio, Coefficient], ...], Field(min_length=1)] | None = Field(
+        default=None,
+        description="in place of normal: the coefficient by Reynolds's number of the flow across the pipe, "
+        "[[Re, Cd], ...], Re increasing; linear in log Re, constant beyond",
+    )
+
+    @model_validator(mode="after")
+    def _normal_once(self) -> Self:
+        if self.normal is None and self.by_reynolds is None:
+            raise wrong("normal", "the normal drag coefficient is missing", "give normal, or by_reynolds")
+        if self.normal is not None and self.by_reynolds is not None:
+            raise wrong("by_reynolds", "the normal drag coefficient is given twice", "leave out normal or by_reynolds")
+        if any(b[0] <= a[0] for a, b in pairwise(self.by_reynolds or ())):
+            raise wrong("by_reynolds", "Reynolds's numbers must increase", "sort the points [Re, Cd] by Re")
+        return self
+
+    @property
+    def acts(self) -> bool:
+        return bool(self.normal or self.tangential or self.by_reynolds)
 
 
 class AddedMass(BaseModel):
@@ -43,6 +65,10 @@ class AddedMass(BaseModel):
 
     normal: Coefficient = Field(description="added mass coefficient across the pipe [-]")
     tangential: Coefficient = Field(default=0.0, description="added mass coefficient along the pipe [-]")
+
+    @property
+    def acts(self) -> bool:
+        return bool(self.normal or self.tangential)
 
 
 class VortexForce(BaseModel):

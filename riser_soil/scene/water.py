@@ -13,6 +13,7 @@ from riser_soil.core.quantities import (
     Coordinate,
     Density,
     Instant,
+    KinematicViscosity,
     Length,
     LengthOrNone,
     TimeOrNone,
@@ -198,6 +199,9 @@ class Water(BaseModel):
     model_config = FROZEN
 
     density: Density = Field(default=1025.0, description="density of the water [kg/m3]")
+    kinematic_viscosity: KinematicViscosity = Field(
+        default=1.19e-6, description="for Reynolds's numbers [m2/s]; by default of sea water at 15 degrees Celsius"
+    )
     surface_level: Coordinate | None = Field(
         default=None, description="height z of the mean surface [m]; without it everything is submerged"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from riser_soil.core.arrays import Array
@@ -15,14 +16,19 @@ from riser_soil.sea.stream_kernels import bring
 
 
 class Morison(LinePart):
-    """Loads of the water at the pipe's stations, brought to the line: group I is the added mass, F all the rest."""
+    """Loads of the water at the pipe's stations, brought to the line: group I is the added mass, F all the rest.
+
+    formed: what becomes of the loads in numbers, where they have kernels of their own.
+    """
 
     name = "morison"
     traits = Traits("IF", symmetric=False, follows=True)
 
-    def __init__(self, pipe: Pipe, loads: StationLoads) -> None:
+    def __init__(
+        self, pipe: Pipe, loads: StationLoads, formed: Callable[[MovingWaterNumbers], tuple[Any, ...]] | None = None
+    ) -> None:
         super().__init__(pipe.line)
-        self._pipe, self._loads = pipe, loads
+        self._pipe, self._loads, self._formed = pipe, loads, formed
 
     def element_forces(self, state: State) -> tuple[Array, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof)."""
@@ -43,7 +49,10 @@ class Morison(LinePart):
 
     def numbers(self) -> tuple[Any, ...]:
         self._in_loop = self._loads.numbers()
-        return self._in_loop
+        if self._formed is None:
+            return self._in_loop
+        assert isinstance(self._in_loop, MovingWaterNumbers)
+        return self._formed(self._in_loop)
 
     def renew_numbers(self, start: float, end: float) -> None:
         if isinstance(self._in_loop, MovingWaterNumbers):

@@ -134,37 +134,6 @@ def shedding_rate(
     return 2.0 * math.pi * speed / diameter * (middle + width * followed)
 
 
-def resistance(v: Array, tau: Array, k: Array) -> Array:
-    """`put_resistance` at all stations (ne, ng, 3); k (ne, ng)."""
-    found: Array = _resistance(v, tau, k)
-    return found
-
-
-@njit
-def _resistance(v: Array, tau: Array, k: Array) -> Array:
-    f = np.empty_like(v)
-    for e in range(v.shape[0]):
-        for g in range(v.shape[1]):
-            put_resistance(v[e, g], tau[e, g], k[e, g], f[e, g])
-    return f
-
-
-def derivatives(v: Array, tau: Array, stretch: Array, k: Array) -> tuple[Array, Array]:
-    """`put_derivatives` at all stations, each (ne, ng, 3, 3)."""
-    found: tuple[Array, Array] = _derivatives(v, tau, stretch, k)
-    return found
-
-
-@njit
-def _derivatives(v: Array, tau: Array, stretch: Array, k: Array) -> tuple[Array, Array]:
-    ne, ng = k.shape
-    by_v, by_slope = np.empty((ne, ng, 3, 3)), np.empty((ne, ng, 3, 3))
-    for e in range(ne):
-        for g in range(ng):
-            put_derivatives(v[e, g], tau[e, g], stretch[e, g], k[e, g], by_v[e, g], by_slope[e, g])
-    return by_v, by_slope
-
-
 @njit
 def advance(
     wake: Wake, shed: Shedding, t: float, phase: float, e: int, g: int, v: Array, own: Array, a: Array, tau: Array

@@ -9,32 +9,27 @@ from riser_soil.core.part import Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.stations import POINTS, Derivatives
+from riser_soil.riser.stations import POINTS
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import vortex_law as law
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.moving_water import FlowAtStations
-from riser_soil.sea.moving_water_kernels import MovingWaterNumbers, moving_water
-from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
 from riser_soil.sea.still_water import StationLoads
-from riser_soil.sea.stream_kernels import WaterInLoop, bring
-from riser_soil.sea.vortex_kernels import VortexNumbers
+from riser_soil.sea.through import ThroughLoads
+from riser_soil.sea.vortex_kernels import Push, VortexNumbers
 
 
-class VortexLoads:
-    """Force of the vortices per length, a `StationLoads`, by a wake that is kept from step to step."""
+class Shed:
+    """Vortices behind a pipe: their wake, kept from step to step, and the loads that follow from it."""
 
-    dissipative = False
+    def __init__(self, stream: FlowAtStations, shed: law.Shedding) -> None:
+        self.stream, self.shed, self.wake = stream, shed, _new_wake(stream)
+        self.loads = ThroughLoads(stream, self._push, dissipative=False)
 
-    def __init__(self, pipe: Pipe, stream: FlowAtStations, shed: law.Shedding) -> None:
-        self.pipe, self._stream, self.shed = pipe, stream, shed
-        self.wake = self._new_wake()
-
-    def _new_wake(self) -> law.Wake:
-        """Phases once around along the line, so that no shape is left out; the rates follow."""
-        line, shape = self.pipe.line, self.pipe.share.shape
-        arc = line.arc[:-1, None] + line.length[:, None] * POINTS
-        return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
+    def _push(self, t: float) -> Push:
+        """At a time of the step under way, where it ends."""
+        return Push(self.shed.lift, np.stack(2 * [law.phases_at(self.wake, t)]))
 
     def begin(self, trial: Trial) -> None:
         """Shed as behind a pipe at rest, then as behind one in this motion."""
@@ -42,53 +37,33 @@ class VortexLoads:
         law.advance_all(self.wake, self.shed, trial.state.t, through, 0.0 * own, 0.0 * a, tau)
         self.advance(trial)
 
-    def _motion(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
-        """Velocity through the water, own velocity and acceleration, tangent; each (ne, ng, 3)."""
-        own = self.pipe.flow(trial)
-        return self._stream.through(trial).v, own.v, own.a, own.tau
-
-    def _push(self, trial: Trial) -> Array:
-        """Half rho D Cv cos(phi) (ne, ng) [kg/m2]."""
-        return np.asarray(self.shed.lift[:, None] * np.cos(law.phases_at(self.wake, trial.state.t)))
-
-    def forces(self, trial: Trial) -> tuple[Array, Array]:
-        flow = self._stream.through(trial)
-        return np.zeros_like(flow.v), law.resistance(flow.v, flow.tau, self._push(trial))
-
-    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        flow = self._stream.through(trial)
-        by_v, by_slope = law.derivatives(flow.v, flow.tau, flow.stretch, weights.force * self._push(trial))
-        by_x = -by_v @ self._stream.at(trial).velocity_gradient
-        return Derivatives(by_x, by_slope, by_v, np.zeros_like(by_v))
-
-    def numbers(self) -> MovingWaterNumbers:
-        return self.seen_in(self._stream.in_loop)
-
-    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
-        """The pipe in the water alone, see `VortexNumbers`."""
-        nothing = np.zeros((self.shed.lift.size, 2))
-        return moving_water(water, self.pipe, nothing, nothing)._replace(dissipative=False)
-
-    def momentum(self, trial: Trial, v: Array) -> Array:
-        return np.zeros_like(v)
-
     def advance(self, trial: Trial) -> None:
         """Keep the wake at the end of an accepted step."""
         law.advance_all(self.wake, self.shed, trial.state.t, *self._motion(trial))
 
+    def _motion(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
+        """Velocity through the water, own velocity and acceleration, tangent; each (ne, ng, 3)."""
+        own = self.stream.pipe.flow(trial)
+        return self.stream.through(trial).v, own.v, own.a, own.tau
+
+
+def _new_wake(stream: FlowAtStations) -> law.Wake:
+    """Phases once around along the line, so that no shape is left out; the rates follow."""
+    line, shape = stream.pipe.line, stream.pipe.share.shape
+    arc = line.arc[:-1, None] + line.length[:, None] * POINTS
+    return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
+
 
 class Vortices(LinePart):
-    """Force of the vortices on the pipe, or on its wet share.
-
-    loads: those of `vortices`, or what a surface makes of them.
-    """
+    """Force of the vortices on the pipe. loads: theirs, or what a surface makes of them."""
 
     name = "vortices"
     traits = Traits("F", symmetric=False, follows=True, keeps_way=True, roles=(Stateful, Starting))
 
-    def __init__(self, pipe: Pipe, loads: StationLoads, vortices: VortexLoads) -> None:
+    def __init__(self, loads: StationLoads, vortices: Shed) -> None:
+        pipe = vortices.stream.pipe
         super().__init__(pipe.line)
-        self._loads, self._vortices, self._acting = loads, vortices, Morison(pipe, loads)
+        self._vortices, self._acting = vortices, Morison(pipe, loads, self._numbers)
 
     def element_forces(self, state: State) -> tuple[Array, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof)."""
@@ -104,16 +79,18 @@ class Vortices(LinePart):
         """All is external work, of either sign."""
         return self._acting.work(before, after)
 
-    def numbers(self) -> VortexNumbers:
-        flow, vortices = self._loads.numbers(), self._vortices
-        assert isinstance(flow, MovingWaterNumbers)
-        self._in_loop = VortexNumbers(flow, vortices.shed, vortices.wake, np.zeros((2, *flow.share.shape)))
-        return self._in_loop
+    def numbers(self) -> tuple[object, ...]:
+        return self._acting.numbers()
+
+    def _numbers(self, flow: MovingWaterNumbers) -> VortexNumbers:
+        shed = self._vortices
+        self._push = Push(shed.shed.lift, np.zeros((2, *flow.share.shape)))
+        return VortexNumbers(flow, self._push, shed.shed, shed.wake)
 
     def renew_numbers(self, start: float, end: float) -> None:
-        bring(self._in_loop.flow.seen, start, end)
-        for phases, t in zip(self._in_loop.phases, (start, end), strict=True):
-            phases[:] = law.phases_at(self._in_loop.wake, t)
+        self._acting.renew_numbers(start, end)
+        for phases, t in zip(self._push.phases, (start, end), strict=True):
+            phases[:] = law.phases_at(self._vortices.wake, t)
 
     def begin_stage(self, state: State) -> None:
         self._vortices.begin(self.line.trial(state))

@@ -87,7 +87,7 @@ def test_a_lazy_wave(tmp_path: Path) -> None:
     told = [joint[key] for key in ("at", "mass", "volume", "drag_area", "added_mass")]
     assert told == [130.0, 50.0, 0.2, 0.1, 0.5]
     assert [cable[key] for key in ("outer_diameter", "mass", "EA", "EI")] == [0.2, 72.0, 6.0e8, 2.0e4]
-    assert cable["drag"] == {"normal": 1.2, "tangential": 0.05}
+    assert cable["drag"] == {"normal": 1.2, "tangential": 0.05, "by_reynolds": None}
     assert cable["added_mass"] == {"normal": 1.0, "tangential": 0.1}
     assert (buoyed["EA"], buoyed["EI"]) == (6.0e8, 0.0)
     water, seabed, friction = scene["water"], scene["seabed"], scene["contact"]["friction"]

@@ -8,14 +8,16 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.riser import hermite
 from riser_soil.riser.trial import Trial
+from riser_soil.sea import through, through_kernels, wet_section
 from riser_soil.sea import vortex_law as law
-from riser_soil.sea import wet_section
 from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.vortices import VortexLoads, Vortices
+from riser_soil.sea.vortex_kernels import Push
+from riser_soil.sea.vortices import Shed, Vortices
 from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wetting import PartlyWet, Wetting
 from tests.support import sample_water
@@ -44,15 +46,15 @@ def underway(part: Vortices, at: Sample) -> Vortices:
 def behind(at: Sample) -> Vortices:
     """In uneven, unsteady water."""
     pipe = Pipe(at.line)
-    loads = VortexLoads(pipe, FlowAtStations(pipe, sample_water.water), shedding(at.line.length.size))
-    return underway(Vortices(pipe, loads, loads), at)
+    shed = Shed(FlowAtStations(pipe, sample_water.water), shedding(at.line.length.size))
+    return underway(Vortices(shed.loads, shed), at)
 
 
 def behind_half_out(at: Sample) -> Vortices:
     pipe = Pipe(at.line)
     stream = FlowAtStations(pipe, sample_water.water)
-    loads = VortexLoads(pipe, stream, shedding(at.line.length.size))
-    return underway(Vortices(pipe, PartlyWet(loads, Wetting(pipe, stream)), loads), at)
+    shed = Shed(stream, shedding(at.line.length.size))
+    return underway(Vortices(PartlyWet(shed.loads, Wetting(pipe, stream)), shed), at)
 
 
 both = pytest.mark.parametrize("make", [behind, behind_half_out])
@@ -61,12 +63,16 @@ both = pytest.mark.parametrize("make", [behind, behind_half_out])
 @pytest.mark.parametrize("phase", [0.0, 0.4, 2.0])
 def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
     """An upright pipe in a flow along x is pushed towards y by at most 1/2 rho D Cv U^2; flow along it does nothing."""
-    k = np.full((1, 1), shedding().lift[0] * np.cos(phase))
-    found = -law.resistance(-U * ALONG_X[None, None], TAU[None, None], k)[0, 0]
+    push = Push(shedding().lift, np.full((2, 1, 1), phase))
+
+    def force(v: Array) -> Array:
+        found: Array = -through_kernels.resistances(push, v[None, None], TAU[None, None], fixed(3))[0, 0]
+        return found
+
+    found = force(-U * ALONG_X)
     np.testing.assert_allclose(found, [0.0, 0.5 * RHO * D * 1.2 * U**2 * np.cos(phase), 0.0], atol=1e-12)
-    skew = -law.resistance(-U * (ALONG_X + 2.0 * TAU)[None, None], TAU[None, None], k)[0, 0]
-    np.testing.assert_allclose(skew, found, rtol=1e-12, atol=1e-12)
-    assert not law.resistance(-U * TAU[None, None], TAU[None, None], k).any()
+    np.testing.assert_allclose(force(-U * (ALONG_X + 2.0 * TAU)), found, rtol=1e-12, atol=1e-12)
+    assert not force(-U * TAU).any()
 
 
 def locked(frequency: float, steps: int, amplitude: float = 0.05) -> tuple[Array, Array]:
@@ -138,13 +144,13 @@ def test_tangent_is_the_derivative_of_the_residual(make: Callable[[Sample], Vort
 
 
 def without_slope(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = law.derivatives
-    monkeypatch.setattr(law, "derivatives", lambda *at: (usual(*at)[0], 0.0 * usual(*at)[1]))
+    usual = through.all_derivatives
+    monkeypatch.setattr(through, "all_derivatives", lambda *at: (usual(*at)[0], 0.0 * usual(*at)[1]))
 
 
 def without_rate(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = law.derivatives
-    monkeypatch.setattr(law, "derivatives", lambda *at: (0.0 * usual(*at)[0], usual(*at)[1]))
+    usual = through.all_derivatives
+    monkeypatch.setattr(through, "all_derivatives", lambda *at: (0.0 * usual(*at)[0], usual(*at)[1]))
 
 
 def without_turning(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,7 +215,7 @@ def test_a_stage_begins_with_the_rate_of_its_motion() -> None:
     part.begin_stage(rest)
     trial = at.line.trial(rest)
     loads = part._vortices
-    speed = np.linalg.norm(np.cross(loads._stream.through(trial).v, at_stations(loads, trial)), axis=-1)
+    speed = np.linalg.norm(np.cross(loads.stream.through(trial).v, at_stations(loads, trial)), axis=-1)
     np.testing.assert_allclose(part.state()["rate"], 2.0 * np.pi * MIDDLE * speed / D, rtol=1e-12)
     part.begin_stage(state)
     begun = part.state()
@@ -218,8 +224,8 @@ def test_a_stage_begins_with_the_rate_of_its_motion() -> None:
     assert not begun["growth"].any()
 
 
-def at_stations(loads: VortexLoads, trial: Trial) -> Array:
-    return loads.pipe.flow(trial).tau
+def at_stations(loads: Shed, trial: Trial) -> Array:
+    return loads.stream.pipe.flow(trial).tau
 
 
 def test_a_trial_leaves_no_trace_and_a_commit_continues() -> None:

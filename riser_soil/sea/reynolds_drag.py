@@ -1,0 +1,126 @@
+"""Drag across the pipe whose coefficient follows Reynolds's number.
+
+With the velocity v_n across the pipe, through the water, and Re = |v_n| D/nu the pipe feels per length
+
+    -(1/2) rho D Cd(Re) |v_n| v_n,
+
+Cd linear in log Re between the points of a table and constant beyond. The derivatives are exact; at a point of the
+table they are those of the range above it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.riser.hermite import Size
+from riser_soil.sea import through_kernels
+from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison_law import put_drag_derivatives
+from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.still_water import StationLoads
+from riser_soil.sea.through_kernels import put_derivatives, put_resistance
+
+Rows = Sequence[tuple[float, float]]
+
+
+class ReynoldsTables(NamedTuple):
+    """By element: natural logarithms of Re/|v_n| [s/m] (ne,); those of Re and Cd times rho D/2 [kg/m2], (ne, n),
+    shorter tables filled up with their last point.
+    """
+
+    scale: Array
+    numbers: Array
+    drag: Array
+
+
+def tables_of(rho: float, nu: float, diameter: Array, rows: Sequence[Rows]) -> ReynoldsTables:
+    """Of tables (ne) of rows (Re, Cd), Re increasing; nu [m2/s], diameter (ne,) [m]."""
+    longest = max(map(len, rows))
+    filled = np.array([[*given, *[given[-1]] * (longest - len(given))] for given in rows])
+    drag = 0.5 * rho * diameter[:, None] * filled[..., 1]
+    return ReynoldsTables(np.log(diameter / nu), np.log(filled[..., 0]), drag)
+
+
+class ReynoldsNumbers(NamedTuple):
+    """See `ThroughNumbers`."""
+
+    flow: MovingWaterNumbers
+    law: ReynoldsTables
+
+
+through_kernels.with_kernels(ReynoldsNumbers)
+
+
+@njit
+def coefficient(tables: ReynoldsTables, m: int, speed: float) -> tuple[float, float]:
+    """Factor of |v_n| v_n at a speed, and its derivative by log Re, both [kg/m2]."""
+    x, y = tables.numbers[m], tables.drag[m]
+    at = math.log(speed) + tables.scale[m] if speed > 0.0 else -math.inf
+    if at < x[0]:
+        return y[0], 0.0
+    for k in range(1, x.size):
+        if at < x[k]:
+            slope = (y[k] - y[k - 1]) / (x[k] - x[k - 1])
+            return y[k - 1] + slope * (at - x[k - 1]), slope
+    return y[x.size - 1], 0.0
+
+
+@njit
+def _across(v: Array, tau: Array, n: Array, D: Size) -> tuple[float, float]:
+    """Write the velocity n across the pipe; speed across, and along it."""
+    along, square = 0.0, 0.0
+    for i in range(len(D)):
+        along += v[i] * tau[i]
+    for i in range(len(D)):
+        n[i] = v[i] - along * tau[i]
+        square += n[i] * n[i]
+    return math.sqrt(square), along
+
+
+@put_resistance.of(ReynoldsTables)
+def _put_resistance(
+    tables: ReynoldsTables, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size
+) -> None:
+    speed, _ = _across(v, tau, f, D)
+    c, _ = coefficient(tables, m, speed)
+    for i in range(len(D)):
+        f[i] *= c * speed
+
+
+@put_derivatives.of(ReynoldsTables)
+def _put_derivatives(
+    tables: ReynoldsTables,
+    m: int,
+    g: int,
+    v: Array,
+    tau: Array,
+    stretch: float,
+    weight: float,
+    by_v: Array,
+    by_slope: Array,
+    D: Size,
+) -> None:
+    """As of a constant coefficient, and by its change."""
+    n, pair = np.empty(len(D)), np.zeros(2)
+    speed, along = _across(v, tau, n, D)
+    pair[0], change = coefficient(tables, m, speed)
+    put_drag_derivatives(v, tau, stretch, pair, weight, by_v, by_slope, D)
+    if change == 0.0:
+        return
+    for i in range(len(D)):
+        for j in range(len(D)):
+            dyad = weight * change / speed * n[i] * n[j]
+            by_v[i, j] += dyad
+            by_slope[i, j] -= along / stretch * dyad
+
+
+def reynolds_drag(pipe: Pipe, loads: StationLoads, tables: ReynoldsTables) -> Morison:
+    """The part of this drag. loads: `ThroughLoads` of the tables, or what a surface makes of them."""
+    return Morison(pipe, loads, lambda flow: ReynoldsNumbers(flow, tables))

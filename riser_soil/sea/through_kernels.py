@@ -1,0 +1,180 @@
+"""Kernels of loads that follow from the velocity through the water, as those of `part_kernels` but for history.
+
+A part of such loads has numbers of a type of its own, with the fields of `ThroughNumbers`: its law, whose type chooses
+the formula, and the pipe in the water.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.by_type import by_type
+from riser_soil.core.compiled import njit
+from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.riser import stations
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.hermite import Size
+from riser_soil.riser.part_kernels import (
+    LineForces,
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    add_work,
+    find_water,
+)
+from riser_soil.sea.moving_water_kernels import FlowRoom, MovingWaterNumbers, move, resisted_at, wet
+from riser_soil.sea.stream_kernels import see_end, see_start
+from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.wet_section import wet_slope
+
+START, END = 0, 1  # of a step
+
+
+class ThroughNumbers(NamedTuple):
+    """flow: the pipe in the water, without other loads."""
+
+    flow: MovingWaterNumbers
+    law: Any
+
+
+@by_type
+def put_resistance(law: tuple, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
+    """Write the resistance f (d,) per length at station g of element m, where a step starts or ends; v: velocity
+    through the water.
+    """
+
+
+@by_type
+def put_derivatives(
+    law: tuple,
+    m: int,
+    g: int,
+    v: Array,
+    tau: Array,
+    stretch: float,
+    weight: float,
+    by_v: Array,
+    by_slope: Array,
+    D: Size,
+) -> None:
+    """Write its derivatives (d, d) by v and by the axis' slope x', where a step ends, times a weight."""
+
+
+@njit
+def resistances(law: Any, v: Array, tau: Array, D: Size) -> Array:
+    """`put_resistance` at all stations (ne, ng, d), where a step ends."""
+    f = np.empty_like(v)
+    for m in range(v.shape[0]):
+        for g in range(v.shape[1]):
+            put_resistance(law, END, m, g, v[m, g], tau[m, g], f[m, g], D)
+    return f
+
+
+@njit
+def all_derivatives(law: Any, v: Array, tau: Array, stretch: Array, weight: float, D: Size) -> tuple[Array, Array]:
+    """`put_derivatives` at all stations, each (ne, ng, d, d)."""
+    ne, ng, d = v.shape[0], v.shape[1], len(D)
+    by_v, by_slope = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
+    for m in range(ne):
+        for g in range(ng):
+            of_v, of_slope = by_v[m, g], by_slope[m, g]
+            put_derivatives(law, m, g, v[m, g], tau[m, g], stretch[m, g], weight, of_v, of_slope, D)
+    return by_v, by_slope
+
+
+@njit
+def resist(
+    part: ThroughNumbers, at: Configuration, water: WaterMotion, side: int, m: int, g: int, room: FlowRoom
+) -> float:
+    """Write motion and resistance at a station, as if it were wet; the stretch |x'|."""
+    stretch, p = move(part.flow, at, m, g, room), m * part.flow.share.shape[1] + g
+    for i in range(len(at.D)):
+        room.through[i] = room.v[i] - water.velocity[p, i]
+    put_resistance(part.law, side, m, g, room.through, room.tau, room.force, at.D)
+    return stretch
+
+
+def _find_water(part: ThroughNumbers, at: Configuration) -> None:
+    see_end(part.flow.stream, at.q)
+
+
+def _forces(part: ThroughNumbers, at: Configuration, out: LineForces) -> None:
+    flow = part.flow
+    see_end(flow.stream, at.q)
+    room, water = flow.room, flow.seen.end
+    for m in range(flow.element.size):
+        e = flow.element[m]
+        for g in range(flow.share.shape[1]):
+            resist(part, at, water, END, m, g, room)
+            share = wet(flow, water, m, g)
+            for i in range(len(at.D)):
+                room.force[i] *= share
+            p = m * flow.share.shape[1] + g
+            stations.add_integrand_at(flow.at.weighted, p, held(room.force, at.D), out.force_q, e, at.D)
+
+
+def _tangent(part: ThroughNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    if weights.force == 0.0:
+        return
+    flow, by = part.flow, part.flow.by
+    for m in range(flow.element.size):
+        e = flow.element[m]
+        flow.change[:] = 0.0
+        for g in range(flow.share.shape[1]):
+            stretch = resist(part, at, flow.seen.end, END, m, g, flow.room)
+            _differentiate(part, flow.seen.end, m, g, stretch, weights.force, at.D)
+            N, places = flow.at.N[m, g], maps.place_rows[e]
+            placed = (flow.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
+            moved = (N, by.by_v, maps.rate_rows[e])
+            add_weighed(flow.change, flow.at.weighted[m, g], (*placed, moved), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], flow.change, at.D, at.R)
+
+
+@njit
+def _differentiate(
+    part: ThroughNumbers, water: WaterMotion, m: int, g: int, stretch: float, weight: float, D: Size
+) -> None:
+    """Write the weighted derivatives of the force at a station whose resistance is known."""
+    flow, p, steep = part.flow, m * part.flow.share.shape[1] + g, 0.0
+    room, by = flow.room, flow.by
+    if flow.partly:
+        steep = wet_slope(water.immersion[p], flow.span[m, g])
+    share = weight * wet(flow, water, m, g)
+    put_derivatives(part.law, m, g, room.through, room.tau, stretch, share, by.by_v, by.by_slope, D)
+    for i in range(len(D)):
+        for j in range(len(D)):
+            followed = weight * steep * room.force[i] * water.immersion_gradient[p, j]
+            for n in range(len(D)):
+                followed -= by.by_v[i, n] * water.velocity_gradient[p, n, j]
+            by.by_x[i, j] = followed
+
+
+def _energy(part: ThroughNumbers, at: Configuration, energy: Array) -> None:
+    """None is stored."""
+
+
+def _work(part: ThroughNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+    """See `Morison.work`."""
+    flow, seen, resisted = part.flow, part.flow.seen, 0.0
+    see_start(flow.stream, first.q)
+    for m in range(flow.element.size):
+        for g in range(flow.share.shape[1]):
+            resist(part, first, seen.start, START, m, g, flow.first)
+            resist(part, last, seen.end, END, m, g, flow.room)
+            before, after = wet(flow, seen.start, m, g), wet(flow, seen.end, m, g)
+            resisted += flow.share[m, g] * resisted_at(flow, first, last, m, g, before, after)
+    if flow.dissipative:
+        work[0] += resisted
+    else:
+        work[1] -= resisted
+
+
+def with_kernels(numbers: type) -> None:
+    """Let a type of numbers have these kernels."""
+    stubs = find_water, add_forces, add_tangent, add_energy, add_work
+    for stub, kernel in zip(stubs, (_find_water, _forces, _tangent, _energy, _work), strict=True):
+        stub.of(numbers)(kernel)

@@ -1,0 +1,198 @@
+"""Drag whose coefficient follows Reynolds's number: against its formula, a constant one, differences, and in scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+from riser_soil.core.compiled import fixed
+from riser_soil.errors import SceneError
+from riser_soil.riser.trial import Trial
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.sea import reynolds_drag as law
+from riser_soil.sea import through, through_kernels
+from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison_law import drag_coefficients
+from riser_soil.sea.moving_water import FlowAtStations
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.sea import Sea
+from riser_soil.sea.still_water import StillWater
+from riser_soil.sea.through import ThroughLoads
+from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.wetting import PartlyWet, Wetting
+from tests.support import sample_water
+from tests.support.coupled_scenes import Mapping
+from tests.support.dense_chain import residual, tangent
+from tests.support.differences import WEIGHTS, difference_tangent, error
+from tests.support.riser_loop import require_kernels
+from tests.support.riser_scenes import in_waves, stage_histories
+from tests.support.sample_line import RHO, Sample, sample
+
+NU, D = 1.19e-6, 0.4
+CRISIS = [(1e4, 1.2), (2e5, 1.2), (4e5, 0.3), (4e6, 0.7)]
+WIDE = [(1e4, 1.4), (1e7, 0.2)]  # so that all of the sample's stations lie within it
+Maker = Callable[[Sample], Morison]
+
+
+def tables(at: Sample, *rows: law.Rows) -> law.ReynoldsTables:
+    diameter = at.elements.outer_diameter
+    return law.tables_of(RHO, NU, diameter, [rows[e % len(rows)] for e in range(diameter.size)])
+
+
+def still(at: Sample) -> Morison:
+    pipe, found = Pipe(at.line), tables(at, WIDE, CRISIS)
+    return law.reynolds_drag(pipe, ThroughLoads(FlowAtStations(pipe, Sea(None)), lambda t: found, True), found)
+
+
+def flowing(at: Sample) -> Morison:
+    pipe, found = Pipe(at.line), tables(at, WIDE)
+    stream = FlowAtStations(pipe, sample_water.water)
+    return law.reynolds_drag(pipe, ThroughLoads(stream, lambda t: found, False), found)
+
+
+def half_out(at: Sample) -> Morison:
+    pipe, found = Pipe(at.line), tables(at, WIDE)
+    stream = FlowAtStations(pipe, sample_water.water)
+    loads = PartlyWet(ThroughLoads(stream, lambda t: found, False), Wetting(pipe, stream))
+    return law.reynolds_drag(pipe, loads, found)
+
+
+@pytest.mark.parametrize(
+    ("Re", "Cd"),
+    [(1e2, 1.2), (1e5, 1.2), (2e5, 1.2), (np.sqrt(8e10), 0.75), (4e5, 0.3), (np.sqrt(16e11), 0.5), (5e6, 0.7)],
+)
+def test_the_coefficient_is_linear_in_the_logarithm(Re: float, Cd: float) -> None:
+    speed, tau = Re * NU / D, np.array([0.0, 0.0, 1.0])
+    found = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
+    v = np.array([0.6, 0.8, 0.0]) * speed + 3.0 * tau
+    force = through_kernels.resistances(found, v[None, None], tau[None, None], fixed(3))[0, 0]
+    expected = 0.5 * RHO * D * Cd * speed**2
+    np.testing.assert_allclose(force, expected * np.array([0.6, 0.8, 0.0]), rtol=1e-12, atol=1e-12 * expected)
+
+
+def test_no_flow_no_drag() -> None:
+    found, none = law.tables_of(RHO, NU, np.array([D]), [CRISIS]), np.zeros((1, 1, 3))
+    tau = np.array([[[0.0, 0.0, 1.0]]])
+    assert not through_kernels.resistances(found, none, tau, fixed(3)).any()
+    assert not np.any(through_kernels.all_derivatives(found, none, tau, np.ones((1, 1)), 1.0, fixed(3)))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("make", [still, flowing, half_out])
+def test_tangent_is_the_derivative_of_the_residual(make: Maker, dimension: int) -> None:
+    at = sample(dimension)
+    part, state = make(at), at.state(1)
+    assert error(tangent([part], state, WEIGHTS), difference_tangent(part, state, WEIGHTS)) < 1e-7
+
+
+def test_the_change_of_the_coefficient_is_in_the_tangent() -> None:
+    """Along the flow d(Cd w^2)/dw = 2 Cd w + w dCd/dln Re, across it Cd w."""
+    Re, slope = np.sqrt(8e10), (0.3 - 1.2) / np.log(2.0)
+    w, half = Re * NU / D, 0.5 * RHO * D
+    v, tau, one = np.array([[[w, 0.0, 0.0]]]), np.array([[[0.0, 0.0, 1.0]]]), np.ones((1, 1))
+    found = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
+    by_v, _ = through_kernels.all_derivatives(found, v, tau, one, 1.0, fixed(3))
+    expected = half * w * np.diag([2.0 * 0.75 + slope, 0.75, 0.0])
+    np.testing.assert_allclose(by_v[0, 0], expected, rtol=1e-12, atol=1e-12 * half * w)
+
+
+def without_slope(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = through.all_derivatives
+    monkeypatch.setattr(through, "all_derivatives", lambda *at: (usual(*at)[0], 0.0 * usual(*at)[1]))
+
+
+def without_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = FlowAtStations.at
+
+    def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
+        motion = usual(stream, trial)
+        return motion._replace(velocity_gradient=0.0 * motion.velocity_gradient)
+
+    monkeypatch.setattr(FlowAtStations, "at", at)
+
+
+@pytest.mark.parametrize("leave_out", [without_slope, without_gradient])
+def test_each_term_of_the_tangent_matters(
+    leave_out: Callable[[pytest.MonkeyPatch], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at = sample(3)
+    part, state = flowing(at), at.state(1)
+    whole = tangent([part], state, WEIGHTS)
+    leave_out(monkeypatch)
+    at.line.forget()
+    assert error(tangent([part], state, WEIGHTS), whole) > 1e-5
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_kernels_are_those_of_the_methods(dimension: int) -> None:
+    at = sample(dimension)
+    require_kernels(at, [at.morison(), still(at), flowing(at), half_out(at)])
+
+
+def test_a_table_of_one_value_is_a_constant_coefficient() -> None:
+    at, state = sample(3), sample(3).state(1)
+    e = at.elements
+    one, pipe = tables(at, [(1e5, 0.9)]), Pipe(at.line)
+    part = law.reynolds_drag(pipe, ThroughLoads(FlowAtStations(pipe, Sea(None)), lambda t: one, True), one)
+    ones = np.ones(e.length.size)
+    drag = drag_coefficients(RHO, e.outer_diameter, 0.9 * ones, 0.0 * ones)
+    same = Morison(pipe, StillWater(pipe, drag, 0.0 * drag))
+    for f in (residual, tangent):
+        assert error(f([part], state, WEIGHTS), f([same], state, WEIGHTS)) < 1e-12
+
+
+def sea(drag: Mapping) -> Mapping:
+    scene = deepcopy(in_waves(0.1, 21.0))
+    scene["line_types"]["pipe"]["drag"] = {"tangential": 0.05} | drag
+    return scene
+
+
+def test_a_scene_with_one_value_is_that_of_a_constant_coefficient() -> None:
+    """Statics and time steps; energy, too. A table with a drop in the range of speeds is another one."""
+    one, same, drop = (
+        stage_histories(sea(drag))
+        for drag in ({"by_reynolds": [[1e5, 1.1]]}, {"normal": 1.1}, {"by_reynolds": [[1e5, 1.1], [3e5, 0.4]]})
+    )
+    for found, expected in zip(one, same, strict=True):
+        np.testing.assert_allclose(np.array(found.position), np.array(expected.position), rtol=0.0, atol=1e-9)
+        np.testing.assert_allclose(found.work, expected.work, rtol=1e-6, atol=1e-4)
+    assert np.abs(np.array(drop[1].position) - np.array(one[1].position)).max() > 1e-3
+
+
+def test_a_resolved_scene_is_read_as_the_same() -> None:
+    scene = scene_from_mapping(sea({"by_reynolds": [[1e5, 1.1], [3e5, 0.4]]}))
+    assert scene_from_mapping(YAML(typ="safe").load(dump_scene(scene))) == scene
+
+
+def test_segments_without_a_table_have_none() -> None:
+    """Of two line types one has a table; the other keeps its coefficient."""
+    scene = sea({"normal": 1.1})
+    scene["line_types"]["rough"] = deepcopy(scene["line_types"]["pipe"]) | {"drag": {"by_reynolds": [[1e5, 1.1]]}}
+    scene["line_types"]["pipe"]["drag"] = scene["line_types"]["rough"]["drag"] | {}
+    whole = scene["riser"]["segments"][0]
+    halves = [whole | {"line_type": name, "length": 13.0, "elements": 4} for name in ("pipe", "rough")]
+    scene["riser"]["segments"] = halves
+    both = stage_histories(scene)
+    scene["line_types"]["pipe"]["drag"] = {"normal": 1.1}
+    mixed = stage_histories(scene)
+    np.testing.assert_allclose(mixed[1].position[-1], both[1].position[-1], rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("drag", "told"),
+    [
+        ({}, "the normal drag coefficient is missing"),
+        ({"normal": 1.1, "by_reynolds": [[1e5, 1.1]]}, "given twice"),
+        ({"by_reynolds": [[1e5, 1.1], [1e5, 0.4]]}, "must increase"),
+        ({"by_reynolds": [[0.0, 1.1]]}, r"by_reynolds\.0\.0"),
+        ({"by_reynolds": []}, "by_reynolds"),
+    ],
+)
+def test_a_table_that_is_none_is_told(drag: Mapping, told: str) -> None:
+    with pytest.raises(SceneError, match=told):
+        scene_from_mapping(sea(drag))
