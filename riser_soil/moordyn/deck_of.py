@@ -78,7 +78,9 @@ def _properties(scene: Scene, name: str, line: LineType) -> list[float]:
     if about_y != about_z:
         raise SceneError(f"{path}: EI_y and EI_z differ, and a deck has one EI; give EI")
     filled = scene.riser.contents.density * math.pi / 4.0 * line.inner_diameter**2 if scene.riser.contents else 0.0
-    drag = (line.drag.normal, line.drag.tangential) if line.drag else (0.0, 0.0)
+    if line.drag and line.drag.normal is None:
+        raise SceneError(f"{path}.drag.by_reynolds: a deck has one coefficient across the line; give normal")
+    drag = (line.drag.normal or 0.0, line.drag.tangential) if line.drag else (0.0, 0.0)
     added = (line.added_mass.normal, line.added_mass.tangential) if line.added_mass else (0.0, 0.0)
     return [line.outer_diameter, line.mass + filled, line.EA, _DAMPING, about_y, drag[0], added[0], drag[1], added[1]]
 
