@@ -270,5 +270,5 @@ def test_scenes_that_give_no_deck(change: Mapping, told: str, tmp_path: Path) ->
 def test_a_deck_has_one_drag_coefficient(tmp_path: Path) -> None:
     data = scene_of(deck(tmp_path), "4").data
     data["line_types"]["cable"]["drag"] = {"by_reynolds": [[1e4, 1.2], [1e6, 0.7]]}
-    with pytest.raises(SceneError, match="cable.drag.by_reynolds"):
+    with pytest.raises(SceneError, match="by_reynolds: a deck has one"):
         deck_of(scene_from_mapping(data))
