@@ -59,6 +59,7 @@ def scene_of(mesh: Mesh) -> dict[str, Any]:
         },
         "soil": {
             "block": BLOCK,
+            "symmetry": "whole",  # as CalculiX has it
             "mesh": {
                 "kind": "hex",
                 "size_at_riser": {"along": mesh.along, "across": mesh.across},

@@ -66,7 +66,7 @@ CASES: list[tuple[Changes, str, str]] = [
         "the axis has no surface to touch the soil with",
     ),
     ((("    mass: 120.0\n", ""), STATIC_ALONE), "line_types.pipe.mass: missing", "the weight follows from the mass"),
-    ((NO_DIAMETER, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "drag and added mass follow"),
+    ((NO_DIAMETER, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "drag, added mass and vortices follow"),
     (
         (NO_DIAMETER, NO_DRAG, GIVEN_WEIGHT, ("    EA:", "    rotary_inertia: true\n    EA:")),
         "line_types.pipe.outer_diameter: missing",
