@@ -37,7 +37,7 @@ K, HIGH = 1e6, 1e6  # N/m, m: an eps of the height is 1e-4 N in a spring, where 
 
 
 class WrongSprings(Springs):
-    """Their tangent is thirty times as stiff as their forces: Newton's method creeps, by less than half in ten iterations."""
+    """Their tangent is thirty times as stiff as their forces: Newton's method creeps by a thirtieth an iteration."""
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         super().tangent(state, weights, values)
