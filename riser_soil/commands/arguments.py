@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.errors import ResultsError
+from riser_soil.errors import ResultsError, SceneError
 
 SceneFile = Annotated[str, typer.Argument(metavar="SCENE", help="scene file (.yaml)")]
 Overrides = Annotated[
@@ -32,3 +32,9 @@ def positive(name: str, value: float | None) -> None:
     """ResultsError where an option is given and not greater than 0."""
     if value is not None and not value > 0.0:
         raise ResultsError(f"--{name} {value:g}: must be greater than 0")
+
+
+def refuse_existing(file: Path, force: bool) -> None:
+    """SceneError where a command would overwrite a file without being asked to."""
+    if file.exists() and not force:
+        raise SceneError(f"{file}: is there already; choose another with -o, or overwrite it with --force")

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from riser_soil.commands.arguments import refuse_existing
 from riser_soil.commands.endings import expected_errors, rank
 from riser_soil.errors import SceneError
 
@@ -33,7 +34,7 @@ def import_(
         scene = output or Path(f"{file.stem}.yaml")
         found = _imported(file, line, scene.stem)
         for name in (scene.name, *found.files):
-            _refuse(scene.parent / name, force)
+            refuse_existing(scene.parent / name, force)
         lost = [f"{file.name}:{number}: not carried over: {text}" for number, text in found.remarks]
         _write(found, scene, [f"From {file.name}.", *lost], file)
         typer.echo("\n".join([*lost, f"{scene}: written; {len(lost)} entries of the file are not carried over"]))
@@ -57,7 +58,7 @@ def export(
         if rank() > 0:
             return
         deck, document = output or Path(f"{scene.stem}.dat"), read_document(scene)
-        _refuse(deck, force)
+        refuse_existing(deck, force)
         model = checked(document, scene.parent)
         try:
             text = deck_of(model)
@@ -67,11 +68,6 @@ def export(
         with written_whole(deck) as part:
             part.write_text(text, encoding="utf-8")
         typer.echo("\n".join([*lost, f"{deck}: written; {len(lost)} entries of the scene are not in it"]))
-
-
-def _refuse(file: Path, force: bool) -> None:
-    if file.exists() and not force:
-        raise SceneError(f"{file}: is there already; choose another with -o, or overwrite it with --force")
 
 
 def _imported(file: Path, line: str | None, stem: str) -> "ImportedScene":

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from riser_soil.commands.arguments import refuse_existing
 from riser_soil.commands.endings import expected_errors, rank
 from riser_soil.commands.scenes import placed, read
 from riser_soil.errors import SceneError
@@ -50,8 +51,7 @@ def new(
         if kind is None:
             kind, wishes = _asked(wishes)
         file = output or Path(f"{kind}.yaml")
-        if file.exists() and not force:
-            raise SceneError(f"{file}: is there already; choose another with -o, or overwrite it with --force")
+        refuse_existing(file, force)
         _write(file, kind, wishes)
         from riser_soil.checks.check import describe
 

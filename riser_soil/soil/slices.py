@@ -47,8 +47,8 @@ def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     nodes = Nodes(comm, local, points.reshape(-1, 3), number, len(number))
     corners = np.array([[*spec.x, *spec.y, spec.level - spec.depth, spec.level]]).reshape(3, 2)
     volume = np.zeros(len(local), dtype=np.int64)
-    low, high, section = *corners.T, np.repeat(mine, per_slice)
-    return DistributedMesh(family, nodes, low, high, volume, mirror_of(spec), section)
+    section = np.repeat(mine, per_slice)
+    return DistributedMesh(family, nodes, corners[:, 0], corners[:, 1], volume, mirror_of(spec), section)
 
 
 def _cells(columns: int, layers: int) -> IntArray:

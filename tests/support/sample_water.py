@@ -6,10 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.attachments import PointAttachment
+from riser_soil.riser.trial import Trial
 from riser_soil.sea.buoyancy import Buoyancy, DryStations
 from riser_soil.sea.dry_pipe import DryPipe
 from riser_soil.sea.flows import add_flow
@@ -167,3 +169,14 @@ def floating(at: Sample) -> Buoyancy:
 def floating_in_waves(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
     return Buoyancy(pipe, DryPipe(pipe, FlowAtStations(pipe, water), 9.81 * displaced(at)), flat=False)
+
+
+def without_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tangents from now on lack the gradient of the water's velocity."""
+    usual = FlowAtStations.at
+
+    def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
+        motion = usual(stream, trial)
+        return motion._replace(velocity_gradient=0.0 * motion.velocity_gradient)
+
+    monkeypatch.setattr(FlowAtStations, "at", at)

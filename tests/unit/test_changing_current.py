@@ -15,6 +15,7 @@ from riser_soil.assembly.sea import water_of
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.errors import SceneError
 from riser_soil.scene.plane import resolved_dimension
+from riser_soil.scene.stages import DynamicStage
 from riser_soil.sea.changing_current import ChangingCurrent, spline_rates
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
@@ -137,7 +138,9 @@ def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
     s = np.array([0.0, 0.5, 20.0, 20.5]) / 30.0
     expected = 0.6 - (3.0 * s**2 - 2.0 * s**3)
     assert values == pytest.approx(expected * [0.5, 1.0, 1.0, 1.0])
-    assert times_to_hit(scene, scene.stages[3])[-1] == 10.0  # type: ignore[arg-type]
+    storm = scene.stages[3]
+    assert isinstance(storm, DynamicStage)
+    assert times_to_hit(scene, storm)[-1] == 10.0
     assert resolved_dimension(scene) == 2
     across = [HISTORY[0], {"time": 30.0, "profile": [[0.0, 0.0, 0.3]]}]
     assert resolved_dimension(scene_in({"current": {"history": across}})) == 3

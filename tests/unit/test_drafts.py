@@ -92,7 +92,9 @@ def test_what_is_not_asked_for_is_left_out() -> None:
     assert (calm.water.waves, calm.water.current, len(calm.stages)) == (None, None, 1)
     standing = scene("top-tensioned", Wishes())
     assert standing.seabed is None
-    assert scene("mooring", Wishes(ground="hysteretic")).seabed.kind == "hysteretic"  # type: ignore[union-attr]
+    mooring = scene("mooring", Wishes(ground="hysteretic"))
+    assert mooring.seabed is not None
+    assert mooring.seabed.kind == "hysteretic"
 
 
 @pytest.mark.parametrize("value", [0.0, 0.1365, 50.0, 1025.0, 28208.4, 5.0e4, 99999.6, 3.7023e9, 1e-5, 123456.0])

@@ -11,7 +11,6 @@ from ruamel.yaml import YAML
 
 from riser_soil.core.compiled import fixed
 from riser_soil.errors import SceneError
-from riser_soil.riser.trial import Trial
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import reynolds_drag as law
@@ -23,7 +22,6 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.sea import Sea
 from riser_soil.sea.still_water import StillWater
 from riser_soil.sea.through import ThroughLoads
-from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wetting import PartlyWet, Wetting
 from tests.support import sample_water
 from tests.support.coupled_scenes import Mapping
@@ -106,17 +104,7 @@ def without_slope(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(through, "all_derivatives", lambda *at: (usual(*at)[0], 0.0 * usual(*at)[1]))
 
 
-def without_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = FlowAtStations.at
-
-    def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
-        motion = usual(stream, trial)
-        return motion._replace(velocity_gradient=0.0 * motion.velocity_gradient)
-
-    monkeypatch.setattr(FlowAtStations, "at", at)
-
-
-@pytest.mark.parametrize("leave_out", [without_slope, without_gradient])
+@pytest.mark.parametrize("leave_out", [without_slope, sample_water.without_gradient])
 def test_each_term_of_the_tangent_matters(
     leave_out: Callable[[pytest.MonkeyPatch], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:

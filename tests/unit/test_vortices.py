@@ -18,7 +18,6 @@ from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.vortex_kernels import Push
 from riser_soil.sea.vortices import Shed, Vortices
-from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wetting import PartlyWet, Wetting
 from tests.support import sample_water
 from tests.support.dense_chain import residual, tangent
@@ -162,18 +161,8 @@ def without_wet_slope(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(wet_section, "wet_shares", lambda h, b: (usual(h, b)[0], 0.0 * h))
 
 
-def without_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = FlowAtStations.at
-
-    def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
-        motion = usual(stream, trial)
-        return motion._replace(velocity_gradient=0.0 * motion.velocity_gradient)
-
-    monkeypatch.setattr(FlowAtStations, "at", at)
-
-
 @pytest.mark.parametrize(
-    "leave_out", [without_slope, without_rate, without_turning, without_wet_slope, without_gradient]
+    "leave_out", [without_slope, without_rate, without_turning, without_wet_slope, sample_water.without_gradient]
 )
 def test_each_term_of_the_tangent_matters(
     leave_out: Callable[[pytest.MonkeyPatch], None], monkeypatch: pytest.MonkeyPatch
