@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 from petsc4py import PETSc
+from scipy.sparse import csr_matrix
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 from riser_soil.solve import section_factors
-from riser_soil.solve.linear_solver import exact_solver
 from riser_soil.solve.section_factors import SectionFactors
 from riser_soil.solve.section_solver import SectionSolver
 from riser_soil.solve.time_stepper import AcceptedStep
@@ -46,24 +46,37 @@ def steps(scene: Mapping) -> list[Array]:
     return found
 
 
+def backward_error(system: System, x: Array, load: Array) -> float:
+    """Least relative change of matrix and load with which x solves the system exactly, on one rank.
+
+    Source: Oettli & Prager, Numerische Mathematik 6 (1964), 405-409.
+    """
+    indptr, indices, values = system.matrix.stored.csr()
+    matrix = csr_matrix((values, indices, indptr))
+    terms = abs(matrix) @ np.abs(x) + np.abs(load)
+    return float(np.max(np.abs(matrix @ x - load) / np.maximum(terms, np.finfo(float).tiny)))
+
+
 @pytest.mark.parametrize("contact", [{}, {"friction": FRICTION}], ids=["smooth", "rough"])
-def test_each_newton_step_is_that_of_the_general_solver(contact: Mapping, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of sections that yield, and of others that don't and keep their factors, from one pattern to the next."""
-    apart, usual, eliminate = list[float](), SectionSolver.apply, section_factors._eliminate
+def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of sections that yield, and of others that don't and keep their factors, from one pattern to the next.
+
+    Its backward error is that of a direct solver: clay that yields all through has tangents so nearly singular that
+    two exact solvers find steps that differ by 1e-4.
+    """
+    errors, usual, eliminate = list[float](), SectionSolver.apply, section_factors._eliminate
     made = count()
 
-    def compare(solver: SectionSolver, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
+    def judge(solver: SectionSolver, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
         usual(solver, pc, load, found)
-        with exact_solver(solver._system) as solve:
-            expected = solve(load.array_r)
-        apart.append(np.abs(found.array_r - expected).max() / np.abs(expected).max())
+        errors.append(backward_error(solver._system, found.array_r, load.array_r))
 
-    monkeypatch.setattr(SectionSolver, "apply", compare)
+    monkeypatch.setattr(SectionSolver, "apply", judge)
     monkeypatch.setattr(section_factors, "_eliminate", lambda *given: next(made) >= 0 and eliminate(*given))
     steps(on_sections("auto", tolerance=1e-7, **contact))
-    assert max(apart) < 1e-9
-    assert len(apart) > 20
-    assert next(made) < 0.8 * SECTIONS * len(apart)
+    assert max(errors) < 1e-11
+    assert len(errors) > 20
+    assert next(made) < 0.8 * SECTIONS * len(errors)
 
 
 def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: pytest.MonkeyPatch) -> None:
