@@ -50,6 +50,7 @@ class SectionSolver(PythonContext, LinearSystems):
         self._by_rows_exchanged = False
         self._section: IntArray | None = None  # of each row of the system, on all ranks or none
         self._sections: list[SectionFactors] = []
+        self._rest: _Rest | None = None
 
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         ksp.setType(PETSc.KSP.Type.PREONLY)
@@ -78,6 +79,7 @@ class SectionSolver(PythonContext, LinearSystems):
 
     def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
         """Solve."""
+        assert self._rest is not None
         x = np.array(load.array_r)
         for section in self._sections:
             section.eliminate(x)
@@ -99,7 +101,7 @@ class SectionSolver(PythonContext, LinearSystems):
 
     def forget(self) -> None:
         """Drop all factors."""
-        self._section, self._sections = None, []
+        self._section, self._sections, self._rest = None, [], None
 
 
 class _Rest:

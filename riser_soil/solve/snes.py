@@ -50,7 +50,9 @@ class SnesLoop:
         owned, comm = self._system.numbering.owned, self._system.comm
         self._x, self._f, self._levers = (PETSc.Vec().createMPI((owned, PETSc.DETERMINE), comm=comm) for _ in range(3))
         self._levers.array_w[:] = self._system.numbering.to_global(self._system.levers)
-        self._alone = None if self._system.whole_soil is None else RiserAboveSoil(self._system)
+        self._alone: RiserAboveSoil | None = None
+        if self._system.whole_soil is not None:
+            self._alone = RiserAboveSoil(self._system)
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -160,6 +162,7 @@ class SnesLoop:
         self._drop()
         for thing in (self._x, self._f, self._levers):
             thing.destroy()
+        self._alone = None  # which keeps the matrix
 
     def _drop(self) -> None:
         """Destroy SNES, its factors first and on all ranks at once: MUMPS waits for the others. SNES itself may be held

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 from itertools import count
 from pathlib import Path
 from typing import Any
+from weakref import ReferenceType, ref
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from scipy.sparse import csr_matrix
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
-from riser_soil.solve import section_factors
+from riser_soil.solve import held_balance, section_factors
 from riser_soil.solve.section_factors import SectionFactors
 from riser_soil.solve.section_solver import SectionSolver
 from riser_soil.solve.time_stepper import AcceptedStep
@@ -85,6 +87,25 @@ def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: py
     for mine, other in zip(steps(on_sections("auto")), expected, strict=True):
         np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-6 * np.abs(other).max())
     assert next(calls) > 200
+
+
+def test_what_balances_a_new_mesh_leaves_no_matrix_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However seldom Python looks for circles of references: each would hold the matrix of all of the soil."""
+    made, usual = list[ReferenceType[System]](), held_balance.System
+
+    def remembered(*given: Any) -> System:
+        system = usual(*given)
+        made.append(ref(system))
+        return system
+
+    monkeypatch.setattr(held_balance, "System", remembered)
+    gc.disable()
+    try:
+        steps(on_sections("auto", tolerance=1e-7))
+        assert len(made) > 1
+        assert not [system for system in made if system() is not None]
+    finally:
+        gc.enable()
 
 
 def test_a_rank_without_sections_takes_part(tmp_path: Path) -> None:
