@@ -102,7 +102,7 @@ def test_layout_names_every_folder_and_module_of_the_package() -> None:
     package = ROOT / "riser_soil"
     folders = {f"`riser_soil/{place.parent.name}/`" for place in package.glob("*/__init__.py")}
     modules = {f"`riser_soil/{place.name}`" for place in package.glob("*.py") if place.name != "__init__.py"}
-    table = text(ROOT / "docs/contributing.md").split("| place | content |")[1].split("\n\n")[0]
+    table = text(ROOT / "docs/map.md").split("| place | content |")[1].split("\n\n")[0]
     assert {name for name in folders | modules if name not in table} == set()
 
 
