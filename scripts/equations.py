@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from html import unescape
 from typing import Any
 
@@ -17,5 +18,9 @@ MARKED = {
 def on_page_content(html: str, **_: Any) -> str:
     """The page with its equations as MathML."""
     for display, marked in MARKED.items():
-        html = marked.sub(lambda found, display=display: convert(unescape(found[1]).strip(), display=display), html)
+        html = marked.sub(partial(_mathml, display), html)
     return html
+
+
+def _mathml(display: str, found: re.Match[str]) -> str:
+    return str(convert(unescape(found[1]).strip(), display=display))

@@ -94,27 +94,11 @@ With all factors of safety smaller or larger:
 
 {factors_tried}
 
-## Out of sample
+## By quantity, ground and stage
 
-{out_quantities}
+{kinds}
 
-{out_grounds}
-
-{out_stages}
-
-Bars that were missed, with the true error over the bar:
-
-{out_missed}
-
-## In the calibration
-
-{quantities}
-
-{grounds}
-
-{stages}
-
-Scene by scene: [error_bars_scenes.csv](error_bars_scenes.csv). Bars that were missed:
+Scene by scene in the calibration: [error_bars_scenes.csv](error_bars_scenes.csv). Bars that were missed, in either:
 [error_bars_missed.csv](error_bars_missed.csv).
 
 ## Limits
@@ -151,26 +135,20 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
         each=len(OUT_OF_SAMPLE) // len(GROUNDS),
         figures_block=FIGURES,
         figures=_figures(calibration, "in the calibration", CALIBRATION),
-        quantities=_by_kind(calibration, "quantity, in the calibration", lambda each: each.bar.headline.name),
-        grounds=_by_kind(calibration, "ground, in the calibration", _ground),
-        stages=_by_kind(calibration, "stage, in the calibration", _stage),
+        kinds=_by_kind(out, calibration),
         out_scenes=len(out),
         out_block=OUT,
         out_figures=_figures(out, "out of sample", OUT_OF_SAMPLE),
-        out_quantities=_by_kind(out, "quantity, out of sample", lambda each: each.bar.headline.name),
-        out_grounds=_by_kind(out, "ground, out of sample", _ground),
-        out_stages=_by_kind(out, "stage, out of sample", _stage),
-        out_missed=table(MISSED, _missed(out)),
         factors_tried=_with_other_factors(_all(calibration), _all(out)),
     )
 
 
 def publish(calibration: list[JudgedScene], out: list[JudgedScene]) -> None:
-    """Write the page, and beside it the calibration scene by scene."""
+    """Write the page, and beside it the calibration scene by scene, and all bars that were missed."""
     PAGE.write_text(page(calibration, out), encoding="utf-8")
     head = ["scene", "inside", "bar over true error, median", "companions over scene"]
     EVERY_SCENE.write_text(csv_table(head, map(_row, calibration)), encoding="utf-8")
-    EVERY_MISSED.write_text(csv_table(MISSED, _missed(calibration)), encoding="utf-8")
+    EVERY_MISSED.write_text(csv_table(MISSED, _missed([*out, *calibration])), encoding="utf-8")
 
 
 def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
@@ -209,13 +187,25 @@ def _scaled(each: Judged, factor: float) -> Judged:
     return replace(each, bar=replace(each.bar, bar=whole))
 
 
-def _by_kind(scenes: list[JudgedScene], head: str, kind: Kind) -> str:
-    """Share inside and median ratio of each kind, in the order of their names."""
-    found: dict[str, list[Judged]] = {}
-    for each in decided(_all(scenes)):
-        found.setdefault(kind(each), []).append(each)
-    rows = [[name, str(len(own)), f"{share_inside(own):.1%}", _median(own)] for name, own in sorted(found.items())]
-    return table([head, "judged", "inside", "bar over true error, median"], rows)
+def _by_kind(out: list[JudgedScene], calibration: list[JudgedScene]) -> str:
+    """Share inside and median ratio by quantity, ground and stage, each in the order of their names."""
+    head = ["", "judged, out of sample", "inside", "bar over true error, median"]
+    kinds: tuple[Kind, ...] = (lambda each: each.bar.headline.name, _ground, _stage)
+    rows = [row for kind in kinds for row in _rows_of_kind(out, calibration, kind)]
+    return table([*head, "judged, in the calibration", "inside", "median"], rows)
+
+
+def _rows_of_kind(out: list[JudgedScene], calibration: list[JudgedScene], kind: Kind) -> list[list[str]]:
+    found: list[dict[str, list[Judged]]] = [{}, {}]
+    for groups, scenes in zip(found, (out, calibration), strict=True):
+        for each in decided(_all(scenes)):
+            groups.setdefault(kind(each), []).append(each)
+    names = sorted(found[0].keys() | found[1].keys())
+    return [[name, *(cell for groups in found for cell in _cells(groups.get(name)))] for name in names]
+
+
+def _cells(own: list[Judged] | None) -> list[str]:
+    return ["", "", ""] if own is None else [str(len(own)), f"{share_inside(own):.1%}", _median(own)]
 
 
 def _ground(each: Judged) -> str:
@@ -224,7 +214,7 @@ def _ground(each: Judged) -> str:
         return "block of soil"
     seabed = mapping.get("seabed")
     if seabed is None:
-        return "none"
+        return "no ground"
     return str(seabed["law"]["kind"] if seabed["kind"] == "hysteretic" else seabed["kind"])
 
 

@@ -26,13 +26,13 @@ stress SCENE` does the same [around a scene of yours](command_line.md#stress).
 | told plainly | the program refused the scene, said why it found no solution, or warned of the wrong answer |
 | QUIETLY WRONG | a run finished, an answer does not hold and no warning was given |
 
-The answers of a case are its own and, for every run, these: numbers are finite; at the end of a static stage
-reactions, contact, loads and weight are in balance; the energy balance is within 1 % of the energy turned over.
+A case has answers of its own. For every run, moreover, numbers are finite, at the end of a static stage reactions,
+contact, loads and weight are in balance, and the energy balance is within 1 % of the energy turned over.
 
-The table has of each case the answer that is nearest to its limit, and its error relative to the exact value (of
-bounds: how far beyond them). What ends otherwise than it should is in bold. [stress.json](stress.json) has of each case
-what is extreme and how the answer follows, the largest energy residual, Newton iterations, steps that were cut and
-processor time; the derivations stand with the cases in `tests/stress/`.
+Shown is of each case the answer that is nearest to its limit, and its error relative to the exact value (of bounds: how
+far beyond them). [stress.json](stress.json) has of each case what is extreme and how the answer follows, values, the
+largest energy residual, Newton iterations, steps that were cut and processor time; the derivations stand with the cases
+in `tests/stress/`.
 """
 
 
@@ -43,19 +43,25 @@ def page(rows: Sequence[StressOutcome], made: Mapping[str, Any]) -> str:
     seconds = sum(row.seconds for row in rows)
     summary = f"{len(rows)} cases in {seconds:.0f} s of processor time, compilation included: {told}."
     circumstances = ", ".join(f"{name} {value}" for name, value in made.items())
-    outcome = table(["case", "answer nearest to its limit", "error", "verdict"], map(_row, rows))
-    parts = [INTRODUCTION, summary, "", f"Made: {circumstances}.", "", "## Outcome", "", outcome, "", *_messages(rows)]
-    return "\n".join(parts).rstrip() + "\n"
+    others = [row for row in rows if row.verdict != PASSED]
+    parts = [INTRODUCTION, summary, "", f"Made: {circumstances}.", "", "## Passed", "", passed(rows), ""]
+    return "\n".join([*parts, "## Others", "", *map(_told, others)]).rstrip() + "\n"
 
 
-def _row(row: StressOutcome) -> Sequence[str]:
-    error = "" if row.error is None else f"{row.error:.1e}"
-    return row.name, row.answer.replace("|", "/"), error, row.verdict if row.as_hoped else f"**{row.verdict}**"
+def passed(rows: Sequence[StressOutcome]) -> str:
+    """Those that passed: what was judged, and its error."""
+    cells = [[row.name, row.answer.split(":")[0], _error(row)] for row in rows if row.verdict == PASSED]
+    return table(["case", "answer", "error"], cells)
 
 
-def _messages(rows: Sequence[StressOutcome]) -> list[str]:
-    told = [f"- **{row.name}**: {row.message}" for row in rows if row.verdict != PASSED and row.message]
-    return ["## Warnings and errors of these", "", *told]
+def _error(row: StressOutcome) -> str:
+    return "" if row.error is None else f"{row.error:.1e}"
+
+
+def _told(row: StressOutcome) -> str:
+    """Bold where it is not as it is to end."""
+    verdict = row.verdict if row.as_hoped else f"**{row.verdict}**"
+    return f"- {row.name}, {verdict}: {'; '.join(text for text in (row.answer, row.message) if text)}"
 
 
 def publish(rows: Sequence[StressOutcome]) -> None:
