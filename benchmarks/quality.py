@@ -13,7 +13,6 @@ import base64
 import json
 import re
 from pathlib import Path
-from typing import Any
 
 from demos.page import block, filled, table
 from riser_soil.accuracy.study import study
@@ -35,7 +34,7 @@ SUMMARY = (  # page, block and row of a figure; what it is
 
 
 def studied(folder: Path) -> str:
-    """Words and table of the study; its plot goes into a file."""
+    """Words of the study; its plot goes into a file."""
     study(read_scene(ROOT / SCENE), folder)
     told = json.loads((folder / "study.json").read_text(encoding="utf-8"))
     page = (folder / "study.html").read_text(encoding="utf-8")
@@ -43,15 +42,8 @@ def studied(folder: Path) -> str:
     assert found is not None
     PLOT.write_bytes(base64.b64decode(found[1]))
     said = "\n".join(f"- {sentence[0].upper()}{sentence[1:]}." for sentence in told["words"])
-    rows = [_quantity(name, each) for name, each in told["quantities"].items()]
     machine = f"{told['machine']['cores']} cores ({told['machine']['processor']}), {told['date']}"
-    head = ("headline quantity", "value", "reference", "uncertainty", "error")
-    return "\n\n".join([said, table(head, rows), f"Made by `riser-soil study {SCENE}` on {machine}."])
-
-
-def _quantity(name: str, each: dict[str, Any]) -> list[str]:
-    of_scale = [f"{100.0 * each[key] / scale:.2g} %" for key, scale in (("uncertainty", each["scale"]), ("error", 1.0))]
-    return [name, f"{each['value']:.6g} {each['unit']}", f"{each['reference']:.6g}", *of_scale]
+    return f"{said}\n\nMade by `riser-soil study {SCENE}` on {machine}, which leaves a table of all key results."
 
 
 def summary() -> str:

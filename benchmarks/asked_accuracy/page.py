@@ -47,10 +47,8 @@ fine as the calibration's and penalties 1 to 16 times as large. Whoever looks fo
 compared where none of these reaches it, or where more than a third of the key results are left out. Seconds are of
 the processor, files included, without compilation.
 
-Scene by scene, with settings and seconds: [asked_accuracy_scenes.csv](asked_accuracy_scenes.csv). Not reached, as the
-runs report it, or missed, here and below:
-
-{others}
+Scene by scene, with settings and seconds: [asked_accuracy_scenes.csv](asked_accuracy_scenes.csv). Why some are not
+reached, here and below, as the runs report it: [asked_accuracy_not_reached.csv](asked_accuracy_not_reached.csv).
 
 ## Scenes that have chosen no factor
 
@@ -93,7 +91,6 @@ def page(
         count=len(scenes),
         left_out=sum(each.errors.left_out for each in scenes if each.errors is not None),
         figures=_figures(scenes),
-        others=_not_reached([*scenes, *others, *soil]),
         count_of_others=len(others),
         figures_of_others=_figures_of_others(others, judged),
         count_on_soil=len(soil),
@@ -109,7 +106,8 @@ def publish(
 ) -> None:
     """Write the page, and beside it what each scene reaches; arguments as of page."""
     PAGE.write_text(page(scenes, others, judged, soil), encoding="utf-8")
-    for name, text in (("scenes", rows_page(scenes)), ("random", random_page(others, judged))):
+    missed = not_reached([*scenes, *others, *soil])
+    for name, text in (("scenes", rows_page(scenes)), ("random", random_page(others, judged)), ("not_reached", missed)):
         PAGE.with_name(f"{PAGE.stem}_{name}.csv").write_text(text, encoding="utf-8")
 
 
@@ -162,9 +160,9 @@ def _seconds(cost: HandCost | None) -> list[str]:
     ]
 
 
-def _not_reached(scenes: Iterable[AskedScene]) -> str:
-    found = [each for each in scenes if each.outcome is not Outcome.REACHED]
-    return "\n".join(f"- {each.name}: {_why(each)}" for each in found) or "None."
+def not_reached(scenes: Iterable[AskedScene]) -> str:
+    rows = [[each.name, _why(each)] for each in scenes if each.outcome is not Outcome.REACHED]
+    return csv_table(["scene", "reason"], rows)
 
 
 def _why(each: AskedScene) -> str:
