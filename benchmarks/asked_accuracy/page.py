@@ -69,7 +69,7 @@ reach.
 
 {figures_on_soil}
 
-{rows_on_soil}
+Scene by scene: [asked_accuracy_on_soil.csv](asked_accuracy_on_soil.csv).
 
 `python -m benchmarks.asked_accuracy --by-hand` looks for the best settings anew, `--references` computes the random
 scenes' references anew; each takes some ten minutes.
@@ -97,7 +97,6 @@ def page(
         accuracy_on_soil=100.0 * ON_SOIL,
         certain_on_soil=100.0 * CERTAIN * ON_SOIL,
         figures_on_soil=table(["on soil", ""], _shares(soil)),
-        rows_on_soil=_rows_on_soil(soil),
     )
 
 
@@ -107,7 +106,8 @@ def publish(
     """Write the page, and beside it what each scene reaches; arguments as of page."""
     PAGE.write_text(page(scenes, others, judged, soil), encoding="utf-8")
     missed = not_reached([*scenes, *others, *soil])
-    for name, text in (("scenes", rows_page(scenes)), ("random", random_page(others, judged)), ("not_reached", missed)):
+    tables = {"scenes": rows_page(scenes), "random": random_page(others, judged), "on_soil": soil_page(soil)}
+    for name, text in {**tables, "not_reached": missed}.items():
         PAGE.with_name(f"{PAGE.stem}_{name}.csv").write_text(text, encoding="utf-8")
 
 
@@ -172,10 +172,10 @@ def _why(each: AskedScene) -> str:
     return f"missed, {error:.2%} in {key}"
 
 
-def _rows_on_soil(scenes: Iterable[AskedScene]) -> str:
+def soil_page(scenes: Iterable[AskedScene]) -> str:
     """With the seconds of all runs taken for them, and how many quantities could not be judged."""
     head = ["scene", "outcome", "true error", "setting", "everything s", "not judged"]
-    return table(head, [[*_told(each), f"{each.seconds:.1f}", _left_out(each)] for each in scenes])
+    return csv_table(head, [[*_told(each), f"{each.seconds:.1f}", _left_out(each)] for each in scenes])
 
 
 def _left_out(each: AskedScene) -> str:
