@@ -128,7 +128,7 @@ def _shares(scenes: list[AskedScene]) -> list[list[str]]:
     told = sum(each.outcome is Outcome.TOLD for each in scenes)
     return [
         ["scenes that truly reach what they ask, of those that claim it", f"{share_of_claims(scenes):.1%}"],
-        [f"of all {len(scenes)} scenes ({told} tell that they do not reach it)", f"{share_of_all(scenes):.1%}"],
+        [f"of all {len(scenes)} scenes ({told} say that they do not reach it)", f"{share_of_all(scenes):.1%}"],
         ["largest true error over the accuracy asked, median", f"{median_error(scenes):.2f}"],
     ]
 

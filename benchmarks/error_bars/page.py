@@ -155,12 +155,12 @@ def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
     judged, seconds = _all(scenes), [sum(scene.seconds[n] for scene in scenes) for n in (0, 1)]
     told, ratio = decided(judged), ratios(judged)
     rows = [
-        ["scenes, headline quantities judged", f"{len(scenes)}, {len(told)}"],
+        ["scenes, key results judged", f"{len(scenes)}, {len(told)}"],
         ["true error inside its bar", f"{share_inside(judged):.1%}"],
         [f"bar over true error, median, of the {len(ratio)} errors above {SMALLEST:g}", f"{median(ratio):.2f}"],
         [f"the same, of errors above {TELLING:g}", f"{median(ratios(judged, TELLING)):.2f}"],
         ["scenes that could not be computed", _failed(scenes, of)],
-        ["left out, as the reference does not tell the side of the bar", str(len(judged) - len(told))],
+        ["left out, as the reference does not decide the side of the bar", str(len(judged) - len(told))],
         ["bars not given, as a companion failed", str(sum(len(scene.not_known) for scene in scenes))],
         ["processor time of the companions over that of the scenes, without start-up and files",
          f"{seconds[1] / seconds[0]:.0%}"],
