@@ -9,7 +9,7 @@ import argparse
 from benchmarks.asked_accuracy import by_hand
 from benchmarks.asked_accuracy.asked import SOIL, asked
 from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
-from benchmarks.asked_accuracy.page import PAGE, page
+from benchmarks.asked_accuracy.page import publish
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge
 
@@ -35,4 +35,4 @@ for name, scene in OTHERS.items():
 for name, scene in SOIL.items():
     soil.append(asked(name, scene, known[name]))
     print(f"{name}: {soil[-1].outcome.value}", flush=True)
-PAGE.write_text(page(scenes, others, judged, soil), encoding="utf-8")
+publish(scenes, others, judged, soil)

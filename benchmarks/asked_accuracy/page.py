@@ -20,7 +20,7 @@ from benchmarks.asked_accuracy.asked import (
 )
 from benchmarks.asked_accuracy.true_errors import ACCURACY, CERTAIN, ON_SOIL
 from benchmarks.error_bars.calibration import JudgedScene, share_inside
-from demos.page import table
+from demos.page import csv_table, table
 from riser_soil import __version__
 
 PAGE = Path("docs") / "asked_accuracy.md"
@@ -31,47 +31,45 @@ TEXT = """# Accuracy asked: whether runs reach it, and what that costs
 
 Written by `make asked`: riser-soil {version}, {date}, Python {python}, {cores} cores.
 
-With `accuracy: {accuracy:g} %` in a scene, elements, time steps, soil mesh and penalty are chosen by the run
-([scenes](scenes.md)). Here {count} scenes of the [error bars' calibration](error_bars.md) ask for it, without the
-settings that they have there; some then are the same scene. Those on soil [follow](#on-soil). The true error is that of
-each headline quantity against its reference, over the quantity's scale. A scene reaches the accuracy if all its
-quantities do; {left_out} quantities whose reference is not certain to {certain:g} % are left out.
+With `accuracy: {accuracy:g} %` in a scene the run chooses elements, time steps, soil mesh and penalty
+([scenes](scenes.md#accuracy)). Here {count} scenes of the [error bars' calibration](error_bars.md) ask for it,
+without the settings that they have there, so some become the same scene. The true error of a key result is that
+against its reference, over its scale. A scene reaches the accuracy if all its key results do; {left_out} of them,
+whose reference is not certain to
+{certain:g} %, are left out.
 
 <!-- {block} -->
 {figures}
 <!-- end of {block} -->
 
-The best by hand is the cheapest setting, of elements and time steps 1/4 to 4 times as fine as the calibration's and
-penalties 1 to 16 times as large, that truly reaches the accuracy: whoever looks for it has to know the answer. It is
-not compared where none of these reaches it, or where more than a third of the quantities are left out. Seconds are of
-the processor, without compilation; the run of the chosen setting, all runs that were taken for it together, and the
-best by hand, one after the other in one process, files included.
+The best by hand is the cheapest setting that truly reaches the accuracy, of elements and time steps 1/4 to 4 times as
+fine as the calibration's and penalties 1 to 16 times as large. Whoever looks for it has to know the answer. It is not
+compared where none of these reaches it, or where more than a third of the key results are left out. Seconds are of
+the processor, files included, without compilation.
 
-{rows}
-
-Not reached, as the scenes were told, or missed:
-
-{others}
+Scene by scene, with settings and seconds: [asked_accuracy_scenes.csv](asked_accuracy_scenes.csv). Why some are not
+reached, here and below, as the runs report it: [asked_accuracy_not_reached.csv](asked_accuracy_not_reached.csv).
 
 ## Scenes that have chosen no factor
 
-{count_of_others} more scenes are drawn at random, always the same: kinds of the calibration's in other spans, depths,
-pipes, motions and seabeds. None of them has been used to choose a factor of the error bars or of the search; the two on
-a rigid floor showed that a contact force has orders of its own.
+{count_of_others} more scenes are drawn at random, always the same: the calibration's kinds in other spans, depths,
+pipes, motions and seabeds. None of them has chosen a factor of the error bars or of the search; the two on a rigid
+floor showed that a contact force has orders of its own.
 
 {figures_of_others}
 
-{rows_of_others}
+Scene by scene: [asked_accuracy_random.csv](asked_accuracy_random.csv).
 
 ## On soil
 
 The calibration's {count_on_soil} scenes on soil, elastic and yielding, ask for {accuracy_on_soil:g} %; block and law
-stay as they are. Quantities whose reference is not certain to {certain_on_soil:g} % are left out. Where the soil's
-cells would have to be less than half as large as those of `mesh: auto`, the accuracy is told to be out of reach.
+stay as they are. Key results whose reference is not certain to {certain_on_soil:g} % are left out. Where the soil's
+cells would have to be less than half as large as those of `mesh: auto`, the run reports that the accuracy is out of
+reach.
 
 {figures_on_soil}
 
-{rows_on_soil}
+Scene by scene: [asked_accuracy_on_soil.csv](asked_accuracy_on_soil.csv).
 
 `python -m benchmarks.asked_accuracy --by-hand` looks for the best settings anew, `--references` computes the random
 scenes' references anew; each takes some ten minutes.
@@ -93,17 +91,24 @@ def page(
         count=len(scenes),
         left_out=sum(each.errors.left_out for each in scenes if each.errors is not None),
         figures=_figures(scenes),
-        rows=_rows(scenes),
-        others=_not_reached([*scenes, *others, *soil]),
         count_of_others=len(others),
         figures_of_others=_figures_of_others(others, judged),
-        rows_of_others=_rows_of_others(others, judged),
         count_on_soil=len(soil),
         accuracy_on_soil=100.0 * ON_SOIL,
         certain_on_soil=100.0 * CERTAIN * ON_SOIL,
         figures_on_soil=table(["on soil", ""], _shares(soil)),
-        rows_on_soil=_rows_on_soil(soil),
     )
+
+
+def publish(
+    scenes: list[AskedScene], others: list[AskedScene], judged: list[JudgedScene], soil: list[AskedScene]
+) -> None:
+    """Write the page, and beside it what each scene reaches; arguments as of page."""
+    PAGE.write_text(page(scenes, others, judged, soil), encoding="utf-8")
+    missed = not_reached([*scenes, *others, *soil])
+    tables = {"scenes": rows_page(scenes), "random": random_page(others, judged), "on_soil": soil_page(soil)}
+    for name, text in {**tables, "not_reached": missed}.items():
+        PAGE.with_name(f"{PAGE.stem}_{name}.csv").write_text(text, encoding="utf-8")
 
 
 def _figures(scenes: list[AskedScene]) -> str:
@@ -123,7 +128,7 @@ def _shares(scenes: list[AskedScene]) -> list[list[str]]:
     told = sum(each.outcome is Outcome.TOLD for each in scenes)
     return [
         ["scenes that truly reach what they ask, of those that claim it", f"{share_of_claims(scenes):.1%}"],
-        [f"of all {len(scenes)} scenes ({told} tell that they do not reach it)", f"{share_of_all(scenes):.1%}"],
+        [f"of all {len(scenes)} scenes ({told} say that they do not reach it)", f"{share_of_all(scenes):.1%}"],
         ["largest true error over the accuracy asked, median", f"{median_error(scenes):.2f}"],
     ]
 
@@ -136,9 +141,9 @@ def _everything(compared: list[HandCost]) -> float:
     return median(each.everything / each.by_hand for each in compared)
 
 
-def _rows(scenes: Iterable[AskedScene]) -> str:
+def rows_page(scenes: Iterable[AskedScene]) -> str:
     head = ["scene", "outcome", "true error", "setting", "its run s", "everything s", "by hand s", "over by hand"]
-    return table(head, [[*_told(each), *_seconds(each.cost)] for each in scenes])
+    return csv_table(head, [[*_told(each), *_seconds(each.cost)] for each in scenes])
 
 
 def _told(each: AskedScene) -> list[str]:
@@ -155,9 +160,9 @@ def _seconds(cost: HandCost | None) -> list[str]:
     ]
 
 
-def _not_reached(scenes: Iterable[AskedScene]) -> str:
-    found = [each for each in scenes if each.outcome is not Outcome.REACHED]
-    return "\n".join(f"- {each.name}: {_why(each)}" for each in found) or "None."
+def not_reached(scenes: Iterable[AskedScene]) -> str:
+    rows = [[each.name, _why(each)] for each in scenes if each.outcome is not Outcome.REACHED]
+    return csv_table(["scene", "reason"], rows)
 
 
 def _why(each: AskedScene) -> str:
@@ -167,10 +172,10 @@ def _why(each: AskedScene) -> str:
     return f"missed, {error:.2%} in {key}"
 
 
-def _rows_on_soil(scenes: Iterable[AskedScene]) -> str:
+def soil_page(scenes: Iterable[AskedScene]) -> str:
     """With the seconds of all runs taken for them, and how many quantities could not be judged."""
     head = ["scene", "outcome", "true error", "setting", "everything s", "not judged"]
-    return table(head, [[*_told(each), f"{each.seconds:.1f}", _left_out(each)] for each in scenes])
+    return csv_table(head, [[*_told(each), f"{each.seconds:.1f}", _left_out(each)] for each in scenes])
 
 
 def _left_out(each: AskedScene) -> str:
@@ -184,7 +189,7 @@ def _figures_of_others(others: list[AskedScene], judged: list[JudgedScene]) -> s
     return table(["random scenes", ""], [["true error inside its error bar", inside], *_shares(others)])
 
 
-def _rows_of_others(others: list[AskedScene], judged: list[JudgedScene]) -> str:
+def random_page(others: list[AskedScene], judged: list[JudgedScene]) -> str:
     inside = {scene.name: [each.inside for each in scene.judged if each.decided] for scene in judged}
     rows = [[*_told(each), f"{sum(inside[each.name])} of {len(inside[each.name])}"] for each in others]
-    return table(["scene", "outcome", "true error", "setting", "error bars inside"], rows)
+    return csv_table(["scene", "outcome", "true error", "setting", "error bars inside"], rows)

@@ -7,7 +7,7 @@ import argparse
 
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import JudgedScene, decided, judge
-from benchmarks.error_bars.page import PAGE, page
+from benchmarks.error_bars.page import publish
 from benchmarks.error_bars.random_risers import CALIBRATION, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import Mapping
 from riser_soil.errors import SolveError
@@ -34,4 +34,4 @@ def judged(scenes: dict[str, Mapping]) -> list[JudgedScene]:
     return found
 
 
-PAGE.write_text(page(judged(CALIBRATION), judged(OUT_OF_SAMPLE)), encoding="utf-8")
+publish(judged(CALIBRATION), judged(OUT_OF_SAMPLE))

@@ -21,108 +21,97 @@ from benchmarks.error_bars.calibration import (
 )
 from benchmarks.error_bars.random_risers import CALIBRATION, GROUNDS, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import SCENES
-from demos.page import table
+from demos.page import csv_table, table
 from riser_soil import __version__
 from riser_soil.accuracy.error_bars import LARGE, ON_PATH, SAFETY, SMALLEST
 
 PAGE = Path("docs") / "error_bars.md"
+EVERY_SCENE, EVERY_MISSED = (PAGE.with_name(f"error_bars_{name}.csv") for name in ("scenes", "missed"))
 FIGURES, OUT = "error bars", "error bars out of sample"  # blocks of the page that others quote
 ALL = CALIBRATION | OUT_OF_SAMPLE
-FACTORS = 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0  # times those of safety
+FACTORS = 0.5, 0.7, 1.0, 1.5, 2.0  # times those of safety
+MISSED = "scene and quantity", "error over bar"
 TELLING = 1e-4  # errors over the scale that an engineer might still ask for
 
 TEXT = """# Error bars: how they are found, and how often they are right
 
 Written by `make bars`: riser-soil {version}, {date}, Python {python}, {cores} cores.
 
-`riser-soil run SCENE --error-bars`, or `error_bars: true` in the scene, computes companions of the scene after the run,
-in the same process and without files: one with steps two to four times as long (as long as the shortest period keeps
-20), then one that has twice the elements, too, and on a rigid floor 16 times the penalty. Each difference has one
-source. A finer mesh tells the mesh's error whatever its order is, so that bars hold where elements are far too long;
-finer steps would cost more than the run.
+`riser-soil run SCENE --error-bars`, or `error_bars: true` in the scene, computes coarser and finer runs of the scene
+after the run, in the same process and without files. This page calls them companions.
 
-A difference between two runs is the root mean square of those in the extreme itself and in the windows of time, of 16,
-in which the quantity comes within a fifth of its range to the extreme: two runs may agree in one extreme by chance.
-Where windows meet, between two steps, their value is on the line between these, so that long steps miss no part of one.
-A difference over |fineness^−order − 1| is the error by Richardson's extrapolation: order 2 for elements and time steps;
-in a contact force on a rigid floor, of which an end held on it bears what lies beside it, 1. Where longer steps make a
-large difference, half way at {large:.0%} of the scale, the divisor falls to 1. What falls between nodes and between
-steps, by the parabola through three samples, is added to mesh and time, and what rings from step to step to the time;
-largest moments and curvatures are told between nodes, by a cubic whose error is of the elements' own order, so that
-nothing is added. Then there is a factor of safety: {factors}.
-Different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
-([headlines.py](../riser_soil/accuracy/headlines.py)).
+| companion | elements, steps, penalty |
+| --- | --- |
+| 1 | steps two to four times as long, as long as the shortest period keeps 20 |
+| 2 | the same, twice the elements, on a rigid floor 16 times the penalty |
+| on soil, each on top of the one before: 1 | cells √2 times as large |
+| 2 | cells twice as large again |
+| 3, 4, 5 | steps five times as long; half the elements; a quarter of the penalty |
 
-On soil the chain is another: cells √2 times as large, then twice as large again, then steps five times as long, half
-the elements, a quarter of the penalty. Orders are 1 for the soil's cells and ¾ for the penalty, the factor for cells is
-{on_path:g} for soil whose law depends on its path, and of the two soils the one that tells more counts.
-[error_bars.py](../riser_soil/accuracy/error_bars.py) has all of it, [chain.py](../riser_soil/accuracy/chain.py) the
-companions.
+Each difference between two runs has one source of error. A finer mesh shows the mesh's error whatever its order is,
+so bars hold where elements are far too long. Finer steps would cost more than the run.
 
-The factors are chosen so that over {scenes} scenes of known answers the bars hold what they say. {drawn} of them are
-[random risers](../benchmarks/error_bars/random_risers.py): steel and flexible pipes between 12 and 2000 m of water,
-hanging or laid on a rigid floor, springs or hysteretic clay, level and sloping, half of them moving, with 25 to 120
-elements and 30 to 150 steps to a period. References ([references.py](../benchmarks/error_bars/references.py)) have 16
-or 64 times the elements of static scenes and 16 times those of moving ones with a tenth of the step; a quarter as many
-tell how uncertain they are. Quantities are left out whose reference is so uncertain that the error may be on either
-side of its bar; and of the median, those whose reference is not certain to {certain:.0%} of bar or error, the larger of
-them, and errors below {smallest:g} of the scale, which all bars are larger than. Factors are such that static and
-dynamic stages of the calibration each hold 95 %.
+1. **Difference.** The root mean square of the differences in the extreme itself and in those of 16 windows of time in
+   which the quantity comes within a fifth of its range to the extreme: two runs may agree in one extreme by chance.
+2. **Order.** The difference over |fineness^−order − 1| is the error by Richardson's extrapolation. The order is 2 for
+   elements and time steps, 1 for contact forces on a rigid floor (an end held on it bears what lies beside it), 1 for
+   the soil's cells and ¾ for the penalty on soil. Where longer steps make a large difference, half way at {large:.0%}
+   of the scale, the divisor falls to 1.
+3. **Between samples.** What falls between nodes and between steps, by the parabola through three samples, is added to
+   mesh and time; what rings from step to step to the time. Largest moments and curvatures are taken between nodes by
+   a cubic of the elements' own order, and need no addition.
+4. **Factor of safety.** {factors}; for cells of soil whose law depends on its path {on_path:g}. Of the two coarser
+   soils the one that differs more counts.
+5. **Sum.** Different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
+   ([headlines.py](../riser_soil/accuracy/headlines.py)).
 
-<!-- {figures_block} -->
-{figures}
-<!-- end of {figures_block} -->
+The code: [error_bars.py](../riser_soil/accuracy/error_bars.py), [chain.py](../riser_soil/accuracy/chain.py).
 
-## Out of sample
+## How often they are right
 
-{out_scenes} more risers of the same generator, {each} on each ground, have chosen nothing: neither a factor nor a way
-to find a bar.
+The factors are chosen over {scenes} scenes of known answers, the calibration, such that its static and dynamic stages
+each hold 95 %. {drawn} of the scenes are [random risers](../benchmarks/error_bars/random_risers.py): steel and
+flexible pipes in 12 to 2000 m of water, hanging or laid on a rigid floor, springs or hysteretic clay, level and
+sloping, half of them moving, with 25 to 120 elements and 30 to 150 steps to a period. {out_scenes} more risers of the
+same generator, {each} on each ground, have chosen nothing: neither a factor nor a way to find a bar. They are out of
+sample.
+
+References ([references.py](../benchmarks/error_bars/references.py)) have 16 or 64 times the elements of static
+scenes, and 16 times those of moving ones with a tenth of the step; a quarter as many show how uncertain they are.
+Quantities are left out whose reference is too uncertain to tell on which side of its bar the error lies. The median
+leaves out those whose reference is not certain to {certain:.0%} of bar or error, the larger of them, and errors below
+{smallest:g} of the scale.
 
 <!-- {out_block} -->
 {out_figures}
 <!-- end of {out_block} -->
 
-{out_quantities}
-
-{out_grounds}
-
-{out_stages}
-
-Bars out of sample that were missed, with the true error over the bar:
-
-{out_missed}
+<!-- {figures_block} -->
+{figures}
+<!-- end of {figures_block} -->
 
 With all factors of safety smaller or larger:
 
 {factors_tried}
 
-## In the calibration
+## By quantity, ground and stage
 
-{quantities}
+{kinds}
 
-{grounds}
+Scene by scene in the calibration: [error_bars_scenes.csv](error_bars_scenes.csv). Bars that were missed, in either:
+[error_bars_missed.csv](error_bars_missed.csv).
 
-{stages}
+## Limits
 
-What a run's companions take beside all of it, start-up and files included, the run itself tells at its end.
-
-The width on which a pipe touches soil grows cell by cell, so that errors fall with the cells' size in jumps, by which
-two meshes may agree by chance. A mesh that is near the run's, √2 times as coarse, tells such jumps far better than one
-twice as coarse. On ladders of meshes, 4 to 48 cells to the diameter, of such scenes as are pressed and resting below,
-the soil's share alone holds 95 % of 103 errors (elastic 96 %, clay 94 %), at a median of 4.0 times the error (elastic
-4.7, clay 2.9); with a factor of 1 on all it would be 87 % (clay 79 %), at 3.0. By a mesh twice as coarse alone a factor
-of 6.5 would hold 95 %, at a median of 10. On elastic soil bars are wider than they need be, as errors there fall faster
-than by the first order.
-
-Where the answer hangs on a sudden load that excites all modes, or steps are so long that longer ones resolve nothing,
-bars are least reliable; in the latter case they are far too wide more often than too narrow. Bars tell nothing of what
-is not varied: the model itself, a block of soil that is too small, a pipe modelled with wrong numbers.
-
-{rows}
-
-Bars that were missed, with the true error over the bar:
-
-{missed}
+- Bars tell nothing of what is not varied: the model itself, a block of soil that is too small, a pipe with wrong
+  properties.
+- They are least reliable where a sudden load excites all modes, or where steps are so long that longer ones resolve
+  nothing; in the latter case they are far too wide more often than too narrow.
+- The width on which a pipe touches soil grows cell by cell, so errors fall in jumps, by which two meshes may agree by
+  chance. A mesh √2 times as coarse shows such jumps far better than one twice as coarse. On meshes of 4 to 48 cells
+  to the diameter the soil's share alone holds 95 % of 103 errors (elastic 96 %, clay 94 %), at a median of 4.0 times
+  the error (elastic 4.7, clay 2.9).
+- On elastic soil bars are wider than they need be, as errors there fall faster than by the first order.
 
 `python -m benchmarks.error_bars --references` computes the references anew, in about an hour.
 """
@@ -146,32 +135,32 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
         each=len(OUT_OF_SAMPLE) // len(GROUNDS),
         figures_block=FIGURES,
         figures=_figures(calibration, "in the calibration", CALIBRATION),
-        quantities=_by_kind(calibration, "quantity, in the calibration", lambda each: each.bar.headline.name),
-        grounds=_by_kind(calibration, "ground, in the calibration", _ground),
-        stages=_by_kind(calibration, "stage, in the calibration", _stage),
-        rows=table(["scene", "inside", "bar over true error, median", "companions over scene"], map(_row, calibration)),
-        missed=_missed(calibration),
+        kinds=_by_kind(out, calibration),
         out_scenes=len(out),
         out_block=OUT,
         out_figures=_figures(out, "out of sample", OUT_OF_SAMPLE),
-        out_quantities=_by_kind(out, "quantity, out of sample", lambda each: each.bar.headline.name),
-        out_grounds=_by_kind(out, "ground, out of sample", _ground),
-        out_stages=_by_kind(out, "stage, out of sample", _stage),
-        out_missed=_missed(out),
         factors_tried=_with_other_factors(_all(calibration), _all(out)),
     )
+
+
+def publish(calibration: list[JudgedScene], out: list[JudgedScene]) -> None:
+    """Write the page, and beside it the calibration scene by scene, and all bars that were missed."""
+    PAGE.write_text(page(calibration, out), encoding="utf-8")
+    head = ["scene", "inside", "bar over true error, median", "companions over scene"]
+    EVERY_SCENE.write_text(csv_table(head, map(_row, calibration)), encoding="utf-8")
+    EVERY_MISSED.write_text(csv_table(MISSED, _missed([*out, *calibration])), encoding="utf-8")
 
 
 def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
     judged, seconds = _all(scenes), [sum(scene.seconds[n] for scene in scenes) for n in (0, 1)]
     told, ratio = decided(judged), ratios(judged)
     rows = [
-        ["scenes, headline quantities judged", f"{len(scenes)}, {len(told)}"],
+        ["scenes, key results judged", f"{len(scenes)}, {len(told)}"],
         ["true error inside its bar", f"{share_inside(judged):.1%}"],
         [f"bar over true error, median, of the {len(ratio)} errors above {SMALLEST:g}", f"{median(ratio):.2f}"],
         [f"the same, of errors above {TELLING:g}", f"{median(ratios(judged, TELLING)):.2f}"],
         ["scenes that could not be computed", _failed(scenes, of)],
-        ["left out, as the reference does not tell the side of the bar", str(len(judged) - len(told))],
+        ["left out, as the reference does not decide the side of the bar", str(len(judged) - len(told))],
         ["bars not given, as a companion failed", str(sum(len(scene.not_known) for scene in scenes))],
         ["processor time of the companions over that of the scenes, without start-up and files",
          f"{seconds[1] / seconds[0]:.0%}"],
@@ -198,13 +187,25 @@ def _scaled(each: Judged, factor: float) -> Judged:
     return replace(each, bar=replace(each.bar, bar=whole))
 
 
-def _by_kind(scenes: list[JudgedScene], head: str, kind: Kind) -> str:
-    """Share inside and median ratio of each kind, in the order of their names."""
-    found: dict[str, list[Judged]] = {}
-    for each in decided(_all(scenes)):
-        found.setdefault(kind(each), []).append(each)
-    rows = [[name, str(len(own)), f"{share_inside(own):.1%}", _median(own)] for name, own in sorted(found.items())]
-    return table([head, "judged", "inside", "bar over true error, median"], rows)
+def _by_kind(out: list[JudgedScene], calibration: list[JudgedScene]) -> str:
+    """Share inside and median ratio by quantity, ground and stage, each in the order of their names."""
+    head = ["", "judged, out of sample", "inside", "bar over true error, median"]
+    kinds: tuple[Kind, ...] = (lambda each: each.bar.headline.name, _ground, _stage)
+    rows = [row for kind in kinds for row in _rows_of_kind(out, calibration, kind)]
+    return table([*head, "judged, in the calibration", "inside", "median"], rows)
+
+
+def _rows_of_kind(out: list[JudgedScene], calibration: list[JudgedScene], kind: Kind) -> list[list[str]]:
+    found: list[dict[str, list[Judged]]] = [{}, {}]
+    for groups, scenes in zip(found, (out, calibration), strict=True):
+        for each in decided(_all(scenes)):
+            groups.setdefault(kind(each), []).append(each)
+    names = sorted(found[0].keys() | found[1].keys())
+    return [[name, *(cell for groups in found for cell in _cells(groups.get(name)))] for name in names]
+
+
+def _cells(own: list[Judged] | None) -> list[str]:
+    return ["", "", ""] if own is None else [str(len(own)), f"{share_inside(own):.1%}", _median(own)]
 
 
 def _ground(each: Judged) -> str:
@@ -213,7 +214,7 @@ def _ground(each: Judged) -> str:
         return "block of soil"
     seabed = mapping.get("seabed")
     if seabed is None:
-        return "none"
+        return "no ground"
     return str(seabed["law"]["kind"] if seabed["kind"] == "hysteretic" else seabed["kind"])
 
 
@@ -237,7 +238,6 @@ def _row(scene: JudgedScene) -> list[str]:
     return [scene.name, inside, _median(told), f"{extra / taken:.0%}"]
 
 
-def _missed(scenes: list[JudgedScene]) -> str:
+def _missed(scenes: list[JudgedScene]) -> list[list[str]]:
     found = [each for each in decided(_all(scenes)) if not each.inside]
-    rows = [[f"{each.scene}: {each.bar.headline.key}", f"{each.error / (each.bar.bar or 1.0):.2f}"] for each in found]
-    return table(["scene and quantity", "error over bar"], rows)
+    return [[f"{each.scene}: {each.bar.headline.key}", f"{each.error / (each.bar.bar or 1.0):.2f}"] for each in found]

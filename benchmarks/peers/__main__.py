@@ -1,4 +1,4 @@
-"""What the same answers cost by other programs: tables and plot of docs/peers.md.
+"""What the same answers cost by other programs: tables and plot of docs/peers.md, every run in docs/peers_*.csv.
 
     python -m benchmarks.peers [--results FOLDER] [--case NAME] [--page]
 
@@ -18,7 +18,7 @@ from benchmarks.peers.in_turn import ROOT, file_of, measure
 from benchmarks.peers.judge import RANGE, TENSIONS, Judged, apart, cheapest, consensus, errors, kept_error, quantities
 from benchmarks.peers.ladder import FINEST, PROGRAMS
 from benchmarks.peers.measure import read
-from demos.page import publish, table
+from demos.page import csv_table, publish, table
 from riser_soil.results.derived import peak
 
 PAGE, PLOT = ROOT / "docs" / "peers.md", ROOT / "docs" / "peers.png"
@@ -69,8 +69,9 @@ def main(results: Path, cases: Sequence[str], page: bool) -> None:
             f"{name} at rest": rest_page(each),
             f"{name} finest": finest_page(each),
             f"{name} cost": cost_page(judged, apart(each.voices)),
-            f"{name} runs": runs_page(judged),
         }
+        place = PAGE.parent if page else results
+        (place / f"peers_{name}.csv").write_text(every_run(judged), encoding="utf-8")
     publish(blocks, results, PAGE if page else None)
     if len(cases) < len(CASES):
         return
@@ -130,14 +131,14 @@ def _cost(runs: list[Judged], target: float) -> str:
     return "–" if best is None else f"{best.seconds:.4f} ({best.elements}, {best.time_step:g} s)"
 
 
-def runs_page(judged: Mapping[str, list[Judged]]) -> str:
-    """Every run: its own error, and the largest of it and of all finer ones."""
+def every_run(judged: Mapping[str, list[Judged]]) -> str:
+    """Every run as CSV: its own error, and the largest of it and of all finer ones."""
     rows = [_run_row(name, run, runs) for name, runs in judged.items() for run in runs]
-    return table(["program", "elements", "step s", "s per s", "error", "error kept by finer runs"], rows)
+    return csv_table(["program", "elements", "step s", "s per s", "error %", "error kept by finer runs %"], rows)
 
 
 def _run_row(name: str, run: Judged, runs: Sequence[Judged]) -> list[str]:
-    percent = [f"{100.0 * error:.2f} %" for error in (run.error, kept_error(run, runs))]
+    percent = [f"{100.0 * error:.2f}" for error in (run.error, kept_error(run, runs))]
     return [name, str(run.elements), f"{run.time_step:g}", f"{run.seconds:.4f}", *percent]
 
 

@@ -109,7 +109,7 @@ def main(results: Path, page: bool) -> None:
         print("there is no ccx here (Debian's calculix-ccx): CalculiX is left out", file=sys.stderr)
     Run(MESHES["coarse"]).by(OURS, results)  # compiles
     found = [_found(name, mesh, results) for name, mesh in MESHES.items()]
-    publish({"clay forces": forces_page(found), "clay cost": cost_page(found)}, results, PAGE if page else None)
+    publish({"clay": clay_page(found)}, results, PAGE if page else None)
 
 
 def _found(name: str, mesh: Mesh, results: Path) -> Found:
@@ -125,35 +125,25 @@ def _found(name: str, mesh: Mesh, results: Path) -> Found:
     return Found(name, run.unknowns, by)
 
 
-def forces_page(found: list[Found]) -> str:
-    """Forces by depth of the pipe's middle; how far they are from riser_soil's on this mesh, and on the finest."""
+def clay_page(found: list[Found]) -> str:
+    """Forces by depth of the pipe's middle, how far from riser_soil's on this mesh and on the finest; cost."""
     depth = 0.5e3 * sum(DEPTHS) / STEPS  # mm
     head = ["mesh, unknowns", "program", *(f"N at {step * depth:g} mm" for step in SHOWN)]
-    rows = [_forces_row(each, program, found[-1].by[OURS].force) for each in found for program in each.by]
-    return table([*head, "off riser_soil", "off the finest"], rows)
+    rows = [_row(each, program, found[-1].by[OURS].force) for each in found for program in each.by]
+    return table([*head, "off riser_soil", "off the finest", "Newton iterations", "processor s"], rows)
 
 
-def _forces_row(found: Found, program: str, finest: Array) -> list[str]:
-    force = found.by[program].force
-    shown = ["–" if np.isnan(force[step - 1]) else f"{force[step - 1]:.1f}" for step in SHOWN]
-    off = [_percent(force, other) for other in (found.by[OURS].force, finest)]
-    return [f"{found.name}, {found.unknowns}", program, *shown, *off]
+def _row(found: Found, program: str, finest: Array) -> list[str]:
+    pressed = found.by[program]
+    shown = ["–" if np.isnan(pressed.force[step - 1]) else f"{pressed.force[step - 1]:.1f}" for step in SHOWN]
+    off = [_percent(pressed.force, other) for other in (found.by[OURS].force, finest)]
+    cost = [str(pressed.iterations), f"{pressed.seconds:.1f}"]
+    return [f"{found.name}, {found.unknowns}", program, *shown, *off, *cost]
 
 
 def _percent(force: Array, other: Array) -> str:
     """Largest difference at the end of a step, over the largest force."""
     return f"{100.0 * np.nanmax(np.abs(force - other)) / other.max():.1f} %"
-
-
-def cost_page(found: list[Found]) -> str:
-    """Newton iterations and processor seconds."""
-    rows = [
-        [f"{each.name}, {each.unknowns}", program, str(pressed.iterations), f"{pressed.seconds:.1f}",
-         f"{pressed.seconds / pressed.iterations:.3f}"]
-        for each in found
-        for program, pressed in each.by.items()
-    ]  # fmt: skip
-    return table(["mesh, unknowns", "program", "Newton iterations", "processor s", "s per iteration"], rows)
 
 
 if __name__ == "__main__":

@@ -73,6 +73,20 @@ def test_link(page: Path, target: str) -> None:
     assert not anchor or anchor in anchors(place)
 
 
+@pytest.mark.parametrize(("page", "link"), found(r"\[(test_\w+\]\([^)]+)\)", [*PAGES, *DEMOS]))
+def test_a_test_that_is_named_is_there(page: Path, link: str) -> None:
+    """A link whose text is a test's name leads to the file that has it."""
+    name, path = link.split("](")
+    assert re.search(rf"^def {name}\(", text(page.parent / path), re.MULTILINE)
+
+
+def test_each_case_of_validation_names_its_test() -> None:
+    rows = [row for row in text(ROOT / "docs/validation.md").splitlines() if row.count(" | ") == 3]
+    cases = [row for row in rows if not row.startswith("| case |")]
+    assert len(cases) > 50
+    assert [row for row in cases if "| [test_" not in row] == []
+
+
 @pytest.mark.parametrize(("page", "path"), found(rf"`((?:{PLACES})/[\w/.]*)`", PAGES))
 def test_path(page: Path, path: str) -> None:
     assert (ROOT / path).exists() or path == "demos/touchdown_clay/results"
@@ -88,7 +102,7 @@ def test_layout_names_every_folder_and_module_of_the_package() -> None:
     package = ROOT / "riser_soil"
     folders = {f"`riser_soil/{place.parent.name}/`" for place in package.glob("*/__init__.py")}
     modules = {f"`riser_soil/{place.name}`" for place in package.glob("*.py") if place.name != "__init__.py"}
-    table = text(ROOT / "docs/contributing.md").split("| place | content |")[1].split("\n\n")[0]
+    table = text(ROOT / "docs/map.md").split("| place | content |")[1].split("\n\n")[0]
     assert {name for name in folders | modules if name not in table} == set()
 
 

@@ -3,55 +3,68 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+from demos.page import table
 from riser_soil.stress.outcome import PASSED, StressOutcome
-from riser_soil.stress.table import as_json, circumstances, markdown
+from riser_soil.stress.table import as_json, circumstances
 
 DOCS = Path(__file__).parents[2] / "docs"
 COMMAND = "make stress"
 INTRODUCTION = """\
 # Stiff and extreme
 
-Scenes that are stiff or extreme, each with an answer that is exact or bounded, and what became of it. This page is
-written by `make stress`; the cases are in `tests/stress/`, each with its derivation. Each runs in a process of its own
-with limits on processor time and memory. `riser-soil stress SCENE` does the same [around a scene of
-yours](command_line.md#stress).
+Scenes that are stiff or extreme, each with an answer that is exact or bounded, and what became of it. `make stress`
+runs them, each in a process of its own with limits on processor time and memory, and writes this page. `riser-soil
+stress SCENE` does the same [around a scene of yours](command_line.md#stress).
 
-A case has **passed** where the run finished and all its answers hold: those of the case, and for every run that
-numbers are finite, that at the end of a static stage reactions, contact, loads and weight are in balance, and that the
-energy balance is within 1 % of the energy turned over. It was **told plainly** where the program refused the scene,
-named why no solution was found, or warned of what is wrong with the answer. It is **QUIETLY WRONG** where a run
-finished, an answer does not hold and nothing was told. In bold: what does not end as it is to.
+| verdict | meaning |
+| --- | --- |
+| passed | the run finished and all its answers hold |
+| told plainly | the program refused the scene, said why it found no solution, or warned of the wrong answer |
+| QUIETLY WRONG | a run finished, an answer does not hold and no warning was given |
 
-Shown are of each case the answer that is nearest to what it may miss, its error relative to the exact value (of bounds:
-how far beyond them), the largest energy residual of its dynamic stages over the energy turned over, Newton iterations,
-steps that were cut, and processor time, compilation of kernels included.
+A case has answers of its own. For every run, moreover, numbers are finite, at the end of a static stage reactions,
+contact, loads and weight are in balance, and the energy balance is within 1 % of the energy turned over.
+
+Shown is of each case the answer that is nearest to its limit, and its error relative to the exact value (of bounds: how
+far beyond them). [stress.json](stress.json) has of each case what is extreme and how the answer follows, values, the
+largest energy residual, Newton iterations, steps that were cut and processor time; the derivations stand with the cases
+in `tests/stress/`.
 """
 
 
-def page(rows: Sequence[StressOutcome]) -> str:
+def page(rows: Sequence[StressOutcome], made: Mapping[str, Any]) -> str:
     """The whole page in Markdown."""
     counts = Counter(row.verdict for row in rows)
     told = ", ".join(f"{number} {verdict}" for verdict, number in sorted(counts.items()))
-    made = ", ".join(f"{name} {value}" for name, value in circumstances(COMMAND).items())
     seconds = sum(row.seconds for row in rows)
-    summary = f"{len(rows)} cases in {seconds:.0f} s of processor time: {told}.\n\nMade: {made}."
-    parts = [INTRODUCTION, summary, "", "## Outcome", "", markdown(rows), "", *_messages(rows), *_derivations(rows)]
-    return "\n".join(parts).rstrip() + "\n"
+    summary = f"{len(rows)} cases in {seconds:.0f} s of processor time, compilation included: {told}."
+    circumstances = ", ".join(f"{name} {value}" for name, value in made.items())
+    others = [row for row in rows if row.verdict != PASSED]
+    parts = [INTRODUCTION, summary, "", f"Made: {circumstances}.", "", "## Passed", "", passed(rows), ""]
+    return "\n".join([*parts, "## Others", "", *map(_told, others)]).rstrip() + "\n"
 
 
-def _messages(rows: Sequence[StressOutcome]) -> list[str]:
-    told = [f"- **{row.name}**: {row.message}" for row in rows if row.verdict != PASSED and row.message]
-    return ["## What was told", "", *told, ""]
+def passed(rows: Sequence[StressOutcome]) -> str:
+    """Those that passed: what was judged, and its error."""
+    cells = [[row.name, row.answer.split(":")[0], _error(row)] for row in rows if row.verdict == PASSED]
+    return table(["case", "answer", "error"], cells)
 
 
-def _derivations(rows: Sequence[StressOutcome]) -> list[str]:
-    return ["## What is extreme, and the answer", "", *(f"- **{row.name}**: {row.about}" for row in rows)]
+def _error(row: StressOutcome) -> str:
+    return "" if row.error is None else f"{row.error:.1e}"
+
+
+def _told(row: StressOutcome) -> str:
+    """Bold where it is not as it is to end."""
+    verdict = row.verdict if row.as_hoped else f"**{row.verdict}**"
+    return f"- {row.name}, {verdict}: {'; '.join(text for text in (row.answer, row.message) if text)}"
 
 
 def publish(rows: Sequence[StressOutcome]) -> None:
     """Write both files."""
-    (DOCS / "stress.md").write_text(page(rows), encoding="utf-8")
+    (DOCS / "stress.md").write_text(page(rows, circumstances(COMMAND)), encoding="utf-8")
     (DOCS / "stress.json").write_text(as_json(rows, COMMAND), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The pages that tell of the project: README.md, those in docs, those of the demos; and the code blocks in them."""
+"""The pages that tell of the project: README.md, those in docs, those of the demos; their code blocks and equations."""
 
 from __future__ import annotations
 
@@ -24,3 +24,9 @@ def flowing(page: Path) -> str:
 def blocks(page: Path, language: str) -> list[str]:
     """The page's code blocks of a language."""
     return re.findall(rf"^```{language}\n(.*?)^```$", text(page), re.MULTILINE | re.DOTALL)
+
+
+def equations(page: Path) -> list[str]:
+    """The page's equations, between single and double dollars, outside of code."""
+    prose = re.sub(r"^```.*?^```$|`[^`\n]*`", "", text(page), flags=re.MULTILINE | re.DOTALL)
+    return [a or b for a, b in re.findall(r"\$\$(.+?)\$\$|\$([^$]+)\$", prose, re.DOTALL)]

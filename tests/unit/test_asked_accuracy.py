@@ -19,7 +19,7 @@ from benchmarks.asked_accuracy.asked import (
 )
 from benchmarks.asked_accuracy.by_hand import ASKED, best, settings
 from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
-from benchmarks.asked_accuracy.page import FIGURES, page
+from benchmarks.asked_accuracy.page import FIGURES, not_reached, page, random_page
 from benchmarks.asked_accuracy.true_errors import ACCURACY, ON_SOIL, TrueErrors
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge
@@ -70,12 +70,14 @@ def test_page_of_a_random_scene() -> None:
     name = "catenary A"
     known = references.read(FILE)[name]
     found = asked(name, OTHERS[name], known)
-    told = page(made_up(), [found], [judge(name, OTHERS[name], known)], made_up())
+    bars = [judge(name, OTHERS[name], known)]
+    told = page(made_up(), [found], bars, made_up())
     assert found.outcome is Outcome.REACHED
     assert "| scenes that truly reach what they ask, of those that claim it | 66.7% |" in block(told, FIGURES)
-    assert "- b: missed, 3.00% in hang: top tension" in told
-    assert "- c: accuracy: it was not reached" in told
-    assert f"| {name} | reached |" in told
+    missed = not_reached(made_up())
+    assert "\nb,\"missed, 3.00% in hang: top tension\"" in missed
+    assert "\nc,accuracy: it was not reached" in missed
+    assert f"\n{name},reached," in random_page([found], bars)
 
 
 def test_best_by_hand_is_the_cheapest_that_reaches_it() -> None:

@@ -2,13 +2,17 @@
 
 import pytest
 
-from demos.page import block, filled, table
+from demos.page import block, csv_table, filled, table
 
 PAGE = "Before.\n\n<!-- one -->\n<!-- end of one -->\nBetween.\n<!-- two -->\nold\n<!-- end of two -->\n"
 
 
 def test_table() -> None:
     assert table(["a", "b"], [["1", "2"]]) == "| a | b |\n| --- | ---: |\n| 1 | 2 |"
+
+
+def test_table_as_csv() -> None:
+    assert csv_table(["a", "b"], [["x, y", "2"]]) == 'a,b\n"x, y",2\n'
 
 
 def test_blocks_are_filled_and_read() -> None:

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge, share_inside
+from benchmarks.error_bars.page import page
 from benchmarks.error_bars.scenes import CLAY, SCENES
 from riser_soil.accuracy import chain, knobs
 from riser_soil.accuracy.barred_run import run_with_error_bars
@@ -264,3 +265,14 @@ def test_what_cannot_be_varied_has_no_bar(monkeypatch: pytest.MonkeyPatch) -> No
     (found,) = chain.companions(scene_from_mapping(SCENES["cantilever, tip load"]), None)
     assert found.extremes is None
     assert "more than 7 elements" in found.reason
+
+
+def test_the_page_has_each_kind_in_and_out_of_sample() -> None:
+    name = "catenary, 20 elements"
+    found = [judge(name, SCENES[name], references.read()[name])]
+    told = page(found, found).splitlines()
+    for kind in ("top tension", "no ground", "static"):
+        (row,) = (line for line in told if line.startswith(f"| {kind} |"))
+        judged = [cell.strip() for cell in row.split("|")[2:-1]]
+        assert int(judged[0]) > 0
+        assert judged[:3] == judged[3:]

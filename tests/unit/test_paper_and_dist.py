@@ -27,9 +27,9 @@ def test_the_paper_has_a_source_for_each_reference() -> None:
 @pytest.mark.parametrize(
     ("page", "row", "figures"),
     [
-        ("quality", "scenes, headline quantities judged | 40, 455", ("40 scenes", "455")),
-        ("quality", "true error inside its bar | 97.6%", ("97.6 %",)),
-        ("asked_accuracy", "of all 49 scenes (3 tell that they do not reach it)", ("of 49 scenes", "other three")),
+        ("error_bars", "scenes, key results judged | 40, 455", ("40 scenes", "455")),
+        ("error_bars", "true error inside its bar | 97.6%", ("97.6 %",)),
+        ("asked_accuracy", "of all 49 scenes (3 say that they do not reach it)", ("of 49 scenes", "other three")),
         ("quality", "| 77 | 68 | 9 | 0 | 0 |", ("Of 77",)),
         ("peers", "5.9 times as cheap", ("4.8 to 5.9 times",)),
         ("peers", "4.8 times as cheap as CableDyn", ("4.8 to 5.9 times",)),

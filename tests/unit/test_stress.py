@@ -19,8 +19,9 @@ from riser_soil.stress.answers import Answer, between, near
 from riser_soil.stress.bounds import bounds
 from riser_soil.stress.extremes import BASE, extremes
 from riser_soil.stress.limited_process import Ending, Limits, ended
-from riser_soil.stress.outcome import BROKEN, LONG, PASSED, TOLD, WRONG, outcome
+from riser_soil.stress.outcome import BROKEN, LONG, PASSED, TOLD, WRONG, StressOutcome, outcome
 from riser_soil.whole_run import run
+from tests.stress.page import page
 from tests.support.on_ranks import ROOT, environment
 from tests.support.riser_scenes import prescribed, riser_scene, static
 
@@ -117,3 +118,9 @@ def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
     summary.write_text(json.dumps(told))
     wrong = [answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds]
     assert wrong == ["static: vertical forces out of balance, of the largest [-]"]
+
+
+def test_the_page_is_that_of_its_figures() -> None:
+    told = json.loads((ROOT / "docs/stress.json").read_text(encoding="utf-8"))
+    rows = [StressOutcome(**row) for row in told["cases"]]
+    assert page(rows, told["made"]) == (ROOT / "docs/stress.md").read_text(encoding="utf-8")
