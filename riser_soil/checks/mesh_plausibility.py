@@ -7,18 +7,16 @@ from collections.abc import Iterator
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.ground import contact_width
 from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
+from riser_soil.checks.settlement import Settled, foretold
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.soil.grading import PARALLEL
 
-# Cells of this part of the width that touches bear the pipe as the width itself does; how much wider ones are told.
-# (From 10 slices of elastic soil: 1.4 to 2.1, see test_surface_contact.)
-LIKE_CONTACT, WIDE_CELLS = 1.75, 1.5
-# Part of the settlement that cells which grow away from the riser miss.
-GRADED = 0.02
+# Part of the settlement that cells which grow away from the riser miss; what wide cells under it may miss beyond that,
+# before they are warned of.
+GRADED, MISSING = 0.02, 0.1
 # Length of the pipe's elements, and of the cells along it, over the length in which the soil bends the pipe.
 LONG = 1.5
 # Part by which a pipe settles more on sections than on a block, from which on that is told; depth down to which they
@@ -31,31 +29,31 @@ def told_resolution(assembly: Assembly) -> str | None:
     mesh, soil = _generated(assembly), assembly.scene.soil
     if mesh is None or soil is None or assembly.soil is None:
         return None
+    fine, found = foretold(assembly), foretold(assembly, mesh.across)
+    if fine is None or found is None:
+        return None
     width = touching_width(assembly.scales, soil.top_law)
-    missing = missed(mesh.across, width, float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2]))
-    more = ", by more where it yields" if missing > GRADED and soil.top_law.bearing(width) is not None else ""
     return (
-        f"soil under the riser: cells of {told_size(mesh)}, where {width:.3g} m touch at rest: its settlement may be "
-        f"{missing:.0%} too small{more}"
+        f"soil under the riser: cells of {told_size(mesh)}, where {width:.3g} m touch at rest: it settles by about "
+        f"{1000.0 * fine.by_weight:.2g} mm under its weight, at the touchdown point by {1000.0 * fine.deepest:.2g} mm, "
+        f"and {missed(found, fine):.0%} less on these cells"
     )
 
 
-def missed(size: float, width: float, depth: float) -> float:
-    """The part of a pipe's settlement that cells of a size across it miss, of a width that touches and a depth [m].
-
-    A strip load settles q/(pi E*) (2 ln(4 depth/width) - 1), and cells wider than the pressure spread it over
-    LIKE_CONTACT times their size; cells that grow to 0.6 of the depth miss GRADED (test_automatic_mesh). That is
-    elastic soil: where it yields, wide cells miss more (test_automatic_mesh_on_demo).
+def missed(found: Settled, fine: Settled) -> float:
+    """The part of the settlement that cells miss which grow to 0.6 of the soil's depth, beside fine ones throughout
+    (test_automatic_mesh).
     """
-    return float(GRADED + max(0.0, np.log(LIKE_CONTACT * size / width)) / (np.log(4.0 * depth / width) - 0.5))
+    return GRADED + max(0.0, 1.0 - found.deepest / fine.deepest)
 
 
 def excess_of_sections(bending: float, width: float, depth: float) -> float:
     """By what part of it a pipe that bends within a length settles more on sections than on a block [m].
 
     A strip load that varies as cos(x/bending) settles q/(pi E*) (2 ln(4 bending/width) + 2 - 2·0.5772) on a half space,
-    by stress along it too, and on sections as a uniform one, see `missed` (M. A. Biot, Bending of an infinite beam on
-    an elastic foundation, J. Appl. Mech. 4 (1937), from memory). Within 5 % of a block (test_sections_against_block).
+    by stress along it too, and on sections as a uniform one, see `settlement` (M. A. Biot, Bending of an infinite
+    beam on an elastic foundation, J. Appl. Mech. 4 (1937), from memory). Within 5 % of a block, see
+    test_sections_against_block.
     """
     return float(max(0.0, np.log(depth / (DEEP * bending))) / (np.log(4.0 * depth / width) - 0.5))
 
@@ -90,18 +88,17 @@ def _generated(assembly: Assembly) -> GeneratedMesh | None:
 
 def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     """Cells wider than what touches: they bear the pipe as a strip of their own width would."""
-    mesh, scales, soil = _generated(assembly), assembly.scales, assembly.scene.soil
-    if mesh is None or soil is None or soil.top_law.surface_modulus(assembly.scales.diameter) <= 0.0:
+    mesh, soil = _generated(assembly), assembly.scene.soil
+    if mesh is None or soil is None:
         return
-    E, size = soil.top_law.surface_modulus(scales.diameter), mesh.across
-    width = contact_width(scales, E)
-    finest = width / LIKE_CONTACT
-    if size > WIDE_CELLS * finest:
-        missing = 2.0 * scales.weight / (np.pi * 4.0 / 3.0 * E) * np.log(size / finest)
+    fine, found, size = foretold(assembly), foretold(assembly, mesh.across), mesh.across
+    if fine is not None and found is not None and missed(found, fine) > GRADED + MISSING:
+        width = touching_width(assembly.scales, soil.top_law)
         yield (
             f"soil.mesh.{_key(mesh)} {size:.4g} m is {size / width:.2g} times the {width:.3g} m by which the riser "
-            f"touches elastic soil under its weight: it settles by about {1000.0 * missing:.2g} mm less than on a fine "
-            f"mesh; take at most {0.5 * width:.2g} m where settlement or stress in the soil matters, or mesh: auto"
+            f"touches at rest: it settles by about {1000.0 * found.deepest:.2g} mm, not by the "
+            f"{1000.0 * fine.deepest:.2g} mm of fine cells; take at most {0.5 * width:.2g} m where settlement or "
+            "stress in the soil matters, or mesh: auto"
         )
 
 

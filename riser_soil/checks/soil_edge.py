@@ -8,11 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.ground import contact_width
-from riser_soil.assembly.scales import Scales
+from riser_soil.checks.settlement import settlement
 from riser_soil.scene.seabed_features import Trench
-from riser_soil.scene.soil import Block, SoilScene
-from riser_soil.scene.soil_layers import boundaries
+from riser_soil.scene.soil import Block
 from riser_soil.seabed.law import NormalLaw
 
 # Of the outer diameter: step in height above which it is warned of; halvings of a penetration that is looked for.
@@ -71,25 +69,6 @@ def soil_edge(assembly: Assembly) -> SoilEdge | None:
     depth = float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
     in_seabed = penetration(seabed.law, scales.weight, scales.diameter)
     return SoilEdge(scales.weight, settlement(soil, scales, depth), in_seabed, _dug(assembly, soil.given_block))
-
-
-def settlement(soil: SoilScene, scales: Scales, depth: float) -> float:
-    """Settlement [m] of a pipe by its weight on elastic, incompressible soil of this depth [m], about.
-
-    By K. L. Johnson, Contact Mechanics (1985), from memory: a half space pressed by q over a width 2 b is shortened
-    from its surface down to z by q/(pi E*) (2 ln(2 z/b) - nu/(1 - nu)), E* = E/(1 - nu²); here nu = 1/2, layer by
-    layer, each with the modulus at its top.
-    """
-    layers = soil.layers or ()
-    bottoms = np.array([*(z for z in boundaries(layers) if z < depth), depth])
-    laws = [layer.law for layer in layers] or [soil.top_law]
-    moduli = np.array([law.surface_modulus(scales.diameter) for law in laws])
-    if len(moduli) != len(bottoms):  # volumes of any shape
-        moduli = np.full(len(bottoms), moduli[0])
-    half = 0.5 * contact_width(scales, float(moduli[0]))
-    shortened = np.maximum(2.0 * np.log(2.0 * bottoms / half) - 1.0, 0.0)
-    per_layer = np.diff(shortened, prepend=0.0)
-    return float(scales.weight / np.pi * np.sum(per_layer / (4.0 / 3.0 * moduli)))
 
 
 def penetration(law: NormalLaw, weight: float, diameter: float) -> float:

@@ -60,6 +60,16 @@ class TouchdownBend:
         """Height [m] of that place over the surface."""
         return 0.5 * (self.curvature * self.length**2 - self.depth)
 
+    @property
+    def overshoot(self) -> float:
+        """Depth of the deepest place over that at rest: where f' = 0 first, the largest s < 0 there."""
+        (c, r), d = self._roots(), self.depth
+        steeper = self._slope - r * d
+        s = float(np.real(np.emath.log(r * (steeper - 2.0 * c * d) / (steeper * (r + 2.0 * c))) / (2.0 * c)))
+        if np.iscomplexobj(c) and s > 0.0:
+            s -= math.pi / float(abs(c))
+        return 1.0 - float(self._lying(np.array([s]))[0][0]) / d if s < 0.0 else 1.0
+
     def beyond_cable(self, s: Array) -> tuple[Array, Array]:
         """Height [m] and slope of the pipe beyond those of a cable on ground that is higher by the rise, at arc lengths
         from the touchdown (n,) [m].
@@ -79,12 +89,16 @@ class TouchdownBend:
         """f and its derivative: d e^(r s) + (f'(0) - r d) e^(r s) (e^(2 c s) - 1)/(2 c), with c^2 = p^2/4 - q and the
         roots r = p/2 - c and r + 2 c, which may be complex.
         """
-        half, d = 0.5 * self._p, self.depth
-        c = np.emath.sqrt(half**2 - self._q) or half * APART
-        r = self._q / (half + c)
+        (c, r), d = self._roots(), self.depth
         fading, steeper = np.exp(r * s), self._slope - r * d
         f = fading * (d + steeper * np.expm1(2.0 * c * s) / (2.0 * c))
         return np.real(f), np.real(r * f + steeper * fading * np.exp(2.0 * c * s))
+
+    def _roots(self) -> tuple[complex, complex]:
+        """c and r, see `_lying`."""
+        half = 0.5 * self._p
+        c = np.emath.sqrt(half**2 - self._q) or half * APART
+        return c, self._q / (half + c)
 
     @property
     def _q(self) -> float:

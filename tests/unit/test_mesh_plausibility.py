@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, told_resolution
+from riser_soil.checks.settlement import Settled
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
@@ -71,15 +72,16 @@ def test_a_block_that_the_touchdown_point_will_leave_is_told() -> None:
 
 
 def test_what_cells_miss_grows_with_their_size() -> None:
-    assert missed(0.01, 0.04, 2.4) == pytest.approx(0.02)
-    assert missed(0.02, 0.02, 2.4) == pytest.approx(0.02 + 0.5596 / 5.674, rel=1e-3)
+    fine, half = Settled(0.01, 0.01, 1.0), Settled(0.005, 0.005, 1.0)
+    assert missed(fine, fine) == pytest.approx(0.02)
+    assert missed(half, fine) == pytest.approx(0.52)
     told = told_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
     assert told is not None
     assert "0.5 m along and 0.012 m across, where 0.0236 m touch" in told
-    assert told.endswith("2% too small")
+    assert told.endswith("and 2% less on these cells")
     wide = told_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))))
     assert wide is not None
-    assert wide.endswith("% too small, by more where it yields")
+    assert int(wide.rsplit("%")[0].rsplit(" ")[-1]) > 20
     assert told_resolution(built({**touchdown(LAY), "contact": {"method": "node"}})) is None
 
 

@@ -10,7 +10,9 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import build
-from riser_soil.checks.mesh_plausibility import missed
+from riser_soil.assembly.scales import Scales
+from riser_soil.checks.mesh_plausibility import GRADED
+from riser_soil.checks.settlement import settlement
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.automatic_cells import scaled
@@ -124,7 +126,10 @@ def test_what_cells_miss_is_told(cells: int, off: float) -> None:
     """Force at an indentation of D/50 above that of cells of D/128; the settlement is too small as `check` says."""
     force = Pushed(cells).q
     assert force / FINE.force - 1.0 == pytest.approx(off, abs=0.02)
-    assert missed(D / cells, FINE.width, 4.0) == pytest.approx(1.0 - FINE.force / force, abs=0.04)
+    soil, pipe = scene_from_mapping(slice_of_soil(cells)).soil, Scales(FINE.force, D, 1.0)
+    assert soil is not None
+    missed = GRADED + 1.0 - settlement(soil, pipe, 4.0, D / cells) / settlement(soil, pipe, 4.0)
+    assert missed == pytest.approx(1.0 - FINE.force / force, abs=0.04)
 
 
 def lifted(law: Mapping, along: float = 1.0, elements: int = 16) -> tuple[float, float]:

@@ -73,5 +73,5 @@ def test_sections_settle_as_the_block_does(along: float, off: float) -> None:
 
 @pytest.mark.verify
 def test_cells_wider_than_what_touches_miss_more_where_clay_yields() -> None:
-    """On the demo's own, of a quarter of the diameter: 5.8 mm instead of 10.8, where `check` says 18 % too small."""
+    """On the demo's own, of a quarter of the diameter: 5.8 mm instead of 10.8, where `check` says 62 % less."""
     assert laid(on_block())[0] / automatic(along=1.5)[0] == pytest.approx(0.531, abs=0.02)

@@ -11,7 +11,7 @@ import pytest
 
 from riser_soil.assembly import Assembly, ground
 from riser_soil.checks.ground_plausibility import ground_warnings
-from riser_soil.checks.mesh_plausibility import LIKE_CONTACT
+from riser_soil.checks.settlement import LIKE_CONTACT
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.system import System
 from riser_soil.scene.reader import scene_from_mapping
@@ -77,8 +77,8 @@ def test_wide_cells_are_told() -> None:
     at_nodes = scene | {"contact": {"method": "node"}}
     assert not any("size_at_riser" in told for told in ground_warnings(built(at_nodes)))
     (told,) = (told for told in ground_warnings(built(scene)) if "size_at_riser" in told)
-    assert "0.5 m is 33 times the 0.0152 m" in told
-    assert "mm less than on a fine mesh" in told
+    assert "by which the riser touches at rest: it settles by about" in told
+    assert "mm of fine cells; take at most" in told
 
 
 def test_contact_at_nodes_has_no_limit() -> None:
