@@ -10,7 +10,9 @@ from importlib.metadata import requires, version
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from ruamel.yaml import YAML
 
+import riser_soil
 from tests.support.on_ranks import ROOT
 
 DEBIAN = {"numpy", "scipy", "h5py"}  # as its PETSc was compiled with them
@@ -85,3 +87,18 @@ def test_what_pinned_packages_need_is_there() -> None:
             if holds(needed, {"extra": ""}):
                 assert needed.name in DEBIAN or canonicalize_name(needed.name) in found, f"{name} needs {needed}"
                 assert needed.specifier.contains(version(needed.name), prereleases=True), f"{name} needs {needed}"
+
+
+def test_the_recipe_for_conda_asks_for_what_the_project_does() -> None:
+    """In the same versions; matplotlib-base is conda-forge's matplotlib without windows."""
+    recipe = YAML(typ="safe").load((ROOT / "conda/recipe.yaml").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    asked = [Requirement(text) for text in recipe["requirements"]["run"]]
+    given = {canonicalize_name(each.name.removesuffix("-base")): each.specifier for each in asked}
+    extras = project["optional-dependencies"]
+    for text in [*project["dependencies"], *extras["tables"], *extras["plots"], "jinja2>=3.1"]:
+        wanted = Requirement(text)
+        assert given[canonicalize_name(wanted.name)] == wanted.specifier, wanted.name
+    assert recipe["context"]["version"] == riser_soil.__version__
+    (command,) = recipe["build"]["python"]["entry_points"]
+    assert command == f"riser-soil = {project['scripts']['riser-soil']}"
