@@ -16,8 +16,7 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.soil.sections import Sections, spread
 from riser_soil.soil.soil import Soil
 
-SKEWED = 0.7  # least over mean volume per point in a cell, below which it is renewed
-STRETCHED = 1.25  # length of a facet that presses, across the riser, over what it was on its mesh at first
+WORN = 0.02  # strain of a cell since its mesh was made: stretched ones bear more, and lose that on the next mesh
 
 
 class MeshRenewal:
@@ -55,8 +54,7 @@ class MeshRenewal:
     def renew(self, state: State) -> bool:
         """Go on on a new mesh if need be; whether so. state: accepted, increments zero. Collective."""
         comm = self._soil.grid.nodes.comm
-        worn = self._soil.skewed < SKEWED or (self._contact.active and self._contact.stretched(state) > STRETCHED)
-        if not any(comm.allgather(bool(worn))):
+        if max(comm.allgather(self._soil.worn)) < WORN:
             return False
         points = self._soil.gathered_points()
         made = self._renewed(points, state) if comm.rank == 0 else None

@@ -84,10 +84,8 @@ class SurfaceContact(SoilContact):
         half = 0.5 * self._soil.facet_size
         self._reach = reach or CandidateRange(half, min(half, AROUND * float(radius.max())))
         axis = line.basis[:2, 0] if along is None else along
-        self._smooth = surface.moves and self._soil.has_quads
-        if self._smooth:
+        if surface.moves and self._soil.has_quads:
             self._soil.smooth(axis)
-            self._widths = self._soil.widths(surface.points)
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts[:, :2].prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
@@ -319,13 +317,6 @@ class SurfaceContact(SoilContact):
         found = self.evaluate(state)
         return self._soil.stretch(found.deformed, found.pressed.facet)
 
-    def stretched(self, state: State) -> float:
-        """Largest width across the riser of a facet that presses, over that on its mesh at first; facets of four."""
-        found = self.evaluate(state)
-        facets = np.unique(found.pressed.facet)
-        now, first = self._soil.widths(found.deformed)[facets], self._widths[facets]
-        return float(np.max(now / first, initial=1.0))
-
     def gaps(self, points: Array, state: State) -> Array:
         """Between the pipe at a state and points (n, 3) [m]."""
         return gaps_of(self.axis(self.line.trial(state)), points)[0]
@@ -347,7 +338,6 @@ class SurfaceContact(SoilContact):
         numbers, *places = points_of(self.surface(before), self.surface(settled), near)
         for memory in (self._memory, *memories):
             memory.go_over(numbers, *places)
-        self._widths = self._soil.widths(settled)
         self.line.forget()
 
     def clearance(self, state: State) -> Array:
@@ -377,14 +367,11 @@ class SurfaceContact(SoilContact):
         return np.asarray(x[:, 2] - radius - self._soil.heights(x[:, :2], surface))
 
     def state(self) -> Saved:
-        """That of the pattern, the history of the points, and how wide facets were on their mesh at first."""
-        kept = super().state() | (gathered({"points": self._memory}) if self.active else {})
-        return kept | ({"widths": self._widths} if self.active and self._smooth else {})
+        """That of the pattern, and the history of the points."""
+        return super().state() | (gathered({"points": self._memory}) if self.active else {})
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
         if self.active:
             self._memory.restore(within(saved, "points"))
-            if self._smooth:
-                self._widths = saved["widths"]
 
