@@ -13,10 +13,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Renewing
 from riser_soil.core.saved_state import Saved, Stateful
-from riser_soil.soil.sections import Sections, spread
+from riser_soil.soil.sections import Sections, refilled, spread
 from riser_soil.soil.soil import Soil
 
 WORN = 0.02  # strain of a cell since its mesh was made: stretched ones bear more, and lose that on the next mesh
+CLEAR = 0.01  # radii of the pipe that a node is away from it, to be free
 
 
 class MeshRenewal:
@@ -71,9 +72,13 @@ class MeshRenewal:
     def _renewed(self, points: Array, state: State) -> Array:
         assert self._sections is not None
         lines = points[self._sections.surface]
-        made = [spread(line, self._sections.columns, self._contact.gaps(line, state)) for line in lines]
-        tops = np.stack([self._contact.brought_to(top, gaps, state) for top, gaps in made])
+        tops = np.stack([self._renewed_line(line, self._sections, state) for line in lines])
         return self._sections.renewed(points, tops)
+
+    def _renewed_line(self, line: Array, sections: Sections, state: State) -> Array:
+        top, gaps = spread(line, sections.columns, self._contact.gaps(line, state))
+        brought = self._contact.brought_to(top, gaps, state)
+        return refilled(line, brought, gaps > CLEAR * self._contact.radius, sections.across)
 
     def state(self) -> Saved:
         return {"count": np.array(self.count), "lost": np.array(self._lost)}

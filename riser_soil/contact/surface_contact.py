@@ -149,6 +149,11 @@ class SurfaceContact(SoilContact):
         return Axis(q, self.line.length, self._radius)
 
     @property
+    def radius(self) -> float:
+        """Largest of the pipe [m]."""
+        return float(self._radius.max())
+
+    @property
     def around(self) -> float:
         """How far beside the pipe facets are candidates [m]."""
         return self._reach.around
@@ -323,7 +328,7 @@ class SurfaceContact(SoilContact):
 
     def brought_to(self, points: Array, gaps: Array, state: State) -> Array:
         """Points (n, 3), those near the pipe at given gaps (n,) from it [m]."""
-        near, out = gaps < AROUND * float(self._radius.max()), points.copy()
+        near, out = gaps < AROUND * self.radius, points.copy()
         if near.any():
             found, away = gaps_of(self.axis(self.line.trial(state)), points[near])
             out[near] += (gaps[near] - found)[:, None] * away
@@ -334,7 +339,7 @@ class SurfaceContact(SoilContact):
         others, goes over to those that lie there now.
         """
         settled, axis = self._soil.settled, self.axis(self.line.trial(State.at_rest(0.0, self._soil.end)))
-        near = np.flatnonzero((gaps_of(axis, before)[0][self._soil.facets] < float(self._radius.max())).any(axis=1))
+        near = np.flatnonzero((gaps_of(axis, before)[0][self._soil.facets] < self.radius).any(axis=1))
         numbers, *places = points_of(self.surface(before), self.surface(settled), near)
         for memory in (self._memory, *memories):
             memory.go_over(numbers, *places)
