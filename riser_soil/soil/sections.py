@@ -82,17 +82,17 @@ def spread(line: Array, places: Array, beside: Array) -> tuple[Array, Array]:
 
 def refilled(line: Array, top: Array, free: BoolArray, across: int) -> Array:
     """A new surface line `top` (nc, 3) with as much soil below it as below the old one: its free nodes (nc,) are raised
-    by a share of the ways that they have gone, as corners are cut off on these.
+    by a share of the ways that they have gone, half at most, as corners are cut off on these.
     """
     before, after = line[:, [across, 2]], top[:, [across, 2]]
     along = np.zeros_like(after)
     along[1:-1] = 0.5 * (after[2:] - after[:-2])
     width = np.linalg.norm(along, axis=1)
     ways = np.where(free & (width > 0.0), np.linalg.norm(after - before, axis=1), 0.0)
-    room = float(ways @ width)
+    lost, room = _below(before) - _below(after), float(ways @ width)
     if room == 0.0:
         return top
-    raised = ways * (_below(before) - _below(after)) / room
+    raised = ways * min(max(lost / room, -0.5), 0.5)
     out, up = top.copy(), along / np.where(width > 0.0, width, 1.0)[:, None]
     out[:, across] -= raised * up[:, 1]
     out[:, 2] += raised * up[:, 0]

@@ -1,7 +1,7 @@
 """Transfer of what points of the soil hold to those of a new mesh.
 
 `carried_rows` is for histories: from the point nearest to where the new one is, along the way to the new one by the
-gradient to the points that lie ahead, never beyond what these hold. So a field moves by the way, however short, and does
+gradient to the points that lie ahead, never beyond what those around hold. So a field moves by the way, however short, and does
 not stick to the mesh; the law brings the states back to what it admits. What hangs on a depth that nodes take along
 follows from `nearest_rows` and its gradient nearby.
 """
@@ -17,7 +17,8 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.communicator import Communicator
 from riser_soil.soil.grid import DistributedMesh
 
-AROUND = 13  # points around a place that are looked at; the farthest does not count, so that nothing hangs on ties
+AROUND = 13  # points around a place that are looked at
+WITHIN = 1.0 - 1e-6  # of the distance to the farthest: others as far do not count, so that nothing hangs on round-off
 SAME = 1e-9  # of the distance to the farthest of them: a way that is none
 EASED = 0.01  # of the gradient's matrix, added to it: where no points lie ahead in a direction there is no gradient
 
@@ -58,11 +59,11 @@ def carried(places: Array, held: Array, asked: Array) -> tuple[Array]:
     apart, near = cKDTree(places).query(asked, k=min(AROUND, len(places)))
     out = held[near[:, 0]]
     moved = np.flatnonzero(apart[:, 0] > SAME * apart[:, -1])
-    shares = _shares(places, asked[moved], apart[moved], near[moved])
-    base = out[moved]
+    apart, near, base = apart[moved], near[moved], out[moved]
+    shares, counts = _shares(places, asked[moved], apart, near), apart[:, 1:] < WITHIN * apart[:, -1:]
     found, low, high = base.copy(), base.copy(), base.copy()
-    for number, share in zip(near[moved, 1:].T, shares.T, strict=True):
-        beside = np.where(share[:, None] != 0.0, held[number], base)
+    for number, share, counted in zip(near[:, 1:].T, shares.T, counts.T, strict=True):
+        beside = np.where(counted[:, None], held[number], base)
         found += share[:, None] * (beside - base)
         np.minimum(low, beside, out=low)
         np.maximum(high, beside, out=high)
