@@ -1,9 +1,9 @@
 """Transfer of what points of the soil hold to those of a new mesh.
 
 `carried_rows` is for histories: from the point nearest to where the new one is, along the way to the new one by the
-gradient to the points that lie ahead, never beyond what those around hold. So a field moves by the way, however short, and does
-not stick to the mesh; the law brings the states back to what it admits. What hangs on a depth that nodes take along
-follows from `nearest_rows` and its gradient nearby.
+gradient to the points that lie ahead, never beyond what those around hold. So a field moves by the way, however short,
+and does not stick to the mesh; the law brings the states back to what it admits. The depth at which the material lay at
+first, on which its strength hangs, each node takes along from the node nearest, by its gradient nearby.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.communicator import Communicator
 from riser_soil.soil.grid import DistributedMesh
 
 AROUND = 13  # points around a place that are looked at
 WITHIN = 1.0 - 1e-6  # of the distance to the farthest: others as far do not count, so that nothing hangs on round-off
 SAME = 1e-9  # of the distance to the farthest of them: a way that is none
 EASED = 0.01  # of the gradient's matrix, added to it: where no points lie ahead in a direction there is no gradient
+
+Take = Callable[[Array, Array, Array], tuple[Array, ...]]  # of places, rows there, and places asked for
 
 
 def nearest_rows(
@@ -30,12 +31,12 @@ def nearest_rows(
     after; and the ways (n, 3) from there. A place behind a mirror takes the image of what its own image does;
     columns: names of a row's numbers, see `Mirror.turned`. Collective.
     """
-    comm, mirror = grid.nodes.comm, grid.mirror
+    mirror = grid.mirror
     if mirror is None:
-        return _taken(comm, _nearest, before, after, rows)
+        return _taken(grid, _nearest, before, after, rows)
     behind = mirror.behind(after)
     asked = np.where(behind[:, None], mirror.images(after), after)
-    found, way = _taken(comm, _nearest, before, asked, rows)
+    found, way = _taken(grid, _nearest, before, asked, rows)
     found[behind] *= mirror.turned(columns)
     way[behind] *= mirror.signs
     return found, way
@@ -51,7 +52,7 @@ def carried_rows(grid: DistributedMesh, before: Array, after: Array, rows: Array
         before, rows = before[beyond], rows[beyond]
         before = np.concatenate([before, mirror.images(before)])
         rows = np.concatenate([rows, rows * mirror.turned(columns)])
-    return _taken(grid.nodes.comm, carried, before, after, rows)[0]
+    return _taken(grid, carried, before, after, rows)[0]
 
 
 def carried(places: Array, held: Array, asked: Array) -> tuple[Array]:
@@ -91,19 +92,16 @@ def _nearest(places: Array, held: Array, asked: Array) -> tuple[Array, Array]:
     return held[number], asked - places[number]
 
 
-def _taken(
-    comm: Communicator, take: Callable[[Array, Array, Array], tuple[Array, ...]], before: Array, after: Array, rows: Array
-) -> tuple[Array, ...]:
+def _taken(grid: DistributedMesh, take: Take, before: Array, after: Array, rows: Array) -> tuple[Array, ...]:
     """This rank's share of what is taken, at the places after of all ranks, from the rows of all; collective."""
+    comm = grid.nodes.comm
     gathered = comm.gather((before, rows, after))
     shares = None if gathered is None else _split(gathered, take)
     mine: tuple[Array, ...] = comm.scatter(shares)
     return mine
 
 
-def _split(
-    gathered: list[tuple[Array, Array, Array]], take: Callable[[Array, Array, Array], tuple[Array, ...]]
-) -> list[tuple[Array, ...]]:
+def _split(gathered: list[tuple[Array, Array, Array]], take: Take) -> list[tuple[Array, ...]]:
     """What each rank gets."""
     places, held, asked = (np.concatenate(each) for each in zip(*gathered, strict=True))
     ends = np.cumsum([len(after) for _, _, after in gathered])[:-1]

@@ -91,16 +91,17 @@ def test_steps_of_a_fortieth_and_a_hundred_and_sixtieth_of_the_diameter_agree() 
 @pytest.mark.verify
 def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
     """The load of a limit state is the least power over the mechanisms: weight adds, at first, its power in that of
-    weightless soil, so much as lifts soil into the heave; no more, as the mechanism may only change for less. Beside
-    1.5 gamma' A over D su, A being the segment of the pipe below the seabed (Merifield et al.), of a wider range.
+    weightless soil, so much as lifts soil into the heave; no more, as the mechanism may only change for less. At less
+    than D/5 clay is not yet at its limit throughout. Beside 1.5 gamma' A over D su of Merifield et al., a round number,
+    A being the segment of the pipe below the seabed.
     """
     heavy = 2.0e4  # N/m3
     weightless, found = (sink(sinking(16, 0.5, 50, submerged_unit_weight=weight)) for weight in (0.0, heavy))
-    for w, area in ((0.15, 0.074), (0.2, 0.112), (0.3, 0.198), (0.4, 0.293), (0.48, 0.373)):
+    for w, area in ((0.2, 0.112), (0.3, 0.198), (0.4, 0.293), (0.48, 0.373)):
         added = found.at(w) - weightless.at(w)
         before, after = np.interp((w - 0.02, w + 0.02), weightless.w, weightless.lift)
         power = (after - before) / 0.04 * heavy * D / SU
-        assert added == pytest.approx(power, rel=0.03, abs=0.005)
+        assert added == pytest.approx(power, rel=0.03)
         assert added == pytest.approx(1.5 * heavy * area * D / SU, rel=0.1)
 
 
