@@ -66,11 +66,6 @@ class DeformedSurface:
         corners[lengthwise] = np.roll(corners[lengthwise], 1, axis=1)
         self.facets = strips(corners)
 
-    def widths(self, points: Array) -> Array:
-        """Mean length (nf,) of the sides of facets of four that run along eta, nodes at points (np, 3) [m]."""
-        a, b, c, d = np.moveaxis(points[self.facets[:, : len(QUAD)]], 1, 0)
-        return np.asarray(0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)))
-
     @property
     def end(self) -> int:
         """First local dof number behind the surface's."""

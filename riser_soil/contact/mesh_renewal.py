@@ -13,11 +13,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Renewing
 from riser_soil.core.saved_state import Saved, Stateful
-from riser_soil.soil.sections import Sections, spread
+from riser_soil.soil.sections import Sections, refilled, spread
 from riser_soil.soil.soil import Soil
 
-SKEWED = 0.7  # least over mean volume per point in a cell, below which it is renewed
-STRETCHED = 1.25  # length of a facet that presses, across the riser, over what it was on its mesh at first
+WORN = 0.02  # strain of a cell since its mesh was made: stretched ones bear more, and lose that on the next mesh
+CLEAR = 0.01  # radii of the pipe that a node is away from it, to be free
 
 
 class MeshRenewal:
@@ -55,8 +55,7 @@ class MeshRenewal:
     def renew(self, state: State) -> bool:
         """Go on on a new mesh if need be; whether so. state: accepted, increments zero. Collective."""
         comm = self._soil.grid.nodes.comm
-        worn = self._soil.skewed < SKEWED or (self._contact.active and self._contact.stretched(state) > STRETCHED)
-        if not any(comm.allgather(bool(worn))):
+        if max(comm.allgather(self._soil.worn)) < WORN:
             return False
         points = self._soil.gathered_points()
         made = self._renewed(points, state) if comm.rank == 0 else None
@@ -73,9 +72,13 @@ class MeshRenewal:
     def _renewed(self, points: Array, state: State) -> Array:
         assert self._sections is not None
         lines = points[self._sections.surface]
-        made = [spread(line, self._sections.columns, self._contact.gaps(line, state)) for line in lines]
-        tops = np.stack([self._contact.brought_to(top, gaps, state) for top, gaps in made])
+        tops = np.stack([self._renewed_line(line, self._sections, state) for line in lines])
         return self._sections.renewed(points, tops)
+
+    def _renewed_line(self, line: Array, sections: Sections, state: State) -> Array:
+        top, gaps = spread(line, sections.columns, self._contact.gaps(line, state))
+        brought = self._contact.brought_to(top, gaps, state)
+        return refilled(line, brought, gaps > CLEAR * self._contact.radius, sections.across)
 
     def state(self) -> Saved:
         return {"count": np.array(self.count), "lost": np.array(self._lost)}

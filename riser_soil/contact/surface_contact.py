@@ -84,10 +84,8 @@ class SurfaceContact(SoilContact):
         half = 0.5 * self._soil.facet_size
         self._reach = reach or CandidateRange(half, min(half, AROUND * float(radius.max())))
         axis = line.basis[:2, 0] if along is None else along
-        self._smooth = surface.moves and self._soil.has_quads
-        if self._smooth:
+        if surface.moves and self._soil.has_quads:
             self._soil.smooth(axis)
-            self._widths = self._soil.widths(surface.points)
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts[:, :2].prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
@@ -149,6 +147,11 @@ class SurfaceContact(SoilContact):
         q = trial.q @ self.line.basis.T
         q[:, ::2] += self.line.origin
         return Axis(q, self.line.length, self._radius)
+
+    @property
+    def radius(self) -> float:
+        """Largest of the pipe [m]."""
+        return float(self._radius.max())
 
     @property
     def around(self) -> float:
@@ -319,20 +322,13 @@ class SurfaceContact(SoilContact):
         found = self.evaluate(state)
         return self._soil.stretch(found.deformed, found.pressed.facet)
 
-    def stretched(self, state: State) -> float:
-        """Largest width across the riser of a facet that presses, over that on its mesh at first; facets of four."""
-        found = self.evaluate(state)
-        facets = np.unique(found.pressed.facet)
-        now, first = self._soil.widths(found.deformed)[facets], self._widths[facets]
-        return float(np.max(now / first, initial=1.0))
-
     def gaps(self, points: Array, state: State) -> Array:
         """Between the pipe at a state and points (n, 3) [m]."""
         return gaps_of(self.axis(self.line.trial(state)), points)[0]
 
     def brought_to(self, points: Array, gaps: Array, state: State) -> Array:
         """Points (n, 3), those near the pipe at given gaps (n,) from it [m]."""
-        near, out = gaps < AROUND * float(self._radius.max()), points.copy()
+        near, out = gaps < AROUND * self.radius, points.copy()
         if near.any():
             found, away = gaps_of(self.axis(self.line.trial(state)), points[near])
             out[near] += (gaps[near] - found)[:, None] * away
@@ -343,11 +339,10 @@ class SurfaceContact(SoilContact):
         others, goes over to those that lie there now.
         """
         settled, axis = self._soil.settled, self.axis(self.line.trial(State.at_rest(0.0, self._soil.end)))
-        near = np.flatnonzero((gaps_of(axis, before)[0][self._soil.facets] < float(self._radius.max())).any(axis=1))
+        near = np.flatnonzero((gaps_of(axis, before)[0][self._soil.facets] < self.radius).any(axis=1))
         numbers, *places = points_of(self.surface(before), self.surface(settled), near)
         for memory in (self._memory, *memories):
             memory.go_over(numbers, *places)
-        self._widths = self._soil.widths(settled)
         self.line.forget()
 
     def clearance(self, state: State) -> Array:
@@ -377,14 +372,11 @@ class SurfaceContact(SoilContact):
         return np.asarray(x[:, 2] - radius - self._soil.heights(x[:, :2], surface))
 
     def state(self) -> Saved:
-        """That of the pattern, the history of the points, and how wide facets were on their mesh at first."""
-        kept = super().state() | (gathered({"points": self._memory}) if self.active else {})
-        return kept | ({"widths": self._widths} if self.active and self._smooth else {})
+        """That of the pattern, and the history of the points."""
+        return super().state() | (gathered({"points": self._memory}) if self.active else {})
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
         if self.active:
             self._memory.restore(within(saved, "points"))
-            if self._smooth:
-                self._widths = saved["widths"]
 

@@ -153,3 +153,20 @@ def subtract_products(weights: Array, tensors: Array, out: Array) -> None:
             for i in range(6):
                 for j in range(6):
                     out[n, i, j] -= w * a[i] * a[j]
+
+
+@njit
+def largest_strain(before: Array, after: Array, cells: IntArray) -> float:
+    """Largest strain, half of the change of squared lengths over these, of lines between two nodes of a cell; nodes at
+    points (n, 3) before and after.
+    """
+    most = 0.0
+    for c in range(cells.shape[0]):
+        for a in range(cells.shape[1]):
+            for b in range(a):
+                was = now = 0.0
+                for i in range(3):
+                    was += (before[cells[c, a], i] - before[cells[c, b], i]) ** 2
+                    now += (after[cells[c, a], i] - after[cells[c, b], i]) ** 2
+                most = max(most, abs(now - was) / was)
+    return 0.5 * most

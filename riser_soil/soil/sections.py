@@ -16,7 +16,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 
 SAME = 1e-6  # of the block's size: coordinates nearer to each other are those of one plane of the grid
 MOST_PASSES, SETTLED = 30, 1e-6  # of Winslow's equations; movement of a pass over the smallest cell
@@ -78,6 +78,30 @@ def spread(line: Array, places: Array, beside: Array) -> tuple[Array, Array]:
     arc = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1)))
     now = (places - places[0]) / (places[-1] - places[0]) * arc[-1]
     return np.asarray(PchipInterpolator(arc, line)(now)), np.interp(now, arc, beside)
+
+
+def refilled(line: Array, top: Array, free: BoolArray, across: int) -> Array:
+    """A new surface line `top` (nc, 3) with as much soil below it as below the old one: its free nodes (nc,) are raised
+    by a share of the ways that they have gone, half at most, as corners are cut off on these.
+    """
+    before, after = line[:, [across, 2]], top[:, [across, 2]]
+    along = np.zeros_like(after)
+    along[1:-1] = 0.5 * (after[2:] - after[:-2])
+    width = np.linalg.norm(along, axis=1)
+    ways = np.where(free & (width > 0.0), np.linalg.norm(after - before, axis=1), 0.0)
+    lost, room = _below(before) - _below(after), float(ways @ width)
+    if room == 0.0:
+        return top
+    raised = ways * min(max(lost / room, -0.5), 0.5)
+    out, up = top.copy(), along / np.where(width > 0.0, width, 1.0)[:, None]
+    out[:, across] -= raised * up[:, 1]
+    out[:, 2] += raised * up[:, 0]
+    return out
+
+
+def _below(line: Array) -> float:
+    """Area below a line of points (n, 2), down to 0."""
+    return float(np.sum(0.5 * (line[1:, 1] + line[:-1, 1]) * np.diff(line[:, 0])))
 
 
 def smoothed(at: Array, columns: Array, layers: Array, across: int) -> Array:

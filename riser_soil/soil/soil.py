@@ -25,10 +25,10 @@ from riser_soil.soil.large_strain import moved_on
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
 from riser_soil.soil.slices import slabs, top_of_slices
-from riser_soil.soil.transfer import nearest_rows
+from riser_soil.soil.transfer import carried_rows, nearest_rows
 
 FOLDS = 0.1  # skewness of a cell
-DEPTH_AND_SLOPE = ("depth", "slope_x", "slope_y", "slope_z")
+SLOPE = ("slope_x", "slope_y", "slope_z")
 NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 STRAINED = 1e-4  # of its size, that a cell's nodes move against each other before its gradients are made anew
 
@@ -81,7 +81,7 @@ class Soil:
         self._volumes = self._gradients.weights.ravel()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
-        self._made_at = self._corners(grid.nodes.points)
+        self._made_at, self._mesh_at = self._corners(grid.nodes.points), grid.nodes.points
         self._spans = np.ptp(self._made_at, axis=1).min(axis=1)
         self._stored = self._lifted = 0.0
 
@@ -200,9 +200,9 @@ class Soil:
         return self.mesh.unfolding.points(gather_rows(self.grid, self.points[: self.grid.nodes.owned]))
 
     @property
-    def skewed(self) -> float:
-        """Least `skewness` of this rank's cells."""
-        return float(np.min(skewness(self.grid.family, self.points, self._cells), initial=1.0))
+    def worn(self) -> float:
+        """Largest strain of this rank's cells since they were made."""
+        return float(kernels.largest_strain(self._mesh_at, self.points, self._cells))
 
     def inadmissible(self, state: State) -> str:
         """Where a step would fold a cell; collective."""
@@ -227,32 +227,47 @@ class Soil:
         self._stored = self._stores(self._found)
 
     def _move_to(self, before: Array, after: Array) -> None:
-        slope = np.einsum("cqni,cn->cqi", self._gradients.full, self._depth[self._cells]).reshape(-1, 3)
-        old, held = self._at_points(before), np.column_stack([self._at_points(self._depth)[:, None], slope])
-        of_nodes, way = nearest_rows(self.grid, old, after, held, DEPTH_AND_SLOPE)
-        depth = np.maximum(of_nodes[:, 0] + np.einsum("ni,ni->n", of_nodes[:, 1:], way), 0.0)
-        moved = (np.abs(after - before).max(axis=1) > self._none) & (self._depth > 0.0)
-        self._depth = np.where(moved, depth, self._depth)
-        history, way = nearest_rows(self.grid, old, self._at_points(after), self._found.history, self.law.columns)
-        self._made_at = self._corners(after)
+        self._depth = self._depth_at(before, after)
+        history, columns = self._history_beyond_weight(before), self.law.columns
+        history = carried_rows(self.grid, self._at_points(before), self._at_points(after), history, columns)
+        self._made_at, self._mesh_at = self._corners(after), after
         self._gradients = self._gradients_of(self._made_at)
         self._volumes = self._gradients.weights.ravel()
         vars(self).pop("_stiffness", None)
         self._take_material()
         self._load, self._last = self._held + self._weight(), None
-        self._found = self._balanced_history(history, way)
+        self._found = self._balanced_history(history)
 
-    def _balanced_history(self, history: Array, way: Array) -> StressUpdate:
-        """The law's answer to histories that come from points (n, 3) away: the mean stress beyond what the weight makes
-        of it by depth is one for all points of a cell.
-        """
-        first, by_height = self.law.columns.index(STRESS[0]), self._unit_weight[:, None] * self._ground.ratios
-        stress = history[:, first : first + 6]
-        stress += way[:, 2:] * by_height
-        height = self._at_points(self.points)[:, 2]
-        beyond = mandel.mean(stress) - height * mandel.mean(by_height)
+    def _depth_at(self, before: Array, after: Array) -> Array:
+        """Depths that the nodes' material had at first, once they lie at points (n, 3) after."""
+        slope = np.einsum("cqni,cn->cqi", self._gradients.full, self._depth[self._cells]).reshape(-1, 3)
+        slope, _ = nearest_rows(self.grid, self._at_points(before), after, slope, SLOPE)
+        own = slice(self.grid.nodes.owned)
+        depth, way = nearest_rows(self.grid, before[own], after, self._depth[own, None], ("depth",))
+        moved = (np.abs(after - before).max(axis=1) > self._none) & (self._depth > 0.0)
+        return np.where(moved, np.maximum(depth[:, 0] + np.einsum("ni,ni->n", slope, way), 0.0), self._depth)
+
+    def _history_beyond_weight(self, points: Array) -> Array:
+        """The history with the stress beyond what the weight makes of it by height, nodes at points (n, 3)."""
+        history = self._found.history.copy()
+        self._stress_in(history)[:] -= self._by_height(points)
+        return history
+
+    def _balanced_history(self, history: Array) -> StressUpdate:
+        """The law's answer to a history of stress beyond the weight's: its mean is one for all points of a cell."""
+        stress = self._stress_in(history)
+        beyond = mandel.mean(stress)
         stress += (np.repeat(self._cell_mean(beyond), self._shape[1]) - beyond)[:, None] * mandel.UNIT
+        stress += self._by_height(self.points)
         return self.law.update(np.zeros_like(stress), history, dt=0.0)._replace(tangent=np.empty(0))
+
+    def _stress_in(self, history: Array) -> Array:
+        first = self.law.columns.index(STRESS[0])
+        return history[:, first : first + 6]
+
+    def _by_height(self, points: Array) -> Array:
+        """Stress by the weight (n, 6) at heights counted from z = 0, nodes at points (n, 3)."""
+        return (self._unit_weight * self._at_points(points)[:, 2])[:, None] * self._ground.ratios
 
     def _corners(self, points: Array) -> Array:
         """Nodes (nc, nn, 3) of the cells, at points (n, 3)."""
@@ -348,10 +363,11 @@ class Soil:
 
     @property
     def _moved(self) -> Saved:
-        """What the gradients are made of, where cells move."""
+        """What the gradients are made of, and the last mesh, where cells move."""
         if not self.moves:
             return {}
-        return {"made_at": self._made_at.copy(), "depth": self._depth.copy(), "volumes": self._volumes.copy()}
+        kept = {"made_at": self._made_at, "mesh_at": self._mesh_at, "depth": self._depth, "volumes": self._volumes}
+        return {name: values.copy() for name, values in kept.items()}
 
     def restore(self, saved: Saved) -> None:
         self._found, self._last = self._found._replace(**within(saved, "law")), None
@@ -359,6 +375,7 @@ class Soil:
         if self.moves:
             self._restore_geometry(saved["made_at"])
             self._depth, self._volumes = saved["depth"].copy(), saved["volumes"].copy()
+            self._mesh_at = saved["mesh_at"].copy()
             self._take_material()
             self._load = self._held + self._weight()
 

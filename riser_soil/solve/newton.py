@@ -47,6 +47,7 @@ TIGHT = 1e-10  # least share of the residual that a linear system solved by iter
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
+FLOWS = 4.0  # residual that a guess may leave over that of the linear response, to be taken instead
 PATIENCE, LONGEST = 10, 4  # iterations in which a static residual halves that goes on; times as many at most
 
 
@@ -130,7 +131,8 @@ class Newton:
         return self._out_of_balance(self._with_prescribed(self._step.guess)) < self._out_of_balance(still)
 
     def _start_linearly(self) -> None:
-        """First iteration of a static step: the linear response to its loads and prescribed motion where it starts.
+        """First iteration of a static step, by the tangent where it starts: the linear response to its loads and
+        prescribed motion, or the guess with the response to what that lacks.
 
         An end that is moved alone stretches the element beside it by far, and its false tension spoils what follows.
         """
@@ -141,18 +143,43 @@ class Newton:
         while self._outgrown():
             self._renew(start)
             self._assemble(start)
-        self._f = self.system.numbering.add_to_global(residual + (probed - residual) / PROBE)
-        self._norms.append(self._norm())
         self._first = 1
-        while failure := self._timed_respond():
+        self._norms.append(self._respond_to(residual + (probed - residual) / PROBE, still))
+        if any_of(self.system.comm, bool(self._step.guess.any())):
+            self._prefer_guess()
+
+    def _prefer_guess(self) -> None:
+        """Take the guess, with the tangent's response, where it is about as near to balance as the linear response
+        alone: in what flows on as before, it knows which points yield.
+        """
+        linear = self._x
+        left = self._norm_at(linear)
+        guess = self._with_prescribed(self._step.guess)
+        norm = self._respond_to(self._balance(guess)[1], guess)
+        if self._norm_at(self._x) < FLOWS * left:
+            self._norms[-1] = norm
+        else:
+            self._x = linear
+
+    def _respond_to(self, residual: Array, at: Array) -> float:
+        """Take the tangent's response to a residual at increments; the residual's norm [N]."""
+        self._f = self.system.numbering.add_to_global(residual)
+        norm = self._norm()
+        while failure := self._timed_respond(self.system.numbering.to_global(at)):
             if not self.loop.again:
                 raise NotConvergedError(self._reason(failure))
+        return norm
 
-    def _timed_respond(self) -> str:
-        """Take the response of the tangent to the residual: "", or why there is none."""
+    def _norm_at(self, x: Array) -> float:
+        """Norm of the residual of unknowns [N]; collective."""
+        self._f = self.residual(x)
+        return self._norm()
+
+    def _timed_respond(self, at: Array) -> str:
+        """Take the response of the tangent to the residual at unknowns: "", or why there is none."""
         began, counted = time.perf_counter(), self.system.clock.total
         failure, response = self.loop.respond(self._f)
-        self._x = -response
+        self._x = at - response
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         return failure
 

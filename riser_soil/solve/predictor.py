@@ -40,10 +40,6 @@ class Extrapolation:
         """Continue from a step of dt that has been taken."""
         self._differences, self._steps = _accepted(self._differences, self._steps, increments, dt, self._most)
 
-    def stop(self, dofs: slice) -> None:
-        """Nothing of these goes on."""
-        self._differences[:, dofs] = 0.0
-
     def state(self) -> Saved:
         return {"differences": self._differences, "steps": self._steps}
 

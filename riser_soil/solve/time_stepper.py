@@ -249,16 +249,18 @@ class TimeStepper:
         control.accept(easy=step.solution.iterations <= EASY)
 
     def _renew(self) -> None:
-        """Go on with another discretisation of what is not a line, where a part asks for one."""
+        """Go on with another discretisation of what is not a line, where a part asks for one. In statics the step takes
+        up what that lacks of balance; lines that move would feel it.
+        """
         for part in self._renewing:
             if not part.renew(self.before):
                 continue
             system = self.system
-            balance_held(system.comm, system.model, self.before.t, self.newton.settings, system.clock)
-            self.newton.renew()  # the balance has chosen patterns of its own
+            if self.scheme.dynamic:
+                balance_held(system.comm, system.model, self.before.t, self.newton.settings, system.clock)
+                self.newton.renew()  # the balance has chosen patterns of its own
             part.lose(self.energy.total - system.energy(self.before).total)
             self._forces = system.forces(self.before)
-            self._past.stop(slice(system.end_of_lines, None))
 
     def _rates_after(self, step: AcceptedStep) -> tuple[State, State]:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""

@@ -10,6 +10,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
+from riser_soil.soil.surface import SoilSurface
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
@@ -51,7 +52,8 @@ def sinking(cells: int, depth: float, steps: int, law: Mapping = CLAY, **more: A
 @dataclass(frozen=True, eq=False)
 class Sunk:
     """Step by step: embedment over D, loads down and to the side (+y) per length over su D, Newton iterations, the
-    stage's t; new meshes that it took; and the area of the slice's section over that at first.
+    stage's t, lift: area of the section times the height to which it has risen from level ground, over D³; new meshes
+    that it took; and the area of the slice's section over that at first.
     """
 
     w: Array
@@ -59,6 +61,7 @@ class Sunk:
     H: Array
     iterations: Array
     t: Array
+    lift: Array
     renewals: int
     area: float
 
@@ -82,12 +85,20 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
         if friction is not None:
             forces.append(friction.force_on_soil(stepper.before))
         _, side, up = np.sum(forces, axis=0) / bearing
-        rows.append((step.t * deepest, -up, side, step.solution.iterations, step.t))
+        rows.append((step.t * deepest, -up, side, step.solution.iterations, step.t, lifted(soil.surface) / D**3))
 
     state = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages[: followed + 1]:
         rows.clear()
         state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
-    w, V, H, iterations, t = np.array(rows).T
+    w, V, H, iterations, t, lift = np.array(rows).T
     renewals = 0 if assembly.mesh_renewal is None else assembly.mesh_renewal.count
-    return Sunk(w, V, H, iterations, t, renewals, float(soil._gradients.weights.sum() / first))
+    return Sunk(w, V, H, iterations, t, lift, renewals, float(soil._gradients.weights.sum() / first))
+
+
+def lifted(surface: SoilSurface) -> float:
+    """Area of a slice's section times its height above level ground [m3]: the integral of z²/2 along its surface."""
+    points = surface.points + surface.committed
+    line = points[surface.points[:, 0] < surface.points[:, 0].min() + 1e-9]
+    y, z = line[np.argsort(line[:, 1]), 1:].T
+    return float(np.sum(np.diff(y) * (z[1:] ** 2 + z[1:] * z[:-1] + z[:-1] ** 2)) / 6.0)

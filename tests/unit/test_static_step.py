@@ -55,10 +55,10 @@ class GrowingFloor(Floor):
         self.grown.append(len(self.held))
 
 
-def solved(chain: Chain, parts: list[Springs | Floor], **settings: Any) -> Solution:
+def solved(chain: Chain, parts: list[Springs | Floor], guess: Array | None = None, **settings: Any) -> Solution:
     system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton, z = Newton(system, NewtonSettings(1e-8, 25, 1e-12, **settings)), np.zeros(chain.size)
-    guess = z.copy()
+    guess = z.copy() if guess is None else guess
     guess[0] = MOVED * chain.prescribed[0]
     try:
         return newton.solve(Step(Static(), State(0.0, z, z.copy(), z.copy()), 1.0, 1.0, None, guess))
@@ -84,6 +84,21 @@ def test_a_moved_end_does_not_spoil_the_first_iteration() -> None:
         found[start] = solved(chain, [Springs(chain, 1.0, 100.0, cubic=1e6, weight=1e-3)], linear_start=start)
     assert found[True].state.u == pytest.approx(found[False].state.u, rel=1e-9)
     assert found[True].iterations < found[False].iterations - 3
+
+
+def test_a_guess_that_flows_on_is_taken_and_one_far_off_is_not() -> None:
+    """Springs that stiffen: from beside its end a step takes fewer iterations, and from far off none more."""
+
+    def taken(guess: Array | None) -> Solution:
+        chain = MovedChain(np.arange(12.0), prescribed=True)
+        return solved(chain, [Springs(chain, 1.0, 100.0, cubic=1e4, weight=1.0)], guess, linear_start=True)
+
+    linear = taken(None)
+    near, far = (taken(linear.state.u + by * np.arange(12.0)) for by in (1e-6, 1.0))
+    assert near.iterations < linear.iterations
+    assert far.iterations == linear.iterations
+    for found in (near, far):
+        assert found.state.u == pytest.approx(linear.state.u, rel=1e-7)
 
 
 def test_what_comes_to_touch_within_a_step_gets_its_place_at_once() -> None:

@@ -35,9 +35,8 @@ def fallen(found: Sunk) -> float:
     return float(np.max((highest - found.V) / highest))
 
 
-def require_a_load_that_rises(found: Sunk, falls: float = 0.01) -> None:
-    """Asked: half a per cent. 0.7 % was found on cells of D/16 in steps of D/200, 0.4 % in steps of D/40 and D/160."""
-    assert fallen(found) < falls
+def require_a_load_that_rises(found: Sunk) -> None:
+    assert fallen(found) < 0.005
 
 
 def test_a_pipe_sinks_to_a_fifth_of_its_diameter() -> None:
@@ -45,8 +44,9 @@ def test_a_pipe_sinks_to_a_fifth_of_its_diameter() -> None:
     found = sink(sinking(8, 0.2, 40))
     for w in (0.1, 0.15, 0.2):
         assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
+    require_a_load_that_rises(found)
     assert found.renewals > 0
-    assert found.iterations.mean() < 6.0
+    assert found.iterations.mean() < 5.0
     assert found.area == pytest.approx(1.0, abs=2e-3)
 
 
@@ -57,29 +57,28 @@ def test_a_pipe_sinks_to_half_of_its_diameter_on_three_meshes() -> None:
         found = sink(sinking(cells, 0.5, 100))
         for w in (0.1, 0.2, 0.3, 0.4, 0.5):
             assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
-        require_a_load_that_rises(found, 0.16 / cells)
-        assert found.iterations.mean() < 6.5
+        require_a_load_that_rises(found)
+        assert found.iterations.mean() < 5.0
         loads.append([found.at(w) for w in (0.1, 0.2, 0.3, 0.4, 0.5)])
     np.testing.assert_allclose(loads[0], loads[1], rtol=0.04)
 
 
 def test_a_rough_pipe_sinks_to_a_fifth_of_its_diameter() -> None:
-    """On cells of D/8 soil leaves the pipe at the rim by a facet at a time; what new meshes forget would take more."""
     found = sink(sinking(8, 0.2, 40, **FULLY_ROUGH))
     for w in (0.1, 0.15, 0.2):
         assert found.at(w) == pytest.approx(rough(w), rel=0.1)
     assert found.renewals > 0
-    assert fallen(found) < 0.12
+    require_a_load_that_rises(found)
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize(("cells", "falls"), [(16, 0.04), (32, 0.02)])
-def test_a_rough_pipe_sinks_to_half_of_its_diameter(cells: int, falls: float) -> None:
+@pytest.mark.parametrize("cells", [16, 32])
+def test_a_rough_pipe_sinks_to_half_of_its_diameter(cells: int) -> None:
     found = sink(sinking(cells, 0.5, 100, **FULLY_ROUGH))
     for w in (0.1, 0.2, 0.3, 0.4, 0.5):
         assert found.at(w) == pytest.approx(rough(w), rel=0.07)
-    assert fallen(found) < falls
-    assert found.iterations.mean() < 7.5
+    require_a_load_that_rises(found)
+    assert found.iterations.mean() < 5.0
 
 
 @pytest.mark.verify
@@ -90,15 +89,20 @@ def test_steps_of_a_fortieth_and_a_hundred_and_sixtieth_of_the_diameter_agree() 
 
 
 @pytest.mark.verify
-def test_weight_adds_what_it_takes_to_displace_the_soil() -> None:
-    """Some 1.5 gamma' A over D su, A being the segment of the pipe below the seabed (Merifield et al.); 1.33 to 1.47
-    was found.
+def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
+    """The load of a limit state is the least power over the mechanisms: weight adds, at first, its power in that of
+    weightless soil, so much as lifts soil into the heave; no more, as the mechanism may only change for less. At less
+    than D/5 clay is not yet at its limit throughout. Beside 1.5 gamma' A over D su of Merifield et al., a round number,
+    A being the segment of the pipe below the seabed.
     """
     heavy = 2.0e4  # N/m3
     weightless, found = (sink(sinking(16, 0.5, 50, submerged_unit_weight=weight)) for weight in (0.0, heavy))
-    for w, area in ((0.1, 0.041), (0.2, 0.112), (0.3, 0.198), (0.4, 0.293), (0.5, 0.393)):
+    for w, area in ((0.2, 0.112), (0.3, 0.198), (0.4, 0.293), (0.48, 0.373)):
         added = found.at(w) - weightless.at(w)
-        assert added == pytest.approx(1.5 * heavy * area * D / SU, rel=0.13)
+        before, after = np.interp((w - 0.02, w + 0.02), weightless.w, weightless.lift)
+        power = (after - before) / 0.04 * heavy * D / SU
+        assert added == pytest.approx(power, rel=0.03)
+        assert added == pytest.approx(1.5 * heavy * area * D / SU, rel=0.1)
 
 
 @pytest.mark.verify
