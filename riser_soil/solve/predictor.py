@@ -22,8 +22,8 @@ class Extrapolation:
     The first difference is the mean rate of the last step [1/s], the second half its change [1/s2]. Beyond them only
     terms that fall fast are taken: those of what is rough, such as short waves in the riser or a gust, don't.
 
-    smooth: whether changes go on at all. An impact ends what went before: with contact the last rate alone is the
-    better guess.
+    smooth: whether changes go on at all. An impact ends what went before: with a penalty's contact the last rate alone
+    is the better guess.
     """
 
     def __init__(self, size: int, smooth: bool) -> None:

@@ -115,7 +115,7 @@ class TimeStepper:
         self._past, self._first_guess = self._new_predictor(), None
 
     def _new_predictor(self) -> Extrapolation:
-        return Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
+        return Extrapolation(self.system.numbering.size, smooth=self.system.gradual)
 
     def _start_rates(self, before: State) -> None:
         """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""
