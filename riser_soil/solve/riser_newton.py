@@ -184,8 +184,8 @@ class RiserNewton:
 
     def _limits(self, step: Step) -> riser_loop.StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
-        smooth = self.system.smooth
-        return _limits(self.settings, smooth, self.system.gradual, smooth or self.rests or bool(step.guess[self._free].any()))
+        smooth, moves = self.system.smooth, bool(step.guess[self._free].any())
+        return _limits(self.settings, smooth, self.system.gradual, smooth or self.rests or moves)
 
     def _found(self) -> Forces:
         """The forces of the last trial."""
