@@ -263,8 +263,8 @@ class SeabedContact(LineContact):
         return -penetration[:, 0] - self.law.start
 
     def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `landing`."""
-        if not self.active:
+        """Increments of a first guess that lands, see `landing`; into soft clay the riser sinks on as it does."""
+        if not self.active or self.traits.gradual:
             return guess.u
         if self._covered is None:
             increments = guess.u.copy()

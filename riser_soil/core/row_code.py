@@ -75,6 +75,29 @@ def add_shares(context: Any, F: Any, start: Any, four: Any, first: Any, f: Any, 
 
 
 @intrinsic
+def two_polynomials(context: Any, c: Any, start: Any, x: Any, y: Any, N: Any) -> Any:
+    """See `rows`; even and odd powers apart, so that their chains of products run side by side."""
+    found, zero = types.UniTuple(types.float64, 8), [ir.Constant(ir.VectorType(DOUBLE, 4), [0.0] * 4)]
+
+    def read(target: Any, builder: Any, signature: Any, given: Any) -> Any:
+        rows_of, first = _Rows(builder, 4), builder.gep(_data(builder, c, given[0]), [given[1]])
+        once = _Turn(rows_of, given[2], given[3])
+        square, sums = once.squared(), list[Any]()
+        for parity in range(2):
+            value = slope = zero
+            for n in reversed(range(parity, len(N), 2)):
+                slope = square.added(value, slope)
+                value = square.added(rows_of.load(_at(builder, first, 4 * n)), value)
+            sums.append((value, slope))
+        (even, by_even), (odd, by_odd) = sums
+        twice = once.added(by_even, by_odd)
+        values, slopes = once.added(even, odd), once.added(odd, rows_of.sum(twice, twice))
+        return made_tuple(builder, found, [*rows_of.numbers(values), *rows_of.numbers(slopes)])
+
+    return found(c, types.intp, types.float64, types.float64, N), read
+
+
+@intrinsic
 def add_weighed(context: Any, S: Any, weights: Any, terms: Any, D: Any, R: Any) -> Any:
     """See `rows`; each row is read once."""
 
@@ -195,61 +218,84 @@ class _Rows:
     """Arithmetic of rows of n numbers, each a list of vectors."""
 
     def __init__(self, builder: Any, n: int) -> None:
-        self._builder, self._places, self.n = builder, list[tuple[int, int]](), n
+        self.builder, self._places, self.n = builder, list[tuple[int, int]](), n
         while (at := sum(width for _, width in self._places)) < n:
             self._places.append((at, next(width for width in WIDTHS if at + width <= n)))
 
     def load(self, first: Any) -> list[Any]:
-        return [self._builder.load(self._vector(first, *place), align=8) for place in self._places]
+        return [self.builder.load(self._vector(first, *place), align=8) for place in self._places]
 
     def store(self, row: list[Any], first: Any) -> None:
         for part, place in zip(row, self._places, strict=True):
-            self._builder.store(part, self._vector(first, *place), align=8)
+            self.builder.store(part, self._vector(first, *place), align=8)
 
     def _vector(self, first: Any, at: int, width: int) -> Any:
-        return self._builder.bitcast(_at(self._builder, first, at), ir.VectorType(DOUBLE, width).as_pointer())
+        return self.builder.bitcast(_at(self.builder, first, at), ir.VectorType(DOUBLE, width).as_pointer())
 
     def times(self, one: list[Any], other: list[Any]) -> list[Any]:
-        return [self._builder.fmul(a, b, flags=FUSED) for a, b in zip(one, other, strict=True)]
+        return [self.builder.fmul(a, b, flags=FUSED) for a, b in zip(one, other, strict=True)]
 
     def sum(self, one: list[Any], other: list[Any]) -> list[Any]:
         """No vectors are no row."""
         if not one:
             return other
-        return [self._builder.fadd(a, b, flags=FUSED) for a, b in zip(one, other, strict=True)]
+        return [self.builder.fadd(a, b, flags=FUSED) for a, b in zip(one, other, strict=True)]
 
     def spread(self, value: Any) -> list[Any]:
         """A row of the same number."""
         kind = ir.VectorType(DOUBLE, 1)
-        one = self._builder.insert_element(ir.Constant(kind, ir.Undefined), value, INDEX(0))
-        return self._shuffled(one, [0] * self.n)
+        one = self.builder.insert_element(ir.Constant(kind, ir.Undefined), value, INDEX(0))
+        return self.shuffled(one, [0] * self.n)
 
     def blocks(self, four: Any, D: Size, R: Size) -> list[Any]:
         """A row of four numbers, each as often as its block has columns."""
         both = [*[0] * len(D), *[1] * len(R)]
-        values = self._builder.load(self._vector(four, 0, 4), align=8)
-        return self._shuffled(values, [*both, *(2 + k for k in both)])
+        values = self.builder.load(self._vector(four, 0, 4), align=8)
+        return self.shuffled(values, [*both, *(2 + k for k in both)])
 
     def repeated(self, four: Any, d: int) -> list[Any]:
         """A row of four numbers, each d times."""
-        values = self._builder.load(self._vector(four, 0, 4), align=8)
-        return self._shuffled(values, [k // d for k in range(4 * d)])
+        values = self.builder.load(self._vector(four, 0, 4), align=8)
+        return self.shuffled(values, [k // d for k in range(4 * d)])
 
     def tiled(self, numbers: Any, d: int) -> list[Any]:
         """A row of a tuple of d numbers, again and again."""
         values = ir.Constant(ir.VectorType(DOUBLE, d), ir.Undefined)
         for i in range(d):
-            values = self._builder.insert_element(values, self._builder.extract_value(numbers, i), INDEX(i))
-        return self._shuffled(values, [k % d for k in range(self.n)])
+            values = self.builder.insert_element(values, self.builder.extract_value(numbers, i), INDEX(i))
+        return self.shuffled(values, [k % d for k in range(self.n)])
 
     def numbers(self, row: list[Any]) -> list[Any]:
         """The single numbers of a row."""
         both = zip(row, self._places, strict=True)
-        return [self._builder.extract_element(part, INDEX(k)) for part, (_, width) in both for k in range(width)]
+        return [self.builder.extract_element(part, INDEX(k)) for part, (_, width) in both for k in range(width)]
 
-    def _shuffled(self, values: Any, which: list[int]) -> list[Any]:
+    def shuffled(self, values: Any, which: list[int]) -> list[Any]:
+        """A row of single numbers of a vector."""
         return [self._parts(values, which[at : at + width]) for at, width in self._places]
 
     def _parts(self, values: Any, which: list[int]) -> Any:
         where = ir.Constant(ir.VectorType(INDEX, len(which)), which)
-        return self._builder.shuffle_vector(values, ir.Constant(values.type, ir.Undefined), where)
+        return self.builder.shuffle_vector(values, ir.Constant(values.type, ir.Undefined), where)
+
+
+class _Turn:
+    """Products of x + i y with rows of two complex numbers, real part before imaginary part."""
+
+    def __init__(self, rows_of: _Rows, x: Any, y: Any) -> None:
+        self._rows_of, self._x, self._y = rows_of, x, y
+        signs = ir.Constant(ir.VectorType(DOUBLE, 4), [-1.0, 1.0, -1.0, 1.0])
+        self._real, self._imaginary = rows_of.spread(x), rows_of.times(rows_of.spread(y), [signs])
+
+    def added(self, row: list[Any], product: list[Any]) -> list[Any]:
+        """A row and the product with another one."""
+        rows_of = self._rows_of
+        crossed = rows_of.times(rows_of.shuffled(product[0], [1, 0, 3, 2]), self._imaginary)
+        return rows_of.sum(rows_of.sum(row, rows_of.times(product, self._real)), crossed)
+
+    def squared(self) -> _Turn:
+        """Products with (x + i y)^2."""
+        x, y, builder = self._x, self._y, self._rows_of.builder
+        real = builder.fsub(builder.fmul(x, x), builder.fmul(y, y))
+        half = builder.fmul(x, y)
+        return _Turn(self._rows_of, real, builder.fadd(half, half))

@@ -102,6 +102,24 @@ def _shares(F: Any, start: Any, four: Any, first: Any, f: Any, D: Any) -> Any:
     return lambda F, start, four, first, f, D: row_code.add_shares(F, start, four, first, f, D)
 
 
+def two_polynomials(c: Array, start: int, x: float, y: float, N: Size) -> tuple[float, ...]:
+    """Two complex polynomials of len(N) terms at x + i y, real and imaginary part of each, and of their derivatives.
+
+    c: for each power, the lowest first, real and imaginary part of both coefficients, from `start` on, as in
+    `numbers_at`.
+    """
+    coefficients = c.reshape(-1)[start : start + 4 * len(N)].reshape(-1, 2, 2)
+    both = [np.polynomial.Polynomial(each) for each in (coefficients @ np.array([1.0, 1.0j])).T]
+    at = complex(x, y)
+    found = np.array([*(each(at) for each in both), *(each.deriv()(at) for each in both)])
+    return tuple(listed(np.stack([found.real, found.imag], axis=1).ravel()))
+
+
+@overload(two_polynomials, inline="always", strict=False)
+def _polynomials(c: Any, start: Any, x: Any, y: Any, N: Any) -> Any:
+    return lambda c, start, x, y, N: row_code.two_polynomials(c, start, x, y, N)
+
+
 def add_weighed(S: Array, weights: Array, terms: Sequence[Term], D: Size, R: Size) -> None:
     """Add to each of S (4, d, n) its weight (4,) times a sum of terms: a matrix (d, d) times rows (d, n), whose blocks
     of d, r, d and r columns count with four factors (4,). A term is the three of them, factors first.

@@ -52,7 +52,8 @@ class Timer:
 class System:
     """Residual and matrix over the free dofs of the model's fields; collective over `comm`.
 
-    smooth: whether no forces are taken at the end of the step alone, so that none may jump, as contact's do.
+    smooth: whether no forces are taken at the end of the step alone, so that none may jump, as contact's do. gradual:
+    whether those that there are grow along curves, see `Traits`.
     lever: the longest one of a line, see `LineField`; levers (size,): of each local dof, 1 for translations.
     """
 
@@ -63,7 +64,9 @@ class System:
         self._number()
         self.lever, self.levers = self._weigh_moments()
         self.symmetric = all_of(comm, all(p.traits.symmetric for p in model.parts))
-        self.smooth = not any_of(comm, any("E" in p.traits.groups for p in model.parts))
+        at_end = [p.traits for p in model.parts if "E" in p.traits.groups]
+        self.smooth = not any_of(comm, len(at_end) > 0)
+        self.gradual = not any_of(comm, any(not traits.gradual for traits in at_end))
         self.matrix = self._new_matrix()
 
     def _number(self) -> None:

@@ -162,6 +162,32 @@ def _forces(part: MovingWaterNumbers, at: Configuration, out: LineForces) -> Non
 
 @add_tangent.of(MovingWaterNumbers)
 def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    if weights.force == 0.0:
+        _add_mass(part, at, maps, weights.inertia, K)
+    else:
+        _add_whole_tangent(part, at, maps, weights, K)
+
+
+@njit
+def _add_mass(part: MovingWaterNumbers, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
+    """The tangent at rest but for drag and what the water's own motion brings: the mass alone."""
+    by, room, D = part.by, part.room, at.D
+    for m in range(part.element.size):
+        e = part.element[m]
+        part.change[:] = 0.0
+        for g in range(part.share.shape[1]):
+            stretch = move(part, at, m, g, room)
+            mass, share = part.mass[m], weight * wet(part, part.seen.end, m, g)
+            law.put_added_derivatives(room.a, room.tau, stretch, mass, share, by.by_a, by.by_slope, D)
+            moved = part.at.N[m, g], by.by_a, maps.acceleration_rows[e]
+            add_weighed(part.change, part.at.weighted[m, g], (moved,), D, at.R)
+        add_pulled_back(K[e], at.P[e], part.change, D, at.R)
+
+
+@njit
+def _add_whole_tangent(
+    part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
     by = part.by
     for m in range(part.element.size):
         e = part.element[m]

@@ -30,7 +30,8 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, ComplexArray, IntArray
-from riser_soil.core.compiled import njit
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.rows import add_multiple, add_shares, two_polynomials
 from riser_soil.sea.places import Places, number, places
 from riser_soil.sea.wave_train import WaveTrain
 
@@ -40,11 +41,13 @@ NEAREST = 3
 DEEPEST = 30.0  # k d beyond which a component is left out at depth d: it has decayed to 1e-13 of what it is above
 LEVELS = 64
 MOST, MEMORY = 8192, 1 << 25  # places kept at most, and bytes for the components' motion there
+HALF = ORDER // 2
+WHOLE, EVEN, FOUR = fixed(ORDER), fixed(HALF), fixed(4)
 
 
 class SeriesAt(NamedTuple):
     """Series of one or several sums at places. motion: (room, sums, m, 2) the components but for exp(i theta), as real
-    and imaginary part; alive: (room, sums) how many of them count; c: (room, series, 2, ORDER) times powers of `side`.
+    and imaginary part; alive: (room, sums) how many of them count; c: times powers of `side`, see `WaveSeries`.
     """
 
     places: Places
@@ -54,14 +57,16 @@ class SeriesAt(NamedTuple):
 
 
 class WaveSeries(NamedTuple):
-    """Series of waves. side: of the squares at the surface [m]; powers: (m, ORDER) (k side)^n/n!.
+    """Series of waves. side: of the squares at the surface [m]; powers: (m, ORDER) (k side)^n/n!; split: (m, 2, HALF)
+    the even and the odd ones times i^n, without the i of the odd ones.
 
-    columns: of the surface, one for each strip of the sea. cells: of the flow; two sums, V and M, and four series, of
-    their velocity and of their acceleration.
+    columns: of the surface, one for each strip of the sea, c (room, 2, HALF) even and odd. cells: of the flow; two
+    sums, V and M, c (room, 2, ORDER, 4) real and imaginary part of velocity and of acceleration.
     """
 
     side: float
     powers: Array
+    split: Array
     columns: SeriesAt
     cells: SeriesAt
 
@@ -87,13 +92,14 @@ def wave_series(waves: WaveTrain) -> WaveSeries:
     m, side = waves.k.size, sqrt(2.0) * RADIUS / float(waves.k.max())
     steps = side * waves.k[:, None] / np.arange(1.0, ORDER)
     powers = np.concatenate([np.ones((m, 1)), np.cumprod(steps, axis=1)], axis=1)
-    return WaveSeries(side, powers, columns=_room(m, 1, 1), cells=_room(m, 2, 4))
+    split = np.stack([powers[:, ::2], powers[:, 1::2]], axis=1) * (-1.0) ** np.arange(HALF)
+    return WaveSeries(side, powers, split, columns=_room(m, 1, (2, HALF)), cells=_room(m, 2, (2, ORDER, 4)))
 
 
-def _room(m: int, sums: int, series: int) -> SeriesAt:
+def _room(m: int, sums: int, series: tuple[int, ...]) -> SeriesAt:
     room = min(MOST, MEMORY // (16 * m * sums) + 1)
     alive = np.empty((room, sums), np.int64)
-    return SeriesAt(places(room), np.empty((room, sums, m, 2)), alive, np.empty((room, series, 2, ORDER)))
+    return SeriesAt(places(room), np.empty((room, sums, m, 2)), alive, np.empty((room, *series)))
 
 
 @njit
@@ -126,7 +132,7 @@ def flow(of: WaveSeries, waves: WaveTrain, t: float, g: int, s: Array, z: Array)
             if of.cells.places.time[place] != t:
                 _sum_flow(of, waves, g, place, cell)
                 of.cells.places.time[place] = t
-        v, v_x, a, a_x = _in_cell(of.cells.c, place, complex(z[p] + cell.d, s[p] - cell.s) / of.side)
+        v, a, v_x, a_x = _in_cell(of.cells, place, (z[p] + cell.d) / of.side, (s[p] - cell.s) / of.side)
         velocity.value[p], velocity.by_z[p] = v, v_x / of.side
         acceleration.value[p], acceleration.by_z[p] = a, a_x / of.side
     return velocity, acceleration
@@ -149,31 +155,24 @@ def _cell(side: float, s: float, d: float) -> Cell:
 
 @njit
 def _at_surface(c: Array, place: int, x: float) -> tuple[float, float]:
-    """The surface and its derivative at x, by Horner's rule."""
-    value, by_x = 0.0, 0.0
-    for n in range(ORDER - 1, -1, -1):
-        by_x, value = by_x * x + value, value * x + c[place, 0, 0, n]
-    return value, by_x
+    """The surface and its derivative at x, by Horner's rule for even and odd powers."""
+    even, by_even, odd, by_odd, square = 0.0, 0.0, 0.0, 0.0, x * x
+    for n in range(HALF - 1, -1, -1):
+        by_even, even = by_even * square + even, even * square + c[place, 0, n]
+        by_odd, odd = by_odd * square + odd, odd * square + c[place, 1, n]
+    return even + x * odd, odd + 2.0 * x * (by_even + x * by_odd)
 
 
 @njit
-def _in_cell(c: Array, place: int, x: complex) -> tuple[complex, complex, complex, complex]:
-    """Velocity and acceleration at x, each with its derivative, from all four series at once: their chains of products
-    then run side by side.
-    """
-    v, v_x, a, a_x, mv, mv_x, ma, ma_x = 0j, 0j, 0j, 0j, 0j, 0j, 0j, 0j
-    mirrored = -x.conjugate()
-    for n in range(ORDER - 1, -1, -1):
-        v_x, v = v_x * x + v, v * x + _coefficient(c, place, 0, n)
-        a_x, a = a_x * x + a, a * x + _coefficient(c, place, 1, n)
-        mv_x, mv = mv_x * mirrored + mv, mv * mirrored + _coefficient(c, place, 2, n)
-        ma_x, ma = ma_x * mirrored + ma, ma * mirrored + _coefficient(c, place, 3, n)
-    return v + mv.conjugate(), v_x - mv_x.conjugate(), a + ma.conjugate(), a_x - ma_x.conjugate()
-
-
-@njit
-def _coefficient(c: Array, place: int, series: int, n: int) -> complex:
-    return complex(c[place, series, 0, n], c[place, series, 1, n])
+def _in_cell(of: SeriesAt, place: int, x: float, y: float) -> tuple[complex, complex, complex, complex]:
+    """Velocity and acceleration at x + i y, and their derivatives; the mirror's where it counts."""
+    at = 2 * place * 4 * ORDER
+    u, w, p, q, u_x, w_x, p_x, q_x = two_polynomials(of.c, at, x, y, WHOLE)
+    if of.alive[place, 1] == 0:
+        return complex(u, w), complex(p, q), complex(u_x, w_x), complex(p_x, q_x)
+    mu, mw, mp, mq, mu_x, mw_x, mp_x, mq_x = two_polynomials(of.c, at + 4 * ORDER, -x, y, WHOLE)
+    values = complex(u + mu, w - mw), complex(p + mp, q - mq)
+    return (*values, complex(u_x - mu_x, w_x + mw_x), complex(p_x - mp_x, q_x + mq_x))
 
 
 @njit
@@ -183,14 +182,9 @@ def _sum_surface(of: WaveSeries, waves: WaveTrain, g: int, place: int, s: float)
         _settle(at, waves, g, place, 0, waves.amplitude, Cell(0, s, 0.0, 0.0))
     c[place] = 0.0
     for j in range(waves.first[g], waves.first[g + 1]):
-        value = _now(at.motion, place, 0, j, waves.turned)
-        for n in range(ORDER):
-            c[place, 0, 0, n] += value.real * of.powers[j, n]
-            c[place, 0, 1, n] += value.imag * of.powers[j, n]
-    turn = complex(1.0, 0.0)
-    for n in range(ORDER):
-        c[place, 0, 0, n] = (_coefficient(c, place, 0, n) * turn).real
-        turn *= 1j
+        value, to, given = _now(at.motion, place, 0, j, waves.turned), 2 * HALF * place, 2 * HALF * j
+        add_multiple(c, to, value.real, of.split, given, EVEN)
+        add_multiple(c, to + HALF, -value.imag, of.split, given + HALF, EVEN)
 
 
 @njit
@@ -205,12 +199,9 @@ def _sum_flow(of: WaveSeries, waves: WaveTrain, g: int, place: int, cell: Cell) 
         for j in range(waves.first[g], waves.first[g] + at.alive[place, k]):
             v = _now(at.motion, place, k, j, waves.turned)
             a = complex(waves.w[j] * v.imag, -waves.w[j] * v.real)
-            for n in range(ORDER):
-                power = of.powers[j, n]
-                c[place, 2 * k, 0, n] += v.real * power
-                c[place, 2 * k, 1, n] += v.imag * power
-                c[place, 2 * k + 1, 0, n] += a.real * power
-                c[place, 2 * k + 1, 1, n] += a.imag * power
+            both, to = (v.real, v.imag, a.real, a.imag), (2 * place + k) * 4 * ORDER
+            for n in range(0, ORDER, 4):
+                add_shares(c, to + 4 * n, of.powers, j * ORDER + n, both, FOUR)
 
 
 @njit

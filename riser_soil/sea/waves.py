@@ -25,7 +25,7 @@ from riser_soil.sea import wave_series as series
 from riser_soil.sea.components import Components
 from riser_soil.sea.flows import add_flow
 from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wave_series import PlaneFlow, WaveSeries
+from riser_soil.sea.wave_series import WaveSeries
 from riser_soil.sea.wave_train import WaveTrain, train, turn
 
 Vector = tuple[float, float, float]
@@ -143,15 +143,14 @@ def _add_direction(motion: WaterMotion, sea: WaveNumbers, g: int, x: Array, at: 
     cx, cy = sea.train.toward[g]
     v, a = series.flow(sea.series, sea.train, t, g, cx * x[:, 0] + cy * x[:, 1], at.z)
     for p in range(len(x)):
-        _add(motion.velocity, motion.velocity_gradient, p, factor, v, cx, cy, at.gradient)
-        _add(motion.acceleration, motion.acceleration_gradient, p, factor, a, cx, cy, at.gradient)
-        _add(motion.acceleration, motion.acceleration_gradient, p, rate, v, cx, cy, at.gradient)
+        value, by_z = factor * a.value[p] + rate * v.value[p], factor * a.by_z[p] + rate * v.by_z[p]
+        _add(motion.velocity, motion.velocity_gradient, p, factor * v.value[p], factor * v.by_z[p], cx, cy, at.gradient)
+        _add(motion.acceleration, motion.acceleration_gradient, p, value, by_z, cx, cy, at.gradient)
 
 
 @njit
-def _add(v: Array, dv: Array, p: int, factor: float, flow: PlaneFlow, cx: float, cy: float, gradient: Array) -> None:
+def _add(v: Array, dv: Array, p: int, value: complex, by_z: complex, cx: float, cy: float, gradient: Array) -> None:
     """Add a flow without divergence and curl in (x, y, z'), whose z' has a gradient in (x, y, z)."""
-    value, by_z = factor * flow.value[p], factor * flow.by_z[p]
     by_s, across = -by_z.imag, by_z.real
     components = value.real * cx, value.real * cy, value.imag
     rows = (

@@ -10,7 +10,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 
-STEPS = 4  # that a smooth motion is continued from, at most
+SMOOTH, GRADUAL, ROUGH = 4, 3, 1  # steps that a motion is continued from, at most
 PARABOLA = 2
 FALL = 0.5  # at most, of each term beyond the parabola to the one before
 
@@ -22,12 +22,12 @@ class Extrapolation:
     The first difference is the mean rate of the last step [1/s], the second half its change [1/s2]. Beyond them only
     terms that fall fast are taken: those of what is rough, such as short waves in the riser or a gust, don't.
 
-    smooth: whether changes go on at all. An impact ends what went before: with contact the last rate alone is the
-    better guess.
+    most: steps that it continues, which is SMOOTH without contact and GRADUAL on clay. An impact ends what went before:
+    with a penalty's contact the last rate alone is the better guess, ROUGH.
     """
 
-    def __init__(self, size: int, smooth: bool) -> None:
-        self._most = STEPS if smooth else 1
+    def __init__(self, size: int, most: int) -> None:
+        self._most = most
         self._differences: Array = np.zeros((0, size))
         self._steps: Array = np.zeros(0)
 

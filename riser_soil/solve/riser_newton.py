@@ -72,7 +72,6 @@ class RiserNewton:
         self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # how they tell their results, and where to
         self._free = np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
-        self._gradual = all(part.traits.gradual for part, _ in parts if "E" in part.traits.groups)
         self._no_work = {part.name: Work() for part, _ in parts}
         self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
 
@@ -185,8 +184,8 @@ class RiserNewton:
 
     def _limits(self, step: Step) -> riser_loop.StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
-        smooth = self.system.smooth
-        return _limits(self.settings, smooth, self._gradual, smooth or self.rests or bool(step.guess[self._free].any()))
+        smooth, moves = self.system.smooth, bool(step.guess[self._free].any())
+        return _limits(self.settings, smooth, self.system.gradual, smooth or self.rests or moves)
 
     def _found(self) -> Forces:
         """The forces of the last trial."""

@@ -10,7 +10,7 @@ from riser_soil.core.part import Forces, State
 from riser_soil.solve.time_scheme import Scheme
 
 REUSE = 0.1
-BESIDE_CLAY = 0.01  # the same of the tangent of all else beside clay, whose curves take most of the iterations
+BESIDE_CLAY = 0.03  # the same of the tangent of all else beside clay, whose curves take most of the iterations
 
 
 class NotConvergedError(Exception):

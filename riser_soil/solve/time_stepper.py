@@ -18,7 +18,7 @@ from riser_soil.errors import SolveError
 from riser_soil.solve.energy_gain import LARGEST, EnergyGain
 from riser_soil.solve.held_balance import balance_held
 from riser_soil.solve.local_error import LocalError, committed_error
-from riser_soil.solve.predictor import Extrapolation
+from riser_soil.solve.predictor import GRADUAL, ROUGH, SMOOTH, Extrapolation
 from riser_soil.solve.solution import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_end import CommittedStep
@@ -115,7 +115,8 @@ class TimeStepper:
         self._past, self._first_guess = self._new_predictor(), None
 
     def _new_predictor(self) -> Extrapolation:
-        return Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
+        system = self.system
+        return Extrapolation(system.numbering.size, SMOOTH if system.smooth else GRADUAL if system.gradual else ROUGH)
 
     def _start_rates(self, before: State) -> None:
         """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""

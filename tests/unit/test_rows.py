@@ -21,6 +21,7 @@ from riser_soil.core.rows import (
     put_blocks,
     put_weighed,
     times,
+    two_polynomials,
 )
 
 
@@ -48,6 +49,24 @@ def test_what_is_read_is_read_before_anything_is_written(to: int) -> None:
     expected[to : to + 8] += values[4:12]
     _added(values, to, 1.0, values, 4, fixed(8))
     np.testing.assert_array_equal(values, expected)
+
+
+@njit
+def _polynomials(c: Array, start: int, x: float, y: float, N: Size) -> Any:
+    return two_polynomials(c, start, x, y, N)
+
+
+@pytest.mark.parametrize("N", [fixed(1), fixed(2), fixed(5)])
+def test_polynomials_have_their_values_and_derivatives(N: Size) -> None:
+    """Two complex ones by sums of powers."""
+    c, x = np.random.default_rng(1).uniform(-1.0, 1.0, (3, 4 * len(N))), 0.7 - 0.4j
+    row, powers = c[1].reshape(-1, 2, 2), np.arange(len(N))
+    first, second = (row[:, k, 0] + 1j * row[:, k, 1] for k in range(2))
+    values = [np.sum(each * x**powers) for each in (first, second)]
+    slopes = [np.sum(each[1:] * powers[1:] * x ** (powers[1:] - 1)) for each in (first, second)]
+    expected = np.array([*values, *slopes]).view(float)
+    for found in (_polynomials, two_polynomials):
+        np.testing.assert_allclose(found(c, 4 * len(N), x.real, x.imag, N), expected, atol=1e-14)
 
 
 @njit

@@ -14,6 +14,7 @@ from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import HeightField
 from riser_soil.seabed.profile import Profile
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation
 from tests.support.sample_line import DIRECTION, START, Sample, sample
@@ -90,6 +91,17 @@ def test_the_first_guess_lands_as_it_does_beside_soil(dimension: int) -> None:
     found = alone.predict(guess)
     assert np.abs(found - guess.u).max() > 0.0
     np.testing.assert_allclose(found, beside.predict(guess), rtol=1e-12, atol=1e-12)
+
+
+@both_dimensions
+def test_on_clay_the_first_guess_goes_on(dimension: int) -> None:
+    """Where the same line is raised over stiffer ground."""
+    at = sample(dimension)
+    ground = Plane.sloping(START - np.array([0.0, 0.0, 0.1]), 0.1, 0.3)
+    radius, guess = np.full(at.line.length.size, 0.1), at.state(1)
+    clay = RandolphQuiggin(kind="randolph-quiggin", su=2.0e3).of_pipe(0.2)
+    assert SeabedContact(at.line, radius, ground, ROUND).predict(guess) is not guess.u
+    assert SeabedContact(at.line, radius, ground, clay).predict(guess) is guess.u
 
 
 @both_dimensions
