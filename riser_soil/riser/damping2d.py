@@ -100,7 +100,7 @@ def put_element_forces(
     f: Array,
 ) -> None:
     """Write viscous forces f (6,) of element e for rates of the chords (ne, 2), m/s, and of the nodes' angles (nn,),
-    rad/s; chords and directions as in `beam2d.forces`.
+    rad/s; chords (ne, 2) and tangent directions (ne,) of both ends, rad.
     """
     at = corotate(chord[e], direction1[e], direction2[e])
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])

@@ -127,7 +127,7 @@ def put_element_forces(
 ) -> None:
     """Write viscous forces f (12,) of element e, conjugate to displacements and spatial spins.
 
-    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.forces`.
+    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.put_element_forces`.
     """
     D = stiffness(ref, viscosity, e)
     at, _, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])

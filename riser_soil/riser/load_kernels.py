@@ -34,8 +34,13 @@ class SpatialMoments(NamedTuple):
 
 @njit
 def _add_given(F: Array, nodal: Array, out: LineForces) -> None:
-    out.force_q[:] += F
-    out.force[:] += nodal
+    for e in range(F.shape[0]):
+        for k in range(4):
+            for i in range(F.shape[2]):
+                out.force_q[e, k, i] += F[e, k, i]
+    for n in range(nodal.shape[0]):
+        for i in range(nodal.shape[1]):
+            out.force[n, i] += nodal[n, i]
 
 
 @add_forces.of(GivenForces)
