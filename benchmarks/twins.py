@@ -17,8 +17,8 @@ import numpy as np
 from benchmarks.riser_only import CATENARY, ELEMENTS, surging, timed
 from benchmarks.stage import TimedStage
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import State, Weights
-from riser_soil.riser.elastic import elastic_elements
+from riser_soil.core.part import Forces, Part, State, Weights
+from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.midpoint_directors import directors
 from riser_soil.riser.rotary_inertia import RotaryInertia
@@ -74,13 +74,13 @@ def timed_iteration(stage: TimedStage) -> float:
 
 def actions(stage: TimedStage) -> dict[str, Action]:
     """What a Newton iteration asks of each of the classes."""
-    line = stage.assembly.line
-    state = stirred(line, stage.stepper.before)
+    line, elements = stage.assembly.line, stage.assembly.elements
+    state, damped = stirred(line, stage.stepper.before), replace(elements, damping=np.full(line.length.size, 0.1))
     return {
-        "frames (trial, rates and their derivatives)": lambda: turn(line, state),
-        "elastic elements (forces and tangent)": elastic(stage, state),
-        "structural damping (forces and tangent)": damped(stage, state),
-        "rotary inertia (moments and tangent)": rotary(stage, state),
+        "frames (trial and rates)": lambda: turn(line, state),
+        "elastic elements (forces and tangent)": both(Beam(line, elements), line, state),
+        "structural damping (forces and tangent)": both(StructuralDamping(line, damped), line, state),
+        "rotary inertia (moments and tangent)": both(RotaryInertia(line, np.ones(line.length.size)), line, state),
         "midpoint rule's directors (secant and geometric)": midpoint(line, state),
     }
 
@@ -99,8 +99,7 @@ def stirred(line: Line, before: State) -> State:
 def turn(line: Line, state: State) -> None:
     trial = line._make_trial(state)
     force = np.ones_like(trial.q)
-    assert trial.q_rate.shape == trial.q_acceleration.shape
-    trial.columns(WEIGHTS)
+    assert trial.q_rate.shape == force.shape
     trial.add_turning(matrices(line), 1.0, force)
 
 
@@ -108,39 +107,13 @@ def matrices(line: Line) -> Array:
     return np.zeros((line.length.size, 2 * line.ndof, 2 * line.ndof))
 
 
-def elastic(stage: TimedStage, state: State) -> Action:
-    line = stage.assembly.line
-    elements, trial, K = elastic_elements(line, stage.assembly.elements), line.trial(state), matrices(line)
-    weight = np.ones(trial.chord.shape)
+def both(part: Part, line: Line, state: State) -> Action:
+    """Forces and tangent of a part at the same trial."""
+    forces, values = Forces.zeros(state.u.size), {line.name: matrices(line)}
 
     def act() -> None:
-        elements.forces(trial, weight)
-        elements.add_tangent(K, 1.0, trial, weight)
-
-    return act
-
-
-def damped(stage: TimedStage, state: State) -> Action:
-    line = stage.assembly.line
-    beta = np.full(line.length.size, 0.1)
-    part = StructuralDamping(line, replace(stage.assembly.elements, damping=beta))
-    trial, v = line.trial(state), line.nodal(state.v)
-
-    def act() -> None:
-        part._damping.forces(trial, v)
-        part._damping.tangent(trial, v, WEIGHTS.shift_v)
-
-    return act
-
-
-def rotary(stage: TimedStage, state: State) -> Action:
-    line = stage.assembly.line
-    sections, K = RotaryInertia(line, np.ones(line.length.size))._sections, matrices(line)
-    turning = [np.ascontiguousarray(line.nodal(values)[:, line.dimension :]) for values in (state.u, state.v, state.a)]
-
-    def act() -> None:
-        sections.forces(*turning)
-        sections.add_tangent(K, WEIGHTS, *turning)
+        part.residual(state, forces)
+        part.tangent(state, WEIGHTS, values)
 
     return act
 

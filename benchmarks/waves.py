@@ -1,14 +1,13 @@
 """What the sea's waves cost in a run: series about places against plain sums over the components at every station.
 
-The storm of `demos/waves`, twice, step by step in turn, so that a machine whose speed drifts changes all figures alike.
-The plain sums are taken for every trial, as without `FlowAtStations`' memory. `python -m benchmarks.waves` prints the
-table alone.
+The storm of `demos/waves`, step by step, with both at the places of every trial in turn, so that a machine whose speed
+drifts changes all figures alike. `python -m benchmarks.waves` prints the table alone.
 """
 
 from __future__ import annotations
 
 import argparse
-import time
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 from unittest.mock import patch
@@ -17,11 +16,11 @@ import numpy as np
 
 from benchmarks.riser_only import timed
 from benchmarks.stage import TimedStage, last_stage
+from riser_soil.assembly.sea import water_of
 from riser_soil.core.system import Timer
-from riser_soil.riser.trial import Trial
+from riser_soil.riser import stations
 from riser_soil.sea import wave_series
-from riser_soil.sea.moving_water import FlowAtStations
-from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.sea import Sea
 from tests.support.summed_waves import SummedWaves
 
 SCENE = Path(__file__).parent.parent / "demos" / "waves" / "scene.yaml"
@@ -33,26 +32,6 @@ class Cost(NamedTuple):
 
     step: float
     water: float
-
-
-class Clocked(FlowAtStations):
-    """The water's motion, with the seconds that it takes."""
-
-    seconds = 0.0
-
-    def _find(self, trial: Trial) -> WaterMotion:
-        began = time.perf_counter()
-        found = self._motion_of(trial)
-        Clocked.seconds += time.perf_counter() - began
-        return found
-
-    def _motion_of(self, trial: Trial) -> WaterMotion:
-        return super()._find(trial)
-
-
-class ForEveryTrial(Clocked):
-    def _motion_of(self, trial: Trial) -> WaterMotion:
-        return self._evaluate(trial.state.t, self.pipe.position(trial))
 
 
 class PlainSums(SummedWaves):
@@ -71,32 +50,32 @@ def report() -> None:
 
 
 def measure(count: int) -> tuple[Cost, Cost]:
-    """Medians, of series and of plain sums."""
-    stages = storm(count, Clocked), storm(count, ForEveryTrial)
-    found = [[taken(stage) for stage in stages] for _ in range(STEPS)]
-    for stage in stages:
-        stage.destroy()
-    series, sums = np.median(np.array(found), axis=0)
-    return Cost(*series), Cost(*sums)
-
-
-def storm(count: int, stream: type[Clocked]) -> TimedStage:
-    """The storm, grown to its full height."""
-    settings = (f"water.waves.jonswap.components={count}",)
-    with patch("riser_soil.sea.moving_water.FlowAtStations", stream):
-        if stream is Clocked:
-            stage = last_stage(SCENE, settings, Timer.new())
-        else:
-            with patch("riser_soil.sea.wave_field.WaveField", PlainSums):
-                stage = last_stage(SCENE, settings, Timer.new())
+    """Medians, of series and of plain sums, which take the place of the series in the same steps."""
+    stage = last_stage(SCENE, (f"water.waves.jonswap.components={count}",), Timer.new())
+    series = water_of(stage.assembly.scene, stage.stage)
+    with patch("riser_soil.sea.wave_field.WaveField", PlainSums):
+        sums = water_of(stage.assembly.scene, stage.stage)
+    assert series is not None
+    assert sums is not None
     stage.walk(RAMP)
-    return stage
+    found = [taken(stage, series, sums) for _ in range(STEPS)]
+    stage.destroy()
+    (step, *seconds) = np.median(np.array(found), axis=0)
+    return Cost(step, seconds[0]), Cost(step - seconds[0] + seconds[1], seconds[1])
 
 
-def taken(stage: TimedStage) -> Cost:
-    before = Clocked.seconds
+def taken(stage: TimedStage, *seas: Sea) -> list[float]:
+    """Seconds of a step, and of the water's motion by each of the seas at its trials, whose places differ a little."""
+    line, before = stage.assembly.line, stage.iterations
     step = timed(lambda: stage.walk(1))
-    return Cost(step, Clocked.seconds - before)
+    trials, state = stage.iterations - before + 1, stage.stepper.now
+    x = line.to_global(stations.interpolate(stations.stations(line.length), line.trial(state).q)).reshape(-1, 3)
+
+    def ask(sea: Sea) -> None:
+        for k in range(trials):
+            sea(state.t, x + 1e-6 * k)
+
+    return [step, *(timed(partial(ask, sea)) for sea in seas)]
 
 
 if __name__ == "__main__":

@@ -16,12 +16,11 @@ from riser_soil.riser.sections import Elements
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
-    from riser_soil.sea.buoyancy import LostBuoyancy
+    from riser_soil.sea.buoyancy import Dry
+    from riser_soil.sea.moving_water import WaterLoads
     from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.reynolds_drag import ReynoldsTables
-    from riser_soil.sea.still_water import StillWater
     from riser_soil.sea.vortex_law import Shedding
-    from riser_soil.sea.wetting import WaterSurface, Wetting
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ class Body(ABC):
 
     @property
     @abstractmethod
-    def still(self) -> StillWater:
+    def still(self) -> WaterLoads:
         """Its loads in still water."""
 
     @property
@@ -73,12 +72,13 @@ class Body(ABC):
     def displaced(self) -> Array:
         """Mass of the water in its place (ne,)."""
 
+    @property
     @abstractmethod
-    def wetting(self, surface: WaterSurface) -> Wetting:
-        """How wet its stations are."""
+    def span(self) -> Array:
+        """Widths (ne, ng) [m] of the sections that get wet."""
 
     @abstractmethod
-    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
+    def dry(self, gravity: float) -> Dry:
         """Its lost buoyancy where it is dry."""
 
 
@@ -118,12 +118,12 @@ class PipeInWater(Body):
         return Shedding(0.5 * self.rho * diameter * coefficient, diameter, middle, width)
 
     @property
-    def still(self) -> StillWater:
+    def still(self) -> WaterLoads:
         from riser_soil.sea.morison_law import drag_coefficients
-        from riser_soil.sea.still_water import StillWater
+        from riser_soil.sea.moving_water import WaterLoads
 
         drag = drag_coefficients(self.rho, self.elements.outer_diameter, *self.elements.drag.T)
-        return StillWater(self.pipe, drag, self.mass)
+        return WaterLoads(self.pipe, drag, self.mass)
 
     @cached_property
     def mass(self) -> Array:
@@ -135,15 +135,14 @@ class PipeInWater(Body):
     def displaced(self) -> Array:
         return np.asarray(self.rho * 0.25 * np.pi * self.elements.outer_diameter**2)
 
-    def wetting(self, surface: WaterSurface) -> Wetting:
-        from riser_soil.sea.wetting import Wetting
+    @property
+    def span(self) -> Array:
+        return self.pipe.span
 
-        return Wetting(self.pipe, surface)
+    def dry(self, gravity: float) -> Dry:
+        from riser_soil.sea.dry_pipe import dry_pipe
 
-    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
-        from riser_soil.sea.dry_pipe import DryPipe
-
-        return DryPipe(self.pipe, surface, gravity * self.displaced)
+        return dry_pipe(gravity * self.displaced)
 
 
 @dataclass(frozen=True)
@@ -167,11 +166,11 @@ class ModulesInWater(Body):
         return any(module.added_mass for module in self.modules)
 
     @property
-    def still(self) -> StillWater:
+    def still(self) -> WaterLoads:
         from riser_soil.sea.modules import alike
-        from riser_soil.sea.still_water import StillWater
+        from riser_soil.sea.moving_water import WaterLoads
 
-        return StillWater(self.pipe, alike(0.5 * self.rho * self._of("drag_area")), self.mass)
+        return WaterLoads(self.pipe, alike(0.5 * self.rho * self._of("drag_area")), self.mass)
 
     @cached_property
     def mass(self) -> Array:
@@ -183,16 +182,16 @@ class ModulesInWater(Body):
     def displaced(self) -> Array:
         return self.rho * self._of("volume")
 
-    def wetting(self, surface: WaterSurface) -> Wetting:
+    @property
+    def span(self) -> Array:
         from riser_soil.sea.modules import diameters
-        from riser_soil.sea.wetting import Wetting
 
-        return Wetting(self.pipe, surface, diameters(self.modules)[:, None])
+        return diameters(self.modules)[:, None]
 
-    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
-        from riser_soil.sea.buoyancy import DryStations
+    def dry(self, gravity: float) -> Dry:
+        from riser_soil.sea.buoyancy import dry_stations
 
-        return DryStations(self.pipe, self.wetting(surface), gravity * self.displaced)
+        return dry_stations(self.span, gravity * self.displaced)
 
     def _of(self, name: str) -> Array:
         return np.array([getattr(module, name) for module in self.modules], dtype=float)

@@ -20,14 +20,13 @@ if TYPE_CHECKING:
     from riser_soil.sea.changing_current import ChangingCurrent
     from riser_soil.sea.components import Components
     from riser_soil.sea.current import SteadyCurrent
-    from riser_soil.sea.sea import FlowComponent
+    from riser_soil.sea.sea import FlowComponent, Sea
     from riser_soil.sea.steady_flow import SteadyFlow
     from riser_soil.sea.steady_wave import SteadyWave
-    from riser_soil.sea.water import Water
     from riser_soil.sea.wave_field import WaveField
 
 
-def water_of(scene: Scene, stage: Stage) -> Water | None:
+def water_of(scene: Scene, stage: Stage) -> Sea | None:
     """The water in a stage: current, in dynamic stages waves, and the surface.
 
     None where nothing moves and there is no surface: still water around a submerged riser, or no water at all.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -22,12 +22,10 @@ if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Buoyancy
     from riser_soil.sea.morison import Morison
-    from riser_soil.sea.moving_water import FlowAtStations
+    from riser_soil.sea.moving_water import FlowAtStations, WaterLoads
     from riser_soil.sea.reynolds_drag import ReynoldsTables
-    from riser_soil.sea.still_water import StationLoads
     from riser_soil.sea.vortex_law import Shedding
     from riser_soil.sea.vortices import Vortices
-    from riser_soil.sea.wetting import WaterSurface
 
 
 def sea_loads(
@@ -107,56 +105,41 @@ class _BodyLoads:
         return FlowAtStations(self.body.pipe, water_of(self.scene, self.stage) or Sea(None))
 
     @cached_property
-    def surface(self) -> WaterSurface | None:
-        """Where the water has one: that of the water that moves, or still water's."""
-        if self.water.surface_level is None:
-            return None
-        if self.stream is not None:
-            return self.stream
-        from riser_soil.sea.wetting import CalmSurface
-
-        return CalmSurface(self.body.pipe, self.water.surface_level)
+    def surface(self) -> FlowAtStations | None:
+        """Water that has one, whether it moves or not."""
+        return None if self.water.surface_level is None else self._flow
 
     @property
     def morison(self) -> Morison:
         from riser_soil.sea.morison import Morison
+        from riser_soil.sea.moving_water import pushed_masses
 
-        return Morison(self.body.pipe, self._at_stations())
+        body, loads = self.body, self.body.still
+        if self.stream is not None:
+            loads = replace(loads, water=self.stream, dissipative=False)
+            if self.accelerates:
+                loads = replace(loads, pushed=pushed_masses(body.mass, body.displaced))
+        return Morison(loads if self.surface is None else replace(loads, water=self.surface, span=body.span))
 
-    def _at_stations(self) -> StationLoads:
-        """Each thing that the water has adds to what is there without it."""
-        loads = self._in_motion(self.stream) if self.stream is not None else self.body.still
-        return self._where_wet(loads)
+    def _through(self, dissipative: bool) -> WaterLoads:
+        """Of what moves through the water, where it is wet."""
+        from riser_soil.sea.moving_water import through
 
-    def _where_wet(self, loads: StationLoads) -> StationLoads:
-        if self.surface is None:
-            return loads
-        from riser_soil.sea.wetting import PartlyWet
-
-        return PartlyWet(loads, self.body.wetting(self.surface))
+        return through(self._flow, None if self.surface is None else self.body.span, dissipative)
 
     def _reynolds_drag(self, tables: ReynoldsTables) -> Morison:
         from riser_soil.sea.reynolds_drag import reynolds_drag
-        from riser_soil.sea.through import ThroughLoads
 
-        loads = ThroughLoads(self._flow, lambda t: tables, dissipative=self.stream is None)
-        return reynolds_drag(self.body.pipe, self._where_wet(loads), tables)
+        return reynolds_drag(self._through(dissipative=self.stream is None), tables)
 
     def _vortices(self, shedding: Shedding) -> Vortices:
-        from riser_soil.sea.vortices import Shed, Vortices
+        from riser_soil.sea.vortices import Vortices
 
-        shed = Shed(self._flow, shedding)
-        return Vortices(self._where_wet(shed.loads), shed)
-
-    def _in_motion(self, stream: FlowAtStations) -> StationLoads:
-        from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag
-
-        drag = RelativeDrag(self.body.still, stream)
-        return AcceleratedWater(drag, stream, self.body.mass, self.body.displaced) if self.accelerates else drag
+        return Vortices(self._through(dissipative=False), shedding)
 
     @property
     def buoyancy(self) -> Buoyancy:
         from riser_soil.sea.buoyancy import Buoyancy
 
         assert self.surface is not None
-        return Buoyancy(self.body.pipe, self.body.dry(self.surface, self.scene.gravity), flat=not self.waves)
+        return Buoyancy(self.surface, self.body.dry(self.scene.gravity), flat=not self.waves)

@@ -10,15 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Energy, Forces, State, Traits, Weights
+from riser_soil.core.part import State, Traits
 from riser_soil.riser import hermite
+from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.line import UP, Line
-from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.load_kernels import GivenForces
 
 
@@ -61,15 +61,15 @@ def split(line: Line, attachments: Sequence[PointAttachment]) -> tuple[list[Poin
 
 
 class Masses(NamedTuple):
-    """Sums of m N N^T by element (ne, 4, 4), kg, of what sits along the line and of what sits at its ends."""
+    """Of what sits along the line, sums of m N N^T by element (ne, 4, 4); of what sits at its ends, masses (2,); kg."""
 
     along: Array
     ends: Array
 
 
 def masses(line: Line, attachments: Sequence[PointAttachment]) -> Masses:
-    along, ends = (_mass_matrices(line, some) for some in split(line, attachments))
-    return Masses(along, ends)
+    along, ends = split(line, attachments)
+    return Masses(_mass_matrices(line, along), _at_ends(line, ends, [attachment.mass for attachment in ends]))
 
 
 def _mass_matrices(line: Line, attachments: Sequence[PointAttachment]) -> Array:
@@ -80,17 +80,27 @@ def _mass_matrices(line: Line, attachments: Sequence[PointAttachment]) -> Array:
     return M
 
 
-def _residual(line: Line, attachments: Sequence[PointAttachment]) -> Array:
-    """Residual of weight less buoyancy, conjugate to q (ne, 4, d)."""
-    F = np.zeros((line.length.size, 4, line.dimension))
-    element, N = _shares(line, attachments)
-    weight = np.array([attachment.net_weight for attachment in attachments])
-    np.add.at(F, element, (weight[:, None] * N)[:, :, None] * (UP @ line.basis))
-    return F
+def _at_ends(line: Line, attachments: Sequence[PointAttachment], values: Sequence[float]) -> Array:
+    """Sums (2,) at the start and at the end of values of attachments there."""
+    sums = np.zeros(2)
+    for attachment, value in zip(attachments, values, strict=True):
+        sums[int(line.place(attachment.arc) != (0, 0.0))] += value
+    return sums
 
 
-class Attachments(LinePart):
-    """Weight less buoyancy of attachments (group F), with a potential.
+def _weights(line: Line, attachments: Sequence[PointAttachment]) -> GivenForces:
+    """Weight less buoyancy."""
+    F, nodal, up = np.zeros((line.length.size, 4, line.dimension)), np.zeros((line.nodes, line.ndof)), UP @ line.basis
+    along, ends = split(line, attachments)
+    element, N = _shares(line, along)
+    weight = np.array([attachment.net_weight for attachment in along])
+    np.add.at(F, element, (weight[:, None] * N)[:, :, None] * up)
+    nodal[[0, -1], : line.dimension] = np.outer(_at_ends(line, ends, [each.net_weight for each in ends]), up)
+    return GivenForces(F, nodal, potential=True)
+
+
+class Attachments(CompiledPart):
+    """Weight less buoyancy of attachments (group F), with a potential, zero at the origin of the axes.
 
     line: the riser's field. attachments: on it, in any order.
     """
@@ -100,29 +110,10 @@ class Attachments(LinePart):
 
     def __init__(self, line: Line, attachments: Sequence[PointAttachment]) -> None:
         super().__init__(line)
-        self._along, self._ends = (_residual(line, some) for some in split(line, attachments))
-        self._F = self._along + self._ends
+        self._weights = _weights(line, attachments)
 
-    def element_forces(self, state: State) -> tuple[None, Array]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None, of what sits along the line."""
-        return None, self.line.trial(state).pull_back(self._along)
+    def make_numbers(self) -> GivenForces:
+        return self._weights
 
-    def nodal_forces(self, state: State) -> Array:
-        """Residual (nn, ndof) of what sits at the line's ends."""
-        return self.line.gathered(self.line.trial(state).pull_back(self._ends))
-
-    def residual(self, state: State, forces: Forces) -> None:
-        self.line.collect(self.line.trial(state), self._F, forces.force)
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        self.line.trial(state).add_turning(values[self.line.name], weights.force, self._F)
-
-    def numbers(self) -> GivenForces:
-        return GivenForces(self._F, np.empty(0), potential=True)
-
-    def numbers_within(self, numbers: tuple[Any, ...]) -> GivenForces:
-        return GivenForces(self._along, np.empty(0), potential=True)
-
-    def energy(self, state: State) -> Energy:
-        """Potential of weight less buoyancy, zero at the origin of the axes."""
-        return Energy(potential=float(np.sum(self._F * self.line.trial(state).q)))
+    def nodal_forces(self, state: State) -> Array | None:
+        return self.forces_on_nodes(state) if self._weights.nodal.any() else None

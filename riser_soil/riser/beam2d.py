@@ -129,19 +129,8 @@ def stress_variation(
 
 
 @njit
-def strain_energy(
-    chord: Array, direction1: Array, direction2: Array, ref: PlanarReference, section: PlanarSection
-) -> Array:
-    """Strain energy U (ne,) in J; arguments as in `forces`."""
-    U = np.empty(len(chord))
-    for e in range(len(chord)):
-        U[e] = element_energy(e, corotate(chord[e], direction1[e], direction2[e]), ref, section)
-    return U
-
-
-@njit
 def element_energy(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection) -> float:
-    """That of element e."""
+    """Strain energy [J] of element e."""
     element = element_at(ref, section, e)
     phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
     m1, m2 = end_moments(element.EI_per_L, phi1, phi2)
@@ -164,17 +153,8 @@ def put_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
 
 
 @njit
-def forces(chord: Array, direction1: Array, direction2: Array, ref: PlanarReference, section: PlanarSection) -> Array:
-    """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
-    f = np.empty((len(chord), 6))
-    for e in range(len(chord)):
-        put_element_forces(e, corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e])
-    return f
-
-
-@njit
 def put_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array) -> None:
-    """Write forces f (6,) of element e."""
+    """Write internal forces f (6,) of element e."""
     N, m1, m2 = _stress(element_at(ref, section, e), at)
     put_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
@@ -212,21 +192,10 @@ def _tangent(element: PlanarElement, at: PlanarCorotated, N: float, force: Vec2,
 
 
 @njit
-def forces_and_tangent(
-    chord: Array, direction1: Array, direction2: Array, ref: PlanarReference, section: PlanarSection
-) -> tuple[Array, Array]:
-    """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
-    f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))
-    for e in range(len(chord)):
-        put_element(e, corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e], K[e])
-    return f, K
-
-
-@njit
 def put_element(
     e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array, K: Array
 ) -> None:
-    """Write forces f (6,) and tangent K (6, 6) of element e."""
+    """Write internal forces f (6,) of element e and their derivative K (6, 6) by displacements and angles."""
     element = element_at(ref, section, e)
     N, m1, m2 = _stress(element, at)
     response = nodal_forces(at, N, m1, m2)

@@ -137,35 +137,14 @@ def element_shape(e: int, chord: Array, frame1: Array, frame2: Array, ref: Spati
 
 
 @njit
-def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection) -> Array:
-    """Strain energy (ne,) in J; arguments as in `forces`."""
-    U = np.empty(len(chord))
-    for e in range(len(chord)):
-        U[e] = element_energy(e, element_shape(e, chord, frame1, frame2, ref), ref, section)
-    return U
-
-
-@njit
 def element_energy(e: int, at: Shape, ref: SpatialReference, section: SpatialSection) -> float:
     """Strain energy of element e."""
     return energy(stiffness(ref, section, e), at.strain, difference(at.strain, _unstressed(ref, e)))
 
 
 @njit
-def load_potential(
-    chord: Array, frame1: Array, frame2: Array, middle: Array, ref: SpatialReference, load: Array
-) -> Array:
-    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3): `spatial_load`."""
-    V = np.empty(len(chord))
-    for e in range(len(chord)):
-        at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])
-        V[e] = element_potential(at, ref.L[e], w, vector(middle[e]))
-    return V
-
-
-@njit
 def element_potential(at: Shape, L: float, w: Vec, middle: Vec) -> float:
-    """That of one element."""
+    """Potential [J] of a load w per length [N/m] on an element with this middle: `spatial_load`."""
     potential: float = bow_potential(bow_load(at.frame.axes, L, w), at.end1.angles, at.end2.angles)
     return potential - L * dot(w, middle)
 
@@ -207,19 +186,6 @@ def put_forces(axes: Mat, forces: SpatialNodalForces, out: Array) -> None:
 
 
 @njit
-def forces(
-    chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection, load: Array
-) -> Array:
-    """Internal forces f (ne, 12) less those of a load per length (ne, 3) [N/m], for chords (ne, 3) and section frames
-    (ne, 3, 3) of both ends.
-    """
-    f = np.empty((len(chord), 12))
-    for e in range(len(chord)):
-        put_element_forces(e, chord, frame1, frame2, ref, section, load, f[e])
-    return f
-
-
-@njit
 def put_element_forces(
     e: int,
     chord: Array,
@@ -230,7 +196,9 @@ def put_element_forces(
     load: Array,
     f: Array,
 ) -> None:
-    """Write forces f (12,) of element e; all else as in `forces`."""
+    """Write internal forces f (12,) of element e, less those of a load per length (ne, 3) [N/m], for chords (ne, 3) and
+    section frames (ne, 3, 3) of both ends.
+    """
     at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])
     response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at, w)
     _put_loaded_forces(ref.L[e], at, response, w, f)
@@ -353,17 +321,6 @@ def _spread(changes: Array, K: Array) -> None:
 
 
 @njit
-def forces_and_tangent(
-    chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection, load: Array
-) -> tuple[Array, Array]:
-    """Forces f (ne, 12) as in `forces`, and their derivative K (ne, 12, 12) by displacements and spatial spins."""
-    f, K, room = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12)), tangent_room()
-    for e in range(len(chord)):
-        put_element(e, chord, frame1, frame2, ref, section, load, room, f[e], K[e])
-    return f, K
-
-
-@njit
 def put_element(
     e: int,
     chord: Array,
@@ -376,8 +333,8 @@ def put_element(
     f: Array,
     K: Array,
 ) -> None:
-    """Write forces f (12,) and tangent K (12, 12) of element e; room: `tangent_room`; all else as in
-    `forces_and_tangent`.
+    """Write forces f (12,) of element e as `put_element_forces`, and their derivative K (12, 12) by displacements and
+    spatial spins; room: `tangent_room`.
     """
     D, w = stiffness(ref, section, e), vector(load[e])
     at = element_shape(e, chord, frame1, frame2, ref)

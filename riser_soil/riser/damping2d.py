@@ -8,8 +8,6 @@ rates of the strains. A rigid motion has none, so it is never damped, however fa
 
 from typing import NamedTuple
 
-import numpy as np
-
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam2d import (
@@ -90,26 +88,6 @@ def _vary(
 
 
 @njit
-def forces(
-    chord: Array,
-    direction1: Array,
-    direction2: Array,
-    ref: PlanarReference,
-    viscosity: PlanarSection,
-    chord_rate: Array,
-    turn_rate: Array,
-) -> Array:
-    """Viscous forces f (ne, 6) for rates of the chords (ne, 2), m/s, and of the nodes' angles (nn,), rad/s.
-
-    Chords and directions as in `beam2d.forces`.
-    """
-    f = np.empty((len(chord), 6))
-    for e in range(len(chord)):
-        put_element_forces(e, chord, direction1, direction2, ref, viscosity, chord_rate, turn_rate, f[e])
-    return f
-
-
-@njit
 def put_element_forces(
     e: int,
     chord: Array,
@@ -121,30 +99,14 @@ def put_element_forces(
     turn_rate: Array,
     f: Array,
 ) -> None:
-    """Write forces f (6,) of element e; all else as in `forces`."""
+    """Write viscous forces f (6,) of element e for rates of the chords (ne, 2), m/s, and of the nodes' angles (nn,),
+    rad/s; chords (ne, 2) and tangent directions (ne,) of both ends, rad.
+    """
     at = corotate(chord[e], direction1[e], direction2[e])
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
     element = element_at(ref, viscosity, e)
     N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
     put_forces(at.axis, nodal_forces(at, N, m1, m2), f)
-
-
-@njit
-def tangent(
-    chord: Array,
-    direction1: Array,
-    direction2: Array,
-    ref: PlanarReference,
-    viscosity: PlanarSection,
-    chord_rate: Array,
-    turn_rate: Array,
-    shift_v: float,
-) -> Array:
-    """Derivative K (ne, 6, 6) of `forces` by displacements and angles, which the rates follow by shift_v [1/s]."""
-    K = np.empty((len(chord), 6, 6))
-    for e in range(len(chord)):
-        put_element_tangent(e, chord, direction1, direction2, ref, viscosity, chord_rate, turn_rate, shift_v, K[e])
-    return K
 
 
 @njit
@@ -160,7 +122,7 @@ def put_element_tangent(
     shift_v: float,
     K: Array,
 ) -> None:
-    """Write the tangent K (6, 6) of element e; all else as in `tangent`."""
+    """Write their derivative K (6, 6) by displacements and angles, which the rates follow by shift_v [1/s]."""
     at = corotate(chord[e], direction1[e], direction2[e])
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
     element = element_at(ref, viscosity, e)

@@ -7,8 +7,6 @@ however fast it turns.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam3d import (
@@ -116,26 +114,6 @@ def _element(
 
 
 @njit
-def forces(
-    chord: Array,
-    frame1: Array,
-    frame2: Array,
-    ref: SpatialReference,
-    viscosity: SpatialSection,
-    chord_rate: Array,
-    spin: Array,
-) -> Array:
-    """Viscous forces f (ne, 12), conjugate to displacements and spatial spins.
-
-    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.forces`.
-    """
-    f = np.empty((len(chord), 12))
-    for e in range(len(chord)):
-        put_element_forces(e, chord, frame1, frame2, ref, viscosity, chord_rate, spin, f[e])
-    return f
-
-
-@njit
 def put_element_forces(
     e: int,
     chord: Array,
@@ -147,7 +125,10 @@ def put_element_forces(
     spin: Array,
     f: Array,
 ) -> None:
-    """Write forces f (12,) of element e; all else as in `forces`."""
+    """Write viscous forces f (12,) of element e, conjugate to displacements and spatial spins.
+
+    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.put_element_forces`.
+    """
     D = stiffness(ref, viscosity, e)
     at, _, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
     put_forces(at.frame.axes, response.forces, f)
@@ -185,28 +166,6 @@ def _shift_columns(
 
 
 @njit
-def tangent(
-    chord: Array,
-    frame1: Array,
-    frame2: Array,
-    ref: SpatialReference,
-    viscosity: SpatialSection,
-    chord_rate: Array,
-    spin: Array,
-    nodes: NodeRotations,
-    shift_v: float,
-) -> Array:
-    """Derivative K (ne, 12, 12), by displacements and rotation vectors, of the forces conjugate to them.
-
-    Velocities and body-axes angular velocities follow by shift_v [1/s].
-    """
-    K = np.empty((len(chord), 12, 12))
-    for e in range(len(chord)):
-        put_element_tangent(e, chord, frame1, frame2, ref, viscosity, chord_rate, spin, nodes, shift_v, K[e])
-    return K
-
-
-@njit
 def put_element_tangent(
     e: int,
     chord: Array,
@@ -220,7 +179,10 @@ def put_element_tangent(
     shift_v: float,
     K: Array,
 ) -> None:
-    """Write the tangent K (12, 12) of element e; all else as in `tangent`."""
+    """Write the derivative K (12, 12), by displacements and rotation vectors, of the forces conjugate to them.
+
+    Velocities and body-axes angular velocities follow by shift_v [1/s].
+    """
     D = stiffness(ref, viscosity, e)
     at, flow, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
     _shift_columns(D, at, flow, response, shift_v, K)

@@ -6,7 +6,6 @@ for a rotation increment as a turn with the same members:
     tangent   unit tangents t at both ends of each element (ne, 2, d)
     P         dt/dTheta (ne, 2, d, r)
     motion    q' and q'' from the rates and accelerations of the dofs; see `hermite`
-    maps      P and the derivatives of t', t'' with respect to Theta, rates following by the shifts
     geometric derivative of P^T F with respect to Theta at fixed F
 
 R is the identity in the unstressed configuration. With body-axes angular velocity W and acceleration A,

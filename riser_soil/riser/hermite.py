@@ -129,11 +129,6 @@ def put_pulled_back(F: Array, P: Array, out: Array, D: Size, R: Size) -> None:
                 out[e, at + d + k] = total
 
 
-def collect(F: Array, P: Array, nodal: Array) -> None:
-    """Add F (ne, 4, d) conjugate to q, pulled back and summed along the chain, to nodal (nn, d + r)."""
-    collect_nodal(F, P, nodal, fixed(P.shape[2]), fixed(P.shape[3]))
-
-
 @njit
 def scatter(element: Array, nodal: Array) -> None:
     """Add element arrays (ne, 2 ndof) along the chain to nodal (nn, ndof)."""
@@ -146,7 +141,7 @@ def scatter(element: Array, nodal: Array) -> None:
 
 @njit
 def collect_nodal(F: Array, P: Array, nodal: Array, D: Size, R: Size) -> None:
-    """What `collect` does, for compiled code."""
+    """Add F (ne, 4, d) conjugate to q, pulled back and summed along the chain, to nodal (nn, d + r)."""
     d = len(D)
     for e in range(P.shape[0]):
         for side in range(2):

@@ -19,15 +19,8 @@ def _moment_to_increments(moment: Array, H: Mat) -> None:
 
 
 @njit
-def forces_to_increments(f: Array, H: Array) -> None:
-    """Turn the moments in f (ne, 12), conjugate to spins, into those of rotation vectors; H is (nn, 3, 3)."""
-    for e in range(len(f)):
-        element_to_increments(e, f[e], H)
-
-
-@njit
 def element_to_increments(e: int, f: Array, H: Array) -> None:
-    """The same of one element, f (12,)."""
+    """Turn the moments in f (12,) of element e, conjugate to spins, into those of rotation vectors; H: (nn, 3, 3)."""
     _moment_to_increments(f[3:6], matrix(H[e]))
     _moment_to_increments(f[9:12], matrix(H[e + 1]))
 
@@ -64,19 +57,11 @@ def rows_to_increments(K: Array, at: int, moment: Vec, H: Mat, Rn: Mat, Theta: V
 
 
 @njit
-def to_increments(f: Array, K: Array, H: Array, Rn: Array, Theta: Array) -> None:
-    """Turn forces f (ne, 12) and tangents K (ne, 12, 12) by spins into those by rotation vectors.
+def tangent_to_increments(e: int, f: Array, K: Array, H: Array, Rn: Array, Theta: Array) -> None:
+    """Turn the tangent K (12, 12) of element e by spins, where its forces are f (12,), into that by rotation vectors.
 
     H, Rn (nn, 3, 3) and Theta (nn, 3) belong to the nodes. K becomes the Hessian of the strain energy.
     """
-    for e in range(len(f)):
-        tangent_to_increments(e, f[e], K[e], H, Rn, Theta)
-    forces_to_increments(f, H)
-
-
-@njit
-def tangent_to_increments(e: int, f: Array, K: Array, H: Array, Rn: Array, Theta: Array) -> None:
-    """Turn the tangent K (12, 12) of element e, whose forces by spins are f (12,)."""
     for end in range(2):
         n, at = e + end, 3 + 6 * end
         moment = vector(f[at : at + 3])

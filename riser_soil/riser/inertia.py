@@ -1,20 +1,29 @@
 """Consistent mass of the line: the part "inertia" of dynamic stages."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State, Traits, Weights
+from riser_soil.core.part import State, Traits
 from riser_soil.riser.attachments import Masses
-from riser_soil.riser.hermite import add_mass, consistent_mass, weigh
-from riser_soil.riser.inertia_kernels import Mass
+from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.hermite import add_mass_to, add_weighed, consistent_mass
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.trial import Trial
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 
 
-class Inertia(LinePart):
+class Mass(NamedTuple):
+    """Mass matrices along the elements, M (ne, 4, 4) [kg], as in `hermite.weigh`; masses at the line's ends (2,)."""
+
+    M: Array
+    ends: Array
+
+
+class Inertia(CompiledPart):
     """Consistent mass of the cubic line and of what is attached to it, turning with the tangents (group I).
 
     line: the riser's field. mass: kg/m per element (ne,), contents included, water excluded. attached: further masses.
@@ -27,55 +36,53 @@ class Inertia(LinePart):
 
     def __init__(self, line: Line, mass: Array, attached: Masses | None = None) -> None:
         super().__init__(line)
-        self.M = consistent_mass(line.length, mass)
-        self._at_ends = None if attached is None else attached.ends
+        along, ends = consistent_mass(line.length, mass), np.zeros(2)
         if attached is not None:
-            self.M += attached.along + attached.ends
+            along, ends = along + attached.along, attached.ends
+        self._mass = Mass(along, ends)
 
-    def _F(self, trial: Trial) -> Array:
-        """Residual conjugate to q (ne, 4, d)."""
-        return weigh(self.M, trial.q_acceleration)
+    @property
+    def M(self) -> Array:
+        """Mass matrices of the elements (ne, 4, 4), with what sits at the line's ends."""
+        M = self._mass.M.copy()
+        M[0, 0, 0] += self._mass.ends[0]
+        M[-1, 2, 2] += self._mass.ends[1]
+        return M
 
-    def _element_forces(self, trial: Trial) -> Array:
-        return trial.pull_back(trial.once((self, "F"), self._F))
-
-    def _all_forces(self, state: State) -> Array:
-        forces: Array = self.line.trial(state).once((self, "element forces"), self._element_forces)
-        return forces
-
-    def _end_forces(self, state: State) -> Array | None:
-        """Share (ne, 2 ndof) of what sits at the line's ends, if anything."""
-        if self._at_ends is None:
-            return None
-        trial = self.line.trial(state)
-        return trial.pull_back(weigh(self._at_ends, trial.q_acceleration))
-
-    def element_forces(self, state: State) -> tuple[Array, None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None, without what sits at the line's ends."""
-        every, ends = self._all_forces(state), self._end_forces(state)
-        return every if ends is None else every - ends, None
+    def make_numbers(self) -> Mass:
+        return self._mass
 
     def nodal_forces(self, state: State) -> Array | None:
-        """Residual (nn, ndof) of what sits at the line's ends, if anything."""
-        ends = self._end_forces(state)
-        return None if ends is None else self.line.gathered(ends)
+        return self.forces_on_nodes(state) if self._mass.ends.any() else None
 
-    def residual(self, state: State, forces: Forces) -> None:
-        trial = self.line.trial(state)
-        self.line.collect(trial, trial.once((self, "F"), self._F), forces.inertia)
 
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        trial, K = self.line.trial(state), values[self.line.name]
-        trial.add_turning(K, weights.inertia, trial.once((self, "F"), self._F))
-        columns, shift = trial.columns(weights)[2]
-        add_mass(K, weights.inertia, trial.turn.P, columns, shift, self.M)
+@add_forces.of(Mass)
+def _add_forces(part: Mass, at: Configuration, out: LineForces) -> None:
+    add_weighed(part.M, at.acceleration, out.inertia_q, at.D)
+    last = at.a.shape[0] - 1
+    for i in range(len(at.D)):
+        out.inertia[0, i] += part.ends[0] * at.a[0, i]
+        out.inertia[last, i] += part.ends[1] * at.a[last, i]
 
-    def numbers(self) -> Mass:
-        return Mass(self.M)
 
-    def numbers_within(self, numbers: tuple[Any, ...]) -> tuple[Any, ...]:
-        return numbers if self._at_ends is None else Mass(self.M - self._at_ends)
+@add_tangent.of(Mass)
+def _add_tangent(part: Mass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    add_mass_to(K, weights.inertia, at.P, maps.acceleration_rows, part.M, at.D, at.R)
+    follows, last, second = weights.inertia * maps.shift_a, K.shape[0] - 1, K.shape[1] // 2
+    for i in range(len(at.D)):
+        K[0, i, i] += follows * part.ends[0]
+        K[last, second + i, second + i] += follows * part.ends[1]
 
-    def energy(self, state: State) -> Energy:
-        rate = self.line.trial(state).q_rate
-        return Energy(kinetic=0.5 * float(np.vdot(rate, weigh(self.M, rate))))
+
+@add_energy.of(Mass)
+def _add_energy(part: Mass, at: Configuration, energy: Array) -> None:
+    last = at.v.shape[0] - 1
+    for i in range(len(at.D)):
+        energy[0] += 0.5 * (part.ends[0] * at.v[0, i] ** 2 + part.ends[1] * at.v[last, i] ** 2)
+    for e in range(part.M.shape[0]):
+        for i in range(len(at.D)):
+            for a in range(4):
+                momentum = 0.0
+                for b in range(4):
+                    momentum += part.M[e, a, b] * at.rate[e, b, i]
+                energy[0] += 0.5 * at.rate[e, a, i] * momentum

@@ -7,17 +7,18 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
-from riser_soil.core.saved_state import Saved, under, values_of, within
+from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames
@@ -30,6 +31,7 @@ from riser_soil.riser.trial import Trial
 
 UP = np.array([0.0, 0.0, 1.0])
 MOST_SWING = 0.2  # rad by which an element's end may turn against its chord in a time step
+Made = TypeVar("Made")
 BENT_DOUBLE = 1.2  # rad from its chord, beyond which an end was on its way to be folded
 
 
@@ -91,8 +93,8 @@ class Line:
         unturned = self.frames.turn(np.zeros((self.arc.size, self.frames.dofs)))
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
-        self._left: Trial | None = None
         self._moved_ends: dict[int, tuple[Motion, float, Array, Array]] = {}
+        self._made: dict[Callable[[Line], Any], Any] = {}
         self._trials = IdentityCache[State, Trial](first=1, latest=2)
         self._number()
         self.prescribe_spin(prescribe_spin)
@@ -151,19 +153,9 @@ class Line:
         """View (nn, ndof) of the riser's slice of a local array."""
         return values[self.offset : self.offset + self.size].reshape(self.nodes, self.ndof)
 
-    def collect(self, trial: Trial, F: Array, values: Array) -> None:
-        """Add a residual (ne, 4, d) conjugate to the trial's q to the riser's slice of a local array."""
-        hermite.collect(F, trial.turn.P, self.nodal(values))
-
     def scatter(self, element: Array, values: Array) -> None:
         """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
         hermite.scatter(element, self.nodal(values))
-
-    def gathered(self, element: Array) -> Array:
-        """Sums at the nodes (nn, ndof) of element arrays (ne, 2 ndof)."""
-        nodal = np.zeros((self.nodes, self.ndof))
-        hermite.scatter(element, nodal)
-        return nodal
 
     def element_block(self) -> MatrixBlock:
         """Pattern "riser": all dofs of each element."""
@@ -207,21 +199,15 @@ class Line:
         """
         return self._trials.made_of(state, self._make_trial)
 
-    def left_at(self, before: State) -> Trial:
-        """The line where a step begins, for all but the rotation dofs: the trial at which the last step ended, so that
-        parts need not evaluate it again, unless its rates have been changed since.
-        """
-        left = self._left
-        return left if left is not None and self._same_rates(before, left.state) else self.trial(before)
-
-    def _same_rates(self, one: State, other: State) -> bool:
-        """Whether two states are of the same time and rates."""
-        pairs = (one.v, other.v), (one.a, other.a)
-        return one.t == other.t and all(a is b or np.array_equal(self.nodal(a), self.nodal(b)) for a, b in pairs)
+    def once(self, make: Callable[[Line], Made]) -> Made:
+        """What is made of the line for all who ask, when it is first asked for."""
+        if make not in self._made:
+            self._made[make] = make(self)
+        made: Made = self._made[make]
+        return made
 
     def forget(self) -> None:
         """Drop the trials that are kept."""
-        self._left = None
         self._trials.forget()
 
     def _make_trial(self, state: State) -> Trial:
@@ -257,15 +243,13 @@ class Line:
         if turned:
             self._supports = self._supports | turned
         self.forget()
-        self._left = trial
 
     def state(self) -> Saved:
-        """Positions, chords and frames; where the supports have turned to, and from where; the trial of `left_at`."""
+        """Positions, chords and frames; where the supports have turned to, and from where."""
         ends = tuple(self._supports)
         supports, bases = (np.stack([at[node] for node in ends]) for at in (self._supports, self._bases))
-        left = {} if self._left is None else values_of(self._left.state) | under("turn", self._left.turn.state())
         kept = {"x": self.x, "chord": self.chord, "supports": supports, "bases": bases}
-        return kept | under("frames", self.frames.state()) | under("left", left)
+        return kept | under("frames", self.frames.state())
 
     def restore(self, saved: Saved) -> None:
         self.forget()
@@ -273,12 +257,6 @@ class Line:
         self.frames.restore(within(saved, "frames"))
         ends = tuple(self._supports)
         self._supports, self._bases = (dict(zip(ends, saved[name], strict=True)) for name in ("supports", "bases"))
-        left = within(saved, "left")
-        if left:
-            state = State(float(left["t"]), left["u"], left["v"], left["a"], dt=float(left["dt"]))
-            rates = self.nodal(state.v), self.nodal(state.a)
-            turning = partial(self.frames.turn_of, within(left, "turn"))
-            self._left = Trial(state, self.x, self.chord, turning, rates)
 
     def begin_stage(self) -> None:
         """Supports turn from where they are now."""

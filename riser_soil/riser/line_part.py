@@ -31,12 +31,6 @@ class LinePart:
         """
         return None
 
-    def numbers_within(self, numbers: tuple[Any, ...]) -> tuple[Any, ...] | None:
-        """Of the numbers that were asked for last, those of what acts within the elements, as `element_forces` tells;
-        None where that is to be asked.
-        """
-        return numbers
-
     def renew_numbers(self, start: float, end: float) -> None:
         """Write what depends on the time alone into the numbers that were asked for last, for a step between two times
         [s].

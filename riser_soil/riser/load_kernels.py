@@ -1,57 +1,51 @@
-"""Kernels of loads that do not depend on the motion, and of end springs, see `part_kernels`."""
+"""Kernels of loads that do not depend on the motion, see `part_kernels`."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.riser import rotations
-from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
+from riser_soil.core.compiled import njit
+from riser_soil.riser.configuration import Configuration, Maps, SpatialConfiguration
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.spatial_directors import moment_stiffness
-from riser_soil.riser.vectors import dot, matadd, matmul, matrix, matscale, matvec, scale, transpose, vector
+from riser_soil.riser.vectors import matrix, matvec, transpose, vector
 
 
 class GivenForces(NamedTuple):
-    """Residual conjugate to q (ne, 4, d), and moments conjugate to the angles in the plane (nn,) of group F.
+    """Residual of group F: conjugate to q (ne, 4, d), of what acts within elements; to the dofs of nodes (nn, ndof).
 
-    potential: whether F is a weight, whose potential F q counts as stored.
+    potential: whether they are weights, whose potential counts as stored.
     """
 
     F: Array
-    moment: Array
+    nodal: Array
     potential: bool
 
 
 class SpatialMoments(NamedTuple):
-    """Residual conjugate to q (ne, 4, d), and moments (k, 3) of fixed axes at nodes (k,), of group F."""
+    """The same, and moments (k, 3) of fixed axes at nodes (k,)."""
 
     F: Array
+    nodal: Array
     node: IntArray
     moment: Array
 
 
-class PlanarSpring(NamedTuple):
-    """A spring [N m/rad] between a node and its support's angle (1,) [rad]."""
-
-    node: int
-    stiffness: float
-    support: Array
-
-
-class SpatialSpring(NamedTuple):
-    """A spring [N m/rad] between a node and its support's frame (3, 3)."""
-
-    node: int
-    stiffness: float
-    support: Array
+@njit
+def _add_given(F: Array, nodal: Array, out: LineForces) -> None:
+    for e in range(F.shape[0]):
+        for k in range(4):
+            for i in range(F.shape[2]):
+                out.force_q[e, k, i] += F[e, k, i]
+    for n in range(nodal.shape[0]):
+        for i in range(nodal.shape[1]):
+            out.force[n, i] += nodal[n, i]
 
 
 @add_forces.of(GivenForces)
 def _given_forces(part: GivenForces, at: Configuration, out: LineForces) -> None:
-    out.force_q[:] += part.F
-    for n in range(part.moment.size):
-        out.force[n, 2] += part.moment[n]
+    _add_given(part.F, part.nodal, out)
 
 
 @add_tangent.of(GivenForces)
@@ -61,7 +55,7 @@ def _given_tangent(part: GivenForces, at: Configuration, maps: Maps, weights: Li
 
 @add_forces.of(SpatialMoments)
 def _moment_forces(part: SpatialMoments, at: SpatialConfiguration, out: LineForces) -> None:
-    out.force_q[:] += part.F
+    _add_given(part.F, part.nodal, out)
     for k in range(part.node.size):
         n = part.node[k]
         conjugate = matvec(transpose(matrix(at.H[n])), vector(part.moment[k]))
@@ -82,59 +76,19 @@ def _moment_tangent(
                 K[e, first + i, first + j] -= weights.force * change[i][j]
 
 
-@add_forces.of(PlanarSpring)
-def _planar_forces(part: PlanarSpring, at: PlanarConfiguration, out: LineForces) -> None:
-    out.force[part.node, 2] += part.stiffness * (at.angle[part.node] - part.support[0])
-
-
-@add_tangent.of(PlanarSpring)
-def _planar_tangent(part: PlanarSpring, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    e, i = (0, 2) if part.node == 0 else (part.node - 1, 5)
-    K[e, i, i] += weights.force * part.stiffness
-
-
-@add_forces.of(SpatialSpring)
-def _spatial_forces(part: SpatialSpring, at: SpatialConfiguration, out: LineForces) -> None:
-    turn = rotations.log(matmul(matrix(at.frames[part.node]), transpose(matrix(part.support))))
-    moment = matvec(transpose(matrix(at.H[part.node])), scale(part.stiffness, turn))
-    for i in range(3):
-        out.force[part.node, 3 + i] += moment[i]
-
-
-@add_tangent.of(SpatialSpring)
-def _spatial_tangent(part: SpatialSpring, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    n = part.node
-    e, first = (0, 3) if n == 0 else (n - 1, 9)
-    H = matrix(at.H[n])
-    turn = rotations.log(matmul(matrix(at.frames[n]), transpose(matrix(part.support))))
-    material = matscale(part.stiffness, matmul(transpose(H), matmul(rotations.left_tangent_inverse(turn), H)))
-    turning = moment_stiffness(matrix(at.Rn[n]), vector(at.Theta[n]), scale(part.stiffness, turn))
-    change = matadd(material, turning)
-    for i in range(3):
-        for j in range(3):
-            K[e, first + i, first + j] += weights.force * change[i][j]
-
-
 @add_energy.of(GivenForces)
 def _given_energy(part: GivenForces, at: Configuration, energy: Array) -> None:
-    if part.potential:
-        for e in range(at.q.shape[0]):
-            for k in range(4):
-                for i in range(at.q.shape[2]):
-                    energy[2] += part.F[e, k, i] * at.q[e, k, i]
+    if not part.potential:
+        return
+    for e in range(at.q.shape[0]):
+        for k in range(4):
+            for i in range(at.q.shape[2]):
+                energy[2] += part.F[e, k, i] * at.q[e, k, i]
+    for n in range(at.x.shape[0]):
+        for i in range(at.x.shape[1]):
+            energy[2] += part.nodal[n, i] * at.x[n, i]
 
 
 @add_energy.of(SpatialMoments)
 def _moment_energy(part: SpatialMoments, at: SpatialConfiguration, energy: Array) -> None:
     """They have no potential."""
-
-
-@add_energy.of(PlanarSpring)
-def _planar_energy(part: PlanarSpring, at: PlanarConfiguration, energy: Array) -> None:
-    energy[1] += 0.5 * part.stiffness * (at.angle[part.node] - part.support[0]) ** 2
-
-
-@add_energy.of(SpatialSpring)
-def _spatial_energy(part: SpatialSpring, at: SpatialConfiguration, energy: Array) -> None:
-    turn = rotations.log(matmul(matrix(at.frames[part.node]), transpose(matrix(part.support))))
-    energy[1] += 0.5 * part.stiffness * dot(turn, turn)

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State, Traits, Weights, Work
+from riser_soil.core.part import State, Traits, Work
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
+from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.load_kernels import GivenForces, SpatialMoments
-from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffness
-from riser_soil.riser.trial import Trial
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,22 +33,35 @@ class AppliedLoad:
     distributed: Array | None = None
 
 
-class PointLoads(LinePart):
+class _Share(NamedTuple):
+    """What a load of factor 1 puts somewhere in an array of residuals, with its sign turned."""
+
+    load: AppliedLoad
+    at: int | slice
+    values: Array
+
+
+class PointLoads(CompiledPart):
     """Loads of a stage (group F).
 
-    Forces spread to their element by the cubic shape functions; moments must sit at a node. A moment of fixed
-    axis has no potential in space, so its tangent isn't symmetric there.
+    Forces spread to their element by the cubic shape functions, at a node to that node alone; moments must sit at one.
+    A moment of fixed axis has no potential in space, so its tangent isn't symmetric there.
     """
 
     name = "loads"
 
     def __init__(self, line: Line, loads: list[AppliedLoad]) -> None:
         super().__init__(line)
-        self._loads = loads
-        self._places = {load: self._place(load) for load in loads}
-        self._within = [load for load in loads if self._inside(load)]
-        self._moments = [(load, self._node(load)) for load in loads if load.moment is not None]
-        self.traits = Traits("F", symmetric=not (self._moments and line.dimension == 3))
+        self._along = [self._spread(load, load.distributed) for load in loads if load.distributed is not None]
+        self._nodal: list[_Share] = []
+        for load in loads:
+            if load.distributed is None:
+                self._place(load)
+        moments = [_Share(load, self._node(load), load.moment) for load in loads if load.moment is not None]
+        self._moments = moments if line.dimension == 3 else []
+        if line.dimension == 2:
+            self._nodal += [share._replace(values=_in_plane(share.values, line)) for share in moments]
+        self.traits = Traits("F", symmetric=not self._moments)
 
     def _node(self, load: AppliedLoad) -> int:
         node = int(np.argmin(np.abs(self.line.arc - load.arc)))
@@ -61,106 +72,50 @@ class PointLoads(LinePart):
             )
         return node
 
-    def _place(self, load: AppliedLoad) -> tuple[slice, Array]:
-        """Elements that the load acts on, and what their q gets of it (m, 4, d)."""
+    def _spread(self, load: AppliedLoad, per_length: Array) -> _Share:
+        along = hermite.uniform_load(self.line.length)[:, :, None]
+        return _Share(load, slice(None), along * (per_length @ self.line.basis))
+
+    def _place(self, load: AppliedLoad) -> None:
+        """A force, within an element or at a node."""
         line = self.line
-        if load.distributed is not None:
-            return slice(None), hermite.uniform_load(line.length)[:, :, None] * (
-                load.distributed @ line.basis
-            )
         if not -1e-9 * line.arc[-1] <= load.arc <= line.arc[-1] * (1.0 + 1e-9):
             raise SceneError(
                 f"stages: loads: at arc {load.arc:.6g} m: the riser ends at {line.arc[-1]:.6g} m"
             )
-        e, xi = line.place(load.arc)
-        force = np.zeros(3) if load.force is None else load.force
-        return slice(e, e + 1), hermite.shapes(np.array([xi]), line.length[e : e + 1])[:, :, None] * (
-            force @ line.basis
-        )
-
-    def _inside(self, load: AppliedLoad) -> bool:
-        """Whether a load acts within elements rather than on a node."""
-        return load.distributed is not None or self.line.place(load.arc)[1] not in (0.0, 1.0)
-
-    def _F(self, t: float, loads: list[AppliedLoad]) -> Array:
-        """Residual of some of the loads, conjugate to q (ne, 4, d)."""
-        F = np.zeros((self.line.length.size, 4, self.line.dimension))
-        for load in loads:
-            at, share = self._places[load]
-            F[at] -= load.factor(t) * share
-        return F
-
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None, of what acts within elements, not on
-        nodes.
-        """
-        return None, self.line.trial(state).pull_back(self._F(state.t, self._within))
-
-    def nodal_forces(self, state: State) -> Array:
-        """Residual (nn, ndof) of what acts on nodes."""
-        out = np.zeros_like(state.u)
-        self._add(self.line.trial(state), out)
-        inside = np.zeros_like(state.u)
-        self.line.collect(self.line.trial(state), self._F(state.t, self._within), inside)
-        return self.line.nodal(out - inside)
-
-    def residual(self, state: State, forces: Forces) -> None:
-        self._add(self.line.trial(state), forces.force)
-
-    def _add(self, trial: Trial, out: Array) -> None:
-        self.line.collect(trial, self._F(trial.state.t, self._loads), out)
-        rotations = self.line.nodal(out)[:, self.line.dimension :]
-        for load, node in self._moments:
-            rotations[node] -= self._conjugate(trial, node, self._moment(load, trial.state.t))
-
-    def _moment(self, load: AppliedLoad, t: float) -> Array:
-        return load.factor(t) * np.asarray(load.moment, dtype=float)
-
-    def _conjugate(self, trial: Trial, node: int, moment: Array) -> Array:
-        """Generalised forces on the node's rotation dofs (r,) of a moment in global axes."""
-        if isinstance(trial.turn, SpatialOrientation):
-            return np.asarray(trial.turn.H[node].T @ moment)
-        return np.array([moment @ self.line.normal])
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        trial, K = self.line.trial(state), values[self.line.name]
-        trial.add_turning(K, weights.force, self._F(state.t, self._loads))
-        if isinstance(trial.turn, SpatialOrientation):
-            for load, node in self._moments:
-                self._add_moment_stiffness(K, trial.turn, node, -weights.force * self._moment(load, state.t))
-
-    def _add_moment_stiffness(self, K: Array, turn: SpatialOrientation, node: int, moment: Array) -> None:
-        element, at = (node, 3) if node < len(K) else (node - 1, 9)
-        K[element, at : at + 3, at : at + 3] += np.array(
-            moment_stiffness(turn.Rn[node], turn.Theta[node], moment)
-        )
-
-    def numbers(self) -> GivenForces | SpatialMoments:
-        F = np.zeros((self.line.length.size, 4, self.line.dimension))
-        self._numbers: GivenForces | SpatialMoments
-        if self._moments and self.line.dimension == 3:
-            nodes = np.array([node for _, node in self._moments], dtype=np.int64)
-            self._numbers = SpatialMoments(F, nodes, np.zeros((nodes.size, 3)))
+        if load.force is None:
+            return
+        (e, xi), force = line.place(load.arc), load.force @ line.basis
+        if xi in (0.0, 1.0):
+            self._nodal.append(_Share(load, e + int(xi), np.pad(force, (0, line.frames.dofs))))
         else:
-            self._numbers = GivenForces(F, np.zeros(self.line.nodes if self._moments else 0), potential=False)
-        return self._numbers
+            shapes = hermite.shapes(np.array([xi]), line.length[e : e + 1])[0]
+            self._along.append(_Share(load, e, shapes[:, None] * force))
 
-    def numbers_within(self, numbers: tuple[Any, ...]) -> None:
-        """Those have what acts on nodes, too."""
+    def make_numbers(self) -> GivenForces | SpatialMoments:
+        line, node = self.line, np.array([share.at for share in self._moments], dtype=np.int64)
+        F, nodal = np.zeros((line.length.size, 4, line.dimension)), np.zeros((line.nodes, line.ndof))
+        if self._moments:
+            return SpatialMoments(F, nodal, node, np.zeros((node.size, 3)))
+        return GivenForces(F, nodal, potential=False)
 
     def renew_numbers(self, start: float, end: float) -> None:
-        self._numbers.F[:] = self._F(end, self._loads)
-        self._numbers.moment[:] = 0.0
-        for k, (load, node) in enumerate(self._moments):
-            if isinstance(self._numbers, SpatialMoments):
-                self._numbers.moment[k] = self._moment(load, end)
-            else:
-                self._numbers.moment[node] -= self._moment(load, end) @ self.line.normal
+        numbers = self._numbers
+        for residual, shares in ((numbers.F, self._along), (numbers.nodal, self._nodal)):
+            residual[:] = 0.0
+            for share in shares:
+                residual[share.at] -= share.load.factor(end) * share.values
+        for k, share in enumerate(self._moments):
+            numbers.moment[k] = share.load.factor(end) * share.values
+
+    def nodal_forces(self, state: State) -> Array | None:
+        return self.forces_on_nodes(state) if self._nodal or self._moments else None
 
     def work(self, before: State, after: State) -> Work:
         """Work of the mean loads over the step."""
-        residual = np.zeros_like(after.u)
-        for state in (before, after):
-            self._add(self.line.trial(state), residual)
-        part = self.line.part
-        return Work(external=-0.5 * float(residual[part] @ (after.u - before.u)[part]))
+        return Work(external=-self.taken(before, after))
+
+
+def _in_plane(moment: Array, line: Line) -> Array:
+    """A moment in global axes as what is conjugate to a node's dofs (3,)."""
+    return np.array([0.0, 0.0, moment @ line.normal])

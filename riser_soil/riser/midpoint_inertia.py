@@ -96,7 +96,7 @@ class MidpointInertia(LinePart):
             excess = hermite.weigh(self.instant.M, self.q_rate(state) - trial.q_rate)
             self.line.scatter(trial.pull_back(excess), out)
 
-    def element_forces(self, state: State) -> tuple[Array, None]:
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""
         return self.instant.element_forces(state)
 
@@ -184,7 +184,7 @@ class MidpointRotaryInertia(LinePart):
                 block += director.geometric(secant, middle, F)
                 hermite.add_geometric(values[self.line.name], weights.inertia, block, self.line.dimension)
 
-    def element_forces(self, state: State) -> tuple[Array, None]:
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""
         return self.instant.element_forces(state)
 

@@ -1,20 +1,22 @@
-"""What the compiled loop over a riser alone asks of its parts, see `by_type`: forces, tangent, energy, work, history.
+"""What parts of a line say in compiled code, see `by_type`: forces, tangent, energy, work, history.
 
-A part that takes part in the loop has its `numbers`: a NamedTuple of arrays, and kernels for that type. They are the
-functions that its methods call, too, so that each formula is in one place.
+A part has its `numbers`: a NamedTuple of arrays, and kernels for that type. The compiled loop over a riser alone calls
+them, and so does `CompiledPart`, by which a part has a system's methods.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound
 from riser_soil.core.by_type import bound_by_type
+from riser_soil.core.compiled import njit
 from riser_soil.core.packed import Packed
 from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.hermite import add_geometric, collect_nodal, scatter
 from riser_soil.riser.line import Line
 
 
@@ -38,6 +40,16 @@ class LineWeights(NamedTuple):
 
     inertia: float
     force: float
+
+
+class TurningRoom(Protocol):
+    """Room for what is conjugate to the tangents of the elements' ends (ne, 2, d), and its turning (ne, 2, r, r)."""
+
+    @property
+    def conjugate(self) -> Array: ...
+
+    @property
+    def turning(self) -> Array: ...
 
 
 def forces_of(line: Line) -> LineForces:
@@ -83,3 +95,41 @@ def add_work(part: tuple, first: Configuration, last: Configuration, work: Array
 @bound_by_type
 def keep(part: tuple, at: Configuration) -> None:
     """Keep a part's history at the end of a step, in the configuration of the forces found last; of parts with one."""
+
+
+@njit
+def clear(forces: LineForces) -> None:
+    """Write zero."""
+    for conjugate in (forces.inertia_q, forces.force_q, forces.end_q):
+        conjugate[:] = 0.0
+    for elementwise in (forces.inertia_e, forces.force_e):
+        elementwise[:] = 0.0
+    for nodal in (forces.inertia, forces.force, forces.end):
+        nodal[:] = 0.0
+
+
+@njit
+def collect(at: Configuration, forces: LineForces) -> None:
+    """Add what is conjugate to q and to the elements' dofs to what is conjugate to the nodes'."""
+    collect_nodal(forces.inertia_q, at.P, forces.inertia, at.D, at.R)
+    collect_nodal(forces.force_q, at.P, forces.force, at.D, at.R)
+    collect_nodal(forces.end_q, at.P, forces.end, at.D, at.R)
+    scatter(forces.inertia_e, forces.inertia)
+    scatter(forces.force_e, forces.force)
+
+
+@njit
+def weigh(forces: LineForces, weights: LineWeights, room: TurningRoom) -> None:
+    """Write what is conjugate to the tangents of the elements' ends, groups weighted."""
+    for e in range(room.conjugate.shape[0]):
+        for side in range(2):
+            k = 2 * side + 1
+            for i in range(room.conjugate.shape[2]):
+                bulk = weights.inertia * forces.inertia_q[e, k, i] + weights.force * forces.force_q[e, k, i]
+                room.conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
+
+
+@njit
+def turn(room: TurningRoom, K: Array) -> None:
+    """Add what the turning of the tangents gives to the element matrices."""
+    add_geometric(K, 1.0, room.turning, room.conjugate.shape[2])

@@ -10,8 +10,6 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 
-Maps = tuple[Array, Array, Array]
-
 
 class PlanarOrientation:
     """Trial orientation of a plane line. angle (nn,) [rad], initial angle of element ends alpha0 (ne, 2)."""
@@ -49,20 +47,11 @@ class PlanarOrientation:
         """Maps (nn, 3, 1) of moments conjugate to angles to those in global axes; axes (3, 1): its normal."""
         return np.repeat(axes[None], len(self.angle), axis=0)
 
-    def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
-        first, second = (np.empty(self.P.shape) for _ in range(2))
-        put_maps(self.tangent, self.normal, v, a, shift_v, shift_a, first, second)
-        return self.P, first, second
-
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
         G = np.empty((len(F), 2, 1, 1))
         put_geometric(self.tangent, F, G)
         return G
-
-    def state(self) -> Saved:
-        """Arrays from which `PlanarFrames.turn_of` restores the orientation."""
-        return {"angle": self.angle}
 
 
 class PlanarFrames:
@@ -109,9 +98,6 @@ class PlanarFrames:
 
     def commit(self, increment: Array) -> None:
         self.angle = self.angle + increment[:, 0]
-
-    def turn_of(self, saved: Saved) -> PlanarOrientation:
-        return PlanarOrientation(saved["angle"], self.alpha0)
 
     def state(self) -> Saved:
         return {"angle": self.angle}

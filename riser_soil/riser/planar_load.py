@@ -11,11 +11,9 @@ theta_1 - theta_2 does not change as the chord turns, so V depends on the chord 
 
 from __future__ import annotations
 
-import numpy as np
-
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser.beam2d import PlanarCorotated, corotate
+from riser_soil.riser.beam2d import PlanarCorotated
 
 
 @njit
@@ -72,34 +70,3 @@ def add_element_tangent(at: PlanarCorotated, L: float, w: Array, K: Array) -> No
             K[i + 1, j + 2] += mixed * c
             K[j + 2, i] += mixed * -s
             K[j + 2, i + 1] += mixed * c
-
-
-@njit
-def potential(chord: Array, direction1: Array, direction2: Array, middle: Array, L: Array, w: Array) -> Array:
-    """V (ne,) [J]; chord, middle = (x1 + x2)/2 [m] and w [N/m]: (ne, 2); directions (ne,) as in `beam2d.forces`."""
-    V = np.empty(len(chord))
-    for e in range(len(chord)):
-        at = corotate(chord[e], direction1[e], direction2[e])
-        V[e] = element_potential(at, L[e], w[e], middle[e, 0], middle[e, 1])
-    return V
-
-
-@njit
-def forces(chord: Array, direction1: Array, direction2: Array, L: Array, w: Array) -> Array:
-    """Residual (ne, 6); arguments as in `potential`."""
-    f = np.zeros((len(chord), 6))
-    for e in range(len(chord)):
-        add_element_forces(corotate(chord[e], direction1[e], direction2[e]), L[e], w[e], f[e])
-    return f
-
-
-@njit
-def add_tangent(
-    out: Array, weight: float, chord: Array, direction1: Array, direction2: Array, L: Array, w: Array
-) -> None:
-    """Add weight times the derivative of the residual to out (ne, 6, 6); other arguments as in `potential`."""
-    own = np.empty(2)
-    for e in range(len(chord)):
-        for i in range(2):
-            own[i] = weight * w[e, i]
-        add_element_tangent(corotate(chord[e], direction1[e], direction2[e]), L[e], own, out[e])

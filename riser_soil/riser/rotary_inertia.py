@@ -2,71 +2,40 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State, Traits, Weights
+from riser_soil.core.part import Traits
 from riser_soil.riser import rotary_moments
-from riser_soil.riser.inertia_kernels import PlanarRotaryMass, SpatialRotaryMass
+from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.planar_directors import PlanarFrames
-from riser_soil.riser.spatial_directors import SpatialFrames
 
 
-class PlanarSections:
-    """Sections that turn in the line's plane; inertia [kg m2] of each element end.
+class SpatialRotaryMass(NamedTuple):
+    """Inertia tensors J (ne, 2, 3, 3) [kg m2] of element ends in body axes."""
 
-    Moments and tangent, linear here, cost 0.7 to 0.9 of those of `SpatialSections` (`benchmarks.twins`).
-    """
-
-    def __init__(self, inertia: Array) -> None:
-        self._inertia = inertia
-        self.numbers = PlanarRotaryMass(inertia)
-
-    def forces(self, u: Array, v: Array, a: Array) -> Array:
-        """Moments (ne, 2, 1) from the nodes' rotation dofs, increments and rates (nn, 1)."""
-        return np.asarray(self._inertia[:, None, None] * np.stack([a[:-1], a[1:]], axis=1))
-
-    def add_tangent(self, K: Array, weights: Weights, u: Array, v: Array, a: Array) -> None:
-        """Add to K (ne, 6, 6)."""
-        for at in (2, 5):
-            K[:, at, at] += weights.inertia * weights.shift_a * self._inertia
-
-    def kinetic_energy(self, v: Array) -> float:
-        return 0.5 * float(np.sum(self._inertia[:, None] * (v[:-1] ** 2 + v[1:] ** 2)))
+    J: Array
 
 
-class SpatialSections:
-    """Sections that turn in space; inertia [kg m2] of each element end about an axis across the pipe and about its own.
+class PlanarRotaryMass(NamedTuple):
+    """Inertia (ne,) [kg m2] of each element end in the plane."""
 
-    T0 (ne, 2, 3, 3): unstressed frames at element ends.
-    """
-
-    def __init__(self, across: Array, polar: Array, T0: Array) -> None:
-        about_axes = np.stack([polar, across, across], axis=1)[:, None, None, :]
-        self._J: Array = np.ascontiguousarray(T0 * about_axes @ np.swapaxes(T0, 2, 3))
-        self.numbers = SpatialRotaryMass(self._J)
-
-    def forces(self, u: Array, v: Array, a: Array) -> Array:
-        """Moments (ne, 2, 3) from the nodes' rotation dofs, increments and rates (nn, 3)."""
-        return np.asarray(rotary_moments.moments(self._J, u, v, a))
-
-    def add_tangent(self, K: Array, weights: Weights, u: Array, v: Array, a: Array) -> None:
-        """Add to K (ne, 12, 12)."""
-        rotary_moments.add_tangent(K, weights.inertia, self._J, u, v, a, weights.shift_v, weights.shift_a)
-
-    def kinetic_energy(self, v: Array) -> float:
-        return float(rotary_moments.kinetic_energy(self._J, v))
+    inertia: Array
 
 
-class RotaryInertia(LinePart):
+class RotaryInertia(CompiledPart):
     """Rotary inertia of the sections, gathered at the nodes (group I).
 
     line: the riser's field. across: kg m per element (ne,) about an axis across the pipe (rho I of the section).
     polar: about the pipe's own axis, by default twice that, as of a round section; it counts in space only. Half of an
     element's belongs to each of its ends, so that its share in a frequency is second-order accurate.
 
+    In the plane moments and tangent, linear there, cost 0.7 to 0.9 of those in space (`benchmarks.twins`).
     In space a line without polar inertia must not move: nothing but GJ would resist its spin, so that the scheme's
     weighting of moments at both ends of a step, which no inertia slows down, winds a soft pipe up.
     """
@@ -78,7 +47,6 @@ class RotaryInertia(LinePart):
         self.traits = Traits("I", symmetric=line.dimension == 2)
         self.across = 0.5 * line.length * across  # of ends, kg m2
         self.polar = 2.0 * self.across if polar is None else 0.5 * line.length * polar
-        self._sections = _sections(line, self.across, self.polar)
 
     def on_directors(self) -> dict[int, Array]:
         """Masses [kg m2] of element ends (ne,) on the tangent (0) and the normals (1, 2) that have the same inertia.
@@ -93,33 +61,59 @@ class RotaryInertia(LinePart):
         on_tangent = self.across - half
         return {0: on_tangent} | masses if on_tangent.any() else masses
 
-    def _turning(self, values: Array) -> Array:
-        """Rotation dofs of the nodes (nn, r)."""
-        return np.ascontiguousarray(self.line.nodal(values)[:, self.line.dimension :])
-
-    def element_forces(self, state: State) -> tuple[Array, None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        moments = self._sections.forces(*map(self._turning, (state.u, state.v, state.a)))
-        out = np.zeros((len(moments), 2, self.line.ndof))
-        out[:, :, self.line.dimension :] = moments
-        return out.reshape(len(moments), -1), None
-
-    def residual(self, state: State, forces: Forces) -> None:
-        self.line.scatter(self.element_forces(state)[0], forces.inertia)
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        turning = map(self._turning, (state.u, state.v, state.a))
-        self._sections.add_tangent(values[self.line.name], weights, *turning)
-
-    def numbers(self) -> PlanarRotaryMass | SpatialRotaryMass:
-        return self._sections.numbers
-
-    def energy(self, state: State) -> Energy:
-        return Energy(kinetic=self._sections.kinetic_energy(self._turning(state.v)))
+    def make_numbers(self) -> PlanarRotaryMass | SpatialRotaryMass:
+        frames = self.line.frames
+        if isinstance(frames, PlanarFrames):
+            return PlanarRotaryMass(self.across)
+        return _in_space(self.across, self.polar, frames.T0)
 
 
-def _sections(line: Line, across: Array, polar: Array) -> PlanarSections | SpatialSections:
-    if isinstance(line.frames, PlanarFrames):
-        return PlanarSections(across)
-    assert isinstance(line.frames, SpatialFrames)
-    return SpatialSections(across, polar, line.frames.T0)
+def _in_space(across: Array, polar: Array, T0: Array) -> SpatialRotaryMass:
+    """Inertia of each element end about an axis across the pipe and about its own; T0: unstressed frames there."""
+    about_axes = np.stack([polar, across, across], axis=1)[:, None, None, :]
+    return SpatialRotaryMass(np.ascontiguousarray(T0 * about_axes @ np.swapaxes(T0, 2, 3)))
+
+
+@add_forces.of(SpatialRotaryMass)
+def _spatial_forces(part: SpatialRotaryMass, at: SpatialConfiguration, out: LineForces) -> None:
+    W, A = at.v[:, 3:], at.a[:, 3:]
+    for e in range(part.J.shape[0]):
+        for side in range(2):
+            moment = rotary_moments.end_moment(part.J, e, side, at.Theta, W, A)
+            for i in range(3):
+                out.inertia_e[e, 6 * side + 3 + i] += moment[i]
+
+
+@add_tangent.of(SpatialRotaryMass)
+def _spatial_tangent(
+    part: SpatialRotaryMass, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    W, A = at.v[:, 3:], at.a[:, 3:]
+    rotary_moments.add_tangent(K, weights.inertia, part.J, at.Theta, W, A, maps.shift_v, maps.shift_a)
+
+
+@add_forces.of(PlanarRotaryMass)
+def _planar_forces(part: PlanarRotaryMass, at: PlanarConfiguration, out: LineForces) -> None:
+    for e in range(part.inertia.size):
+        for side in range(2):
+            out.inertia_e[e, 3 * side + 2] += part.inertia[e] * at.a[e + side, 2]
+
+
+@add_tangent.of(PlanarRotaryMass)
+def _planar_tangent(
+    part: PlanarRotaryMass, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    for e in range(part.inertia.size):
+        for side in range(2):
+            K[e, 2 + 3 * side, 2 + 3 * side] += weights.inertia * maps.shift_a * part.inertia[e]
+
+
+@add_energy.of(SpatialRotaryMass)
+def _spatial_energy(part: SpatialRotaryMass, at: SpatialConfiguration, energy: Array) -> None:
+    energy[0] += rotary_moments.kinetic_energy(part.J, at.v[:, 3:])
+
+
+@add_energy.of(PlanarRotaryMass)
+def _planar_energy(part: PlanarRotaryMass, at: PlanarConfiguration, energy: Array) -> None:
+    for e in range(part.inertia.size):
+        energy[0] += 0.5 * part.inertia[e] * (at.v[e, 2] ** 2 + at.v[e + 1, 2] ** 2)

@@ -31,8 +31,6 @@ from riser_soil.riser.vectors import (
 )
 from riser_soil.riser.vectors import add as plus
 
-Maps = tuple[Array, Array, Array]
-
 
 class SpatialOrientation:
     """Trial orientation of a line in space; see `SpatialFrames` for the arguments."""
@@ -71,20 +69,11 @@ class SpatialOrientation:
         put_moment_maps(self.Rn, self.Theta, maps)
         return maps
 
-    def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
-        first, second = np.empty_like(self.P), np.empty_like(self.P)
-        put_maps(self.R, self.H, self.T0, v, a, shift_v, shift_a, first, second)
-        return self.P, first, second
-
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 3, 3) from the residual conjugate to the tangents, F (ne, 2, 3)."""
         G = np.empty((len(F), 2, 3, 3))
         put_geometric(self.Rn, self.H, self.Theta, self.tangent, F, G)
         return G
-
-    def state(self) -> Saved:
-        """Arrays from which `SpatialFrames.turn_of` restores the orientation, to the last bit."""
-        return {"R": self.Rn, "increment": self.Theta}
 
 
 class SpatialFrames:
@@ -129,9 +118,6 @@ class SpatialFrames:
     def commit(self, increment: Array) -> None:
         """Keep R, brought back to a rotation to second order (round-off would pile up over many steps)."""
         self.R = _turned(self.R, increment)
-
-    def turn_of(self, saved: Saved) -> SpatialOrientation:
-        return SpatialOrientation(saved["R"], saved["increment"], self.T0)
 
     def state(self) -> Saved:
         return {"R": self.R}

@@ -2,18 +2,45 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
+from riser_soil.core.compiled import njit
+from riser_soil.core.part import Traits
 from riser_soil.riser import rotations
+from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.load_kernels import PlanarSpring, SpatialSpring
-from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffness
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.riser.spatial_directors import moment_stiffness
+from riser_soil.riser.vectors import Vec, add, dot, matadd, matmul, matrix, matscale, matvec, scale, transpose, vector
 
 
-class EndSpring(LinePart):
+class PlanarSpring(NamedTuple):
+    """A spring [N m/rad] between a node and its support, whose angles [rad] are those before a step and at its end,
+    each (1,).
+    """
+
+    node: int
+    stiffness: float
+    before: Array
+    support: Array
+
+
+class SpatialSpring(NamedTuple):
+    """A spring [N m/rad] between a node and its support, whose frames are those before a step and at its end, each
+    (3, 3).
+    """
+
+    node: int
+    stiffness: float
+    before: Array
+    support: Array
+
+
+class EndSpring(CompiledPart):
     """Moment stiffness times the rotation vector from the support's orientation to the end's (group F).
 
     line: the riser's field. node: 0 for the start, -1 for the end. stiffness: N m/rad.
@@ -29,49 +56,76 @@ class EndSpring(LinePart):
         self.node = node % line.nodes
         self.name = "start spring" if self.node == 0 else "end spring"
 
-    def blocks(self) -> dict[str, MatrixBlock]:
-        first = self.line.offset + self.node * self.line.ndof + self.line.dimension
-        dofs = np.arange(first, first + self.line.frames.dofs, dtype=np.int64)[None]
-        return {self.name: MatrixBlock(dofs, dofs)}
-
-    def moment(self, state: State) -> Array:
-        """Moment of the spring on the riser in its own axes: (3,) global in space, (1,) in the plane."""
-        return -self.stiffness * self._rotation(state)
-
-    def _rotation(self, state: State) -> Array:
-        support = self.line.support(self.node, state.t)
-        return self.line.frames.rotation(support, self.line.trial(state).turn.at(self.node))
-
-    def residual(self, state: State, forces: Forces) -> None:
-        turn = self.line.trial(state).turn
-        H = turn.H[self.node] if isinstance(turn, SpatialOrientation) else np.eye(1)
-        self.line.nodal(forces.force)[self.node, self.line.dimension :] -= H.T @ self.moment(state)
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        turn = self.line.trial(state).turn
-        K = self._spatial_tangent(turn, state) if isinstance(turn, SpatialOrientation) else self.stiffness
-        values[self.name][0] += weights.force * K
-
-    def _spatial_tangent(self, turn: SpatialOrientation, state: State) -> Array:
-        """H^T k T_L^-1(phi) H, and the change of H at fixed moment."""
-        H, phi = turn.H[self.node], self._rotation(state)
-        material = self.stiffness * H.T @ np.array(rotations.left_tangent_inverse(phi)) @ H
-        frame, Theta = turn.Rn[self.node], turn.Theta[self.node]
-        return np.asarray(material + np.array(moment_stiffness(frame, Theta, self.stiffness * phi)))
-
-    def numbers(self) -> PlanarSpring | SpatialSpring:
+    def make_numbers(self) -> PlanarSpring | SpatialSpring:
         kind = PlanarSpring if self.line.dimension == 2 else SpatialSpring
-        self._support = self.line.support(self.node, 0.0).copy()
-        return kind(self.node, self.stiffness, self._support)
+        supports = (np.array(self.line.support(self.node, 0.0)) for _ in range(2))
+        return kind(self.node, self.stiffness, *supports)
 
     def renew_numbers(self, start: float, end: float) -> None:
-        self._support[:] = self.line.support(self.node, end)
+        for kept, t in ((self._numbers.before, start), (self._numbers.support, end)):
+            kept[:] = self.line.support(self.node, t)
 
-    def energy(self, state: State) -> Energy:
-        phi = self._rotation(state)
-        return Energy(strain=0.5 * self.stiffness * float(phi @ phi))
 
-    def work(self, before: State, after: State) -> Work:
-        """Work of the support's rotation against the spring: the mean moment times the rotation."""
-        rotation = self.line.frames.rotation(*(self.line.support(self.node, state.t) for state in (before, after)))
-        return Work(external=0.5 * float((self.moment(before) + self.moment(after)) @ rotation))
+@njit
+def _turned(at: SpatialConfiguration, node: int, support: Array) -> Vec:
+    """Rotation vector from a support to a node."""
+    return rotations.log(matmul(matrix(at.frames[node]), transpose(matrix(support))))
+
+
+@add_forces.of(PlanarSpring)
+def _planar_forces(part: PlanarSpring, at: PlanarConfiguration, out: LineForces) -> None:
+    out.force[part.node, 2] += part.stiffness * (at.angle[part.node] - part.support[0])
+
+
+@add_tangent.of(PlanarSpring)
+def _planar_tangent(part: PlanarSpring, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    e, i = (0, 2) if part.node == 0 else (part.node - 1, 5)
+    K[e, i, i] += weights.force * part.stiffness
+
+
+@add_energy.of(PlanarSpring)
+def _planar_energy(part: PlanarSpring, at: PlanarConfiguration, energy: Array) -> None:
+    energy[1] += 0.5 * part.stiffness * (at.angle[part.node] - part.support[0]) ** 2
+
+
+@add_work.of(PlanarSpring)
+def _planar_work(part: PlanarSpring, first: PlanarConfiguration, last: PlanarConfiguration, work: Array) -> None:
+    """Of the support's rotation against the mean moment."""
+    before, after = first.angle[part.node] - part.before[0], last.angle[part.node] - part.support[0]
+    work[1] -= 0.5 * part.stiffness * (before + after) * (part.support[0] - part.before[0])
+
+
+@add_forces.of(SpatialSpring)
+def _spatial_forces(part: SpatialSpring, at: SpatialConfiguration, out: LineForces) -> None:
+    turn = _turned(at, part.node, part.support)
+    moment = matvec(transpose(matrix(at.H[part.node])), scale(part.stiffness, turn))
+    for i in range(3):
+        out.force[part.node, 3 + i] += moment[i]
+
+
+@add_tangent.of(SpatialSpring)
+def _spatial_tangent(part: SpatialSpring, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    """H^T k T_L^-1(phi) H of the rotation vector phi, and the change of H at fixed moment."""
+    n = part.node
+    e, first = (0, 3) if n == 0 else (n - 1, 9)
+    H, turn = matrix(at.H[n]), _turned(at, n, part.support)
+    material = matscale(part.stiffness, matmul(transpose(H), matmul(rotations.left_tangent_inverse(turn), H)))
+    turning = moment_stiffness(matrix(at.Rn[n]), vector(at.Theta[n]), scale(part.stiffness, turn))
+    change = matadd(material, turning)
+    for i in range(3):
+        for j in range(3):
+            K[e, first + i, first + j] += weights.force * change[i][j]
+
+
+@add_energy.of(SpatialSpring)
+def _spatial_energy(part: SpatialSpring, at: SpatialConfiguration, energy: Array) -> None:
+    turn = _turned(at, part.node, part.support)
+    energy[1] += 0.5 * part.stiffness * dot(turn, turn)
+
+
+@add_work.of(SpatialSpring)
+def _spatial_work(part: SpatialSpring, first: SpatialConfiguration, last: SpatialConfiguration, work: Array) -> None:
+    """Of the support's rotation against the mean moment."""
+    both = add(_turned(first, part.node, part.before), _turned(last, part.node, part.support))
+    rotation = rotations.log(matmul(matrix(part.support), transpose(matrix(part.before))))
+    work[1] -= 0.5 * part.stiffness * dot(both, rotation)

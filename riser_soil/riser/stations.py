@@ -89,26 +89,6 @@ def put_value(N: Array, q: Array, out: Array, D: Size) -> None:
         out[i] = total
 
 
-def motion(
-    at: Stations, rate: Array, acceleration: Array, chord: Array, ends: Array
-) -> tuple[Array, Array, Array, Array]:
-    """Velocities, accelerations and unit tangents (ne, ng, d), and the stretch |x'| (ne, ng).
-
-    rate, acceleration: q' and q''; chord (ne, d); ends: end tangents (ne, 2, d).
-    """
-    D = fixed(chord.shape[1])
-    found: tuple[Array, Array, Array, Array] = _motion(at.N, at.dN, rate, acceleration, chord, ends, D)
-    return found
-
-
-@njit
-def _motion(
-    N: Array, dN: Array, rate: Array, acceleration: Array, chord: Array, ends: Array, D: Size
-) -> tuple[Array, Array, Array, Array]:
-    tau, stretch = _unit_tangents(dN, chord, ends, D)
-    return _interpolate(N, rate, D), _interpolate(N, acceleration, D), tau, stretch
-
-
 def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array]:
     """Unit tangents (ne, ng, d) and stretch |x'| (ne, ng); chord (ne, d), ends: end tangents (ne, 2, d)."""
     tau, stretch = _unit_tangents(at.dN, chord, ends, fixed(chord.shape[1]))
@@ -192,69 +172,10 @@ def add_integrand_at(weighted: Array, p: int, f: tuple[float, ...], F: Array, e:
     add_shares(F, 4 * len(D) * e, weighted, 4 * p, f, D)
 
 
-def inner(share: Array, f: Array, g: Array) -> float:
-    """Sum over the stations of f . g, each (ne, ng, d), times their shares (ne, ng)."""
-    total: float = _inner(share, f, g)
-    return total
-
-
-@njit
-def _inner(share: Array, f: Array, g: Array) -> float:
-    total = 0.0
-    for e in range(f.shape[0]):
-        for k in range(f.shape[1]):
-            for i in range(f.shape[2]):
-                total += share[e, k] * f[e, k, i] * g[e, k, i]
-    return total
-
-
-class DofDerivatives(NamedTuple):
-    """Derivatives by the dofs: of tangents in q, q' and q'' (ne, 2, d, r), of positions in q' and q'' the shifts."""
-
-    q: Array
-    rate: Array
-    acceleration: Array
-    shift_v: float
-    shift_a: float
-
-
-class Derivatives(NamedTuple):
-    """Derivatives (ne, ng, d, d) of a force per length by x, by x', and by the rate and acceleration of x."""
-
-    position: Array
-    slope: Array
-    rate: Array
-    acceleration: Array
-
-
 @njit
 def element_room(n: int, D: Size) -> Array:
     """Room for how what is conjugate to q of an element follows its n dofs (4, d, n)."""
     return np.empty((4, len(D), n))
-
-
-def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivatives) -> None:
-    """Add to out (ne, n, n) the derivative by the dofs of the residual of a force per length, P = dt/dTheta held."""
-    D, R = fixed(by.slope.shape[2]), fixed(columns.q.shape[3])
-    _add_tangent(out, tuple(at), tuple(by), tuple(columns), D, R)
-
-
-@njit
-def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: Size) -> None:
-    """Takes plain tuples: numba reads named ones half a microsecond slower."""
-    at, by, columns = Stations(*at), Derivatives(*by), DofDerivatives(*columns)
-    room, shape = element_room(out.shape[1], D), (len(D), out.shape[1])
-    places, rates, accelerations = np.empty(shape), np.empty(shape), np.empty(shape)
-    for e in range(by.slope.shape[0]):
-        put_rows(columns.q[e], 1.0, places, D, R)
-        put_rows(columns.rate[e], columns.shift_v, rates, D, R)
-        put_rows(columns.acceleration[e], columns.shift_a, accelerations, D, R)
-        room[:] = 0.0
-        for g in range(by.slope.shape[1]):
-            N, slope = at.N[e, g], (at.dN[e, g], by.slope[e, g], places)
-            moved = (N, by.position[e, g], places), (N, by.rate[e, g], rates), (N, by.acceleration[e, g], accelerations)
-            add_weighed(room, at.weighted[e, g], (slope, *moved), D, R)
-        add_pulled_back(out[e], columns.q[e], room, D, R)
 
 
 def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Array, P: Array) -> None:

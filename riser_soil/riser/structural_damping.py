@@ -2,129 +2,154 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State, Traits, Weights, Work
-from riser_soil.riser import damping2d, damping3d, increments
-from riser_soil.riser.damping_kernels import PlanarViscosity, SpatialViscosity
-from riser_soil.riser.elastic import ElasticElements, PlanarElements, elastic_elements, spatial
+from riser_soil.core.compiled import njit
+from riser_soil.core.part import State, Traits, Work
+from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
+from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
+from riser_soil.riser.elastic import in_plane, in_space
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.sections import Elements
-from riser_soil.riser.trial import Trial
+from riser_soil.riser.vectors import matrix, matvec, vector
 
 
-class ViscousElements(ABC):
-    """Viscous elements beside elastic ones; beta [s] of each element."""
+class PlanarViscosity(NamedTuple):
+    """Viscous elements of a plane line; room for the rates of the chords (ne, 2)."""
 
-    def __init__(self, elements: ElasticElements, beta: Array) -> None:
-        self._elements = elements
-        self._viscosity = type(elements.section)(*(beta * stiffness for stiffness in elements.section))
-        self.numbers = self._numbers(beta.size)
-
-    @abstractmethod
-    def _numbers(self, ne: int) -> PlanarViscosity | SpatialViscosity: ...
-
-    @abstractmethod
-    def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
-        """Rates of the chords (ne, d) and of the nodes' orientation, as the kernels take them."""
-
-    def _at(self, trial: Trial, v: Array) -> tuple:
-        """Arguments of the kernels."""
-        elements = self._elements
-        return *elements.configuration(trial), elements.reference, self._viscosity, *self._rates(trial, v)
-
-    @abstractmethod
-    def forces(self, trial: Trial, v: Array) -> Array:
-        """(ne, 2 ndof), conjugate to the dofs, from their rates (nn, ndof)."""
-
-    @abstractmethod
-    def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
-        """(ne, 2 ndof, 2 ndof)."""
+    reference: beam2d.PlanarReference
+    viscosity: beam2d.PlanarSection
+    chord_rate: Array
 
 
-class PlanarDamping(ViscousElements):
-    """Viscous elements of a planar line; forces and tangent cost a quarter of those in space (`benchmarks.twins`)."""
+class SpatialViscosity(NamedTuple):
+    """Viscous elements of a line in space; room for the rates of the chords (ne, 3) and spatial spins (nn, 3)."""
 
-    def _numbers(self, ne: int) -> PlanarViscosity:
-        return PlanarViscosity(self._elements.reference, self._viscosity, np.empty((ne, 2)))
-
-    def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
-        return np.diff(v[:, :2], axis=0), np.ascontiguousarray(v[:, 2])
-
-    def forces(self, trial: Trial, v: Array) -> Array:
-        return np.asarray(damping2d.forces(*self._at(trial, v)))
-
-    def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
-        return np.asarray(damping2d.tangent(*self._at(trial, v), shift_v))
+    reference: beam3d.SpatialReference
+    viscosity: beam3d.SpatialSection
+    chord_rate: Array
+    spin: Array
 
 
-class SpatialDamping(ViscousElements):
-    """Viscous elements of a line in space."""
-
-    def _numbers(self, ne: int) -> SpatialViscosity:
-        return SpatialViscosity(self._elements.reference, self._viscosity, np.empty((ne, 3)), np.empty((ne + 1, 3)))
-
-    def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
-        return np.diff(v[:, :3], axis=0), np.einsum("nij,nj->ni", spatial(trial).R, v[:, 3:])
-
-    def forces(self, trial: Trial, v: Array) -> Array:
-        f = damping3d.forces(*self._at(trial, v))
-        increments.forces_to_increments(f, spatial(trial).H)
-        return np.asarray(f)
-
-    def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
-        turn = spatial(trial)
-        nodes = damping3d.NodeRotations(turn.R, turn.H, turn.Rn, turn.Theta)
-        return np.asarray(damping3d.tangent(*self._at(trial, v), nodes, shift_v))
-
-
-class StructuralDamping(LinePart):
+class StructuralDamping(CompiledPart):
     """Stiffness-proportional damping (group F): stresses beta D times the strains' rates, D the elastic stiffnesses.
 
     line: the riser's field. elements.damping: beta [s] per element. A mode of angular frequency w has the damping
-    ratio beta w / 2; rigid motions have none.
+    ratio beta w / 2; rigid motions have none. In a plane forces and tangent cost a quarter of those in space
+    (`benchmarks.twins`).
     """
 
     name, traits = "structural damping", Traits("F", symmetric=False)
 
     def __init__(self, line: Line, elements: Elements) -> None:
         super().__init__(line)
-        self._damping = _damping(elastic_elements(line, elements), elements.damping)
+        self._elements = elements
 
-    def viscous_forces(self, state: State) -> Array:
-        """Element residuals (ne, 2 ndof)."""
-        trial = self.line.trial(state)
-        return np.asarray(trial.once((self, "forces"), self._forces))
+    def make_numbers(self) -> PlanarViscosity | SpatialViscosity:
+        line, ne, beta = self.line, self.line.length.size, self._elements.damping
+        if isinstance(line.frames, PlanarFrames):
+            flat, planar = in_plane(line, line.frames, self._elements)
+            return PlanarViscosity(flat, beam2d.PlanarSection(*(beta * D for D in planar)), np.empty((ne, 2)))
+        bent, spatial = in_space(line, line.frames, self._elements)
+        viscosity = beam3d.SpatialSection(*(beta * D for D in spatial))
+        return SpatialViscosity(bent, viscosity, np.empty((ne, 3)), np.empty((ne + 1, 3)))
 
-    def _forces(self, trial: Trial) -> Array:
-        return self._damping.forces(trial, self.line.nodal(trial.state.v))
-
-    def element_forces(self, state: State) -> tuple[None, Array]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        return None, self.viscous_forces(state)
-
-    def residual(self, state: State, forces: Forces) -> None:
-        self.line.scatter(self.viscous_forces(state), forces.force)
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        trial, v = self.line.trial(state), self.line.nodal(state.v)
-        values[self.line.name] += weights.force * self._damping.tangent(trial, v, float(weights.shift_v))
-
-    def numbers(self) -> PlanarViscosity | SpatialViscosity:
-        return self._damping.numbers
+    def viscous_forces(self, state: State) -> Array | None:
+        return self.element_forces(state)[1]
 
     def work(self, before: State, after: State) -> Work:
         """Energy that the mean forces take out over the step."""
-        forces = Forces.zeros(after.u.size)
-        for state in (before, after):
-            self.residual(state, forces)
-        part = self.line.part
-        return Work(dissipated=0.5 * float(forces.force[part] @ (after.u - before.u)[part]))
+        return Work(dissipated=self.taken(before, after))
 
 
-def _damping(elements: ElasticElements, beta: Array) -> ViscousElements:
-    return PlanarDamping(elements, beta) if isinstance(elements, PlanarElements) else SpatialDamping(elements, beta)
+@njit
+def _put_chord_rates(v: Array, out: Array) -> None:
+    """Rates of the chords (ne, d) from those of the dofs (nn, ndof)."""
+    for e in range(out.shape[0]):
+        for i in range(out.shape[1]):
+            out[e, i] = v[e + 1, i] - v[e, i]
+
+
+@add_forces.of(PlanarViscosity)
+def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForces) -> None:
+    f, first, second = np.empty(6), at.end_angle[:, 0], at.end_angle[:, 1]
+    _put_chord_rates(at.v, part.chord_rate)
+    for e in range(at.chord.shape[0]):
+        damping2d.put_element_forces(
+            e, at.chord, first, second, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f
+        )
+        for i in range(6):
+            out.force_e[e, i] += f[i]
+
+
+@add_tangent.of(PlanarViscosity)
+def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    own, first, second = np.empty((6, 6)), at.end_angle[:, 0], at.end_angle[:, 1]
+    for e in range(at.chord.shape[0]):
+        damping2d.put_element_tangent(
+            e,
+            at.chord,
+            first,
+            second,
+            part.reference,
+            part.viscosity,
+            part.chord_rate,
+            at.v[:, 2],
+            maps.shift_v,
+            own,
+        )
+        for i in range(6):
+            for j in range(6):
+                K[e, i, j] += weights.force * own[i, j]
+
+
+@add_forces.of(SpatialViscosity)
+def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineForces) -> None:
+    f = np.empty(12)
+    _put_chord_rates(at.v, part.chord_rate)
+    for n in range(at.v.shape[0]):
+        spin = matvec(matrix(at.frames[n]), vector(at.v[n, 3:]))
+        part.spin[n, 0], part.spin[n, 1], part.spin[n, 2] = spin
+    for e in range(at.chord.shape[0]):
+        damping3d.put_element_forces(
+            e, at.chord, at.frame1, at.frame2, part.reference, part.viscosity, part.chord_rate, part.spin, f
+        )
+        increments.element_to_increments(e, f, at.H)
+        for i in range(12):
+            out.force_e[e, i] += f[i]
+
+
+@add_tangent.of(SpatialViscosity)
+def _spatial_tangent(
+    part: SpatialViscosity, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    own, nodes = np.empty((12, 12)), damping3d.NodeRotations(at.frames, at.H, at.Rn, at.Theta)
+    for e in range(at.chord.shape[0]):
+        damping3d.put_element_tangent(
+            e,
+            at.chord,
+            at.frame1,
+            at.frame2,
+            part.reference,
+            part.viscosity,
+            part.chord_rate,
+            part.spin,
+            nodes,
+            maps.shift_v,
+            own,
+        )
+        for i in range(12):
+            for j in range(12):
+                K[e, i, j] += weights.force * own[i, j]
+
+
+@add_energy.of(PlanarViscosity)
+@add_energy.of(SpatialViscosity)
+def _energy(part: PlanarViscosity | SpatialViscosity, at: PlanarConfiguration, energy: Array) -> None:
+    """Nothing is stored."""

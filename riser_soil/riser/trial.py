@@ -4,27 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
-from riser_soil.core.part import State, Weights
+from riser_soil.core.part import State
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Orientation
-
-
-class IncrementDerivatives(NamedTuple):
-    """Derivatives of q, q' or q'' by the dofs: `tangent` (ne, 2, d, r) for the tangents, `shift` for the
-    positions.
-    """
-
-    tangent: Array
-    shift: float
-
-
-Columns = tuple[IncrementDerivatives, IncrementDerivatives, IncrementDerivatives]
 
 
 class Trial:
@@ -56,34 +44,13 @@ class Trial:
         return _interleave(self.x, self.turn.tangent)
 
     @cached_property
-    def _motion(self) -> tuple[Array, Array]:
-        return self.turn.motion(self._v, self._a)
-
-    @property
     def q_rate(self) -> Array:
         """q' (ne, 4, d)."""
-        return self._motion[0]
-
-    @property
-    def q_acceleration(self) -> Array:
-        """q'' (ne, 4, d)."""
-        return self._motion[1]
+        return self.turn.motion(self._v, self._a)[0]
 
     def pull_back(self, F: Array) -> Array:
         """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
         return np.asarray(hermite.pull_back(F, self.turn.P))
-
-    def columns(self, weights: Weights) -> Columns:
-        """Derivatives of q, q' and q'' by the dofs, rates following by the shifts."""
-        shifts = float(weights.shift_v), float(weights.shift_a)
-        found: Columns = self.once(("columns", *shifts), lambda trial: trial._columns_at(*shifts))
-        return found
-
-    def _columns_at(self, shift_v: float, shift_a: float) -> Columns:
-        d = self.x.shape[1]
-        maps = self.turn.maps(self._v[:, d:], self._a[:, d:], shift_v, shift_a)
-        q, rate, acceleration = map(IncrementDerivatives, maps, (1.0, shift_v, shift_a))
-        return q, rate, acceleration
 
     def add_turning(self, out: Array, weight: float, F: Array) -> None:
         """Add to out (ne, n, n) weight times the derivative of `pull_back` at fixed F (ne, 4, d)."""

@@ -9,7 +9,15 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.rows import add_pulled_back, add_weighed
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.riser.part_kernels import (
+    LineForces,
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    add_work,
+    find_water,
+)
 from riser_soil.sea import waterline
 from riser_soil.sea.stream_kernels import SeenWater, Stream, see_end, see_start
 from riser_soil.sea.water import WaterMotion
@@ -17,8 +25,9 @@ from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
 
 
 class DryStationNumbers(NamedTuple):
-    """A `DryStations`; element (ne,): of the line, in which its own lie. flat: see `Buoyancy`. Room for one station and
-    one element.
+    """Lost buoyancy by the dry share at the stations of a pipe; element (ne,): of the line, in which its own lie. span
+    (ne, ng) [m]: widths of the sections; displaced (ne,): weight of the displaced water [N/m]; flat: see `Buoyancy`.
+    Room for one station and one element.
     """
 
     stream: Stream
@@ -35,8 +44,9 @@ class DryStationNumbers(NamedTuple):
 
 
 class DryPipeNumbers(NamedTuple):
-    """A `DryPipe`. flat: see `Buoyancy`. Room for one element: its tangent, heights of its q (4,) and of its stations
-    (ng,), dry lengths and those before the step (4,).
+    """Lost buoyancy of the pipe, by its sections at many points of each element; displaced (ne,): weight of the water
+    in its place [N/m]. flat: see `Buoyancy`. Room for one element: its tangent, heights of its q (4,) and of its
+    stations (ng,), dry lengths and those before the step (4,).
     """
 
     stream: Stream
@@ -52,6 +62,12 @@ class DryPipeNumbers(NamedTuple):
     heights: Array
     dry: Array
     before: Array
+
+
+@find_water.of(DryStationNumbers)
+@find_water.of(DryPipeNumbers)
+def _find_water(part: DryStationNumbers | DryPipeNumbers, at: Configuration) -> None:
+    see_end(part.stream, at.q)
 
 
 @njit

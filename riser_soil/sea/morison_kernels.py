@@ -14,6 +14,7 @@ from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.sea import morison_law as law
+from riser_soil.sea.pipe import Pipe
 
 PAIR = fixed(2)
 NG = len(stations.THREE_POINTS.points)
@@ -35,7 +36,7 @@ def station_room(d: int) -> StationRoom:
 
 
 class StillWaterNumbers(NamedTuple):
-    """Stations and their shares (ne, NG) of arc length [m], coefficients of drag and mass (ne, 2) as in `StillWater`,
+    """Stations and their shares (ne, NG) of arc length [m], coefficients of drag and mass (ne, 2) as in `WaterLoads`,
     and room for the stations of one element, NG, and for it.
     """
 
@@ -45,6 +46,12 @@ class StillWaterNumbers(NamedTuple):
     mass: Array
     room: StationRoom
     element: Array
+
+
+def still_water(pipe: Pipe, drag: Array, mass: Array) -> StillWaterNumbers:
+    """Drag and added mass along a pipe in water that stands still, and covers all."""
+    d, n = pipe.line.dimension, 2 * pipe.line.ndof
+    return StillWaterNumbers(pipe.at, pipe.share, drag, mass, station_room(d), stations.element_room(n, fixed(d)))
 
 
 class Lanes(NamedTuple):

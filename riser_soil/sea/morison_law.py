@@ -6,9 +6,9 @@ pipe feels
     drag        -(D/2) rho Cdn |v_n| v_n - (pi D/2) rho Cdt |v_t| v_t tau
     added mass  -rho (pi D^2/4) [Can (a - (a.tau) tau) + Cat (a.tau) tau]
 
-The functions return the resistance, that is the negative of these forces (N/m), and its derivatives (..., d, d) by v,
-a and the slope x' of the axis, whose direction is tau and whose size is the stretch, at ng points of each element: v,
-a, tau (ne, ng, d); stretch (ne, ng); c, m: coefficients (ne, 2), normal and tangential. With tau = 0 they are those of
+The functions write the resistance, that is the negative of these forces (N/m), and its derivatives (d, d) by v, a and
+the slope x' of the axis, whose direction is tau and whose size is the stretch, at one point: v, a, tau (d,); c, m:
+coefficients (2,), normal and tangential. With tau = 0 they are those of
 a body alike in all directions, by the normal coefficients. tau follows x' by (I - tau tau)/|x'|.
 Source: Morison et al., Petroleum Transactions 189 (1950); tangential drag on the wetted perimeter as in DNV-RP-C205.
 """
@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.compiled import njit
 from riser_soil.core.rows import Vector, held
 from riser_soil.riser.hermite import Size
 
@@ -96,71 +96,3 @@ def put_added_derivatives(
             one, both = 1.0 if i == j else 0.0, tau[i] * tau[j]
             by_a[i, j] = normal * one + excess * both
             by_slope[i, j] += shorter * (tau[i] * (a[j] - along * tau[j]) + along * (one - both))
-
-
-def resistance(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Array, Array]:
-    """Resistance to the acceleration and to the rate, each (ne, ng, d)."""
-    found: tuple[Array, Array] = _resistance(v, a, tau, c, m, fixed(v.shape[2]))
-    return found
-
-
-@njit
-def _resistance(v: Array, a: Array, tau: Array, c: Array, m: Array, D: Size) -> tuple[Array, Array]:
-    drag = np.empty_like(v)
-    for e in range(v.shape[0]):
-        for g in range(v.shape[1]):
-            put_drag(v[e, g], tau[e, g], c[e], drag[e, g], D)
-    return _added(a, tau, m, D), drag
-
-
-def resistance_derivatives(
-    v: Array, a: Array, tau: Array, stretch: Array, c: Array, m: Array
-) -> tuple[Array, Array, Array]:
-    """Derivatives of the sum of `resistance` by v, a and x'."""
-    found: tuple[Array, Array, Array] = _resistance_derivatives(v, a, tau, stretch, c, m, fixed(v.shape[2]))
-    return found
-
-
-@njit
-def _resistance_derivatives(
-    v: Array, a: Array, tau: Array, stretch: Array, c: Array, m: Array, D: Size
-) -> tuple[Array, Array, Array]:
-    ne, ng, d = v.shape[0], v.shape[1], len(D)
-    by_v, by_a, by_slope = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
-    for e in range(ne):
-        for g in range(ng):
-            axis = tau[e, g], stretch[e, g]
-            put_drag_derivatives(v[e, g], *axis, c[e], 1.0, by_v[e, g], by_slope[e, g], D)
-            put_added_derivatives(a[e, g], *axis, m[e], 1.0, by_a[e, g], by_slope[e, g], D)
-    return by_v, by_a, by_slope
-
-
-def added(a: Array, tau: Array, m: Array) -> Array:
-    """Resistance to the acceleration (ne, ng, d)."""
-    found: Array = _added(a, tau, m, fixed(a.shape[2]))
-    return found
-
-
-@njit
-def _added(a: Array, tau: Array, m: Array, D: Size) -> Array:
-    f = np.empty_like(a)
-    for e in range(a.shape[0]):
-        for g in range(a.shape[1]):
-            put_added(a[e, g], tau[e, g], m[e], f[e, g], D)
-    return f
-
-
-def added_derivatives(a: Array, tau: Array, stretch: Array, m: Array) -> tuple[Array, Array]:
-    """Derivatives of `added` by a and x'."""
-    found: tuple[Array, Array] = _added_derivatives(a, tau, stretch, m, fixed(a.shape[2]))
-    return found
-
-
-@njit
-def _added_derivatives(a: Array, tau: Array, stretch: Array, m: Array, D: Size) -> tuple[Array, Array]:
-    ne, ng, d = a.shape[0], a.shape[1], len(D)
-    by_a, by_slope = np.empty((ne, ng, d, d)), np.zeros((ne, ng, d, d))
-    for e in range(ne):
-        for g in range(ng):
-            put_added_derivatives(a[e, g], tau[e, g], stretch[e, g], m[e], 1.0, by_a[e, g], by_slope[e, g], D)
-    return by_a, by_slope

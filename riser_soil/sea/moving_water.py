@@ -1,4 +1,4 @@
-"""Morison loads in moving water, per length: drag on the relative velocity, Froude-Krylov force and added mass.
+"""Morison loads per length, in water that may move and need not cover all: drag, Froude-Krylov force and added mass.
 
 The pipe's velocity v and acceleration a meet those of the undisturbed water at its axis, u and u'. With the cross-
 section A = pi D^2/4 and the added mass m of `morison_law`,
@@ -11,154 +11,78 @@ line is open; the dynamic pressure on its ends is part of the effective tension,
 of Energy Resources Technology 106, 1984, on closed pressure fields; DNV-RP-C205, 6.2, for the whole formula). All terms
 with u' are known from where the pipe is; as external forces they belong to group F, so that the time scheme stays of
 second order, while m a is inertia.
+Where a surface leaves some of the pipe dry, all act on its wet share S alone. The added mass is what is wet at the
+time, at rest as it gets wet: force = S m (u' - a), without a term for entry into the water (slamming).
 Source: Morison et al., Petroleum Transactions 189 (1950), in its relative form.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Weights
-from riser_soil.riser.stations import Derivatives
-from riser_soil.riser.trial import Trial
-from riser_soil.sea import morison_law as law
-from riser_soil.sea.flows import motion_room, put_in_plane
-from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
-from riser_soil.sea.pipe import Pipe, StationFlow
+from riser_soil.sea.morison_kernels import StillWaterNumbers, still_water
+from riser_soil.sea.moving_water_kernels import MovingWaterNumbers, moving_water
+from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.sea import Sea
-from riser_soil.sea.still_water import StationLoads, StillWater
 from riser_soil.sea.stream_kernels import WaterInLoop, water_in_loop
-from riser_soil.sea.water import Water, WaterMotion
-
-
-class _Seen(NamedTuple):
-    """The motion at a time and places x (ne, ng, d)."""
-
-    t: float
-    x: Array
-    motion: WaterMotion
-
-    def at(self, t: float, x: Array) -> bool:
-        return self.t == t and np.array_equal(self.x, x)
 
 
 class FlowAtStations:
-    """Moving water around the pipe, evaluated once for trials that differ in rates alone: the last motion seen at the
-    latest time and the last one at the time before, where the step begins, are kept.
-    """
+    """The sea around a pipe: its motion at the stations, shared by all parts that act there."""
 
-    def __init__(self, pipe: Pipe, water: Water) -> None:
-        self.pipe, self._water = pipe, water
-        self._latest: _Seen | None = None
-        self._before: _Seen | None = None
-
-    def at(self, trial: Trial) -> WaterMotion:
-        """The water's motion at the stations: arrays (ne, ng, ...) in the line's axes."""
-        motion: WaterMotion = trial.once((self, "motion"), self._find)
-        return motion
+    def __init__(self, pipe: Pipe, sea: Sea) -> None:
+        self.pipe, self._sea = pipe, sea
 
     @cached_property
     def in_loop(self) -> WaterInLoop:
-        """The same in the compiled loop over a riser alone; for a `Sea`."""
-        assert isinstance(self._water, Sea)
-        return water_in_loop(self.pipe, self._water.numbers)
-
-    def immersion(self, trial: Trial) -> tuple[Array, Array]:
-        """Height of the surface above the stations (ne, ng) [m] and its gradient (ne, ng, d)."""
-        motion = self.at(trial)
-        return motion.immersion, motion.immersion_gradient
-
-    def through(self, trial: Trial) -> StationFlow:
-        """The pipe's motion through the water: its velocity is the relative one."""
-        flow: StationFlow = trial.once((self, "through"), self._relative)
-        return flow
-
-    def _relative(self, trial: Trial) -> StationFlow:
-        flow = self.pipe.flow(trial)
-        return flow._replace(v=flow.v - self.at(trial).velocity)
-
-    def _find(self, trial: Trial) -> WaterMotion:
-        t, x = trial.state.t, self.pipe.position(trial)
-        for seen in (self._latest, self._before):
-            if seen is not None and seen.at(t, x):
-                return seen.motion
-        if self._latest is not None and self._latest.t != t:
-            self._before = self._latest
-        self._latest = _Seen(t, x, self._evaluate(t, x))
-        return self._latest.motion
-
-    def _evaluate(self, t: float, x: Array) -> WaterMotion:
-        *at, d = x.shape
-        found = self._water(t, self.pipe.line.to_global(x.reshape(-1, d)))
-        seen = found if d == 3 else self._in_plane(found)
-        return WaterMotion(*(part.reshape(*at, *part.shape[1:]) for part in seen))
-
-    def _in_plane(self, found: WaterMotion) -> WaterMotion:
-        seen = motion_room(found.immersion.size, 2)
-        put_in_plane(found, np.ascontiguousarray(self.pipe.line.basis), seen)
-        return seen
+        """For kernels, which find it once for trials that differ in rates alone."""
+        return water_in_loop(self.pipe, self._sea.numbers)
 
 
-class RelativeDrag:
-    """Still water's loads, with drag on the velocity through the water."""
+@dataclass(frozen=True, eq=False)
+class WaterLoads:
+    """Resistance of the water per length [N/m], the negative of its force on a pipe.
 
-    dissipative = False
-
-    def __init__(self, still: StillWater, stream: FlowAtStations) -> None:
-        self._still, self._stream = still, stream
-
-    def forces(self, trial: Trial) -> tuple[Array, Array]:
-        return self._still.resist(self._stream.through(trial))
-
-    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        by = self._still.linearise(self._stream.through(trial), weights)
-        return by._replace(position=-by.rate @ self._stream.at(trial).velocity_gradient)
-
-    def numbers(self) -> MovingWaterNumbers:
-        return self.seen_in(self._stream.in_loop)
-
-    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
-        return self._still.seen_in(water)._replace(dissipative=False)
-
-    def momentum(self, trial: Trial, v: Array) -> Array:
-        return self._still.momentum(trial, v)
-
-
-class AcceleratedWater:
-    """Froude-Krylov force and added mass by the water's acceleration, added to other loads: rho A u' and m u'.
-
-    mass: (ne, 2) as in `StillWater`. displaced: rho A (ne,) [kg/m].
+    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
+    `morison_law.added_masses` [kg/m]. water: around the pipe, where it moves or has a surface. pushed: masses (ne, 2)
+    [kg/m] on which its acceleration acts, see `pushed_masses`. span: widths (ne, ng) [m] of the sections, where they
+    may get dry. dissipative: whether all work of the group F is lost, as in still water, and none can be put in.
     """
 
-    dissipative = False
+    pipe: Pipe
+    drag: Array
+    mass: Array
+    water: FlowAtStations | None = None
+    pushed: Array | None = None
+    span: Array | None = None
+    dissipative: bool = True
 
-    def __init__(self, loads: StationLoads, stream: FlowAtStations, mass: Array, displaced: Array) -> None:
-        self._loads, self._stream, self._pipe = loads, stream, stream.pipe
-        self._mass = mass + displaced[:, None]  # rho A is the same across and along the pipe
+    def numbers(self) -> StillWaterNumbers | MovingWaterNumbers:
+        """See `LinePart.numbers`."""
+        if self.water is None and not self.pipe.points_alone:
+            return still_water(self.pipe, self.drag, self.mass)
+        return self.seen_in(self.water or FlowAtStations(self.pipe, Sea(None)))
 
-    def forces(self, trial: Trial) -> tuple[Array, Array]:
-        inertia, force = self._loads.forces(trial)
-        acceleration, tau = self._stream.at(trial).acceleration, self._pipe.flow(trial).tau
-        return inertia, force - law.added(acceleration, tau, self._mass)
+    def seen_in(self, water: FlowAtStations) -> MovingWaterNumbers:
+        """In water that need not stand still nor cover all."""
+        found = moving_water(water.in_loop, self.pipe, self.drag, self.mass)._replace(dissipative=self.dissipative)
+        if self.pushed is not None:
+            found = found._replace(pushed=self.pushed)
+        return found if self.span is None else found._replace(partly=True, span=self.span)
 
-    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        by, flow, water = self._loads.derivatives(trial, weights), self._pipe.flow(trial), self._stream.at(trial)
-        mass = -weights.force * self._mass
-        by_a, by_slope = law.added_derivatives(water.acceleration, flow.tau, flow.stretch, mass)
-        return by._replace(
-            position=by.position + by_a @ water.acceleration_gradient,
-            slope=by.slope + by_slope,
-        )
 
-    def numbers(self) -> MovingWaterNumbers:
-        return self.seen_in(self._stream.in_loop)
+def through(water: FlowAtStations, span: Array | None = None, dissipative: bool = False) -> WaterLoads:
+    """Of what moves through the water without drag and added mass of its own, see `through_kernels`."""
+    nothing = np.zeros((len(water.pipe.share), 2))
+    return WaterLoads(water.pipe, nothing, nothing, water, None, span, dissipative)
 
-    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
-        return self._loads.seen_in(water)._replace(dissipative=False, pushed=self._mass)
 
-    def momentum(self, trial: Trial, v: Array) -> Array:
-        return self._loads.momentum(trial, v)
+def pushed_masses(mass: Array, displaced: Array) -> Array:
+    """m and rho A (ne, 2) of an added mass (ne, 2) and the mass of the displaced water (ne,) [kg/m], which is the same
+    across and along the pipe.
+    """
+    return np.asarray(mass + displaced[:, None])

@@ -55,7 +55,7 @@ class FlowDerivatives(NamedTuple):
 
 
 class MovingWaterNumbers(NamedTuple):
-    """Loads of the water on what moves in it, as in `StillWater`, `RelativeDrag`, `AcceleratedWater` and `PartlyWet`.
+    """Loads of the water on what moves in it, see `WaterLoads`.
 
     element (ne,): of the line, in which those of the pipe lie. pushed (ne, 2): mass on which the water's acceleration
     acts. partly: whether it acts on the wet share alone, of sections of width span (ne, ng). alike: whether what moves
@@ -228,7 +228,7 @@ def _differentiate(
 
 @add_energy.of(MovingWaterNumbers)
 def _energy(part: MovingWaterNumbers, at: Configuration, energy: Array) -> None:
-    """With the water as the forces have found it last."""
+    """Kinetic energy of the added mass at the pipe's own velocity, wet as the forces have found it last."""
     room = part.room
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
@@ -241,7 +241,7 @@ def _energy(part: MovingWaterNumbers, at: Configuration, energy: Array) -> None:
 
 @add_work.of(MovingWaterNumbers)
 def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
-    """See `Morison.work`."""
+    """See `Morison`."""
     see_start(part.stream, first.q)
     resisted, changed, seen = 0.0, 0.0, part.seen
     for m in range(part.element.size):

@@ -22,9 +22,8 @@ from riser_soil.riser.hermite import Size
 from riser_soil.sea import through_kernels
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import put_drag_derivatives
+from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
-from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.still_water import StationLoads
 from riser_soil.sea.through_kernels import put_derivatives, put_resistance
 
 Rows = Sequence[tuple[float, float]]
@@ -121,6 +120,6 @@ def _put_derivatives(
             by_slope[i, j] -= along / stretch * dyad
 
 
-def reynolds_drag(pipe: Pipe, loads: StationLoads, tables: ReynoldsTables) -> Morison:
-    """The part of this drag. loads: `ThroughLoads` of the tables, or what a surface makes of them."""
-    return Morison(pipe, loads, lambda flow: ReynoldsNumbers(flow, tables))
+def reynolds_drag(loads: WaterLoads, tables: ReynoldsTables) -> Morison:
+    """The part of this drag. loads: as of `through`."""
+    return Morison(loads, lambda flow: ReynoldsNumbers(flow, tables))

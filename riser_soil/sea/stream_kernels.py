@@ -1,4 +1,4 @@
-"""The water around a pipe in the compiled loop over a riser alone: its motion at the stations, found once a trial."""
+"""The water around a pipe: its motion at the stations, found once a trial."""
 
 from __future__ import annotations
 
@@ -18,17 +18,19 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.water import WaterMotion
 
 START, END = 0, 1
+NEAR = 1e-9  # m, within which places where a step starts are those where the last one ended, but for round-off
 
 
 class SeenWater(NamedTuple):
     """The water at the n = ne ng stations of a pipe where a step starts and where it ends.
 
-    t, found (2,): times of the step's START and END, and those at which the motion was found, nan at first; start and
-    end: that motion in the line's axes.
+    t, found (2,): times of the step's START and END, and those at which the motion was found, nan at first; places
+    (2, n, 3): those at which it was found; start and end: that motion in the line's axes.
     """
 
     t: Array
     found: Array
+    places: Array
     start: WaterMotion
     end: WaterMotion
 
@@ -37,7 +39,7 @@ class Stream(NamedTuple):
     """The sea that a pipe is in. find_start, find_end: its motion where a step starts and ends, at the stations x.
 
     element (ne,) and N (ne, ng, 4): those of the line that the stations lie in; origin (3,) and basis (3, d) of the
-    line; x, place (n, 3): stations of a trial, and those of the motion found last.
+    line; x (n, 3): stations of a trial.
     """
 
     find_start: Calls
@@ -48,7 +50,6 @@ class Stream(NamedTuple):
     origin: Array
     basis: Array
     x: Array
-    place: Array
     D: Size
 
 
@@ -62,11 +63,12 @@ class WaterInLoop(NamedTuple):
 def water_in_loop(pipe: Pipe, sea: SeaNumbers) -> WaterInLoop:
     """The sea around a pipe, its motion found nowhere yet."""
     line, n = pipe.line, pipe.share.size
-    seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), *(motion_room(n, line.dimension) for _ in range(2)))
+    motions = (motion_room(n, line.dimension) for _ in range(2))
+    seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), np.zeros((2, n, 3)), *motions)
     basis, x = np.ascontiguousarray(line.basis), np.zeros((n, 3))
     find_start = calls(*_finding(sea, seen.start, seen.t[:1], x, basis))
     find_end = calls(*_finding(sea, seen.end, seen.t[1:], x, basis))
-    at = pipe.element, pipe.at.N, line.origin, basis, x, np.zeros((n, 3))
+    at = pipe.element, pipe.at.N, line.origin, basis, x
     return WaterInLoop(Stream(find_start, find_end, seen, *at, fixed(line.dimension)), seen)
 
 
@@ -83,29 +85,30 @@ def bring(seen: SeenWater, start: float, end: float) -> None:
     if seen.found[END] == start and seen.found[START] != start:
         for at_start, at_end in zip(seen.start, seen.end, strict=True):
             at_start[:] = at_end
-        seen.found[START] = start
+        seen.places[START], seen.found[START] = seen.places[END], start
     seen.t[:] = start, end
 
 
 @partial(njit, apart=True)
 def see_start(stream: Stream, q: Array) -> None:
     """Find the motion at the start of a step, q (ne, 4, d), unless it is known there."""
-    t, found = stream.seen.t[START], stream.seen.found
-    if found[START] != t:
-        _place(stream, q)
+    seen, t = stream.seen, stream.seen.t[START]
+    _place(stream, q)
+    if seen.found[START] != t or not _within(stream.x, seen.places[START], NEAR):
         call_each(stream.find_start)
-        found[START] = t
+        seen.found[START] = t
+        _copy(stream.x, seen.places[START])
 
 
 @partial(njit, apart=True)
 def see_end(stream: Stream, q: Array) -> None:
     """Find the motion of a trial, q (ne, 4, d), unless it is known there: parts at the same stations ask in turn."""
-    t, found = stream.seen.t[END], stream.seen.found
+    seen, t = stream.seen, stream.seen.t[END]
     _place(stream, q)
-    if found[END] != t or not _same(stream.x, stream.place):
+    if seen.found[END] != t or not _within(stream.x, seen.places[END], 0.0):
         call_each(stream.find_end)
-        found[END] = t
-        _copy(stream.x, stream.place)
+        seen.found[END] = t
+        _copy(stream.x, seen.places[END])
 
 
 @njit
@@ -131,9 +134,9 @@ def _copy(x: Array, out: Array) -> None:
 
 
 @njit
-def _same(x: Array, y: Array) -> bool:
+def _within(x: Array, y: Array, least: float) -> bool:
     for p in range(x.shape[0]):
         for i in range(3):
-            if x[p, i] != y[p, i]:
+            if not abs(x[p, i] - y[p, i]) <= least:
                 return False
     return True

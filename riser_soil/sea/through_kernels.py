@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from riser_soil.core.arrays import Array
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
@@ -62,28 +60,6 @@ def put_derivatives(
     D: Size,
 ) -> None:
     """Write its derivatives (d, d) by v and by the axis' slope x', where a step ends, times a weight."""
-
-
-@njit
-def resistances(law: Any, v: Array, tau: Array, D: Size) -> Array:
-    """`put_resistance` at all stations (ne, ng, d), where a step ends."""
-    f = np.empty_like(v)
-    for m in range(v.shape[0]):
-        for g in range(v.shape[1]):
-            put_resistance(law, END, m, g, v[m, g], tau[m, g], f[m, g], D)
-    return f
-
-
-@njit
-def all_derivatives(law: Any, v: Array, tau: Array, stretch: Array, weight: float, D: Size) -> tuple[Array, Array]:
-    """`put_derivatives` at all stations, each (ne, ng, d, d)."""
-    ne, ng, d = v.shape[0], v.shape[1], len(D)
-    by_v, by_slope = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
-    for m in range(ne):
-        for g in range(ng):
-            of_v, of_slope = by_v[m, g], by_slope[m, g]
-            put_derivatives(law, m, g, v[m, g], tau[m, g], stretch[m, g], weight, of_v, of_slope, D)
-    return by_v, by_slope
 
 
 @njit
@@ -158,7 +134,7 @@ def _energy(part: ThroughNumbers, at: Configuration, energy: Array) -> None:
 
 
 def _work(part: ThroughNumbers, first: Configuration, last: Configuration, work: Array) -> None:
-    """See `Morison.work`."""
+    """See `Morison`."""
     flow, seen, resisted = part.flow, part.flow.seen, 0.0
     see_start(flow.stream, first.q)
     for m in range(flow.element.size):

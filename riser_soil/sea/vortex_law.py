@@ -144,18 +144,3 @@ def advance(
     rate = shedding_rate(v, own, a, tau, phase, foreseen, *of_pipe)
     wake.growth[e, g] = (rate - wake.rate[e, g]) / since if since > 0.0 else 0.0
     wake.phase[e, g], wake.rate[e, g] = phase % (2.0 * math.pi), rate
-
-
-def advance_all(wake: Wake, shed: Shedding, t: float, v: Array, own: Array, a: Array, tau: Array) -> None:
-    """The same of all stations (ne, ng, 3), and of the time."""
-    _advance_all(wake, shed, t, phases_at(wake, t), v, own, a, tau)
-
-
-@njit
-def _advance_all(
-    wake: Wake, shed: Shedding, t: float, phases: Array, v: Array, own: Array, a: Array, tau: Array
-) -> None:
-    for e in range(phases.shape[0]):
-        for g in range(phases.shape[1]):
-            advance(wake, shed, t, phases[e, g], e, g, v[e, g], own[e, g], a[e, g], tau[e, g])
-    wake.time[0] = t

@@ -2,106 +2,145 @@
 
 from __future__ import annotations
 
+import math
+from functools import cached_property
+from typing import NamedTuple
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State, Traits, Weights, Work
+from riser_soil.core.bound import Bound
+from riser_soil.core.compiled import njit
+from riser_soil.core.packed import Packed
+from riser_soil.core.part import State, Traits
 from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful
-from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.configuration import Configuration
+from riser_soil.riser.hermite import Size
+from riser_soil.riser.part_kernels import keep
 from riser_soil.riser.stations import POINTS
-from riser_soil.riser.trial import Trial
+from riser_soil.sea import through_kernels
 from riser_soil.sea import vortex_law as law
-from riser_soil.sea.morison import Morison
-from riser_soil.sea.moving_water import FlowAtStations
+from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
-from riser_soil.sea.still_water import StationLoads
-from riser_soil.sea.through import ThroughLoads
-from riser_soil.sea.vortex_kernels import Push, VortexNumbers
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.stream_kernels import bring, see_end
+from riser_soil.sea.through_kernels import END, put_derivatives, put_resistance, resist
 
 
-class Shed:
-    """Vortices behind a pipe: their wake, kept from step to step, and the loads that follow from it."""
+class Push(NamedTuple):
+    """Half rho D Cv (ne,) [kg/m2], and phases (2, ne, ng) where a step starts and ends."""
 
-    def __init__(self, stream: FlowAtStations, shed: law.Shedding) -> None:
-        self.stream, self.shed, self.wake = stream, shed, _new_wake(stream)
-        self.loads = ThroughLoads(stream, self._push, dissipative=False)
-
-    def _push(self, t: float) -> Push:
-        """At a time of the step under way, where it ends."""
-        return Push(self.shed.lift, np.stack(2 * [law.phases_at(self.wake, t)]))
-
-    def begin(self, trial: Trial) -> None:
-        """Shed as behind a pipe at rest, then as behind one in this motion."""
-        through, own, a, tau = self._motion(trial)
-        law.advance_all(self.wake, self.shed, trial.state.t, through, 0.0 * own, 0.0 * a, tau)
-        self.advance(trial)
-
-    def advance(self, trial: Trial) -> None:
-        """Keep the wake at the end of an accepted step."""
-        law.advance_all(self.wake, self.shed, trial.state.t, *self._motion(trial))
-
-    def _motion(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
-        """Velocity through the water, own velocity and acceleration, tangent; each (ne, ng, 3)."""
-        own = self.stream.pipe.flow(trial)
-        return self.stream.through(trial).v, own.v, own.a, own.tau
+    lift: Array
+    phases: Array
 
 
-def _new_wake(stream: FlowAtStations) -> law.Wake:
-    """Phases once around along the line, so that no shape is left out; the rates follow."""
-    line, shape = stream.pipe.line, stream.pipe.share.shape
-    arc = line.arc[:-1, None] + line.length[:, None] * POINTS
-    return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
+class VortexNumbers(NamedTuple):
+    """Vortices behind a pipe in space, see `ThroughNumbers`."""
+
+    flow: MovingWaterNumbers
+    law: Push
+    shed: law.Shedding
+    wake: law.Wake
 
 
-class Vortices(LinePart):
-    """Force of the vortices on the pipe. loads: theirs, or what a surface makes of them."""
+class Vortices(CompiledPart):
+    """Force of the vortices on the pipe (group F), whose wake is kept from step to step; all is external work.
+
+    loads: as of `moving_water.through`.
+    """
 
     name = "vortices"
     traits = Traits("F", symmetric=False, follows=True, keeps_way=True, roles=(Stateful, Starting))
 
-    def __init__(self, loads: StationLoads, vortices: Shed) -> None:
-        pipe = vortices.stream.pipe
-        super().__init__(pipe.line)
-        self._vortices, self._acting = vortices, Morison(pipe, loads, self._numbers)
+    def __init__(self, loads: WaterLoads, shed: law.Shedding) -> None:
+        super().__init__(loads.pipe.line)
+        self._loads, self._shed, self._wake = loads, shed, _new_wake(loads.pipe)
 
-    def element_forces(self, state: State) -> tuple[Array, Array]:
-        """Element residuals (inertia, force), each (ne, 2 ndof)."""
-        return self._acting.element_forces(state)
-
-    def residual(self, state: State, forces: Forces) -> None:
-        self._acting.residual(state, forces)
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        self._acting.tangent(state, weights, values)
-
-    def work(self, before: State, after: State) -> Work:
-        """All is external work, of either sign."""
-        return self._acting.work(before, after)
-
-    def numbers(self) -> tuple[object, ...]:
-        return self._acting.numbers()
-
-    def _numbers(self, flow: MovingWaterNumbers) -> VortexNumbers:
-        shed = self._vortices
-        self._push = Push(shed.shed.lift, np.zeros((2, *flow.share.shape)))
-        return VortexNumbers(flow, self._push, shed.shed, shed.wake)
+    def make_numbers(self) -> VortexNumbers:
+        flow = self._loads.numbers()
+        assert isinstance(flow, MovingWaterNumbers)
+        return VortexNumbers(flow, Push(self._shed.lift, np.zeros((2, *flow.share.shape))), self._shed, self._wake)
 
     def renew_numbers(self, start: float, end: float) -> None:
-        self._acting.renew_numbers(start, end)
-        for phases, t in zip(self._push.phases, (start, end), strict=True):
-            phases[:] = law.phases_at(self._vortices.wake, t)
+        """Phases are known before a step, when the wake is kept where it starts."""
+        bring(self._numbers.flow.seen, start, end)
+        for phases, t in zip(self._numbers.law.phases, (start, end), strict=True):
+            phases[:] = law.phases_at(self._wake, t)
+
+    @cached_property
+    def _shed_at_rest(self) -> Bound:
+        return Bound(shed_at_rest, Packed(self._numbers), Packed(self._trials.now.at))
 
     def begin_stage(self, state: State) -> None:
-        self._vortices.begin(self.line.trial(state))
-
-    def commit(self, state: State) -> None:
-        """Keep the wake."""
-        self._vortices.advance(self.line.trial(state))
+        """Shed as behind a pipe at rest, then as behind one in this motion."""
+        self._go_to(state)
+        self._shed_at_rest()
+        self.commit(state)
 
     def state(self) -> Saved:
-        return {name: values.copy() for name, values in self._vortices.wake._asdict().items()}
+        return {name: values.copy() for name, values in self._wake._asdict().items()}
 
     def restore(self, saved: Saved) -> None:
-        for name, values in self._vortices.wake._asdict().items():
+        for name, values in self._wake._asdict().items():
             values[:] = saved[name]
+
+
+def _new_wake(pipe: Pipe) -> law.Wake:
+    """Phases once around along the line, so that no shape is left out; the rates follow."""
+    line, shape = pipe.line, pipe.share.shape
+    arc = line.arc[:-1, None] + line.length[:, None] * POINTS
+    return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
+
+
+through_kernels.with_kernels(VortexNumbers)
+
+
+@put_resistance.of(Push)
+def _put_resistance(push: Push, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
+    law.put_resistance(v, tau, push.lift[m] * math.cos(push.phases[side, m, g]), f)
+
+
+@put_derivatives.of(Push)
+def _put_derivatives(
+    push: Push,
+    m: int,
+    g: int,
+    v: Array,
+    tau: Array,
+    stretch: float,
+    weight: float,
+    by_v: Array,
+    by_slope: Array,
+    D: Size,
+) -> None:
+    k = weight * push.lift[m] * math.cos(push.phases[END, m, g])
+    law.put_derivatives(v, tau, stretch, k, by_v, by_slope)
+
+
+@njit
+def _shed(part: VortexNumbers, at: Configuration, moves: float) -> None:
+    """Keep the wake behind a pipe of this share of its motion."""
+    flow, wake, t = part.flow, part.wake, part.flow.seen.t[END]
+    see_end(flow.stream, at.q)
+    for m in range(flow.element.size):
+        for g in range(flow.share.shape[1]):
+            resist(part, at, flow.seen.end, END, m, g, flow.room)
+            room, phase = flow.room, part.law.phases[END, m, g]
+            for i in range(len(at.D)):
+                room.v[i] *= moves
+                room.a[i] *= moves
+            law.advance(wake, part.shed, t, phase, m, g, room.through, room.v, room.a, room.tau)
+    wake.time[0] = t
+
+
+@njit
+def shed_at_rest(part: VortexNumbers, at: Configuration) -> None:
+    """Keep the wake behind a pipe at rest."""
+    _shed(part, at, 0.0)
+
+
+@keep.of(VortexNumbers)
+def _keep(part: VortexNumbers, at: Configuration) -> None:
+    _shed(part, at, 1.0)

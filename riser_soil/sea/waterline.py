@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.compiled import njit
 from riser_soil.core.rows import add_pulled_back
 from riser_soil.riser.hermite import Size, shape
 from riser_soil.riser.stations import POINTS
@@ -26,20 +26,10 @@ class FinePoints(NamedTuple):
     lag: Array
 
 
-class WetElements(NamedTuple):
-    """Elements: z their heights (ne, 4), those of `hermite`'s q; h (ne, ng) the immersion at their stations, whose own
-    heights are stations (ne, ng); L length, b width of the wet section (ne,).
-    """
-
-    z: Array
-    h: Array
-    stations: Array
-    L: Array
-    b: Array
-
-
 class WetElement(NamedTuple):
-    """One of `WetElements`."""
+    """An element: z its heights (4,), those of `hermite`'s q; h (ng,) the immersion at its stations, whose own heights
+    are stations (ng,); L length, b width of the wet section.
+    """
 
     z: Array
     h: Array
@@ -57,11 +47,6 @@ class TangentRoom(NamedTuple):
     by_surface: Array
     by_q: Array
     S: Array
-
-
-@njit
-def element(on: WetElements, e: int) -> WetElement:
-    return WetElement(on.z[e], on.h[e], on.stations[e], on.L[e], on.b[e])
 
 
 def fine_points(n: int) -> FinePoints:
@@ -169,46 +154,6 @@ def put_by_dofs(by_q: Array, P: Array, scale: float, S: Array, D: Size, R: Size)
 
 
 @njit
-def dry_lengths(points: tuple, on: tuple) -> Array:
-    """Those of `put_dry_lengths` of all elements (ne, 4)."""
-    points, on = FinePoints(*points), WetElements(*on)
-    out = np.zeros((on.L.size, 4))
-    for e in range(on.L.size):
-        put_dry_lengths(points, element(on, e), out[e])
-    return out
-
-
-@njit
-def dry_potentials(points: tuple, on: tuple) -> Array:
-    """`dry_potential` of all elements (ne,)."""
-    points, on = FinePoints(*points), WetElements(*on)
-    out = np.zeros(on.L.size)
-    for e in range(on.L.size):
-        out[e] = dry_potential(points, element(on, e))
-    return out
-
-
-def add_tangent(
-    out: Array, points: FinePoints, on: WetElements, N: Array, gradient: Array, weight: Array, P: Array
-) -> None:
-    """Add to out (ne, n, n) the derivative by the dofs of loads weight (ne,) times the dry lengths along z; N
-    (ne, ng, 4) of the stations, gradient (ne, ng, d) of their immersion, P = dt/dTheta (ne, 2, d, r) held.
-    """
-    D, R = fixed(P.shape[2]), fixed(P.shape[3])
-    _add_tangent(out, tuple(points), tuple(on), N, gradient, weight, P, D, R)
-
-
-@njit
-def _add_tangent(
-    out: Array, points: tuple, on: tuple, N: Array, gradient: Array, weight: Array, P: Array, D: Size, R: Size
-) -> None:
-    points, on = FinePoints(*points), WetElements(*on)
-    room = tangent_room(N.shape[1], out.shape[1], D)
-    for e in range(on.L.size):
-        add_element_tangent(out[e], points, element(on, e), N[e], gradient[e], weight[e], P[e], room, D, R)
-
-
-@njit
 def tangent_room(ng: int, n: int, D: Size) -> TangentRoom:
     """Room for an element of n dofs with ng stations."""
     d = len(D)
@@ -228,7 +173,9 @@ def add_element_tangent(
     D: Size,
     R: Size,
 ) -> None:
-    """What `add_tangent` does for one element, where it reaches the surface."""
+    """Add to out (n, n) the derivative by the dofs of a load, weight times the dry lengths along z, on an element that
+    reaches the surface; N (ng, 4) of its stations, gradient (ng, d) of their immersion, P = dt/dTheta (2, d, r) held.
+    """
     if submerged(at):
         return
     put_slopes(points, at, room.by_height, room.by_surface)

@@ -9,9 +9,6 @@ At immersion h, the height of the surface above the pipe's axis, the wet share o
 
 import math
 
-import numpy as np
-
-from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 
 
@@ -41,23 +38,3 @@ def dry_height(h: float, b: float) -> float:
     eta = 2.0 * h / b
     across = math.sqrt(1.0 - eta * eta)
     return 0.5 * b * ((eta * math.asin(eta) + across - across**3 / 3.0) / math.pi - 0.5 * eta)
-
-
-@njit
-def wet_shares(h: Array, b: Array) -> tuple[Array, Array]:
-    """S and dS/dh at stations (ne, ng)."""
-    share, slope = np.empty_like(h), np.empty_like(h)
-    for e in range(h.shape[0]):
-        for g in range(h.shape[1]):
-            share[e, g], slope[e, g] = wet_share(h[e, g], b[e, g]), wet_slope(h[e, g], b[e, g])
-    return share, slope
-
-
-@njit
-def dry_heights(h: Array, b: Array) -> Array:
-    """`dry_height` at stations (ne, ng)."""
-    found = np.empty_like(h)
-    for e in range(h.shape[0]):
-        for g in range(h.shape[1]):
-            found[e, g] = dry_height(h[e, g], b[e, g])
-    return found

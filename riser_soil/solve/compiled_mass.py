@@ -24,13 +24,15 @@ from riser_soil.riser.part_kernels import (
     add_forces,
     add_tangent,
     bound,
+    clear,
+    collect,
     find_water,
     forces_of,
 )
+from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import matrix_room
-from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers
 from riser_soil.solve.riser_mass import projectors
 
@@ -78,7 +80,7 @@ class CompiledMass:
         """Bind the kernels of forces and kinetic energy in motion."""
         here, forces, energy = map(Packed, (self._placed.at, self._forces, self._energy))
         each = [bound(add_forces, numbers, here, forces) for numbers in bulk]
-        self._find_forces = in_turn(Bound(loop.clear, forces), *each, Bound(loop.collect, here, forces))
+        self._find_forces = in_turn(Bound(clear, forces), *each, Bound(collect, here, forces))
         self._find_energy = in_turn(*(bound(add_energy, numbers, here, energy) for numbers in inertial))
 
     def _bind_mass(self, inertial: Sequence[Numbers]) -> None:

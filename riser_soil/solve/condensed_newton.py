@@ -18,6 +18,7 @@ from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.sections import Elements
 from riser_soil.soil.condensed import CondensedSoil
 from riser_soil.solve import riser_loop
@@ -25,7 +26,6 @@ from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
-from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solution import NewtonSettings, Solution, Step

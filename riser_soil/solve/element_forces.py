@@ -23,47 +23,36 @@ from riser_soil.riser.configuration import (
 from riser_soil.riser.hermite import put_pulled_back
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
-from riser_soil.riser.part_kernels import LineForces, add_forces, bound, forces_of
-from riser_soil.riser.section_forces import NO_FRAMES, element_residual, section_input, viscous_residual
+from riser_soil.riser.part_kernels import LineForces, add_forces, bound, clear, forces_of
+from riser_soil.riser.placed_line import PlacedLine
+from riser_soil.riser.section_forces import NO_FRAMES, section_input, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces, put_section_forces, size_of
 from riser_soil.riser.sections import Elements
-from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.placed_line import PlacedLine
 
 
 class ElementForces:
     """Residuals of the elements of a line and its section forces, in a configuration where parts have put their forces.
 
-    parts: of the line, for what follows from strain rates; asked: those whose share of the residual is not among the
-    forces.
+    parts: of the line, for what follows from strain rates.
     """
 
-    def __init__(
-        self,
-        line: Line,
-        at: Configuration,
-        forces: LineForces,
-        parts: Sequence[LinePart],
-        asked: Sequence[LinePart] = (),
-    ) -> None:
-        self._line, self._asked = line, asked
+    def __init__(self, line: Line, at: Configuration, forces: LineForces, parts: Sequence[LinePart]) -> None:
+        self._line = line
         self._damped = [part for part in parts if overrides(part, "viscous_forces")]
         self._at, self._residual = at, np.zeros((line.length.size, 2 * line.ndof))
         self._put = Bound(put_residual, Packed(at), Packed(forces), Packed(self._residual))
         self._elements: Elements | None = None
 
-    def residual(self, state: State) -> Array:
+    def residual(self) -> Array:
         """Sum over parts and groups (ne, 2 ndof); the same array each time."""
         self._put()
-        if self._asked:
-            self._residual += element_residual(self._line, self._asked, state)
         return self._residual
 
     def section_forces(self, elements: Elements, state: State) -> Array:
         """Of the line whose elements these are, see `SectionForces.within`."""
         if self._elements is not elements:
             self._bind_sections(elements)
-        self.residual(state)
+        self.residual()
         if self._damped:
             self._viscous[...] = viscous_residual(self._line, self._damped, state)
         self._put_sections()
@@ -85,24 +74,21 @@ class ElementForces:
 class AcceptedForces:
     """What the parts of a line put within its elements at an accepted state: room of its own beside that of the loop.
 
-    placed: the line there; parts: with the numbers that were asked for last. whole: whether the loop's forces tell the
-    same, where it has solved for the state: in the axes in which that step began, which parts with viscous forces don't
-    know any more. forces: as found last.
+    placed: the line there; parts: with their numbers. whole: whether the loop's forces tell the same, where it has
+    solved for the state: in the axes in which that step began, which parts with viscous forces don't know any more.
+    forces: as found last.
     """
 
     def __init__(self, line: Line, placed: PlacedLine, parts: Sequence[tuple[LinePart, tuple[Any, ...]]]) -> None:
         self._placed = placed
-        within = [(part, part.numbers_within(numbers)) for part, numbers in parts]
-        damped = any(overrides(part, "viscous_forces") for part, _ in parts)
-        self.whole = not damped and all(own is given for (_, own), (_, given) in zip(within, parts, strict=True))
+        self.whole = not any(overrides(part, "viscous_forces") for part, _ in parts)
         out = forces_of(line)
         here, forces = Packed(placed.at), Packed(out)
         self._find = in_turn(
-            Bound(loop.clear, forces),
-            *(bound(add_forces, numbers, here, forces) for _, numbers in within if numbers is not None),
+            Bound(clear, forces),
+            *(bound(add_forces, numbers, here, forces) for _, numbers in parts),
         )
-        asked = [part for part, numbers in within if numbers is None]
-        self.forces = ElementForces(line, placed.at, out, [part for part, _ in parts], asked)
+        self.forces = ElementForces(line, placed.at, out, [part for part, _ in parts])
 
     def found(self, state: State) -> ElementForces:
         """At an accepted state, to whose time the numbers have been brought."""

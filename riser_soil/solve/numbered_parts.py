@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from riser_soil.core.part import State, Work
+from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import add_work, keep
 
@@ -25,7 +26,7 @@ class NumberedParts:
         self._renewed = [part for part in self.parts if overrides(part, "renew_numbers")]
         kernels = [(part, type(held) in add_work.kernels) for part, held in numbered]
         self.committed = [part for part, held in numbered if type(held) not in keep.kernels]
-        self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
+        self._turning = [(part, kernel) for part, kernel in kernels if kernel or _by_method(part)]
 
     def bring(self, start: float, end: float) -> None:
         """Write what depends on the time into the numbers, for a step between two times."""
@@ -46,3 +47,8 @@ class NumberedParts:
         compiled = iter(rows)
         for part, kernel in self._turning:
             work[part.name] += Work(*next(compiled)) if kernel else part.work(before, after)
+
+
+def _by_method(part: LinePart) -> bool:
+    """Whether a part without a kernel for it says what it turns over."""
+    return overrides(part, "work") and type(part).work is not CompiledPart.work

@@ -28,13 +28,17 @@ from riser_soil.riser.part_kernels import (
     add_tangent,
     add_work,
     bound,
+    clear,
+    collect,
     forces_of,
     keep,
+    turn,
+    weigh,
 )
+from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.loop_border import LoopBorder
 from riser_soil.solve.numbered_parts import NumberedParts, Numbers
-from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
 
 
@@ -77,10 +81,10 @@ class PackedRiser:
         evaluate = [
             Bound(loop.follow, step, maps, dofs),
             bound(place, at, self._placed.base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
-            Bound(loop.clear, forces),
+            Bound(clear, forces),
             *(bound(add_forces, each, now, forces) for each in numbers),
             *border.forces(now, forces),
-            Bound(loop.collect, now, forces),
+            Bound(collect, now, forces),
             Bound(loop.combine, forces, step, weights, dofs),
             border.judge(forces, dofs, limits, progress),
         ]
@@ -94,9 +98,9 @@ class PackedRiser:
                 bound(put_maps, at, maps),
                 Bound(loop.clear_tangent, bulk),
                 *(bound(add_tangent, each, now, maps, weights, bulk) for each in others),
-                Bound(loop.weigh, forces, weights, room),
+                Bound(weigh, forces, weights, room),
                 bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
-                Bound(loop.turn, room, bulk),
+                Bound(turn, room, bulk),
             ]
 
         def contact_tangent(maps: Packed) -> list[Bound]:

@@ -15,8 +15,8 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Calls, call_each
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.rows import add_multiple
-from riser_soil.riser.configuration import Configuration, Maps
-from riser_soil.riser.hermite import Size, add_geometric, collect_nodal, scatter
+from riser_soil.riser.configuration import Maps
+from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights
 from riser_soil.solve.round_off import ROUND_OFF, STALLED
 
@@ -158,27 +158,6 @@ def follow(step: StepNumbers, maps: Maps, dofs: Dofs) -> None:
 
 
 @njit
-def clear(forces: LineForces) -> None:
-    """Write zero."""
-    for conjugate in (forces.inertia_q, forces.force_q, forces.end_q):
-        conjugate[:] = 0.0
-    for elementwise in (forces.inertia_e, forces.force_e):
-        elementwise[:] = 0.0
-    for nodal in (forces.inertia, forces.force, forces.end):
-        nodal[:] = 0.0
-
-
-@njit
-def collect(at: Configuration, forces: LineForces) -> None:
-    """Add what is conjugate to q and to the elements' dofs to what is conjugate to the nodes'."""
-    collect_nodal(forces.inertia_q, at.P, forces.inertia, at.D, at.R)
-    collect_nodal(forces.force_q, at.P, forces.force, at.D, at.R)
-    collect_nodal(forces.end_q, at.P, forces.end, at.D, at.R)
-    scatter(forces.inertia_e, forces.inertia)
-    scatter(forces.force_e, forces.force)
-
-
-@njit
 def combine(forces: LineForces, step: StepNumbers, weights: LineWeights, dofs: Dofs) -> None:
     """Write the residual of the weighted groups."""
     for n in range(dofs.residual.shape[0]):
@@ -249,23 +228,6 @@ def clear_tangent(K: Array) -> None:
 def begin_with(bulk: Array, K: Array) -> None:
     """Write the element matrices of all but contact."""
     K[:] = bulk
-
-
-@njit
-def weigh(forces: LineForces, weights: LineWeights, room: MatrixRoom) -> None:
-    """Write what is conjugate to the tangents of the elements' ends, groups weighted."""
-    for e in range(room.conjugate.shape[0]):
-        for side in range(2):
-            k = 2 * side + 1
-            for i in range(room.conjugate.shape[2]):
-                bulk = weights.inertia * forces.inertia_q[e, k, i] + weights.force * forces.force_q[e, k, i]
-                room.conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
-
-
-@njit
-def turn(room: MatrixRoom, K: Array) -> None:
-    """Add what the turning of the tangents gives to the element matrices."""
-    add_geometric(K, 1.0, room.turning, room.conjugate.shape[2])
 
 
 @njit

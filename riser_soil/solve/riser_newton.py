@@ -17,6 +17,7 @@ from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import bound
+from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import nodal_residual
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop
@@ -24,7 +25,6 @@ from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.element_forces import AcceptedForces, ElementForces
 from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
-from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.solution import (
     BESIDE_CLAY,
     NewtonSettings,
@@ -115,7 +115,7 @@ class RiserNewton:
     def element_residual(self, line: Line, state: State) -> Array:
         """Of the line's elements (ne, 2 ndof) at an accepted state; as solved where a step does not turn its axes."""
         known = self._has_solved(state) and not self._line.turns_axes
-        return (self._at_solution if known else self._found_at(state)).residual(state)
+        return (self._at_solution if known else self._found_at(state)).residual()
 
     def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
         """Of the line at an accepted state; of the one solved for last as the loop has found its forces."""

@@ -7,8 +7,9 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser import beam2d, beam3d, increments, rotations
+from riser_soil.riser import beam2d, beam3d, rotations
 from riser_soil.riser.vectors import vector
+from tests.support import planar_elements, spatial_elements
 
 Element2d = Callable[..., tuple[Array, Array]]
 MAX_ITERATIONS = 40
@@ -44,7 +45,7 @@ class PlaneChain:
     direction: Array
     L: Array
     section: beam2d.PlanarSection
-    element: Element2d = beam2d.forces_and_tangent
+    element: Element2d = planar_elements.forces_and_tangent
     dofs: int = 3
     theta: Array = field(init=False)
     ref: beam2d.PlanarReference = field(init=False)
@@ -91,9 +92,9 @@ class SpaceChain:
         H = self.R @ np.array([rotations.left_tangent(vector(t)) for t in Theta])
         chord = np.diff(self.x + step[:, :3], axis=0)
         ends = R[:-1] @ self.T0[0], R[1:] @ self.T0[1]
-        f, K = beam3d.forces_and_tangent(chord, *ends, self.ref, self.section, np.zeros(chord.shape))
+        f, K = spatial_elements.forces_and_tangent(chord, *ends, self.ref, self.section, np.zeros(chord.shape))
         f[-1, 6:] -= tip_load
-        increments.to_increments(f, K, H, self.R, Theta)
+        spatial_elements.to_increments(f, K, H, self.R, Theta)
         return assemble(f, K)
 
     def commit(self, u: Array) -> None:

@@ -21,8 +21,8 @@ from riser_soil.riser.springs import EndSpring
 from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
+from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.still_water import StillWater
 
 DIRECTION = np.array([0.6, 0.8, 0.0])
 UP = np.array([0.0, 0.0, 1.0])
@@ -86,8 +86,7 @@ class Sample:
         e = self.elements
         drag = drag_coefficients(RHO, e.outer_diameter, e.drag[:, 0], e.drag[:, 1])
         mass = added_masses(RHO, e.outer_diameter, e.added_mass[:, 0], e.added_mass[:, 1])
-        pipe = Pipe(self.line)
-        return Morison(pipe, StillWater(pipe, drag, mass))
+        return Morison(WaterLoads(Pipe(self.line), drag, mass))
 
     def spring(self) -> EndSpring:
         return EndSpring(self.line, -1, 800.0)

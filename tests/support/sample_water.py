@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.attachments import PointAttachment
-from riser_soil.riser.trial import Trial
-from riser_soil.sea.buoyancy import Buoyancy, DryStations
-from riser_soil.sea.dry_pipe import DryPipe
+from riser_soil.sea.buoyancy import Buoyancy, dry_stations
+from riser_soil.sea.dry_pipe import dry_pipe
 from riser_soil.sea.flows import add_flow
 from riser_soil.sea.modules import alike, diameters, pipe_at
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
+from riser_soil.sea.moving_water import FlowAtStations, WaterLoads, pushed_masses
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.sea import Sea
-from riser_soil.sea.still_water import StationLoads, StillWater
 from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wetting import CalmSurface, PartlyWet, Wetting
 from tests.support.sample_line import DIRECTION, RHO, UP, Sample
 
 LEVEL = 5.2
@@ -50,23 +47,31 @@ class GeneralNumbers(NamedTuple):
 
     velocity: Uneven
     acceleration: Uneven
+    ship: Array
 
 
 class General:
-    """A `FlowComponent` whose fields have nothing to do with each other, so that each counts by itself."""
+    """A `FlowComponent` whose fields have nothing to do with each other, so that each counts by itself; as it is seen
+    from a ship under way (3,) [m/s].
+    """
 
-    numbers = GeneralNumbers(VELOCITY, ACCELERATION)
+    def __init__(self, ship: Array | None = None) -> None:
+        self.numbers = GeneralNumbers(VELOCITY, ACCELERATION, np.zeros(3) if ship is None else ship)
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, self.numbers, t, np.ascontiguousarray(x))
+        add_to(motion, self.numbers, t, np.ascontiguousarray(x))
 
 
 @njit
-def _add_to(motion: WaterMotion, flow: GeneralNumbers, t: float, x: Array) -> None:
+def add_to(motion: WaterMotion, flow: GeneralNumbers, t: float, x: Array) -> None:
+    at = np.empty(3)
     for p in range(x.shape[0]):
-        _add_uneven(flow.velocity, t, x[p], motion.velocity[p], motion.velocity_gradient[p])
-        _add_uneven(flow.acceleration, t, x[p], motion.acceleration[p], motion.acceleration_gradient[p])
-        phase = x[p, 0] * SURFACE[0] + x[p, 1] * SURFACE[1] - 0.8 * t
+        for i in range(3):
+            at[i] = x[p, i] + flow.ship[i] * t
+            motion.velocity[p, i] -= flow.ship[i]
+        _add_uneven(flow.velocity, t, at, motion.velocity[p], motion.velocity_gradient[p])
+        _add_uneven(flow.acceleration, t, at, motion.acceleration[p], motion.acceleration_gradient[p])
+        phase = at[0] * SURFACE[0] + at[1] * SURFACE[1] - 0.8 * t
         motion.immersion[p] += 0.4 * math.cos(phase)
         for i in range(2):
             motion.immersion_gradient[p, i] -= 0.4 * math.sin(phase) * SURFACE[i]
@@ -86,45 +91,52 @@ def _add_uneven(field: Uneven, t: float, x: Array, value: Array, gradient: Array
 
 @add_flow.of(GeneralNumbers)
 def _add_general(flow: GeneralNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
-    _add_to(motion, flow, t[0], x)
+    add_to(motion, flow, t[0], x)
 
 
 water = Sea(LEVEL, [General()])
 
 
-def still(at: Sample) -> StillWater:
+def still(at: Sample) -> WaterLoads:
     D, e = at.elements.outer_diameter, at.elements
-    return StillWater(Pipe(at.line), drag_coefficients(RHO, D, *e.drag.T), added_masses(RHO, D, *e.added_mass.T))
+    return WaterLoads(Pipe(at.line), drag_coefficients(RHO, D, *e.drag.T), added_masses(RHO, D, *e.added_mass.T))
 
 
 def displaced(at: Sample) -> Array:
     return np.asarray(RHO * 0.25 * np.pi * at.elements.outer_diameter**2)
 
 
-def driven(loads: StillWater, stream: FlowAtStations, at: Sample) -> StationLoads:
-    return AcceleratedWater(RelativeDrag(loads, stream), stream, loads.mass, displaced(at))
+def drifting(loads: WaterLoads, sea: Sea = water) -> WaterLoads:
+    """With drag on the motion through a sea."""
+    return replace(loads, water=FlowAtStations(loads.pipe, sea), dissipative=False)
+
+
+def driven(loads: WaterLoads, displaced: Array, sea: Sea = water) -> WaterLoads:
+    """In a sea that accelerates."""
+    return replace(drifting(loads, sea), pushed=pushed_masses(loads.mass, displaced))
 
 
 def current(at: Sample) -> Morison:
-    loads = still(at)
-    return Morison(loads.pipe, RelativeDrag(loads, FlowAtStations(loads.pipe, water)))
+    return Morison(drifting(still(at)))
 
 
 def waves(at: Sample) -> Morison:
-    loads = still(at)
-    return Morison(loads.pipe, driven(loads, FlowAtStations(loads.pipe, water), at))
+    return Morison(driven(still(at), displaced(at)))
+
+
+def calm(pipe: Pipe, level: float = LEVEL) -> FlowAtStations:
+    return FlowAtStations(pipe, Sea(level))
 
 
 def half_out(at: Sample) -> Morison:
     """The riser crosses the level of still water."""
     loads = still(at)
-    return Morison(loads.pipe, PartlyWet(loads, Wetting(loads.pipe, CalmSurface(loads.pipe, LEVEL))))
+    return Morison(replace(loads, water=calm(loads.pipe), span=loads.pipe.span))
 
 
 def half_out_in_waves(at: Sample) -> Morison:
-    loads = still(at)
-    stream = FlowAtStations(loads.pipe, water)
-    return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream)))
+    loads = driven(still(at), displaced(at))
+    return Morison(replace(loads, span=loads.pipe.span))
 
 
 MODULES = [
@@ -134,49 +146,31 @@ MODULES = [
 ]
 
 
-def on_modules(at: Sample) -> tuple[StillWater, Array]:
+def on_modules(at: Sample) -> tuple[WaterLoads, Array]:
     """Three modules, two of them in one element; what they displace."""
     volume, drag_area, Ca = np.array([[m.volume, m.drag_area, m.added_mass] for m in MODULES]).T
-    loads = StillWater(pipe_at(at.line, MODULES), alike(0.5 * RHO * drag_area), alike(Ca * RHO * volume))
+    loads = WaterLoads(pipe_at(at.line, MODULES), alike(0.5 * RHO * drag_area), alike(Ca * RHO * volume))
     return loads, RHO * volume
 
 
 def modules(at: Sample) -> Morison:
     loads, _ = on_modules(at)
-    return Morison(loads.pipe, loads)
+    return Morison(loads)
 
 
 def modules_half_out_in_waves(at: Sample) -> Morison:
-    loads, displaced = on_modules(at)
-    stream = FlowAtStations(loads.pipe, water)
-    driven = AcceleratedWater(RelativeDrag(loads, stream), stream, loads.mass, displaced)
-    return Morison(loads.pipe, PartlyWet(driven, Wetting(loads.pipe, stream, diameters(MODULES)[:, None])))
+    return Morison(replace(driven(*on_modules(at)), span=diameters(MODULES)[:, None]))
 
 
 def modules_floating(at: Sample) -> Buoyancy:
-    pipe = pipe_at(at.line, MODULES)
-    surface = CalmSurface(pipe, at.line.x[2, -1])
+    surface = calm(pipe_at(at.line, MODULES), at.line.x[2, -1])
     displaced = 9.81 * RHO * np.array([m.volume for m in MODULES])
-    wetting = Wetting(pipe, surface, diameters(MODULES)[:, None])
-    return Buoyancy(pipe, DryStations(pipe, wetting, displaced), flat=True)
+    return Buoyancy(surface, dry_stations(diameters(MODULES)[:, None], displaced), flat=True)
 
 
 def floating(at: Sample) -> Buoyancy:
-    pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, CalmSurface(pipe, LEVEL), 9.81 * displaced(at)), flat=True)
+    return Buoyancy(calm(Pipe(at.line)), dry_pipe(9.81 * displaced(at)), flat=True)
 
 
 def floating_in_waves(at: Sample) -> Buoyancy:
-    pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, FlowAtStations(pipe, water), 9.81 * displaced(at)), flat=False)
-
-
-def without_gradient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tangents from now on lack the gradient of the water's velocity."""
-    usual = FlowAtStations.at
-
-    def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
-        motion = usual(stream, trial)
-        return motion._replace(velocity_gradient=0.0 * motion.velocity_gradient)
-
-    monkeypatch.setattr(FlowAtStations, "at", at)
+    return Buoyancy(FlowAtStations(Pipe(at.line), water), dry_pipe(9.81 * displaced(at)), flat=False)

@@ -15,7 +15,6 @@ from riser_soil.riser import (
     beam3d,
     corotation,
     increments,
-    planar_load,
     rotations,
     spatial_load,
     strain3d,
@@ -23,6 +22,7 @@ from riser_soil.riser import (
     swing_twist,
 )
 from riser_soil.riser.vectors import isotropic, matrix, vector
+from tests.support import planar_elements, spatial_elements
 
 NE = 5
 EA = 2.0e3
@@ -66,7 +66,7 @@ class Space(NamedTuple):
     def energy(self, moved: Array) -> Array:
         """Strain energy and potential of the load."""
         at, middle = self.at(moved), 0.5 * (moved[:, :3] + moved[:, 6:9])
-        return beam3d.strain_energy(*at, self.ref, self.section) + beam3d.load_potential(
+        return spatial_elements.strain_energy(*at, self.ref, self.section) + spatial_elements.load_potential(
             *at, middle, self.ref, self.load
         )
 
@@ -106,7 +106,7 @@ class Plane(NamedTuple):
 
     def energy(self, moved: Array) -> Array:
         """Strain energy."""
-        return self.call(beam2d.strain_energy, moved)
+        return self.call(planar_elements.strain_energy, moved)
 
 
 def plane(curved: float, rotation: float, seed: int = 7) -> Plane:
@@ -137,7 +137,7 @@ def difference(a: Array, b: Array) -> float:
 
 CASES = pytest.mark.parametrize(
     ("build", "module", "n"),
-    [(plane, beam2d, 6), (space, beam3d, 12), (loaded_space, beam3d, 12)],
+    [(plane, planar_elements, 6), (space, spatial_elements, 12), (loaded_space, spatial_elements, 12)],
     ids=["2D", "3D", "3D under load"],
 )
 
@@ -171,7 +171,7 @@ def test_rigid_motion_in_space_gives_no_force(curved: float, seed: int, angle: f
     at_rest = space(curved, 0.0, seed)
     Q = turns(np.random.default_rng(seed), angle, 1)[0]
     moved = at_rest._replace(chord=at_rest.chord0 @ Q.T, frames=Q @ at_rest.frames0)
-    assert np.abs(moved.call(beam3d.forces)).max() < 1e-12 * EA
+    assert np.abs(moved.call(spatial_elements.forces)).max() < 1e-12 * EA
 
 
 @SHAPES
@@ -181,13 +181,13 @@ def test_rigid_motion_in_a_plane_gives_no_force(curved: float, seed: int, angle:
     at_rest = plane(curved, 0.0, seed)
     Q = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     moved = at_rest._replace(chord=at_rest.chord0 @ Q.T, directions=at_rest.directions0 + angle)
-    assert np.abs(moved.call(beam2d.forces)).max() < 1e-12 * EA
+    assert np.abs(moved.call(planar_elements.forces)).max() < 1e-12 * EA
 
 
 @SHAPES
 def test_elements_in_space_are_in_equilibrium(curved: float) -> None:
     elements = space(curved, 0.8)
-    force1, moment1, force2, moment2 = np.split(elements.call(beam3d.forces), 4, axis=1)
+    force1, moment1, force2, moment2 = np.split(elements.call(spatial_elements.forces), 4, axis=1)
     assert np.abs(force1 + force2).max() < 1e-12 * EA
     assert np.abs(moment1 + moment2 + np.cross(elements.chord, force2)).max() < 1e-12 * EA
 
@@ -226,10 +226,10 @@ def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float, lo
     frames0, frames = upright(flat.directions0), upright(flat.directions)
     section = beam3d.SpatialSection(flat.section.EA, 3 * flat.section.EI, flat.section.EI, flat.section.EI)
     ref = beam3d.reference(in_space[0], frames0[0], frames0[1], flat.ref.L)
-    f3, K3 = beam3d.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section, w @ np.eye(3)[[0, 2]])
-    f2, K2 = flat.call(beam2d.forces_and_tangent)
-    f2 += planar_load.forces(flat.chord, *flat.directions, flat.ref.L, w)
-    planar_load.add_tangent(K2, 1.0, flat.chord, *flat.directions, flat.ref.L, w)
+    f3, K3 = spatial_elements.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section, w @ np.eye(3)[[0, 2]])
+    f2, K2 = flat.call(planar_elements.forces_and_tangent)
+    f2 += planar_elements.load_forces(flat.chord, *flat.directions, flat.ref.L, w)
+    planar_elements.add_load_tangent(K2, 1.0, flat.chord, *flat.directions, flat.ref.L, w)
     assert difference(f3 @ TO_PLANE.T, f2) < 1e-12
     assert difference(TO_PLANE @ K3 @ TO_PLANE.T, K2) < 1e-12
     assert np.abs(np.delete(f3, PLANAR, axis=1)).max() < 1e-12 * EA
@@ -259,7 +259,8 @@ def increments_forces(elements: Space, nodes: Nodes, moved: Array) -> Array:
     ends = []
     for Rn, Theta, end in ((nodes.Rn[:-1], Theta1, nodes.ends[0]), (nodes.Rn[1:], Theta2, nodes.ends[1])):
         ends.append(Rn @ np.array([exp(t) for t in Theta]) @ end)
-    f = beam3d.forces(elements.chord + moved[6:9] - moved[:3], *ends, elements.ref, elements.section, elements.load)
+    chord, given = elements.chord + moved[6:9] - moved[:3], (elements.ref, elements.section, elements.load)
+    f = spatial_elements.forces(chord, *ends, *given)
     for n, Theta, at in ((0, Theta1, 3), (1, Theta2, 9)):
         H = nodes.Rn[n : n + NE] @ np.array([rotations.left_tangent(vector(t)) for t in Theta])
         f[:, at : at + 3] = np.einsum("eji,ej->ei", H, f[:, at : at + 3])
@@ -271,9 +272,9 @@ def increments_forces(elements: Space, nodes: Nodes, moved: Array) -> Array:
 def test_tangent_by_rotation_vectors_is_the_symmetric_hessian(curved: float, angle: float) -> None:
     elements = loaded_space(curved, 0.8)
     nodes = nodes_of(elements, angle)
-    f, K = elements.call(beam3d.forces_and_tangent)
+    f, K = elements.call(spatial_elements.forces_and_tangent)
     by_spins = K.copy()
-    increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
+    spatial_elements.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
     step, expected = 3e-3, np.zeros_like(K)
     for j, unit in enumerate(np.eye(12)):
         for k, c in STENCIL.items():
@@ -287,10 +288,10 @@ def test_tangent_by_rotation_vectors_is_the_symmetric_hessian(curved: float, ang
 def test_forces_alone_and_with_tangent_transform_alike() -> None:
     elements = loaded_space(0.3, 0.8)
     nodes = nodes_of(elements, 0.7)
-    alone = elements.call(beam3d.forces)
-    f, K = elements.call(beam3d.forces_and_tangent)
-    increments.forces_to_increments(alone, nodes.H)
-    increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
+    alone = elements.call(spatial_elements.forces)
+    f, K = elements.call(spatial_elements.forces_and_tangent)
+    spatial_elements.forces_to_increments(alone, nodes.H)
+    spatial_elements.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
     assert difference(alone, f) < 1e-14
 
 
@@ -319,35 +320,35 @@ def interpret(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("term", LEFT_OUT)
 def test_each_geometric_term_of_the_tangent_matters(term: str, monkeypatch: pytest.MonkeyPatch) -> None:
     elements = loaded_space(0.0, 0.6)
-    _, compiled = elements.call(beam3d.forces_and_tangent)  # before its functions are replaced
+    _, compiled = elements.call(spatial_elements.forces_and_tangent)  # before its functions are replaced
     interpret(monkeypatch)
-    _, K = elements.call(beam3d.forces_and_tangent.py_func)
+    _, K = elements.call(spatial_elements.forces_and_tangent.py_func)
     assert difference(K, compiled) < 1e-14
     monkeypatch.setattr(*LEFT_OUT[term])
-    _, incomplete = elements.call(beam3d.forces_and_tangent.py_func)
+    _, incomplete = elements.call(spatial_elements.forces_and_tangent.py_func)
     assert difference(incomplete, K) > 1e4 * TOLERANCE
 
 
 def test_geometric_term_of_rotation_vectors_matters(monkeypatch: pytest.MonkeyPatch) -> None:
     elements = space(0.0, 0.6)
     nodes = nodes_of(elements, 0.7)
-    f, K = elements.call(beam3d.forces_and_tangent)
+    f, K = elements.call(spatial_elements.forces_and_tangent)
     f_incomplete, incomplete = f.copy(), K.copy()
-    increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
+    spatial_elements.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
     for name in ("tangent_to_increments", "_end_to_increments", "rows_to_increments"):
         monkeypatch.setattr(increments, name, getattr(increments, name).py_func)
     monkeypatch.setattr(increments, "_moment_tangent", lambda *_: isotropic(0.0))
-    increments.to_increments.py_func(f_incomplete, incomplete, nodes.H, nodes.Rn, nodes.Theta)
+    spatial_elements.to_increments.py_func(f_incomplete, incomplete, nodes.H, nodes.Rn, nodes.Theta)
     assert difference(incomplete, K) > 1e4 * TOLERANCE
 
 
 def test_geometric_term_of_the_plane_matters(monkeypatch: pytest.MonkeyPatch) -> None:
     elements = plane(0.0, 0.6)
-    _, K = elements.call(beam2d.forces_and_tangent)
+    _, K = elements.call(planar_elements.forces_and_tangent)
     for name in ("_vary", "_tangent", "put_element"):
         monkeypatch.setattr(beam2d, name, getattr(beam2d, name).py_func)
     monkeypatch.setattr(beam2d, "configuration_variation", lambda *_: (0.0, 0.0))
-    _, incomplete = elements.call(beam2d.forces_and_tangent.py_func)
+    _, incomplete = elements.call(planar_elements.forces_and_tangent.py_func)
     assert difference(incomplete, K) > 1e4 * TOLERANCE
 
 

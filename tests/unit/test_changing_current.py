@@ -18,7 +18,6 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.sea.changing_current import ChangingCurrent, spline_rates
 from riser_soil.sea.morison import Morison
-from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
 from riser_soil.sea.sea import Sea
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
@@ -92,9 +91,8 @@ def test_in_stages_without_time_it_stands_still() -> None:
 def test_tangent_of_the_loads() -> None:
     at, loads = sample(3), sample_water.still(sample(3))
     level, velocity = LEVEL * 0.05 + 5.0, VELOCITY * 3.0
-    stream = FlowAtStations(loads.pipe, Sea(None, [ChangingCurrent(level, TIME * 0.02, velocity)]))
-    driven = AcceleratedWater(RelativeDrag(loads, stream), stream, loads.mass, sample_water.displaced(at))
-    part = Morison(loads.pipe, driven)
+    sea = Sea(None, [ChangingCurrent(level, TIME * 0.02, velocity)])
+    part = Morison(sample_water.driven(loads, sample_water.displaced(at), sea))
     assert error(tangent([part], at.state(2), WEIGHTS), difference_tangent(part, at.state(2), WEIGHTS)) < 1e-8
 
 

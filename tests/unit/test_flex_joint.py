@@ -10,8 +10,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.hang_off import from_vertical
 from riser_soil.riser import rotations
-from riser_soil.riser.load_kernels import PlanarSpring, SpatialSpring
 from riser_soil.riser.part_kernels import add_energy
+from riser_soil.riser.springs import PlanarSpring, SpatialSpring
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 
@@ -72,6 +72,6 @@ def test_energy_in_the_loop_is_that_of_the_turn_from_the_support() -> None:
     support, turn = np.array([0.3, -0.5, 0.2]), np.array([0.4, 0.6, -1.2])
     first, then = (np.array(rotations.exp(tuple(each))) for each in (support, turn))
     at, stored = Turned(np.array([1.7]), (then @ first)[None]), np.zeros((2, 3))
-    add_energy.kernels[PlanarSpring](PlanarSpring(0, K, np.array([0.3])), at, stored[0])
-    add_energy.kernels[SpatialSpring](SpatialSpring(0, K, first), at, stored[1])
+    add_energy.kernels[PlanarSpring](PlanarSpring(0, K, *(np.array([0.3]) for _ in range(2))), at, stored[0])
+    add_energy.kernels[SpatialSpring](SpatialSpring(0, K, first, first), at, stored[1])
     assert stored == pytest.approx(0.5 * K * np.array([[0.0, 1.4**2, 0.0], [0.0, 1.4**2, 0.0]]))

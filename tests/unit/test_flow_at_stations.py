@@ -2,56 +2,102 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
-from riser_soil.riser.trial import Trial
-from riser_soil.sea.moving_water import FlowAtStations
-from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.buoyancy import Buoyancy
+from riser_soil.sea.dry_pipe import dry_pipe
+from riser_soil.sea.flows import add_flow
+from riser_soil.sea.morison import Morison
+from riser_soil.sea.sea import Sea
 from riser_soil.sea.water import WaterMotion
 from tests.support import sample_water
+from tests.support.dense_chain import residual, tangent
+from tests.support.differences import WEIGHTS
 from tests.support.sample_line import Sample, sample
 
 
+class CountedNumbers(NamedTuple):
+    """A flow, the times (n,) at which it was asked for, and how often that was (1,)."""
+
+    flow: sample_water.GeneralNumbers
+    times: Array
+    asked: IntArray
+
+
 class Counted:
-    """Uneven water that counts how often it is asked."""
+    """Uneven water that counts how often it is asked; a `FlowComponent`."""
 
     def __init__(self) -> None:
-        self.times: list[float] = []
+        self.numbers = CountedNumbers(sample_water.General().numbers, np.zeros(20), np.zeros(1, dtype=np.int64))
 
-    def __call__(self, t: float, x: Array) -> WaterMotion:
-        self.times.append(t)
-        return sample_water.water(t, x)
+    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+        raise AssertionError("not asked for")
+
+    @property
+    def times(self) -> list[float]:
+        return list(self.numbers.times[: self.numbers.asked[0]])
 
 
-def trial_at(at: Sample, t: float, moved: float, rate: float) -> Trial:
+@add_flow.of(CountedNumbers)
+def _add_counted(counted: CountedNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+    counted.times[counted.asked[0]] = t[0]
+    counted.asked[0] += 1
+    sample_water.add_to(motion, counted.flow, t[0], x)
+
+
+def at_time(at: Sample, t: float, moved: float, rate: float) -> State:
     state = at.state(2)
-    return at.line.trial(State(t, (1.0 + moved) * state.u, rate * state.v, rate * state.a))
+    return State(t, (1.0 + moved) * state.u, rate * state.v, rate * state.a)
+
+
+def in_sea(at: Sample, *flows: Counted) -> Morison:
+    sea = Sea(sample_water.LEVEL, flows) if flows else sample_water.water
+    return Morison(sample_water.driven(sample_water.still(at), sample_water.displaced(at), sea))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_water_is_asked_once_for_a_time_and_places(dimension: int) -> None:
-    """Rates may change, and the motion where the step begins is asked for once more at its end."""
+    """Rates may change; the motion where the step begins is known at its end, for work."""
     at, water = sample(dimension), Counted()
-    stream = FlowAtStations(Pipe(at.line), water)
-    first = stream.at(trial_at(at, 1.0, 0.0, 1.0))
-    assert stream.at(trial_at(at, 1.0, 0.0, 2.0)) is first
-    second = stream.at(trial_at(at, 1.5, 0.1, 2.0))
-    third = stream.at(trial_at(at, 1.5, 0.2, 2.0))
-    assert stream.at(trial_at(at, 1.0, 0.0, 3.0)) is first
-    assert stream.at(trial_at(at, 1.5, 0.2, 3.0)) is third
+    part, first, last = in_sea(at, water), at_time(at, 1.0, 0.0, 1.0), at_time(at, 1.5, 0.2, 2.0)
+    for state in (first, at_time(at, 1.0, 0.0, 2.0), at_time(at, 1.5, 0.1, 2.0), last):
+        residual([part], state)
+    tangent([part], last, WEIGHTS)
+    part.work(first, last)
+    residual([part], at_time(at, 1.5, 0.2, 3.0))
     assert water.times == [1.0, 1.5, 1.5]
-    assert not np.allclose(second.velocity, third.velocity)
+    part.work(at_time(at, 1.0, 0.1, 1.0), last)
+    assert water.times == [1.0, 1.5, 1.5, 1.0]
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_motion_is_that_of_the_time_and_the_places(dimension: int) -> None:
     """Whatever was asked before, the same as of a stream that is new."""
     at = sample(dimension)
-    used = FlowAtStations(Pipe(at.line), sample_water.water)
+    used = in_sea(at)
     for t, moved in ((1.0, 0.0), (1.5, 0.0), (1.5, 0.1), (1.0, 0.0), (1.0, 0.1), (1.5, 0.1), (1.0, 0.0)):
-        trial, new = trial_at(at, t, moved, 1.0), FlowAtStations(Pipe(at.line), sample_water.water)
-        for found, expected in zip(used.at(trial), new.at(trial), strict=True):
-            assert np.array_equal(found, expected)
+        state = at_time(at, t, moved, 1.0)
+        np.testing.assert_array_equal(residual([used], state, WEIGHTS), residual([in_sea(at)], state, WEIGHTS))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_tangent_has_the_water_of_its_own_state(dimension: int) -> None:
+    """And so has energy, where another part at the same stations has been asked at another state since."""
+    at = sample(dimension)
+    loads = sample_water.driven(sample_water.still(at), sample_water.displaced(at))
+    part, state = Morison(replace(loads, span=loads.pipe.span)), at.state(1)
+    assert loads.water is not None
+    other = Buoyancy(loads.water, dry_pipe(sample_water.displaced(at)), flat=False)
+    expected = tangent([part], state, WEIGHTS), part.energy(state).kinetic
+    for _ in range(2):
+        residual([part], state)
+        residual([other], at.state(2))
+        np.testing.assert_array_equal(tangent([part], state, WEIGHTS), expected[0])
+        residual([other], at.state(2))
+        assert part.energy(state).kinetic == expected[1]

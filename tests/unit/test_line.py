@@ -130,7 +130,9 @@ def test_cantilever_reactions_balance_weight_and_tip_load(dimension: int) -> Non
     solve(line, [beam, loads])
     state = State.at_rest(1.0, line.size)
     at_tip = section_forces(line, e, state, element_residual(line, [beam, loads], state))
-    add_at_ends(line, state, loads.nodal_forces(state), at_tip)
+    on_nodes = loads.nodal_forces(state)
+    assert on_nodes is not None
+    add_at_ends(line, state, on_nodes, at_tip)
     start, end = at_tip.end_force
     weight = np.array([0.0, 0.0, -600.0])
     assert start == pytest.approx(-weight - 2.0 * tip, abs=1e-6)

@@ -4,28 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Traits, Weights
-from riser_soil.riser import hermite, loads, rotary_moments, springs
-from riser_soil.riser.beam import Beam
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.planar_directors import PlanarOrientation
-from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.section_forces import element_residual, nodal_residual
 from riser_soil.riser.spatial_directors import SpatialOrientation
-from riser_soil.riser.structural_damping import StructuralDamping
-from riser_soil.riser.trial import Trial
-from riser_soil.sea import morison_law, waterline, wet_section
-from riser_soil.sea.moving_water import FlowAtStations
-from riser_soil.sea.water import WaterMotion
 from tests.support import sample_water
 from tests.support.dense_chain import residual, tangent
-from tests.support.differences import WEIGHTS, difference_tangent, error, moved, no_operation, slope
+from tests.support.differences import WEIGHTS, difference_tangent, error, moved, slope
 from tests.support.sample_line import Sample, sample
 
 MAKERS: dict[str, Callable[[Sample], Part]] = {
@@ -95,162 +85,6 @@ def test_forces_are_in_the_groups_that_a_part_declares(name: str, dimension: int
 def test_a_part_is_in_a_group_that_there_is(groups: str) -> None:
     with pytest.raises(ValueError, match="groups of a part are letters"):
         Traits(groups, symmetric=True)
-
-
-def without_geometric(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    monkeypatch.setattr(hermite, "add_geometric", no_operation)
-
-
-def without_load_tangent(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    assert isinstance(part, Beam)
-    original = part._elastic.add_tangent
-
-    def unloaded(out: Array, weight: float, trial: Trial, load: Array) -> None:
-        original(out, weight, trial, 0.0 * load)
-
-    monkeypatch.setattr(part._elastic, "add_tangent", unloaded)
-
-
-def without_turning_moments(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    for module in (loads, springs):
-        monkeypatch.setattr(module, "moment_stiffness", lambda *_: np.zeros((3, 3)))
-
-
-def without_direction_changes(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    for name in ("resistance_derivatives", "added_derivatives"):
-        original = getattr(morison_law, name)
-
-        def straight(*at: Array, original: Callable = original) -> tuple[Array, ...]:
-            *others, by_slope = original(*at)
-            return *others, 0.0 * by_slope
-
-        monkeypatch.setattr(morison_law, name, straight)
-
-
-def without_director_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    for turn in (PlanarOrientation, SpatialOrientation):
-        original = turn.maps
-
-        def still(self: object, v: Array, a: Array, *shifts: float, original: Callable = original) -> object:
-            return original(self, 0.0 * v, 0.0 * a, *shifts)
-
-        monkeypatch.setattr(turn, "maps", still)
-
-
-def without(name: str, change: Callable[[Array], Array]) -> Callable[[pytest.MonkeyPatch, Part], None]:
-    """Leaves a state's increments, rates or accelerations out of the tangent of rotary inertia."""
-
-    def leave_out(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-        original = rotary_moments.add_tangent
-
-        def changed(K: Array, weight: float, J: Array, *rest: Any) -> None:
-            values = dict(zip(("Theta", "W", "A", "shift_v", "shift_a"), rest, strict=True))
-            values[name] = change(values[name])
-            original(K, weight, J, *values.values())
-
-        monkeypatch.setattr(rotary_moments, "add_tangent", changed)
-
-    return leave_out
-
-
-def without_water(field: str) -> Callable[[pytest.MonkeyPatch, Part], None]:
-    """Leave out one of the water's gradients."""
-
-    def leave_out(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-        usual = FlowAtStations.at
-
-        def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
-            motion = usual(stream, trial)
-            return motion._replace(**{field: 0.0 * getattr(motion, field)})
-
-        monkeypatch.setattr(FlowAtStations, "at", at)
-
-    return leave_out
-
-
-def without_rotary_inertia(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    assert isinstance(part, RotaryInertia)
-    monkeypatch.setattr(part._sections, "add_tangent", no_operation)
-
-
-def without_wet_slope(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    usual = wet_section.wet_shares
-    monkeypatch.setattr(wet_section, "wet_shares", lambda h, b: (usual(h, b)[0], 0.0 * h))
-    monkeypatch.setattr(waterline, "add_tangent", no_operation)
-
-
-def without_strain_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    """Leaves only that the rates follow the increments."""
-    assert isinstance(part, StructuralDamping)
-    original = part._damping.tangent
-    monkeypatch.setattr(part._damping, "tangent", lambda trial, v, shift_v: original(trial, 0.0 * v, shift_v))
-
-
-def without_viscosity(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    """Leaves only that the forces follow the configuration."""
-    assert isinstance(part, StructuralDamping)
-    original = part._damping.tangent
-    monkeypatch.setattr(part._damping, "tangent", lambda trial, v, shift_v: original(trial, v, 0.0))
-
-
-@pytest.mark.parametrize(
-    ("name", "dimension", "leave_out"),
-    [
-        ("beam", 2, without_load_tangent),
-        ("beam", 3, without_load_tangent),
-        ("inertia", 2, without_geometric),
-        ("inertia", 3, without_geometric),
-        ("inertia", 2, without_director_rates),
-        ("inertia", 3, without_director_rates),
-        ("rotary", 2, without_rotary_inertia),
-        ("rotary", 3, without_rotary_inertia),
-        *(("damping", d, leave_out) for d in (2, 3) for leave_out in (without_strain_rates, without_viscosity)),
-        *(("rotary", 3, without(name, lambda x: 0.0 * x)) for name in ("Theta", "W", "A", "shift_v", "shift_a")),
-        ("morison", 2, without_direction_changes),
-        ("morison", 3, without_direction_changes),
-        ("morison", 3, without_director_rates),
-        ("attachments", 2, without_geometric),
-        ("attachments", 3, without_geometric),
-        *[
-            (name, dimension, leave_out)
-            for dimension in (2, 3)
-            for name, leave_out in (
-                ("current", without_water("velocity_gradient")),
-                ("waves", without_water("velocity_gradient")),
-                ("waves", without_water("acceleration_gradient")),
-                ("waves", without_direction_changes),
-                ("half out of still water", without_wet_slope),
-                ("half out of waves", without_water("velocity_gradient")),
-                ("half out of waves", without_water("acceleration_gradient")),
-                ("half out of waves", without_water("immersion_gradient")),
-                ("half out of waves", without_wet_slope),
-                ("modules", without_geometric),
-                ("modules half out of waves", without_water("velocity_gradient")),
-                ("modules half out of waves", without_water("acceleration_gradient")),
-                ("modules half out of waves", without_water("immersion_gradient")),
-                ("modules half out of waves", without_wet_slope),
-                ("modules' buoyancy", without_wet_slope),
-                ("buoyancy", without_wet_slope),
-                ("buoyancy", without_geometric),
-                ("buoyancy in waves", without_water("immersion_gradient")),
-            )
-        ],
-        ("forces", 2, without_geometric),
-        ("forces", 3, without_geometric),
-        ("moments", 3, without_turning_moments),
-        ("spring", 3, without_turning_moments),
-        ("turned spring", 3, without_turning_moments),
-    ],
-)
-def test_each_term_of_the_tangent_matters(
-    name: str, dimension: int, leave_out: Callable, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    at = sample(dimension)
-    part, state = MAKERS[name](at), at.state(1)
-    whole = tangent([part], state, WEIGHTS)
-    leave_out(monkeypatch, part)
-    at.line.forget()
-    assert error(tangent([part], state, WEIGHTS), whole) > 1e-5
 
 
 @both_dimensions

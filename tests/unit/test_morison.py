@@ -12,8 +12,8 @@ from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
+from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.still_water import StillWater
 from tests.support.dense_chain import residual
 from tests.support.sample_line import sample
 
@@ -29,9 +29,8 @@ def inclined(dimension: int) -> tuple[Line, Morison, Array]:
     line = Line(dimension, shapes.layout(arc, np.full(3, D), curve, curve), End(False), End(False))
     ones = np.ones(3)
     drag = drag_coefficients(RHO, D * ones, CD * ones, CDT * ones)
-    pipe = Pipe(line)
-    loads = StillWater(pipe, drag, added_masses(RHO, D * ones, CA * ones, CAT * ones))
-    return line, Morison(pipe, loads), tangent
+    loads = WaterLoads(Pipe(line), drag, added_masses(RHO, D * ones, CA * ones, CAT * ones))
+    return line, Morison(loads), tangent
 
 
 def uniform(line: Line, v: Array, a: Array) -> State:

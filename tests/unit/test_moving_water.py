@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -12,13 +13,13 @@ from riser_soil.core.part import Part, State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.components import regular
+from riser_soil.sea.flows import add_flow
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
+from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.sea import Sea
-from riser_soil.sea.still_water import StationLoads, StillWater
-from riser_soil.sea.water import Water, WaterMotion
+from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wave_field import WaveField
 from tests.support import sample_water
 from tests.support.dense_chain import residual
@@ -37,18 +38,16 @@ def straight(tangent: Array, D: float, L: float = 0.5) -> Line:
     return Line(3, shapes.layout(arc, np.full(1, D), curve, curve), End(False), End(False))
 
 
-def loads(line: Line, water: Water, Cd: float = CD, Ca: float = CA, Cdt: float = 0.0) -> StationLoads:
-    pipe, D = Pipe(line), line.outer_diameter
+def loads(line: Line, sea: Sea, Cd: float = CD, Ca: float = CA, Cdt: float = 0.0) -> WaterLoads:
+    D = line.outer_diameter
     ones, displaced = np.ones_like(D), RHO * 0.25 * np.pi * D**2
-    mass = added_masses(RHO, D, Ca * ones, 0.0 * ones)
-    still = StillWater(pipe, drag_coefficients(RHO, D, Cd * ones, Cdt * ones), mass)
-    stream = FlowAtStations(pipe, water)
-    return AcceleratedWater(RelativeDrag(still, stream), stream, mass, displaced)
+    drag, mass = drag_coefficients(RHO, D, Cd * ones, Cdt * ones), added_masses(RHO, D, Ca * ones, 0.0 * ones)
+    return sample_water.driven(WaterLoads(Pipe(line), drag, mass), displaced, sea)
 
 
-def force_on(line: Line, at: StationLoads, state: State) -> Array:
+def force_on(line: Line, at: WaterLoads, state: State) -> Array:
     """Total force of the water (3,)."""
-    return -line.nodal(residual([Morison(Pipe(line), at)], state, ALL))[:, :3].sum(axis=0)
+    return -line.nodal(residual([Morison(at)], state, ALL))[:, :3].sum(axis=0)
 
 
 def airy() -> WaveField:
@@ -124,22 +123,40 @@ def test_froude_krylov_is_the_pressure_of_the_undisturbed_wave(tangent: Array) -
     assert errors[0] / errors[1] > 3.0
 
 
-def uniform(velocity: Array) -> Water:
-    def water(t: float, x: Array) -> WaterMotion:
-        n = len(x)
-        nothing, none = np.zeros((n, 3)), np.zeros((n, 3, 3))
-        return WaterMotion(np.tile(velocity, (n, 1)), nothing, none, none, np.full(n, np.inf), nothing)
+class DriftNumbers(NamedTuple):
+    """A uniform flow (3,) [m/s]."""
 
-    return water
+    velocity: Array
+
+
+class Drift:
+    """A `FlowComponent`: the same everywhere."""
+
+    def __init__(self, velocity: Array) -> None:
+        self.numbers = DriftNumbers(velocity)
+
+    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+        raise AssertionError("not asked for")
+
+
+@add_flow.of(DriftNumbers)
+def _drift(flow: DriftNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+    for p in range(x.shape[0]):
+        for i in range(3):
+            motion.velocity[p, i] += flow.velocity[i]
+
+
+def uniform(velocity: Array) -> Sea:
+    return Sea(None, [Drift(velocity)])
 
 
 def test_a_pipe_that_drifts_with_the_current_feels_nothing() -> None:
     at, current = sample(3), np.array([0.7, -1.1, 0.2])
     state = State.at_rest(0.4, at.line.size)
     at.line.nodal(state.v)[:, :3] = current
-    part = Morison(Pipe(at.line), loads(at.line, uniform(current), Cdt=0.2))
+    part = Morison(loads(at.line, uniform(current), Cdt=0.2))
     assert np.abs(residual([part], state, ALL)).max() < 1e-20
-    part = Morison(Pipe(at.line), loads(at.line, uniform(1.01 * current), Cdt=0.2))
+    part = Morison(loads(at.line, uniform(1.01 * current), Cdt=0.2))
     assert np.abs(residual([part], state, ALL)).max() > 0.01
 
 
@@ -148,14 +165,11 @@ def test_loads_do_not_depend_on_the_frame_of_reference() -> None:
     at, ship = sample(3), np.array([1.2, -0.4, 0.3])
     state = at.state(2)
 
-    def seen(t: float, x: Array) -> WaterMotion:
-        motion = sample_water.water(t, x + ship * t)
-        return motion._replace(velocity=motion.velocity - ship)
-
     moved = State(state.t, state.u.copy(), state.v.copy(), state.a)
     at.line.nodal(moved.u)[:, :3] -= ship * state.t
     at.line.nodal(moved.v)[:, :3] -= ship
-    parts = [Morison(Pipe(at.line), loads(at.line, water, Cdt=0.2)) for water in (sample_water.water, seen)]
+    seas = (Sea(sample_water.LEVEL, [sample_water.General(under_way)]) for under_way in (0.0 * ship, ship))
+    parts = [Morison(loads(at.line, sea, Cdt=0.2)) for sea in seas]
     found = [residual([part], s, ALL) for part, s in zip(parts, (state, moved), strict=True)]
     assert found[1] == pytest.approx(found[0], rel=1e-11, abs=1e-10 * np.abs(found[0]).max())
 

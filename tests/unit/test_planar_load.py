@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser import hermite, planar_load
+from riser_soil.riser import hermite
+from tests.support import planar_elements
 
 NE = 6
 
@@ -59,19 +60,20 @@ def test_potential_is_that_of_a_cubic_by_the_angles_of_its_ends(loaded: Loaded) 
         over_sine = 1.0 / np.sinc(np.arccos(np.clip(cosine, -1.0, 1.0)) / np.pi)
         across = np.sum(load * t, axis=1) - cosine * np.sum(load * along, axis=1)
         expected += sign * over_sine * across * length**2 / 12.0
-    assert planar_load.potential(chord, *ends, middle, length, load) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+    found = planar_elements.load_potential(chord, *ends, middle, length, load)
+    assert found == pytest.approx(expected, rel=1e-12, abs=1e-13)
 
 
 def test_across_its_chord_a_load_acts_like_on_a_fixed_beam() -> None:
     chord, straight = np.array([[2.0, 0.0]]), np.zeros(1)
-    f = planar_load.forces(chord, straight, straight, np.array([2.0]), np.array([[0.0, -30.0]]))
+    f = planar_elements.load_forces(chord, straight, straight, np.array([2.0]), np.array([[0.0, -30.0]]))
     assert f[0] == pytest.approx([0.0, 30.0, 10.0, 0.0, 30.0, -10.0])
 
 
 def test_it_makes_the_same_residual_as_hermite_on_straight_lines() -> None:
     turn, normal, w = np.array([0.6, 0.8]), np.array([-0.8, 0.6]), np.array([[3.0, -5.0]])
     direction = np.arctan2([0.8], [0.6])
-    f = planar_load.forces(2.0 * turn[None], direction, direction, np.array([2.0]), w)[0]
+    f = planar_elements.load_forces(2.0 * turn[None], direction, direction, np.array([2.0]), w)[0]
     shares = -hermite.uniform_load(np.array([2.0]))[0] * (w[0] @ normal)
     assert [f[:2] @ normal, f[2], f[3:5] @ normal, f[5]] == pytest.approx(shares)
     assert [f[:2] @ turn, f[3:5] @ turn] == pytest.approx([-w[0] @ turn] * 2)
@@ -79,22 +81,22 @@ def test_it_makes_the_same_residual_as_hermite_on_straight_lines() -> None:
 
 def test_tangent_is_the_derivative_of_the_forces(loaded: Loaded) -> None:
     K, step = np.zeros((NE, 6, 6)), 1e-6
-    planar_load.add_tangent(K, 2.0, *loaded)
+    planar_elements.add_load_tangent(K, 2.0, *loaded)
     for k in range(6):
         by = np.zeros((NE, 6))
         by[:, k] = step
-        change = planar_load.forces(*loaded.moved(by)) - planar_load.forces(*loaded.moved(-by))
+        change = planar_elements.load_forces(*loaded.moved(by)) - planar_elements.load_forces(*loaded.moved(-by))
         assert K[:, :, k] == pytest.approx(change / step, abs=1e-8)
     assert np.array_equal(K, K.transpose(0, 2, 1))
 
 
 def test_residual_is_the_derivative_of_the_potential(loaded: Loaded) -> None:
-    step, f = 1e-6, planar_load.forces(*loaded)
+    step, f = 1e-6, planar_elements.load_forces(*loaded)
 
     def potential(by: Array) -> Array:
         middle = 0.5 * (by[:, :2] + by[:, 3:5])
         chord, *ends, length, load = loaded.moved(by)
-        return planar_load.potential(chord, *ends, middle, length, load)
+        return planar_elements.load_potential(chord, *ends, middle, length, load)
 
     for k in range(6):
         by = np.zeros((NE, 6))

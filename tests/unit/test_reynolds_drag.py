@@ -9,27 +9,22 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from riser_soil.core.compiled import fixed
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import reynolds_drag as law
-from riser_soil.sea import through, through_kernels
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import drag_coefficients
-from riser_soil.sea.moving_water import FlowAtStations
+from riser_soil.sea.moving_water import FlowAtStations, WaterLoads, through
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.sea import Sea
-from riser_soil.sea.still_water import StillWater
-from riser_soil.sea.through import ThroughLoads
-from riser_soil.sea.wetting import PartlyWet, Wetting
 from tests.support import sample_water
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
-from tests.support.riser_loop import require_kernels
 from tests.support.riser_scenes import in_waves, stage_histories
 from tests.support.sample_line import RHO, Sample, sample
+from tests.support.through_water import derivatives, resistance
 
 NU, D = 1.19e-6, 0.4
 CRISIS = [(1e4, 1.2), (2e5, 1.2), (4e5, 0.3), (4e6, 0.7)]
@@ -43,21 +38,17 @@ def tables(at: Sample, *rows: law.Rows) -> law.ReynoldsTables:
 
 
 def still(at: Sample) -> Morison:
-    pipe, found = Pipe(at.line), tables(at, WIDE, CRISIS)
-    return law.reynolds_drag(pipe, ThroughLoads(FlowAtStations(pipe, Sea(None)), lambda t: found, True), found)
+    water = FlowAtStations(Pipe(at.line), Sea(None))
+    return law.reynolds_drag(through(water, dissipative=True), tables(at, WIDE, CRISIS))
 
 
 def flowing(at: Sample) -> Morison:
-    pipe, found = Pipe(at.line), tables(at, WIDE)
-    stream = FlowAtStations(pipe, sample_water.water)
-    return law.reynolds_drag(pipe, ThroughLoads(stream, lambda t: found, False), found)
+    return law.reynolds_drag(through(FlowAtStations(Pipe(at.line), sample_water.water)), tables(at, WIDE))
 
 
 def half_out(at: Sample) -> Morison:
-    pipe, found = Pipe(at.line), tables(at, WIDE)
-    stream = FlowAtStations(pipe, sample_water.water)
-    loads = PartlyWet(ThroughLoads(stream, lambda t: found, False), Wetting(pipe, stream))
-    return law.reynolds_drag(pipe, loads, found)
+    pipe = Pipe(at.line)
+    return law.reynolds_drag(through(FlowAtStations(pipe, sample_water.water), pipe.span), tables(at, WIDE))
 
 
 @pytest.mark.parametrize(
@@ -68,16 +59,16 @@ def test_the_coefficient_is_linear_in_the_logarithm(Re: float, Cd: float) -> Non
     speed, tau = Re * NU / D, np.array([0.0, 0.0, 1.0])
     found = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
     v = np.array([0.6, 0.8, 0.0]) * speed + 3.0 * tau
-    force = through_kernels.resistances(found, v[None, None], tau[None, None], fixed(3))[0, 0]
+    force = resistance(found, v, tau)
     expected = 0.5 * RHO * D * Cd * speed**2
     np.testing.assert_allclose(force, expected * np.array([0.6, 0.8, 0.0]), rtol=1e-12, atol=1e-12 * expected)
 
 
 def test_no_flow_no_drag() -> None:
-    found, none = law.tables_of(RHO, NU, np.array([D]), [CRISIS]), np.zeros((1, 1, 3))
-    tau = np.array([[[0.0, 0.0, 1.0]]])
-    assert not through_kernels.resistances(found, none, tau, fixed(3)).any()
-    assert not np.any(through_kernels.all_derivatives(found, none, tau, np.ones((1, 1)), 1.0, fixed(3)))
+    found, none = law.tables_of(RHO, NU, np.array([D]), [CRISIS]), np.zeros(3)
+    tau = np.array([0.0, 0.0, 1.0])
+    assert not resistance(found, none, tau).any()
+    assert not np.any(derivatives(found, none, tau))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -92,44 +83,20 @@ def test_the_change_of_the_coefficient_is_in_the_tangent() -> None:
     """Along the flow d(Cd w^2)/dw = 2 Cd w + w dCd/dln Re, across it Cd w."""
     Re, slope = np.sqrt(8e10), (0.3 - 1.2) / np.log(2.0)
     w, half = Re * NU / D, 0.5 * RHO * D
-    v, tau, one = np.array([[[w, 0.0, 0.0]]]), np.array([[[0.0, 0.0, 1.0]]]), np.ones((1, 1))
     found = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
-    by_v, _ = through_kernels.all_derivatives(found, v, tau, one, 1.0, fixed(3))
+    by_v, _ = derivatives(found, np.array([w, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]))
     expected = half * w * np.diag([2.0 * 0.75 + slope, 0.75, 0.0])
-    np.testing.assert_allclose(by_v[0, 0], expected, rtol=1e-12, atol=1e-12 * half * w)
-
-
-def without_slope(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = through.all_derivatives
-    monkeypatch.setattr(through, "all_derivatives", lambda *at: (usual(*at)[0], 0.0 * usual(*at)[1]))
-
-
-@pytest.mark.parametrize("leave_out", [without_slope, sample_water.without_gradient])
-def test_each_term_of_the_tangent_matters(
-    leave_out: Callable[[pytest.MonkeyPatch], None], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    at = sample(3)
-    part, state = flowing(at), at.state(1)
-    whole = tangent([part], state, WEIGHTS)
-    leave_out(monkeypatch)
-    at.line.forget()
-    assert error(tangent([part], state, WEIGHTS), whole) > 1e-5
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_kernels_are_those_of_the_methods(dimension: int) -> None:
-    at = sample(dimension)
-    require_kernels(at, [at.morison(), still(at), flowing(at), half_out(at)])
+    np.testing.assert_allclose(by_v, expected, rtol=1e-12, atol=1e-12 * half * w)
 
 
 def test_a_table_of_one_value_is_a_constant_coefficient() -> None:
     at, state = sample(3), sample(3).state(1)
     e = at.elements
     one, pipe = tables(at, [(1e5, 0.9)]), Pipe(at.line)
-    part = law.reynolds_drag(pipe, ThroughLoads(FlowAtStations(pipe, Sea(None)), lambda t: one, True), one)
+    part = law.reynolds_drag(through(FlowAtStations(pipe, Sea(None)), dissipative=True), one)
     ones = np.ones(e.length.size)
     drag = drag_coefficients(RHO, e.outer_diameter, 0.9 * ones, 0.0 * ones)
-    same = Morison(pipe, StillWater(pipe, drag, 0.0 * drag))
+    same = Morison(WaterLoads(pipe, drag, 0.0 * drag))
     for f in (residual, tangent):
         assert error(f([part], state, WEIGHTS), f([same], state, WEIGHTS)) < 1e-12
 

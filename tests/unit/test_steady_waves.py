@@ -21,7 +21,6 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene
 from riser_soil.sea.components import regular
 from riser_soil.sea.morison import Morison
-from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
 from riser_soil.sea.sea import Sea
 from riser_soil.sea.steady_flow import SteadyFlow
 from riser_soil.sea.steady_wave import SteadyWave, choose, highest, steady_wave
@@ -198,10 +197,8 @@ def test_tangent_of_the_loads() -> None:
     at = sample(3)
     wave = steady_wave("stream-function", 0.9, 3.0, G, 6.0)
     loads = sample_water.still(at)
-    stream = FlowAtStations(loads.pipe, Sea(sample_water.LEVEL, [SteadyFlow(wave, 0.3, 0.2, 5.2, 2.0, 0.0, 0.0)]))
-    part = Morison(
-        loads.pipe, AcceleratedWater(RelativeDrag(loads, stream), stream, loads.mass, sample_water.displaced(at))
-    )
+    sea = Sea(sample_water.LEVEL, [SteadyFlow(wave, 0.3, 0.2, 5.2, 2.0, 0.0, 0.0)])
+    part = Morison(sample_water.driven(loads, sample_water.displaced(at), sea))
     state = at.state(2)
     K = difference_tangent(part, state, WEIGHTS)
     assert error(tangent([part], state, WEIGHTS), K) < 1e-8

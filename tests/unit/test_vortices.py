@@ -8,22 +8,17 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Forces, State, Weights
-from riser_soil.riser import hermite
-from riser_soil.riser.trial import Trial
-from riser_soil.sea import through, through_kernels, wet_section
+from riser_soil.riser import stations
 from riser_soil.sea import vortex_law as law
-from riser_soil.sea.moving_water import FlowAtStations
+from riser_soil.sea.moving_water import FlowAtStations, through
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.vortex_kernels import Push
-from riser_soil.sea.vortices import Shed, Vortices
-from riser_soil.sea.wetting import PartlyWet, Wetting
+from riser_soil.sea.vortices import Push, Vortices
 from tests.support import sample_water
 from tests.support.dense_chain import residual, tangent
-from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation
-from tests.support.riser_loop import Compiled, require_kernels
+from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import RHO, Sample, sample
+from tests.support.through_water import resistance
 
 D, U, MIDDLE, WIDTH = 0.3, 0.8, 0.18, 0.08
 TAU = np.array([0.0, 0.0, 1.0])
@@ -42,18 +37,19 @@ def underway(part: Vortices, at: Sample) -> Vortices:
     return part
 
 
-def behind(at: Sample) -> Vortices:
+def in_water(at: Sample, half_out: bool) -> Vortices:
     """In uneven, unsteady water."""
     pipe = Pipe(at.line)
-    shed = Shed(FlowAtStations(pipe, sample_water.water), shedding(at.line.length.size))
-    return underway(Vortices(shed.loads, shed), at)
+    loads = through(FlowAtStations(pipe, sample_water.water), pipe.span if half_out else None)
+    return underway(Vortices(loads, shedding(at.line.length.size)), at)
+
+
+def behind(at: Sample) -> Vortices:
+    return in_water(at, half_out=False)
 
 
 def behind_half_out(at: Sample) -> Vortices:
-    pipe = Pipe(at.line)
-    stream = FlowAtStations(pipe, sample_water.water)
-    shed = Shed(stream, shedding(at.line.length.size))
-    return underway(Vortices(PartlyWet(shed.loads, Wetting(pipe, stream)), shed), at)
+    return in_water(at, half_out=True)
 
 
 both = pytest.mark.parametrize("make", [behind, behind_half_out])
@@ -65,8 +61,7 @@ def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
     push = Push(shedding().lift, np.full((2, 1, 1), phase))
 
     def force(v: Array) -> Array:
-        found: Array = -through_kernels.resistances(push, v[None, None], TAU[None, None], fixed(3))[0, 0]
-        return found
+        return -resistance(push, v, TAU)
 
     found = force(-U * ALONG_X)
     np.testing.assert_allclose(found, [0.0, 0.5 * RHO * D * 1.2 * U**2 * np.cos(phase), 0.0], atol=1e-12)
@@ -74,16 +69,26 @@ def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
     assert not force(-U * TAU).any()
 
 
+def new_wake() -> law.Wake:
+    return law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3)))
+
+
+def advance(wake: law.Wake, t: float, v: Array, own: Array, a: Array) -> None:
+    """To the end of an accepted step: velocity through the water, own velocity and acceleration, each (3,)."""
+    law.advance(wake, shedding(), t, law.phases_at(wake, t)[0, 0], 0, 0, v, own, a, TAU)
+    wake.time[0] = t
+
+
 def locked(frequency: float, steps: int, amplitude: float = 0.05) -> tuple[Array, Array]:
     """Phase of an oscillation's velocity less that of the vortices, and the latter's frequency times D/U, over the last
     of thirty periods; steps: of a period; amplitude: over D.
     """
-    wake = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3)))
-    w, v, y = 2.0 * np.pi * frequency * U / D, -U * ALONG_X[None, None], np.array([0.0, 1.0, 0.0])
+    wake = new_wake()
+    w, v, y = 2.0 * np.pi * frequency * U / D, -U * ALONG_X, np.array([0.0, 1.0, 0.0])
     ahead, rates = [], []
     for t in np.arange(30 * steps) * (2.0 * np.pi / w / steps):
-        own, a = (amplitude * D * w * s * y[None, None] for s in (np.cos(w * t), -w * np.sin(w * t)))
-        law.advance_all(wake, shedding(), t, v, own, a, TAU[None, None])
+        own, a = (amplitude * D * w * s * y for s in (np.cos(w * t), -w * np.sin(w * t)))
+        advance(wake, t, v, own, a)
         ahead.append(w * t - wake.phase[0, 0])
         rates.append(wake.rate[0, 0] * D / (2.0 * np.pi * U))
     return np.array(ahead[-steps:]), np.array(rates[-steps:])
@@ -119,19 +124,18 @@ def test_a_pipe_at_rest_sheds_at_the_middle_frequency() -> None:
 
 def test_the_phase_of_a_flow_that_grows_steadily_is_exact() -> None:
     """Once two rates are known: then of the second order in time, behind a pipe at rest."""
-    wake, still, dt = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3))), np.zeros((1, 1, 3)), 0.1
+    wake, still, dt = new_wake(), np.zeros(3), 0.1
     for t in dt * np.arange(10):
-        law.advance_all(wake, shedding(), t, -(U + t) * ALONG_X[None, None], still, still, TAU[None, None])
+        advance(wake, t, -(U + t) * ALONG_X, still, still)
     turned = 2.0 * np.pi * MIDDLE / D * (U * t + 0.5 * t**2)
     first = 0.5 * 2.0 * np.pi * MIDDLE / D * dt**2  # of the first step, whose rate stays as it begins
     assert wake.phase[0, 0] == pytest.approx((turned - first) % (2.0 * np.pi), rel=1e-12)
 
 
 def test_nothing_is_shed_without_flow() -> None:
-    wake = law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3)))
-    still = np.zeros((1, 1, 3))
+    wake, still = new_wake(), np.zeros(3)
     for t in (0.0, 0.1, 0.2):
-        law.advance_all(wake, shedding(), t, still, still, still, TAU[None, None])
+        advance(wake, t, still, still, still)
     assert not any(values.any() for values in wake[1:])
 
 
@@ -142,79 +146,22 @@ def test_tangent_is_the_derivative_of_the_residual(make: Callable[[Sample], Vort
     assert error(tangent([part], state, WEIGHTS), difference_tangent(part, state, WEIGHTS)) < 1e-7
 
 
-def without_slope(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = through.all_derivatives
-    monkeypatch.setattr(through, "all_derivatives", lambda *at: (usual(*at)[0], 0.0 * usual(*at)[1]))
-
-
-def without_rate(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = through.all_derivatives
-    monkeypatch.setattr(through, "all_derivatives", lambda *at: (0.0 * usual(*at)[0], usual(*at)[1]))
-
-
-def without_turning(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hermite, "add_geometric", no_operation)
-
-
-def without_wet_slope(monkeypatch: pytest.MonkeyPatch) -> None:
-    usual = wet_section.wet_shares
-    monkeypatch.setattr(wet_section, "wet_shares", lambda h, b: (usual(h, b)[0], 0.0 * h))
-
-
-@pytest.mark.parametrize(
-    "leave_out", [without_slope, without_rate, without_turning, without_wet_slope, sample_water.without_gradient]
-)
-def test_each_term_of_the_tangent_matters(
-    leave_out: Callable[[pytest.MonkeyPatch], None], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    at = sample(3)
-    part, state = behind_half_out(at), at.state(1)
-    whole = tangent([part], state, WEIGHTS)
-    leave_out(monkeypatch)
-    at.line.forget()
-    assert error(tangent([part], state, WEIGHTS), whole) > 1e-5
-
-
-def test_kernels_are_those_of_the_methods() -> None:
-    at = sample(3)
-    require_kernels(at, [behind(at), at.morison()])
-    require_kernels(at, [behind_half_out(at)])
-
-
-@both
-def test_the_loop_keeps_the_wake_as_the_method_does(make: Callable[[Sample], Vortices]) -> None:
-    at = sample(3)
-    part, before, state = make(at), at.state(2, t=0.05), at.state(1, t=0.07)
-    begun = part.state()
-    part.commit(state)
-    expected = part.state()
-    part.restore(begun)
-    compiled = Compiled(at, [part], before, state)
-    compiled.riser.keep()
-    for name, found in part.state().items():
-        np.testing.assert_allclose(found, expected[name], rtol=1e-9, err_msg=name)
-        assert not np.array_equal(found, begun[name]), name
-
-
 def test_a_stage_begins_with_the_rate_of_its_motion() -> None:
     """As a step of no length does that has known the rate; a pipe at rest sheds at the middle frequency."""
     at = sample(3)
     part, state = behind(at), at.state(2, size=0.0, t=0.0)
     rest = State(0.0, 0.0 * state.u, 0.0 * state.v, 0.0 * state.a)
     part.begin_stage(rest)
-    trial = at.line.trial(rest)
-    loads = part._vortices
-    speed = np.linalg.norm(np.cross(loads.stream.through(trial).v, at_stations(loads, trial)), axis=-1)
+    trial, stations_at = at.line.trial(rest), Pipe(at.line).at
+    tau, _ = stations.unit_tangents(stations_at, trial.chord, trial.turn.tangent)
+    u = sample_water.water(0.0, stations.interpolate(stations_at, trial.q).reshape(-1, 3)).velocity
+    speed = np.linalg.norm(np.cross(u.reshape(tau.shape), tau), axis=-1)
     np.testing.assert_allclose(part.state()["rate"], 2.0 * np.pi * MIDDLE * speed / D, rtol=1e-12)
     part.begin_stage(state)
     begun = part.state()
     part.commit(state)
     np.testing.assert_allclose(part.state()["rate"], begun["rate"], rtol=0.2)
     assert not begun["growth"].any()
-
-
-def at_stations(loads: Shed, trial: Trial) -> Array:
-    return loads.stream.pipe.flow(trial).tau
 
 
 def test_a_trial_leaves_no_trace_and_a_commit_continues() -> None:
@@ -247,6 +194,7 @@ def test_element_forces_add_up_to_the_residual() -> None:
     part, state, total = behind(at), at.state(6), Forces.zeros(at.line.size)
     part.residual(state, total)
     _, force = part.element_forces(state)
+    assert force is not None
     collected = np.zeros(at.line.size)
     at.line.scatter(force, collected)
     np.testing.assert_allclose(collected, total.force, atol=1e-12 * np.abs(total.force).max())

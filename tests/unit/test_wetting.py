@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -11,12 +14,13 @@ from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.buoyancy import Buoyancy
-from riser_soil.sea.dry_pipe import DryPipe
+from riser_soil.sea.dry_pipe import dry_pipe
+from riser_soil.sea.flows import add_flow
 from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.sea import Sea
 from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
-from riser_soil.sea.wetting import CalmSurface
 from tests.support.dense_chain import residual
 
 D, L, LEVEL, WEIGHT = 0.6, 6.0, 2.0, 2000.0
@@ -51,8 +55,7 @@ def pipe(start: Array, tangent: Array, elements: int, dimension: int) -> Pipe:
 
 def lost(at: Pipe) -> tuple[float, float]:
     """Weight [N] and potential [J] of what is dry."""
-    dry = DryPipe(at, CalmSurface(at, LEVEL), np.full(at.line.length.size, WEIGHT))
-    part = Buoyancy(at, dry, flat=True)
+    part = Buoyancy(FlowAtStations(at, Sea(LEVEL)), dry_pipe(np.full(at.line.length.size, WEIGHT)), flat=True)
     state = State.at_rest(0.0, at.line.size)
     return float(at.line.nodal(residual([part], state))[:, at.line.dimension - 1].sum()), part.energy(state).potential
 
@@ -77,18 +80,32 @@ def test_an_upright_pipe_floats_by_archimedes(dimension: int) -> None:
     assert np.diff(dry) == pytest.approx(np.diff(out), rel=0.05)
 
 
-def rippled(t: float, x: Array) -> WaterMotion:
-    """A surface of 12 m long waves, of which an element holds a tenth."""
-    n, k = len(x), 2.0 * np.pi / 12.0
-    slope = np.stack([-0.2 * k * np.sin(k * x[:, 0]), np.zeros(n), -np.ones(n)], axis=-1)
-    nothing, none = np.zeros((n, 3)), np.zeros((n, 3, 3))
-    return WaterMotion(nothing, nothing, none, none, LEVEL + 0.2 * np.cos(k * x[:, 0]) - x[:, 2], slope)
+class RippleNumbers(NamedTuple):
+    """Wave number of a rippled surface [1/m]."""
+
+    k: float
+
+
+class Ripple:
+    """A `FlowComponent`: a surface of 12 m long waves, of which an element holds a tenth."""
+
+    numbers = RippleNumbers(2.0 * np.pi / 12.0)
+
+    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+        raise AssertionError("not asked for")
+
+
+@add_flow.of(RippleNumbers)
+def _ripple(flow: RippleNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+    for p in range(x.shape[0]):
+        motion.immersion[p] += 0.2 * math.cos(flow.k * x[p, 0])
+        motion.immersion_gradient[p, 0] -= 0.2 * flow.k * math.sin(flow.k * x[p, 0])
 
 
 def test_a_wavy_surface_is_followed_between_the_stations() -> None:
     at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
-    dry = DryPipe(at, FlowAtStations(at, rippled), np.ones(5))
-    found = dry.residual(at.line.trial(State.at_rest(0.0, at.line.size)))[:, [0, 2], 1].sum()
+    part = Buoyancy(FlowAtStations(at, Sea(LEVEL, [Ripple()])), dry_pipe(np.ones(5)), flat=False)
+    found = at.line.nodal(residual([part], State.at_rest(0.0, at.line.size)))[:, 1].sum()
     k = 2.0 * np.pi / 12.0
     expected = quad(lambda x: 1.0 - wet_share(0.2 * np.cos(k * x) - 0.1, D), 0.0, L, epsabs=1e-10, limit=200)[0]
     assert found == pytest.approx(expected, rel=1e-4)

@@ -7,6 +7,7 @@ from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d
+from tests.support import planar_elements
 from tests.support.beam_chain import Element2d, arc_space, load, straight_plane, straight_space
 from tests.support.rod_reference import Rod, tip
 
@@ -83,7 +84,7 @@ def cantilever_errors(load_factor: float, sizes: list[int], element: Element2d) 
 
 @pytest.mark.parametrize(("load_factor", "largest"), [(1.0, 6e-6), (5.0, 2e-4), (10.0, 5e-4)])
 def test_cantilever_is_the_elastica_at_fourth_order(load_factor: float, largest: float) -> None:
-    errors = cantilever_errors(load_factor, [4, 8, 16], beam2d.forces_and_tangent)
+    errors = cantilever_errors(load_factor, [4, 8, 16], planar_elements.forces_and_tangent)
     assert errors[0].max() < largest
     assert orders(errors).min() > 3.7
 
@@ -91,7 +92,7 @@ def test_cantilever_is_the_elastica_at_fourth_order(load_factor: float, largest:
 @pytest.mark.parametrize("load_factor", [1.0, 5.0, 10.0])
 def test_without_the_shallow_arch_term_the_element_is_of_second_order(load_factor: float) -> None:
     errors = cantilever_errors(load_factor, [16, 32, 64], second_order_element)
-    with_term = cantilever_errors(load_factor, [16], beam2d.forces_and_tangent)
+    with_term = cantilever_errors(load_factor, [16], planar_elements.forces_and_tangent)
     assert orders(np.linalg.norm(errors, axis=1)) == pytest.approx(2.0, abs=0.1)
     assert errors[0].max() > 100 * with_term.max()
 
@@ -100,7 +101,7 @@ def test_without_the_shallow_arch_term_the_element_is_of_second_order(load_facto
 def test_end_moment_rolls_a_cantilever_up_in_a_plane(circles: int) -> None:
     errors = []
     for n in (16, 32, 64):
-        chain = straight_plane(n, 1.0, 1e6, 1.0, beam2d.forces_and_tangent)
+        chain = straight_plane(n, 1.0, 1e6, 1.0, planar_elements.forces_and_tangent)
         load(chain, np.array([0.0, 0.0, 2 * np.pi * circles]), steps=10 * circles)
         assert np.abs(chain.x[-1]).max() < 1e-12
         assert chain.theta[-1] == pytest.approx(2 * np.pi * circles, abs=1e-12)

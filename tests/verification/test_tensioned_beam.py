@@ -16,8 +16,8 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses
+from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.still_water import StillWater
 from tests.support.dense_chain import solve, tangent
 
 LENGTH, EA, EI, MASS, TENSION = 30.0, 1.0e10, 5.0e5, 80.0, 4.0e4
@@ -45,8 +45,7 @@ def frequencies(dimension: int, count: int, tension: float = TENSION, added: flo
     beam, inertia = Beam(line, e), Inertia(line, e.mass)
     normal, none = np.full(count, added), np.zeros(count)
     masses = added_masses(RHO, np.full(count, DIAMETER), normal, none)
-    pipe = Pipe(line)
-    water = Morison(pipe, StillWater(pipe, np.zeros((count, 2)), masses))
+    water = Morison(WaterLoads(Pipe(line), np.zeros((count, 2)), masses))
     solve(line, [beam], tolerance=1e-9)
     state = State.at_rest(1.0, line.size)
     across = np.zeros((line.nodes, line.ndof), dtype=bool)

@@ -1,0 +1,234 @@
+"""Base class of the parts of a line whose formulas are kernels alone, see `part_kernels`.
+
+What a system asks of such a part at a trial state, they find in a configuration of the line that all of its parts
+share. Nothing is kept between two calls but where the line is and what its parts have found there last.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, listed
+from riser_soil.core.bound import Bound, in_turn
+from riser_soil.core.packed import Packed
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
+from riser_soil.riser import hermite
+from riser_soil.riser.configuration import maps_for, put_maps, put_turning
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.part_kernels import (
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    add_work,
+    bound,
+    clear,
+    collect,
+    find_water,
+    forces_of,
+    keep,
+    turn,
+    weigh,
+)
+from riser_soil.riser.placed_line import LineBase, PlacedTrial
+
+
+class Turning(NamedTuple):
+    """A `TurningRoom`."""
+
+    conjugate: Array
+    turning: Array
+
+
+class LineTrials:
+    """A line at a trial state, `now`, and where a step begins, `then`: what its parts share.
+
+    maps, weights: of the tangent asked for last; turning: room.
+    """
+
+    def __init__(self, line: Line) -> None:
+        base, (ne, d, r) = LineBase(line), (line.length.size, line.dimension, line.frames.dofs)
+        self.now, self.then = PlacedTrial(line, base), PlacedTrial(line, base)
+        self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
+        self.turning = Turning(np.empty((ne, 2, d)), np.empty((ne, 2, r, r)))
+        self._put_maps = bound(put_maps, self.now.at, self.maps)
+        self._mapped = -1  # the count of `now` for which they hold
+        self._start = self._end = math.nan
+
+    def differentiate(self, weights: Weights) -> None:
+        """Find the maps at the trial state."""
+        if (weights.inertia, weights.force) != self.weights.value:
+            self.weights.renew(LineWeights(float(weights.inertia), float(weights.force)))
+        kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
+        if self._mapped != self.now.count or (kept.shift_v, kept.shift_a) != shifts:
+            self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
+            self._put_maps()
+            self._mapped = self.now.count
+
+    def step_to(self, t: float) -> tuple[float, float]:
+        """Times of the step that ends at t: it starts at the time that was asked for before."""
+        if t != self._end:
+            self._start, self._end = (t if math.isnan(self._end) else self._end), t
+        return self._start, self._end
+
+    def step(self, start: float, end: float) -> tuple[float, float]:
+        """Times of a step that is known."""
+        self._start, self._end = start, end
+        return start, end
+
+
+class BoundPart:
+    """Kernels of a part, bound to its numbers and to the trials of its line, and what they have found last.
+
+    found: the count of the trial at which the forces were found.
+    """
+
+    def __init__(self, line: Line, numbers: tuple[Any, ...], trials: LineTrials) -> None:
+        self._numbers, self._trials, self.found = numbers, trials, -1
+        n, self.forces = 2 * line.ndof, forces_of(line)
+        self.energy, self.turned_over = np.zeros(3), np.zeros(4)
+        self.K = Packed(np.zeros((line.length.size, n, n)))
+        self._now, self._forces = Packed(trials.now.at), Packed(self.forces)
+        self.find = in_turn(Bound(clear, self._forces), bound(add_forces, numbers, self._now, self._forces))
+        self.collect = Bound(collect, self._now, self._forces)
+
+    @cached_property
+    def _find_water(self) -> list[Bound]:
+        """At the trial state, as another one may have been asked for since."""
+        return [bound(find_water, self._numbers, self._now)] if type(self._numbers) in find_water.kernels else []
+
+    @cached_property
+    def add_tangent(self) -> Bound:
+        """Adds to K what the forces found last change by."""
+        trials, room, (conjugate, turning) = self._trials, Packed(self._trials.turning), self._trials.turning
+        return in_turn(
+            *self._find_water,
+            bound(add_tangent, self._numbers, self._now, trials.maps, trials.weights, self.K),
+            Bound(weigh, self._forces, trials.weights, room),
+            bound(put_turning, trials.now.at, Packed(conjugate), Packed(turning)),
+            Bound(turn, room, self.K),
+        )
+
+    @cached_property
+    def add_energy(self) -> Bound:
+        return in_turn(*self._find_water, bound(add_energy, self._numbers, self._now, Packed(self.energy)))
+
+    @cached_property
+    def add_work(self) -> Bound | None:
+        """None where the part has no kernel for it."""
+        if type(self._numbers) not in add_work.kernels:
+            return None
+        given = Packed(self._trials.then.at), self._now, Packed(self.turned_over)
+        return in_turn(*self._find_water, bound(add_work, self._numbers, *given))
+
+    @cached_property
+    def keep(self) -> Bound:
+        return bound(keep, self._numbers, self._now)
+
+
+class CompiledPart(LinePart, ABC):
+    """Base of the parts whose formulas are kernels; a part has numbers, and history if any."""
+
+    traits: Traits
+
+    @abstractmethod
+    def make_numbers(self) -> tuple[Any, ...]:
+        """The part in numbers, made once; what changes is an array that is written to, see `renew_numbers`."""
+
+    @cached_property
+    def _numbers(self) -> Any:
+        return self.make_numbers()
+
+    def numbers(self) -> tuple[Any, ...]:
+        found: tuple[Any, ...] = self._numbers
+        return found
+
+    @cached_property
+    def _trials(self) -> LineTrials:
+        return self.line.once(LineTrials)
+
+    @cached_property
+    def _bound(self) -> BoundPart:
+        return BoundPart(self.line, self.numbers(), self._trials)
+
+    def _go_to(self, state: State) -> BoundPart:
+        """Bring line and numbers to a trial state."""
+        found = self._bound
+        self._trials.now.move(state)
+        self.renew_numbers(*self._trials.step_to(state.t))
+        return found
+
+    def _find(self, state: State) -> BoundPart:
+        """Find the forces at a trial state."""
+        found = self._go_to(state)
+        found.find()
+        found.found = self._trials.now.count
+        return found
+
+    def _found(self, state: State) -> BoundPart:
+        """The forces at a trial state, on the elements alone."""
+        found = self._go_to(state)
+        return found if found.found == self._trials.now.count else self._find(state)
+
+    def residual(self, state: State, forces: Forces) -> None:
+        found = self._find(state)
+        found.collect()
+        if "I" in self.traits.groups:
+            forces.inertia[self.line.part] += found.forces.inertia.ravel()
+        if "F" in self.traits.groups:
+            forces.force[self.line.part] += found.forces.force.ravel()
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        found, K = self._found(state), values[self.line.name]
+        self._trials.differentiate(weights)
+        if found.K.value is not K:
+            found.K.renew(K)
+        found.add_tangent()
+
+    def energy(self, state: State) -> Energy:
+        found = self._go_to(state)
+        found.energy[:] = 0.0
+        found.add_energy()
+        return Energy(*listed(found.energy))
+
+    def work(self, before: State, after: State) -> Work:
+        found, trials = self._bound, self._trials
+        if found.add_work is None:
+            return Work()
+        trials.then.move(before)
+        trials.now.move(after)
+        self.renew_numbers(*trials.step(before.t, after.t))
+        found.turned_over[:] = 0.0
+        found.add_work()
+        return Work(*listed(found.turned_over))
+
+    def commit(self, state: State) -> None:
+        """Keep the history."""
+        if type(self.numbers()) in keep.kernels:
+            self._find(state).keep()
+
+    def taken(self, before: State, after: State) -> float:
+        """Work [J] against the mean of the forces at the ends of a step, over its increments."""
+        forces, part = Forces.zeros(after.u.size), self.line.part
+        for state in (before, after):
+            self.residual(state, forces)
+        mean = 0.5 * (forces.inertia + forces.force)
+        return float(mean[part] @ (after.u - before.u)[part])
+
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+        forces, P, groups = self._found(state).forces, self._trials.now.at.P, self.traits.groups
+        return (
+            hermite.pull_back(forces.inertia_q, P) + forces.inertia_e if "I" in groups else None,
+            hermite.pull_back(forces.force_q, P) + forces.force_e if "F" in groups else None,
+        )
+
+    def forces_on_nodes(self, state: State) -> Array:
+        """Residual (nn, ndof) of what acts on nodes themselves."""
+        forces = self._find(state).forces
+        return forces.inertia + forces.force
