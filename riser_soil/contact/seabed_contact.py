@@ -103,8 +103,8 @@ class SeabedContact(LineContact):
         linear = np.stack([1.0 - rule.points, rule.points])
         self._nodes = seabed_stations.OverNodes(larger_beside(radius), line.tributary_length, linear)
         self.memory = law.initial_history((line.length.size, rule.points.size))
-        gradual, roles = self.memory.size > 0, (Predictor, Stateful)
-        self.traits = Traits("E", symmetric=True, keeps_way=True, gradual=gradual, roles=roles)
+        roles = Predictor, Stateful
+        self.traits = Traits("E", symmetric=True, keeps_way=True, gradual=law.gradual, roles=roles)
 
     def evaluate(self, trial: Trial) -> StationContact:
         """The stations over the ground, and what touches."""

@@ -45,6 +45,7 @@ class AubenyBiscontinFormula(CompiledLaw):
 
     numbers: AubenyBiscontinNumbers
     columns: ClassVar[tuple[str, ...]] = AubenyBiscontinHistory._fields
+    gradual: ClassVar[bool] = True
 
     @property
     def capacity(self) -> float:

@@ -6,7 +6,7 @@ there is no implementation for their type.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -33,6 +33,7 @@ class CompiledLaw:
     """Base of all `NormalLaw`s: what a law does is in the kernels for its numbers."""
 
     numbers: Any
+    gradual: ClassVar[bool] = False
 
     def active(self, penetration: Array, history: Array) -> BoolArray:
         z, before = _points(penetration, history)

@@ -60,6 +60,11 @@ class NormalLaw(Protocol):
         """Force per length [N/m] that it bears at a penetration of one diameter; inf without a limit."""
         ...
 
+    @property
+    def gradual(self) -> bool:
+        """Whether the force grows along a curve from the first touch, as clay's does; a stiff penalty has a corner."""
+        ...
+
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         """History of ground that has never been touched (*shape, nh)."""
         ...

@@ -49,6 +49,7 @@ class RandolphQuigginFormula(CompiledLaw):
 
     numbers: RandolphQuigginNumbers
     columns: ClassVar[tuple[str, ...]] = RandolphQuigginHistory._fields
+    gradual: ClassVar[bool] = True
 
     @property
     def capacity(self) -> float:
