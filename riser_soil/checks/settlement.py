@@ -121,4 +121,4 @@ def secant_share(law: SoilLaw) -> float:
         if curve[-1][0] > 0.5 * su:
             break
     stress, strain = np.array(curve).T
-    return float(min(0.5 * su / (G * np.interp(0.5 * su, stress, strain)), 1.0))
+    return min(float(0.5 * su / (G * np.interp(0.5 * su, stress, strain))), 1.0)

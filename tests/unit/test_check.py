@@ -52,7 +52,7 @@ def test_a_whole_scene() -> None:
     ]
     assert "riser: 36 elements of 0.5 to 1.5 m, 107 unknowns" in lines  # 37 nodes of 3, less two prescribed positions
     assert "contact stiffness on the seabed: 1e+05 N/m2" in lines
-    assert "soil.mesh.size_at_riser 0.5 m is 2.1 times the 0.234 m by which the riser touches" in "\n".join(lines[-3:-1])
+    assert any("size_at_riser 0.5 m is 2.1 times the 0.234 m by which the riser touches" in line for line in lines)
     assert lines[-1] == "2 warnings"
     at_nodes = report({**touchdown(LAY, heave(1.0)), "contact": {"method": "node"}}).splitlines()
     assert "touches the soil at its nodes only, 0.5 m apart, on cells of 0.5 m" in at_nodes[-3]
