@@ -33,7 +33,8 @@ def nearest_rows(
     """
     mirror = grid.mirror
     if mirror is None:
-        return _taken(grid, _nearest, before, after, rows)
+        found, way = _taken(grid, _nearest, before, after, rows)
+        return found, way
     behind = mirror.behind(after)
     asked = np.where(behind[:, None], mirror.images(after), after)
     found, way = _taken(grid, _nearest, before, asked, rows)
@@ -96,7 +97,7 @@ def _taken(grid: DistributedMesh, take: Take, before: Array, after: Array, rows:
     """This rank's share of what is taken, at the places after of all ranks, from the rows of all; collective."""
     comm = grid.nodes.comm
     gathered = comm.gather((before, rows, after))
-    shares = None if gathered is None else _split(gathered, take)
+    shares = [] if gathered is None else _split(gathered, take)
     mine: tuple[Array, ...] = comm.scatter(shares)
     return mine
 
