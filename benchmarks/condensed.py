@@ -11,7 +11,7 @@ import time
 from benchmarks.coupled import SCENE
 from benchmarks.stage import last_stage
 from riser_soil.core.system import Timer
-from riser_soil.soil.kept_compliance import SWITCH
+from riser_soil.soil.compliance import SWITCH
 
 PLANE = ("dimension=2", "water={density: 1025.0}")  # without a current: a step on springs is a cheap one
 SPRINGS = (*PLANE, "soil=null", "contact={}")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.law import Penalty, PenaltyNumbers, ramp
+from riser_soil.contact.law import Penalty, PenaltyData, ramp
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
@@ -55,19 +55,19 @@ class Averaged:
         return self._contact.predict(guess)
 
 
-class DiscreteNumbers(NamedTuple):
+class DiscreteData(NamedTuple):
     """As of `DiscreteGradient`."""
 
-    penalty: PenaltyNumbers
+    penalty: PenaltyData
 
 
-@may_act.of(DiscreteNumbers)
-def _may_act(law: DiscreteNumbers, penetration: float, history: Array) -> bool:
+@may_act.of(DiscreteData)
+def _may_act(law: DiscreteData, penetration: float, history: Array) -> bool:
     return max(penetration, history[0]) > -law.penalty.smoothing
 
 
-@answer.of(DiscreteNumbers)
-def _answer(law: DiscreteNumbers, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
+@answer.of(DiscreteData)
+def _answer(law: DiscreteData, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
     before, way = history[0], penetration - history[0]
     after[0] = penetration
     force, _, stored = ramp(law.penalty, penetration)
@@ -92,8 +92,8 @@ class DiscreteGradient(CompiledLaw):
     capacity: float = math.inf
 
     @property
-    def numbers(self) -> DiscreteNumbers:
-        return DiscreteNumbers(self.penalty.numbers)
+    def kernel_data(self) -> DiscreteData:
+        return DiscreteData(self.penalty.kernel_data)
 
     @property
     def start(self) -> float:

@@ -140,8 +140,8 @@ def cost(name: str) -> Cost:
     """Cost of a scene, taken in a process of its own; taken twice, as the first compiles what is not yet there."""
     call = [sys.executable, "-m", "benchmarks.parts", "--scene", name]
     for _ in range(2):
-        told = subprocess.run(call, check=True, capture_output=True, text=True).stdout
-    return Cost(**json.loads(told.splitlines()[-1]))
+        reported = subprocess.run(call, check=True, capture_output=True, text=True).stdout
+    return Cost(**json.loads(reported.splitlines()[-1]))
 
 
 def measured(name: str) -> Cost:

@@ -11,7 +11,7 @@ from petsc4py import PETSc
 
 from benchmarks.coupled import SCENE
 from benchmarks.stage import TimedStage, last_stage
-from riser_soil.core.factor_memory import Room
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import Timer
 from riser_soil.soil.law import PLASTIC_STRAIN
 from riser_soil.soil.soil import Soil
@@ -92,7 +92,7 @@ def _factorisation_seconds(matrix: PETSc.Mat, repeats: int = 3) -> float:
     """Least processor time [s] of a numeric factorisation as LDL^T, the symbolic one reused."""
     pc, taken = PETSc.PC().create(matrix.comm), list[float]()
     pc.setOperators(matrix)
-    use_mumps(pc, "cholesky", Room().controls)
+    use_mumps(pc, "cholesky", Workspace().controls)
     for _ in range(1 + repeats):
         matrix.assemble()
         began = time.process_time()

@@ -36,13 +36,13 @@ SUMMARY = (  # page, block and row of a figure; what it is
 def studied(folder: Path) -> str:
     """Words of the study; its plot goes into a file."""
     study(read_scene(ROOT / SCENE), folder)
-    told = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    reported = json.loads((folder / "study.json").read_text(encoding="utf-8"))
     page = (folder / "study.html").read_text(encoding="utf-8")
     found = re.search(r'data:image/svg\+xml;base64,([^"]+)"', page)
     assert found is not None
     PLOT.write_bytes(base64.b64decode(found[1]))
-    said = "\n".join(f"- {sentence[0].upper()}{sentence[1:]}." for sentence in told["words"])
-    machine = f"{told['machine']['cores']} cores ({told['machine']['processor']}), {told['date']}"
+    said = "\n".join(f"- {sentence[0].upper()}{sentence[1:]}." for sentence in reported["words"])
+    machine = f"{reported['machine']['cores']} cores ({reported['machine']['processor']}), {reported['date']}"
     return f"{said}\n\nMade by `riser-soil study {SCENE}` on {machine}, which leaves a table of all key results."
 
 

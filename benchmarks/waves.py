@@ -20,7 +20,7 @@ from riser_soil.assembly.sea import water_of
 from riser_soil.core.system import Timer
 from riser_soil.riser import stations
 from riser_soil.sea import wave_series
-from riser_soil.sea.sea import Sea
+from riser_soil.sea.flows import Sea
 from tests.support.summed_waves import SummedWaves
 
 SCENE = Path(__file__).parent.parent / "demos" / "waves" / "scene.yaml"
@@ -53,7 +53,7 @@ def measure(count: int) -> tuple[Cost, Cost]:
     """Medians, of series and of plain sums, which take the place of the series in the same steps."""
     stage = last_stage(SCENE, (f"water.waves.jonswap.components={count}",), Timer.new())
     series = water_of(stage.assembly.scene, stage.stage)
-    with patch("riser_soil.sea.wave_field.WaveField", PlainSums):
+    with patch("riser_soil.sea.waves.WaveField", PlainSums):
         sums = water_of(stage.assembly.scene, stage.stage)
     assert series is not None
     assert sums is not None

@@ -22,11 +22,11 @@ def main() -> None:
     gc.set_threshold(ALLOCATIONS)
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # sought among all packages that are installed
     os.environ["PETSC_OPTIONS"] = f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"
-    with failsafe_output() as told:
+    with failsafe_output() as reported:
         status = _status()
-    if told.failure is not None:
+    if reported.failure is not None:
         with failsafe_output():
-            print(f"standard output: cannot be written: {told.failure.strerror}", file=sys.stderr)
+            print(f"standard output: cannot be written: {reported.failure.strerror}", file=sys.stderr)
         status = status or WriteError.exit_status
     gc.freeze()  # the process ends: nothing is gained by the last looks, which Python takes all the same
     sys.exit(status)
@@ -43,7 +43,7 @@ def _status() -> int:
     except SystemExit as leave:
         status = int(leave.code or 0)
     end = latest()
-    if end is not None and not end.told:
+    if end is not None and not end.reported:
         print(end, file=sys.stderr)
         status = end.exit_status
     return status

@@ -91,7 +91,7 @@ def run(
 
     scene: also a file's name, or a dict, see `Scene`. folder: by default the scene's name in the current folder.
     force: overwrite a run that is finished or can go on, which is refused otherwise. quiet: print nothing; warnings
-    after the stages stand in `Run.summary`, too. error_bars: estimate by coarser companions how far headline quantities
+    after the stages stand in `Run.summary`, too. error_bars: estimate by coarser comparison runs how far key results
     may be off. restart: go on from the folder's last checkpoint; begin where there is none.
     Raises SceneError or MeshError before anything is computed; SolveError, MemoryShortageError, WriteError or
     KeyboardInterrupt (Ctrl-C) later: the folder then keeps the results until there, marked unfinished.

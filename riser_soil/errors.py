@@ -54,7 +54,7 @@ class Interruption(KeyboardInterrupt):
     """A signal that asks the program to end; as KeyboardInterrupt passes all that catches errors.
 
     place: where the run was, and what is in its folder; a run that has told this is concluded, and an error after that
-    is one of its own. together: whether all ranks stopped at the same place. told: whether the user has been told.
+    is one of its own. together: whether all ranks stopped at the same place. reported: whether the user has been told.
     """
 
     nowhere = "before the first stage; nothing was computed"
@@ -62,13 +62,13 @@ class Interruption(KeyboardInterrupt):
     def __init__(self, number: int, together: bool = False) -> None:
         super().__init__(number, together)
         self.number, self.together = number, together
-        self.told = False
+        self.reported = False
         self.place = self.nowhere
 
     @property
     def concluded(self) -> bool:
         """Whether somebody has seen to it."""
-        return self.told or self.place != self.nowhere
+        return self.reported or self.place != self.nowhere
 
     @property
     def exit_status(self) -> int:

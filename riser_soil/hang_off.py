@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_end, settled, told, with_value
+from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_end, reported, settled, with_value
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
@@ -39,10 +39,10 @@ class HungScene:
     solves: int
 
     @property
-    def told(self) -> str:
+    def reported(self) -> str:
         """In words."""
         gives = f"gives {self.reached:.7g} {self.hung.asked.unit}"
-        return f"{told(self.hung, self.value)} {gives} ({self.solves} static solves)"
+        return f"{reported(self.hung, self.value)} {gives} ({self.solves} static solves)"
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -73,7 +73,8 @@ def hung(scene: Scene) -> HungScene | None:
             return HungScene(settled(wanted, value), wanted, value, asked + off, solves)
         before, value = (value, off), min(max(_next(wanted, before, (value, off)), low), high)
     raise SolveError(
-        f"{wanted.path}: {wanted.told} was not reached in {MOST} static solves: with {before[0]:.6g} m it is off by "
+        f"{wanted.path}: {wanted.reported} was not reached in {MOST} static solves: with {before[0]:.6g} m it is off "
+        "by "
         f"{before[1]:.3g} {wanted.asked.unit}; take finer elements or a stiffer solver.tolerance"
     )
 

@@ -36,5 +36,5 @@ def friction(axial: float, lateral: float) -> tuple[dict[str, Any], str]:
     """The part `contact` of a scene with these coefficients along and across, and a remark where it can't have them."""
     if axial and lateral:
         return {"contact": {"friction": {"axial": axial, "lateral": lateral}}}, ""
-    told = f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"
-    return {}, told if axial or lateral else ""
+    reported = f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"
+    return {}, reported if axial or lateral else ""

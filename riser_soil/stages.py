@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.end_places import corners
+from riser_soil.assembly.motions import corners
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.part import Model, State
@@ -22,11 +22,10 @@ from riser_soil.errors import SolveError
 from riser_soil.interruption import asked_to_end, end_together, uninterrupted
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
 from riser_soil.seating import seat
-from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.solution import NewtonSettings
-from riser_soil.solve.step_control import Control, PathSteps, StepControl
+from riser_soil.solve.step_control import AutoSteps, Control, PathSteps, StepControl
 from riser_soil.solve.step_solver import StepSolver, solver_of
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 

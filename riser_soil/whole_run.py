@@ -8,7 +8,7 @@ from pathlib import Path
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.packages import communicator_of
-from riser_soil.checks.check import resolution, told_waves
+from riser_soil.checks.check import reported_waves, resolution
 from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.part import State
@@ -51,8 +51,8 @@ def run(
             refuse_unfit(assembly)
         clock.add("build", since)
         if comm.rank == 0:
-            for told in (*told_waves(assembly), *resolution(assembly)):
-                print(told)
+            for reported in (*reported_waves(assembly), *resolution(assembly)):
+                print(reported)
         warnings = [*physical_warnings(assembly), *of_size]
         for warning in warnings if comm.rank == 0 else ():
             print(f"warning: {warning}")

@@ -15,7 +15,7 @@ from benchmarks.asked_accuracy.by_hand import HandSetting, turned
 from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, taken, true_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
-from riser_soil.accuracy.knobs import settings_told
+from riser_soil.accuracy.settings import settings_reported
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SCENE
@@ -28,7 +28,7 @@ class Outcome(Enum):
     """Of a scene that asks for an accuracy."""
 
     REACHED = "reached"
-    TOLD = "told that it is not reached"
+    REPORTED = "told that it is not reached"
     MISSED = "MISSED"
 
 
@@ -59,7 +59,7 @@ class AskedScene:
     @property
     def outcome(self) -> Outcome:
         if self.said:
-            return Outcome.TOLD
+            return Outcome.REPORTED
         return Outcome.REACHED if self.errors is not None and self.errors.within else Outcome.MISSED
 
 
@@ -85,7 +85,7 @@ def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting |
         if not (folder / SCENE).exists():
             return AskedScene(name, None, said, "none", None, everything)
         errors, scene = true_errors(folder, reference, accuracy_of(mapping)), read_scene(folder / SCENE)
-        setting = settings_told(scene)
+        setting = settings_reported(scene)
         if hand is None or said:
             return AskedScene(name, errors, said, setting, None, everything)
         _, chosen = run_errors(scene, beside, reference)
@@ -95,7 +95,7 @@ def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting |
 
 def share_of_claims(scenes: Iterable[AskedScene]) -> float:
     """How many of those that do not tell otherwise truly reach the accuracy."""
-    claimed = [each.outcome for each in scenes if each.outcome is not Outcome.TOLD]
+    claimed = [each.outcome for each in scenes if each.outcome is not Outcome.REPORTED]
     return claimed.count(Outcome.REACHED) / len(claimed)
 
 
@@ -106,7 +106,7 @@ def share_of_all(scenes: Iterable[AskedScene]) -> float:
 
 def median_error(scenes: Iterable[AskedScene]) -> float:
     """Largest true error of a scene over the accuracy, where it claims to reach it."""
-    claimed = [each for each in scenes if each.outcome is not Outcome.TOLD]
+    claimed = [each for each in scenes if each.outcome is not Outcome.REPORTED]
     return median(each.errors.largest[0] / each.errors.accuracy for each in claimed if each.errors is not None)
 
 

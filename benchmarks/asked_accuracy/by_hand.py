@@ -1,4 +1,4 @@
-"""Best settings by hand: of each scene the cheapest, with its knobs turned or not, that truly reaches the accuracy.
+"""Best settings by hand: of each scene the cheapest, with its settings turned or not, that truly reaches the accuracy.
 
 `by_hand.json` has the factors of fineness by scene, and their largest true error; null where none of them reaches it,
 or where too few quantities have a certain reference to tell. Settings are tried in the order of what they are expected
@@ -18,7 +18,7 @@ from pathlib import Path
 from benchmarks.asked_accuracy.true_errors import run_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
-from riser_soil.accuracy.knobs import knobs_of, varied
+from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
@@ -31,22 +31,22 @@ TURNS = {
 }
 COST = {"elements": 0.5, "time_step": 1.0, "penalty": 0.01}  # expected, as powers of fineness
 
-Factors = dict[str, float]  # of fineness, by knob
+Factors = dict[str, float]  # of fineness, by setting
 
 
 @dataclass(frozen=True)
 class HandSetting:
-    """factors: of a scene's knobs. error: the largest relative one, true, with them."""
+    """factors: of a scene's settings. error: the largest relative one, true, with them."""
 
     factors: Factors
     error: float
 
 
 def turned(mapping: Mapping, factors: Factors) -> Scene:
-    """The scene with its knobs finer by factors."""
+    """The scene with its settings finer by factors."""
     scene = scene_from_mapping(mapping)
-    for knob in knobs_of(scene):
-        scene = varied(scene, knob, factors[knob.name])
+    for setting in settings_of(scene):
+        scene = varied(scene, setting, factors[setting.name])
     return scene
 
 
@@ -63,8 +63,8 @@ def best(mapping: Mapping, reference: Reference) -> HandSetting | None:
 
 
 def settings(scene: Scene) -> Iterator[Factors]:
-    """All combinations of the scene's knobs, the cheapest first."""
-    names = [knob.name for knob in knobs_of(scene)]
+    """All combinations of the scene's settings, the cheapest first."""
+    names = [setting.name for setting in settings_of(scene)]
     grid = itertools.product(*(TURNS[name] for name in names))
     yield from sorted((dict(zip(names, factors, strict=True)) for factors in grid), key=_cost)
 
@@ -79,14 +79,14 @@ def write(names: Iterable[str], references: dict[str, Reference]) -> None:
     for name in names:
         known[name] = best(ASKED[name], references[name])
         print(f"by hand, {name}: {known[name]}", flush=True)
-        told = {each: _told(known[each]) for each in ASKED if each in known}
-        FILE.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+        reported = {each: _reported(known[each]) for each in ASKED if each in known}
+        FILE.write_text(json.dumps(reported, indent=1) + "\n", encoding="utf-8")
 
 
 def read() -> dict[str, HandSetting | None]:
-    told = json.loads(FILE.read_text(encoding="utf-8"))
-    return {name: HandSetting(**of_scene) if of_scene else None for name, of_scene in told.items()}
+    reported = json.loads(FILE.read_text(encoding="utf-8"))
+    return {name: HandSetting(**of_scene) if of_scene else None for name, of_scene in reported.items()}
 
 
-def _told(setting: HandSetting | None) -> Mapping | None:
+def _reported(setting: HandSetting | None) -> Mapping | None:
     return None if setting is None else {"factors": setting.factors, "error": setting.error}

@@ -125,10 +125,10 @@ def _figures(scenes: list[AskedScene]) -> str:
 
 
 def _shares(scenes: list[AskedScene]) -> list[list[str]]:
-    told = sum(each.outcome is Outcome.TOLD for each in scenes)
+    reported = sum(each.outcome is Outcome.REPORTED for each in scenes)
     return [
         ["scenes that truly reach what they ask, of those that claim it", f"{share_of_claims(scenes):.1%}"],
-        [f"of all {len(scenes)} scenes ({told} say that they do not reach it)", f"{share_of_all(scenes):.1%}"],
+        [f"of all {len(scenes)} scenes ({reported} say that they do not reach it)", f"{share_of_all(scenes):.1%}"],
         ["largest true error over the accuracy asked, median", f"{median_error(scenes):.2f}"],
     ]
 
@@ -143,10 +143,10 @@ def _everything(compared: list[HandCost]) -> float:
 
 def rows_page(scenes: Iterable[AskedScene]) -> str:
     head = ["scene", "outcome", "true error", "setting", "its run s", "everything s", "by hand s", "over by hand"]
-    return csv_table(head, [[*_told(each), *_seconds(each.cost)] for each in scenes])
+    return csv_table(head, [[*_reported(each), *_seconds(each.cost)] for each in scenes])
 
 
-def _told(each: AskedScene) -> list[str]:
+def _reported(each: AskedScene) -> list[str]:
     error = f"{each.errors.largest[0]:.2%}" if each.errors is not None else "no run"
     return [each.name, each.outcome.value, error, each.setting]
 
@@ -175,7 +175,7 @@ def _why(each: AskedScene) -> str:
 def soil_page(scenes: Iterable[AskedScene]) -> str:
     """With the seconds of all runs taken for them, and how many quantities could not be judged."""
     head = ["scene", "outcome", "true error", "setting", "everything s", "not judged"]
-    return csv_table(head, [[*_told(each), f"{each.seconds:.1f}", _left_out(each)] for each in scenes])
+    return csv_table(head, [[*_reported(each), f"{each.seconds:.1f}", _left_out(each)] for each in scenes])
 
 
 def _left_out(each: AskedScene) -> str:
@@ -191,5 +191,5 @@ def _figures_of_others(others: list[AskedScene], judged: list[JudgedScene]) -> s
 
 def random_page(others: list[AskedScene], judged: list[JudgedScene]) -> str:
     inside = {scene.name: [each.inside for each in scene.judged if each.decided] for scene in judged}
-    rows = [[*_told(each), f"{sum(inside[each.name])} of {len(inside[each.name])}"] for each in others]
+    rows = [[*_reported(each), f"{sum(inside[each.name])} of {len(inside[each.name])}"] for each in others]
     return csv_table(["scene", "outcome", "true error", "setting", "error bars inside"], rows)

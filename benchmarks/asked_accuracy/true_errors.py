@@ -1,4 +1,4 @@
-"""True errors of a run's headline quantities, against references, and the processor time that something takes."""
+"""True errors of a run's key results, against references, and the processor time that something takes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.error_bars.references import Reference
-from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.key_results import key_results
 from riser_soil.core import compiled
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SUMMARY
@@ -56,7 +56,7 @@ def accuracy_of(scene: Mapping[str, Any]) -> float:
 
 def true_errors(folder: Path, reference: Reference, accuracy: float = ACCURACY) -> TrueErrors:
     """Of the run in a folder; inf for a quantity that it lacks."""
-    found = headlines(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
+    found = key_results(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
     errors, left_out = dict[str, float](), 0
     for key, (true, uncertainty) in reference.items():
         if key in found and found[key].relative(uncertainty) > CERTAIN * accuracy:

@@ -1,4 +1,4 @@
-"""Calibrate error bars: compute all scenes with companions, and write the page docs/error_bars.md.
+"""Calibrate error bars: compute all scenes with comparison runs, and write the page docs/error_bars.md.
 
 Run from the project's folder. `--references` computes the references anew first, which takes about an hour.
 """
@@ -29,8 +29,8 @@ def judged(scenes: dict[str, Mapping]) -> list[JudgedScene]:
         except SolveError as err:
             print(f"{name} fails: {str(err).partition(chr(10))[0]}", flush=True)
             continue
-        told = decided(found[-1].judged)
-        print(f"{name}: {sum(each.inside for each in told)} of {len(told)} inside", flush=True)
+        reported = decided(found[-1].judged)
+        print(f"{name}: {sum(each.inside for each in reported)} of {len(reported)} inside", flush=True)
     return found
 
 

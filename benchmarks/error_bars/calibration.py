@@ -1,4 +1,4 @@
-"""Error bars against true errors: each scene computed with its companions, and compared with its reference."""
+"""Error bars against true errors: each scene computed with its comparison runs, and compared with its reference."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from mpi4py import MPI
 
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import Mapping
-from riser_soil.accuracy.chain import bars_of, companions, run_values
-from riser_soil.accuracy.companions import peaks_of
+from riser_soil.accuracy.chain import bars_of, comparison_runs, peaks_of, run_values
 from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar
-from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.key_results import key_results
 from riser_soil.core import compiled
 from riser_soil.scene.reader import scene_from_mapping
 
@@ -43,7 +42,7 @@ class Judged:
     @property
     def ratio(self) -> float | None:
         """Bar over error; None for errors that the reference does not tell, or below the smallest bar."""
-        if self.bar.bar is None or self.error <= SMALLEST * self.bar.headline.scale:
+        if self.bar.bar is None or self.error <= SMALLEST * self.bar.key_result.scale:
             return None
         certain = self.uncertainty <= CERTAIN * max(self.error, self.bar.bar)
         return self.bar.bar / self.error if certain else None
@@ -51,7 +50,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class JudgedScene:
-    """seconds: of the processor, for the scene and for its companions."""
+    """seconds: of the processor, for the scene and for its comparison runs."""
 
     name: str
     judged: list[Judged]
@@ -60,20 +59,20 @@ class JudgedScene:
 
 
 def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
-    """Compute a scene with its companions, and compare it with its reference."""
+    """Compute a scene with its comparison runs, and compare it with its reference."""
     scene, began = scene_from_mapping(mapping), _processor_time()
     peaks = peaks_of(scene, MPI.COMM_WORLD)
     done = _processor_time()
-    chain = companions(scene, MPI.COMM_WORLD)
+    chain = comparison_runs(scene, MPI.COMM_WORLD)
     seconds = done - began, _processor_time() - done
-    run = run_values(headlines(peaks.told("sampled")), peaks)
+    run = run_values(key_results(peaks.reported("sampled")), peaks)
     found = bars_of(scene, run, chain)
-    judged = [_judged(name, bar, *reference.get(bar.headline.key, UNKNOWN)) for bar in found if bar.bar is not None]
+    judged = [_judged(name, bar, *reference.get(bar.key_result.key, UNKNOWN)) for bar in found if bar.bar is not None]
     return JudgedScene(name, judged, [bar for bar in found if bar.bar is None], seconds)
 
 
 def _judged(name: str, bar: ErrorBar, true: float, uncertainty: float) -> Judged:
-    return Judged(name, bar, abs(bar.headline.value - true), uncertainty)
+    return Judged(name, bar, abs(bar.key_result.value - true), uncertainty)
 
 
 def _processor_time() -> float:
@@ -92,5 +91,5 @@ def share_inside(judged: Iterable[Judged]) -> float:
 
 def ratios(judged: Iterable[Judged], above: float = SMALLEST) -> list[float]:
     """Bars over errors, of those above a share of their quantity's scale."""
-    larger = (each for each in judged if each.error > above * each.bar.headline.scale)
+    larger = (each for each in judged if each.error > above * each.bar.key_result.scale)
     return [each.ratio for each in larger if each.ratio is not None]

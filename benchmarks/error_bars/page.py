@@ -63,7 +63,7 @@ so bars hold where elements are far too long. Finer steps would cost more than t
 4. **Factor of safety.** {factors}; for cells of soil whose law depends on its path {on_path:g}. Of the two coarser
    soils the one that differs more counts.
 5. **Sum.** Different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
-   ([headlines.py](../riser_soil/accuracy/headlines.py)).
+   ([key_results.py](../riser_soil/accuracy/key_results.py)).
 
 The code: [error_bars.py](../riser_soil/accuracy/error_bars.py), [chain.py](../riser_soil/accuracy/chain.py).
 
@@ -153,14 +153,14 @@ def publish(calibration: list[JudgedScene], out: list[JudgedScene]) -> None:
 
 def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
     judged, seconds = _all(scenes), [sum(scene.seconds[n] for scene in scenes) for n in (0, 1)]
-    told, ratio = decided(judged), ratios(judged)
+    reported, ratio = decided(judged), ratios(judged)
     rows = [
-        ["scenes, key results judged", f"{len(scenes)}, {len(told)}"],
+        ["scenes, key results judged", f"{len(scenes)}, {len(reported)}"],
         ["true error inside its bar", f"{share_inside(judged):.1%}"],
         [f"bar over true error, median, of the {len(ratio)} errors above {SMALLEST:g}", f"{median(ratio):.2f}"],
         [f"the same, of errors above {TELLING:g}", f"{median(ratios(judged, TELLING)):.2f}"],
         ["scenes that could not be computed", _failed(scenes, of)],
-        ["left out, as the reference does not decide the side of the bar", str(len(judged) - len(told))],
+        ["left out, as the reference does not decide the side of the bar", str(len(judged) - len(reported))],
         ["bars not given, as a companion failed", str(sum(len(scene.not_known) for scene in scenes))],
         ["processor time of the companions over that of the scenes, without start-up and files",
          f"{seconds[1] / seconds[0]:.0%}"],
@@ -177,20 +177,22 @@ def _with_other_factors(calibration: list[Judged], out: list[Judged]) -> str:
     rows = []
     for factor in FACTORS:
         both = [[_scaled(each, factor) for each in judged] for judged in (calibration, out)]
-        told = (text for judged in both for text in (f"{share_inside(judged):.1%}", f"{median(ratios(judged)):.2f}"))
-        rows.append([f"{factor:g}", *told])
+        reported = (
+            text for judged in both for text in (f"{share_inside(judged):.1%}", f"{median(ratios(judged)):.2f}")
+        )
+        rows.append([f"{factor:g}", *reported])
     return table(["times", "inside, in the calibration", "median", "inside, out of sample", "median"], rows)
 
 
 def _scaled(each: Judged, factor: float) -> Judged:
-    whole = factor * math.hypot(*each.bar.by_source.values()) + SMALLEST * each.bar.headline.scale
+    whole = factor * math.hypot(*each.bar.by_source.values()) + SMALLEST * each.bar.key_result.scale
     return replace(each, bar=replace(each.bar, bar=whole))
 
 
 def _by_kind(out: list[JudgedScene], calibration: list[JudgedScene]) -> str:
     """Share inside and median ratio by quantity, ground and stage, each in the order of their names."""
     head = ["", "judged, out of sample", "inside", "bar over true error, median"]
-    kinds: tuple[Kind, ...] = (lambda each: each.bar.headline.name, _ground, _stage)
+    kinds: tuple[Kind, ...] = (lambda each: each.bar.key_result.name, _ground, _stage)
     rows = [row for kind in kinds for row in _rows_of_kind(out, calibration, kind)]
     return table([*head, "judged, in the calibration", "inside", "median"], rows)
 
@@ -220,7 +222,7 @@ def _ground(each: Judged) -> str:
 
 def _stage(each: Judged) -> str:
     kinds = {stage["name"]: stage["kind"] for stage in ALL[each.scene]["stages"]}
-    return str(kinds[each.bar.headline.stage])
+    return str(kinds[each.bar.key_result.stage])
 
 
 def _all(scenes: Iterable[JudgedScene]) -> list[Judged]:
@@ -233,11 +235,11 @@ def _median(judged: list[Judged]) -> str:
 
 
 def _row(scene: JudgedScene) -> list[str]:
-    told, (taken, extra) = decided(scene.judged), scene.seconds
-    inside = f"{sum(each.inside for each in told)} of {len(told)}"
-    return [scene.name, inside, _median(told), f"{extra / taken:.0%}"]
+    reported, (taken, extra) = decided(scene.judged), scene.seconds
+    inside = f"{sum(each.inside for each in reported)} of {len(reported)}"
+    return [scene.name, inside, _median(reported), f"{extra / taken:.0%}"]
 
 
 def _missed(scenes: list[JudgedScene]) -> list[list[str]]:
     found = [each for each in decided(_all(scenes)) if not each.inside]
-    return [[f"{each.scene}: {each.bar.headline.key}", f"{each.error / (each.bar.bar or 1.0):.2f}"] for each in found]
+    return [[f"{each.scene}: {each.bar.key_result.key}", f"{each.error / (each.bar.bar or 1.0):.2f}"] for each in found]

@@ -1,11 +1,12 @@
-"""References of the calibration's scenes: each computed much finer in all its knobs, and half-way there to judge that.
+"""References of the calibration's scenes: each computed much finer in all its settings, and half-way there to judge
+that.
 
 The static stages that a scene begins with are computed alone, with 16 and 64 times the elements, on a rigid floor with
 8 and 32 times. With dynamic ones it is computed with 4 and 16 times the elements and steps of a quarter and a tenth.
 The penalty of a rigid floor grows by the fourth power of the elements: the length in which a riser sinks in beside an
 end, (4 EI/k)^(1/4), falls with their length. On soil cells are half and a quarter of the size.
 
-`references.json` has them: by scene and headline quantity the value of the finer run, and its uncertainty by how far
+`references.json` has them: by scene and key result the value of the finer run, and its uncertainty by how far
 the two are apart: a third of it, as that is left of a first-order error on elements of a quarter of the length; all of
 it on soil. A quantity that one of the two lacks, as where it fails, has none.
 """
@@ -19,18 +20,17 @@ from pathlib import Path
 from mpi4py import MPI
 
 from benchmarks.error_bars.scenes import Mapping
-from riser_soil.accuracy.chain import values_of
-from riser_soil.accuracy.companions import peaks_of
+from riser_soil.accuracy.chain import peaks_of, values_of
 from riser_soil.accuracy.error_bars import Values
-from riser_soil.accuracy.knobs import knobs_of, varied
 from riser_soil.accuracy.search import first_statics
+from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.errors import SolveError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
 FILE = Path(__file__).with_name("references.json")
 LEFT, LEFT_ON_SOIL = 1.0 / 3.0, 1.0  # of the change between the two, in the finer one
-Level = dict[str, float]  # of fineness, by knob
+Level = dict[str, float]  # of fineness, by setting
 SOIL: list[Level] = [{"elements": 2, "penalty": 6, "soil_mesh": 2}, {"elements": 4, "penalty": 32, "soil_mesh": 4}]
 STATIC: list[Level] = [{"elements": n} for n in (16, 64)]
 RIGID: list[Level] = [{"elements": n, "penalty": n**4} for n in (8, 32)]
@@ -54,12 +54,12 @@ def _text(references: dict[str, Reference]) -> str:
 
 
 def read(file: Path = FILE) -> dict[str, Reference]:
-    told = json.loads(file.read_text(encoding="utf-8"))
-    return {name: {key: (value, off) for key, (value, off) in of_scene.items()} for name, of_scene in told.items()}
+    reported = json.loads(file.read_text(encoding="utf-8"))
+    return {name: {key: (value, off) for key, (value, off) in of_scene.items()} for name, of_scene in reported.items()}
 
 
 def reference(mapping: Mapping) -> Reference:
-    """Value and uncertainty of each headline quantity."""
+    """Value and uncertainty of each key result."""
     scene = scene_from_mapping(mapping)
     if scene.soil is not None:
         return _of_two(scene, SOIL, LEFT_ON_SOIL)
@@ -67,7 +67,7 @@ def reference(mapping: Mapping) -> Reference:
     if len(statics) < len(scene.stages):
         found = _of_two(scene, DYNAMIC)
     if statics:
-        rigid = any(knob.name == "penalty" for knob in knobs_of(scene))
+        rigid = any(setting.name == "penalty" for setting in settings_of(scene))
         found |= _of_two(scene.model_copy(update={"stages": statics}), RIGID if rigid else STATIC)
     return found
 
@@ -78,8 +78,8 @@ def _of_two(scene: Scene, levels: list[Level], left: float = LEFT) -> Reference:
 
 
 def _values(scene: Scene, level: Level) -> Values:
-    for knob in knobs_of(scene):
-        scene = varied(scene, knob, level[knob.name])
+    for setting in settings_of(scene):
+        scene = varied(scene, setting, level[setting.name])
     try:
         return values_of(peaks_of(scene, MPI.COMM_WORLD), "peaks")
     except SolveError as err:

@@ -16,10 +16,10 @@ from benchmarks.peers.case import CASES, Case, Record
 from benchmarks.peers.draw import draw
 from benchmarks.peers.in_turn import ROOT, file_of, measure
 from benchmarks.peers.judge import RANGE, TENSIONS, Judged, apart, cheapest, consensus, errors, kept_error, quantities
-from benchmarks.peers.ladder import FINEST, PROGRAMS
 from benchmarks.peers.measure import read
+from benchmarks.peers.refinement import FINEST, PROGRAMS
 from demos.page import csv_table, publish, table
-from riser_soil.results.derived import peak
+from riser_soil.results.stage_records import peak
 
 PAGE, PLOT = ROOT / "docs" / "peers.md", ROOT / "docs" / "peers.png"
 TARGETS = (0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001)

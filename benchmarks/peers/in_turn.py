@@ -1,4 +1,4 @@
-"""All programs' runs, one program after the other on each rung: where a machine's speed drifts, all drift alike."""
+"""All programs' runs, one program after the other on each level: where a machine's speed drifts, all drift alike."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import ExitStack, contextmanager
 from itertools import zip_longest
 from pathlib import Path
 
-from benchmarks.peers.ladder import PROGRAMS, Program
+from benchmarks.peers.refinement import PROGRAMS, Program
 
 ROOT = Path(__file__).parents[2]
 THEIRS = ROOT / "build" / "peers" / "bin" / "python"
@@ -46,14 +46,14 @@ def measure(cases: Sequence[str], folder: Path) -> None:
     with ExitStack() as stack:
         workers = {program: stack.enter_context(_worker(number)) for number, program in enumerate(PROGRAMS)}
         for case in cases:
-            for rung in zip_longest(*(program.runs(case) for program in PROGRAMS)):
-                _measure_rung(workers, case, dict(zip(PROGRAMS, rung, strict=True)), folder)
+            for level in zip_longest(*(program.runs(case) for program in PROGRAMS)):
+                _measure_level(workers, case, dict(zip(PROGRAMS, level, strict=True)), folder)
 
 
-def _measure_rung(
-    workers: Mapping[Program, Worker], case: str, rung: Mapping[Program, tuple[int, float] | None], folder: Path
+def _measure_level(
+    workers: Mapping[Program, Worker], case: str, level: Mapping[Program, tuple[int, float] | None], folder: Path
 ) -> None:
-    left = {program: size for program, size in rung.items() if size is not None}
+    left = {program: size for program, size in level.items() if size is not None}
     left = {program: size for program, size in left.items() if not file_of(folder, case, program, *size).exists()}
     for _ in range(REPEATS):
         for program, size in list(left.items()):

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from benchmarks.peers.case import Case, Record
 from riser_soil.core.arrays import Array
-from riser_soil.results.derived import peak
+from riser_soil.results.stage_records import peak
 
 TENSIONS = ("top min", "top max", "bottom min", "bottom max")
 MOMENT, RANGE = "largest moment", "touchdown range"
@@ -61,7 +61,7 @@ def consensus(finest: Sequence[Mapping[str, float]]) -> dict[str, float]:
 
 
 def apart(finest: Sequence[Mapping[str, float]]) -> float:
-    """How far the finest runs are from each other, as errors are told: a smaller error of any run means nothing."""
+    """How far the finest runs are from each other, as errors are reported: a smaller error of any run means nothing."""
     agreed = consensus(finest)
     differences = ((a[name] - b[name]) / _scale(name, agreed) for name in agreed for a in finest for b in finest)
     return max(differences)

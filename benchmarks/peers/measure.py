@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.peers.case import CASES, Record
-from benchmarks.peers.ladder import PROGRAMS, Program
+from benchmarks.peers.refinement import PROGRAMS, Program
 
 SERIES = ("time", "held", "moved", "arc", "moment", "position")
 
@@ -49,5 +49,5 @@ def main(program: Program) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="python -m benchmarks.peers.measure", description=__doc__)
-    parser.add_argument("program", type=int, metavar="NUMBER", help="the program's place in ladder.PROGRAMS")
+    parser.add_argument("program", type=int, metavar="NUMBER", help="the program's place in refinement.PROGRAMS")
     main(PROGRAMS[parser.parse_args().program])

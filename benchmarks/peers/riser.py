@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from benchmarks.peers.case import GRAVITY, WATER, Case, Record, Surge
 from demos.compute import timed
 from riser_soil.assembly import build
-from riser_soil.checks.element_proposal import asked_lengths, segments_for
+from riser_soil.checks.bending_plausibility import asked_lengths, segments_for
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 

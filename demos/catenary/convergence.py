@@ -16,7 +16,7 @@ from demos.catenary.statics import HERE, STATIC, table1
 from demos.catenary.surge import EXTREMES, GRADED, UNIFORM, Surge, error, orders, surge
 from demos.compute import compute
 from demos.page import publish, table
-from riser_soil.results.derived import peak
+from riser_soil.results.stage_records import peak
 
 SCENE, PAGE = HERE / "scene.yaml", HERE / "README.md"
 ELEMENTS, STEPS = (35, 70, 140, 280, 560), (0.2, 0.1, 0.05, 0.025, 0.0125, 0.00625)

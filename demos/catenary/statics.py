@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 from demos.compute import compute
 from demos.page import table
 from riser_soil.results import Run
-from riser_soil.results.derived import reactions
+from riser_soil.results.stage_records import reactions
 
 HERE = Path(__file__).parent
 SCENE, THREE_STAGES = HERE / "scene.yaml", HERE / "three_stages.yaml"

@@ -11,7 +11,7 @@ from demos.catenary.statics import SCENE
 from demos.compute import timed
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from riser_soil.results.derived import peak, reactions
+from riser_soil.results.stage_records import peak, reactions
 
 SINCE = 98.0  # s, seven periods: the motion repeats itself by then
 FORCES = ("H1", "V1", "H2", "V2")

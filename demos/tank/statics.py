@@ -17,7 +17,7 @@ from ruamel.yaml import YAML
 from demos.compute import compute
 from demos.page import publish, table
 from riser_soil.core.arrays import Array
-from riser_soil.results.derived import peak
+from riser_soil.results.stage_records import peak
 
 HERE = Path(__file__).parent
 SCENE, REFERENCE = HERE / "at_rest.yaml", HERE / "at_rest_reference.yaml"

@@ -11,7 +11,7 @@ from demos.compute import timed
 from demos.tank.statics import HERE, ROUNDED, WEIGHT
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from riser_soil.results.derived import peak
+from riser_soil.results.stage_records import peak
 
 SCENE = HERE / "scene.yaml"
 SINCE, UNTIL = 20.0, 60.0  # s, periods 3 to 6: the first is the ramp
@@ -38,9 +38,13 @@ class Swing:
     @property
     def stage(self) -> dict[str, float]:
         """Newton iterations a step, step cuts, largest energy residual over the energy turned over; of the motion."""
-        told = self.run.summary["stages"][-1]
-        residual = abs(told["energy"]["worst_residual"]["value"]) / told["energy"]["turned_over"]
-        return {"iterations": told["newton_iterations"] / told["steps"], "cuts": told["step_cuts"], "energy": residual}
+        reported = self.run.summary["stages"][-1]
+        residual = abs(reported["energy"]["worst_residual"]["value"]) / reported["energy"]["turned_over"]
+        return {
+            "iterations": reported["newton_iterations"] / reported["steps"],
+            "cuts": reported["step_cuts"],
+            "energy": residual,
+        }
 
 
 def swing(folder: Path, elements: int, time_step: float, stiffness: float, *overrides: str) -> Swing:

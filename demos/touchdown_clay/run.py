@@ -13,7 +13,7 @@ from pathlib import Path
 from demos.page import publish, table
 from riser_soil.plots import picture
 from riser_soil.results import Run
-from riser_soil.results.secant_stiffness import secant_stiffness
+from riser_soil.results.cycles import secant_stiffness
 from riser_soil.scene.reader import read_scene
 from riser_soil.whole_run import run
 

@@ -11,7 +11,7 @@ from demos.page import table
 from demos.waves.rao import responses
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from riser_soil.sea.jonswap import components as jonswap_waves
+from riser_soil.sea.spectra import components as jonswap_waves
 
 # What the scene says.
 GRAVITY, WATER, CONTENTS, SURFACE = 9.81, 1025.0, 800.0, 120.0

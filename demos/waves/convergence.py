@@ -15,7 +15,7 @@ from demos.compute import timed
 from demos.page import publish, script, table
 from demos.waves.run import HERE, PAGE, SCENE, SINCE
 from riser_soil.results import Run
-from riser_soil.results.derived import peak
+from riser_soil.results.stage_records import peak
 
 # Elements shortened by this factor, and the time step [s]; the others are measured by the last.
 CASES = ((0.5, 0.2), (1, 0.2), (1, 0.1), (1, 0.05), (2, 0.05))

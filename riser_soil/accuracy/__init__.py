@@ -1,1 +1,1 @@
-"""Accuracy of a scene's answers: headline quantities, knobs that vary a scene, extrapolation, the study of a scene."""
+"""Accuracy of a scene's answers: key results, settings that vary a scene, extrapolation, the study of a scene."""

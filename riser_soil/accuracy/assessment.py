@@ -1,42 +1,51 @@
-"""Errors of a study's points, against a reference that its ladders are extrapolated to.
+"""Errors of a study's points, against a reference that its refinement series are extrapolated to.
 
-Each knob's ladder, the others as in the scene, leads to a limit; what the scene misses of it is the knob's share of its
-error. The reference begins at the corner, the run with all knobs one rung finer, less what each knob misses there by
-its own ladder. If errors of knobs add up, the corner is where the ladders say; by how much it is not, doubled, is added
-to the uncertainties of the limits: they make up the reference's. Without a corner (it failed, or there is one knob) the
-reference begins at the scene; the second largest share then bounds how two knobs may act together.
+Each setting's refinement series, the others as in the scene, leads to a limit; what the scene misses of it is the
+setting's share of its error. The reference begins at the corner, the run with all settings one level finer, less what
+each setting misses there by its own refinement series. If errors of settings add up, the corner is where the refinement
+series say; by how much it is not, doubled, is added to the uncertainties of the limits: they make up the reference's.
+Without a corner (it failed, or there is one setting) the reference begins at the scene; the second largest share then
+bounds how two settings may act together.
+
+Extrapolation of a series of finer and finer runs to its limit, with the order observed and the limit's uncertainty.
+
+Richardson's: the value q(h) = q0 + c h^p at three sizes h1 > h2 > h3, in any ratios, gives p from
+(q1 - q2)/(q2 - q3) = (h1^p - h2^p)/(h2^p - h3^p), whose right side grows with p, and q0 from the last two (Roache,
+Verification and Validation in Computational Science and Engineering, 1998, chapter 5).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from riser_soil.accuracy.extrapolation import Limit, limit
-from riser_soil.accuracy.headlines import Headline
-from riser_soil.accuracy.ladders import Ladders
+from riser_soil.accuracy.key_results import KeyResult
+from riser_soil.accuracy.refinements import Refinements
 from riser_soil.accuracy.study_points import Factors, PointOutcome
 
 TOGETHER = 2.0  # times what errors do not add up by, in the reference's uncertainty
 TELLING = 0.1  # relative uncertainty of the reference beyond which an error of the quantity can't be told
 
 Outcomes = Mapping[Factors, PointOutcome]
+LEAST_ORDER, MOST_ORDER = 0.4, 8.0  # beyond them three values tell no order
+LEAST_DOUBT = 0.3  # of the last correction: two extrapolations may agree by chance
 
 
 @dataclass(frozen=True, eq=False)
 class AssessedQuantity:
-    """A headline quantity of the scene with its reference.
+    """A key result of the scene with its reference.
 
     reference: the quantity at the reference, whose scale errors are relative to. uncertainty: of it, in the unit.
-    limits: of each knob's ladder. by_rung: of each knob, what it misses of its limit by rung (signed, in the unit).
+    limits: of each setting's refinement series. by_level: of each setting, what it misses of its limit by level
+    (signed, in the unit).
     """
 
-    scene: Headline
-    reference: Headline
+    scene: KeyResult
+    reference: KeyResult
     uncertainty: float
     limits: tuple[Limit, ...]
-    by_rung: tuple[Mapping[float, float], ...]
+    by_level: tuple[Mapping[float, float], ...]
 
     @property
     def doubt(self) -> float:
@@ -52,22 +61,22 @@ class AssessedQuantity:
         """Relative error that counts as the target: errors less than the reference's uncertainty can't be told."""
         return max(target, self.doubt)
 
-    def error_of(self, found: Headline) -> float:
+    def error_of(self, found: KeyResult) -> float:
         """Relative error of the quantity in another run."""
         return self.reference.relative(found.value - self.reference.value)
 
     def share(self, number: int, factor: float = 1.0) -> float:
-        """Relative error that one knob brings about on a rung of its ladder."""
-        return self.reference.relative(self.by_rung[number][factor])
+        """Relative error that one setting brings about on a level of its refinement series."""
+        return self.reference.relative(self.by_level[number][factor])
 
 
-def assess(ladders: Ladders, outcomes: Outcomes) -> dict[str, AssessedQuantity]:
-    """Headline quantities of the scene by their keys; the scene itself must have been computed."""
-    base = outcomes[ladders.base]
-    return {key: _assessed(each, ladders, outcomes) for key, each in base.headlines.items()}
+def assess(refinements: Refinements, outcomes: Outcomes) -> dict[str, AssessedQuantity]:
+    """Key results of the scene by their keys; the scene itself must have been computed."""
+    base = outcomes[refinements.base]
+    return {key: _assessed(each, refinements, outcomes) for key, each in base.key_results.items()}
 
 
-def told(quantities: Mapping[str, AssessedQuantity]) -> dict[str, AssessedQuantity]:
+def reported(quantities: Mapping[str, AssessedQuantity]) -> dict[str, AssessedQuantity]:
     """The quantities whose reference is known well enough to tell errors."""
     return {key: each for key, each in quantities.items() if each.doubt <= TELLING}
 
@@ -75,43 +84,113 @@ def told(quantities: Mapping[str, AssessedQuantity]) -> dict[str, AssessedQuanti
 def worst(quantities: Mapping[str, AssessedQuantity], outcome: PointOutcome) -> tuple[float, str]:
     """Largest relative error of a point among the quantities, and its key; inf where one is missing in it."""
     errors = [
-        (each.error_of(outcome.headlines[key]) if key in outcome.headlines else math.inf, key)
+        (each.error_of(outcome.key_results[key]) if key in outcome.key_results else math.inf, key)
         for key, each in quantities.items()
     ]
     return max(errors, default=(math.nan, ""))
 
 
-def _assessed(scene: Headline, ladders: Ladders, outcomes: Outcomes) -> AssessedQuantity:
-    found = [_ladder(scene.key, ladders, number, outcomes) for number in range(len(ladders.knobs))]
-    limits, by_rung = tuple(each[0] for each in found), tuple(each[1] for each in found)
-    value, together = _reference(scene, ladders, outcomes, by_rung)
+def _assessed(scene: KeyResult, refinements: Refinements, outcomes: Outcomes) -> AssessedQuantity:
+    found = [_refinement(scene.key, refinements, number, outcomes) for number in range(len(refinements.settings))]
+    limits, by_level = tuple(each[0] for each in found), tuple(each[1] for each in found)
+    value, together = _reference(scene, refinements, outcomes, by_level)
     uncertainty = math.fsum(each.uncertainty for each in limits) + together
-    return AssessedQuantity(scene, replace(scene, value=value), uncertainty, limits, by_rung)
+    return AssessedQuantity(scene, replace(scene, value=value), uncertainty, limits, by_level)
 
 
-def _ladder(key: str, ladders: Ladders, number: int, outcomes: Outcomes) -> tuple[Limit, dict[float, float]]:
-    """The limit of one knob's ladder, and what its rungs miss of it."""
+def _refinement(
+    key: str, refinements: Refinements, number: int, outcomes: Outcomes
+) -> tuple[Limit, dict[float, float]]:
+    """The limit of one setting's refinement series, and what its levels miss of it."""
     values = {}
-    for factor in ladders.factors[number]:
-        outcome = outcomes.get(ladders.turned(number, factor))
-        if outcome is not None and key in outcome.headlines:
-            values[factor] = outcome.headlines[key].value
-    sizes = [1.0 / ladders.fineness(number, factor) for factor in values]
+    for factor in refinements.factors[number]:
+        outcome = outcomes.get(refinements.turned(number, factor))
+        if outcome is not None and key in outcome.key_results:
+            values[factor] = outcome.key_results[key].value
+    sizes = [1.0 / refinements.fineness(number, factor) for factor in values]
     found = limit(sizes, list(values.values()))
     return found, {factor: value - found.value for factor, value in values.items()}
 
 
 def _reference(
-    scene: Headline, ladders: Ladders, outcomes: Outcomes, by_rung: tuple[Mapping[float, float], ...]
+    scene: KeyResult, refinements: Refinements, outcomes: Outcomes, by_level: tuple[Mapping[float, float], ...]
 ) -> tuple[float, float]:
-    """Value of the reference, and how much of its uncertainty is from knobs that act together."""
-    missed = [rungs[1.0] for rungs in by_rung]
-    corner = outcomes.get(ladders.corner) if ladders.corner is not None else None
-    finer = ladders.corner or ladders.base
-    there = [rungs.get(factor) for rungs, factor in zip(by_rung, finer, strict=True)]
+    """Value of the reference, and how much of its uncertainty is from settings that act together."""
+    missed = [levels[1.0] for levels in by_level]
+    corner = outcomes.get(refinements.corner) if refinements.corner is not None else None
+    finer = refinements.corner or refinements.base
+    there = [levels.get(factor) for levels, factor in zip(by_level, finer, strict=True)]
     left = [each for each in there if each is not None]
-    if corner is None or scene.key not in corner.headlines or len(left) < len(there):
+    if corner is None or scene.key not in corner.key_results or len(left) < len(there):
         return scene.value - math.fsum(missed), sorted(map(abs, [0.0, *missed]))[-2]
-    value = corner.headlines[scene.key].value
+    value = corner.key_results[scene.key].value
     foretold = scene.value - math.fsum(missed) + math.fsum(left)
     return value - math.fsum(left), TOGETHER * abs(value - foretold)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What a refinement series leads to. uncertainty: how far the limit may be off, in the values' unit.
+
+    order: observed with the finest three, None where they show none: the limit is then the finest value.
+    """
+
+    value: float
+    uncertainty: float
+    order: float | None
+
+
+def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:
+    """The limit of values at sizes h, in any order, each size once; one value is its own limit, of unknown uncertainty.
+
+    Uncertainty: how far the extrapolation from the finest three is from that of the three before, at least 0.3 of
+    the last correction. Where there are none before or they show no order: the correction, at least half the last
+    change. Without an order among the finest three: the largest change among them.
+    """
+    refinement = sorted(zip(sizes, values, strict=True), reverse=True)
+    if len({h for h, _ in refinement}) < len(refinement):
+        raise ValueError("a size of the ladder stands twice")
+    finest = refinement[-1][1]
+    if len(refinement) < 3:
+        return Limit(finest, abs(finest - refinement[0][1]) if len(refinement) == 2 else math.inf, None)
+    last = _extrapolated(refinement[-3:])
+    if last is None:
+        of_three = [q for _, q in refinement[-3:]]
+        return Limit(finest, max(of_three) - min(of_three), None)
+    value, order = last
+    before = _extrapolated(refinement[-4:-1]) if len(refinement) > 3 else None
+    correction, change = abs(value - finest), abs(finest - refinement[-2][1])
+    if before is None:
+        return Limit(value, max(correction, 0.5 * change), order)
+    return Limit(value, max(abs(value - before[0]), LEAST_DOUBT * correction), order)
+
+
+def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
+    """Order p by which three values at falling sizes close in on a limit; None where they show none."""
+    (h1, h2, h3), (q1, q2, q3) = sizes, values
+    first, second = q1 - q2, q2 - q3
+    if first * second <= 0.0:
+        return None
+
+    def excess(p: float) -> float:
+        """Above 0 where p is too large; lengths over h2, so that no power over- or underflows."""
+        a, c = (h1 / h2) ** p, (h3 / h2) ** p
+        return (a - 1.0) / (1.0 - c) - first / second
+
+    low, high = LEAST_ORDER, MOST_ORDER
+    if excess(low) > 0.0 or excess(high) < 0.0:
+        return None
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if excess(middle) > 0.0 else (middle, high)
+    return 0.5 * (low + high)
+
+
+def _extrapolated(three: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
+    """Limit and order of three pairs (h, q), h falling; None where they show no order."""
+    sizes, values = zip(*three, strict=True)
+    order = observed_order(sizes, values)
+    if order is None:
+        return None
+    gain = (sizes[1] / sizes[2]) ** order - 1.0
+    return values[2] + (values[2] - values[1]) / gain, order

@@ -1,16 +1,19 @@
-"""Run of a scene with error bars: the run, its companions, the bars in its summary and on the screen."""
+"""Run of a scene with error bars: the run, its comparison runs, the bars in its summary and on the screen."""
 
 from __future__ import annotations
 
 import json
 import time
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from riser_soil.accuracy.chain import bars_of, companions, run_values
-from riser_soil.accuracy.error_bars import ErrorBar, RunValues
-from riser_soil.accuracy.headlines import headlines
-from riser_soil.accuracy.screen import print_bars
+from rich.console import Console
+from rich.table import Table
+
+from riser_soil.accuracy.chain import bars_of, comparison_runs, run_values
+from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
+from riser_soil.accuracy.key_results import key_results
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.errors import Interruption
 from riser_soil.interruption import handling_signals
@@ -24,7 +27,7 @@ LEFT = "while its error bars were computed; {} has the whole run, without them"
 
 
 def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, restart: bool = False) -> None:
-    """As `run`, then tell the error bars; collective. What goes wrong with a companion leaves the run as it is."""
+    """As `run`, then tell the error bars; collective. What goes wrong with a comparison run leaves the run as it is."""
     folder, comm, peaks = Path(folder), communicator_of(scene), RunPeaks()
     began = time.perf_counter()
     run(scene, folder, force, peaks, restart)
@@ -40,7 +43,7 @@ def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, r
 def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorBar]:
     with handling_signals():
         try:
-            chain = companions(scene, comm)
+            chain = comparison_runs(scene, comm)
         except Interruption as end:
             end.place = LEFT.format(folder)
             raise
@@ -51,17 +54,40 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
 
 def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:
     """Of a finished run, with the peaks that were gathered on the way."""
-    return run_values(headlines(json.loads((folder / SUMMARY).read_text(encoding="utf-8"))), peaks)
+    return run_values(key_results(json.loads((folder / SUMMARY).read_text(encoding="utf-8"))), peaks)
 
 
 def write_bars(folder: Path, bars: list[ErrorBar], seconds: dict[str, float], **more: Any) -> None:
     """Into the summary of a finished run. more: blocks of the summary beside them."""
-    told = {"seconds": seconds, "quantities": [_told(bar) for bar in bars]}
-    add_to_summary(folder, {"error_bars": told} | more)
+    reported = {"seconds": seconds, "quantities": [_reported(bar) for bar in bars]}
+    add_to_summary(folder, {"error_bars": reported} | more)
 
 
-def _told(bar: ErrorBar) -> dict[str, Any]:
-    headline = bar.headline
-    told: dict[str, Any] = {"stage": headline.stage, "name": headline.name, "unit": headline.unit}
-    told |= {"value": headline.value, "bar": bar.bar, "by_source": dict(bar.by_source)}
-    return told | ({"reason": bar.reason} if bar.reason else {})
+def _reported(bar: ErrorBar) -> dict[str, Any]:
+    key_result = bar.key_result
+    reported: dict[str, Any] = {"stage": key_result.stage, "name": key_result.name, "unit": key_result.unit}
+    reported |= {"value": key_result.value, "bar": bar.bar, "by_source": dict(bar.by_source)}
+    return reported | ({"reason": bar.reason} if bar.reason else {})
+
+
+def print_bars(bars: list[ErrorBar], share: float, console: Console | None = None, what: str = "error bars") -> None:
+    """share: of the run's seconds that comparison runs, or `what` else, took in addition."""
+    console = console or Console(force_jupyter=False)
+    for stage, of_stage in groupby(bars, key=lambda bar: bar.key_result.stage):
+        console.print(_table(stage, list(of_stage)))
+    for reason in sorted({bar.reason for bar in bars if bar.reason}):
+        console.print(f"warning: no error bar where a source is not known: {reason}", soft_wrap=True, markup=False)
+    console.print(f"{what} took {share:.0%} of the run's time in addition", markup=False)
+
+
+def _table(stage: str, bars: list[ErrorBar]) -> Table:
+    sources = [source for source in SOURCES.values() if any(source in bar.by_source for bar in bars)]
+    table = Table(title=f"{stage}: error bars", title_justify="left", min_width=72)
+    for words in ("quantity", "value", "±", *sources):
+        table.add_column(words, justify="left" if words == "quantity" else "right")
+    for bar in bars:
+        shares = (f"{bar.by_source[source]:.2g}" if source in bar.by_source else "-" for source in sources)
+        whole = "not known" if bar.bar is None else f"{bar.bar:.2g}"
+        key_result = bar.key_result
+        table.add_row(f"{key_result.name}, {key_result.unit}", f"{key_result.value:.6g}", whole, *shares)
+    return table

@@ -1,4 +1,4 @@
-"""Companions of a run in a chain, each varied in one source of error: longer steps, then more elements too.
+"""Comparison runs of a run in a chain, each varied in one source of error: longer steps, then more elements too.
 
 On a rigid floor the penalty goes with the elements: 16 times as stiff with elements half as long, so that both halve
 the length in which a riser sinks in beside an end, (4 EI/k)^(1/4). On soil its cells come first, then all else is
@@ -12,21 +12,30 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from riser_soil.accuracy.companions import peaks_of
-from riser_soil.accuracy.error_bars import Companion, ErrorBar, RunValues, error_bars
-from riser_soil.accuracy.extremes import alone, extremes_of
-from riser_soil.accuracy.headlines import Headline, headlines
-from riser_soil.accuracy.knobs import knobs_of, varied
-from riser_soil.assembly.end_places import periods_of
+from riser_soil.accuracy.element_sizes import CurveEnvelope
+from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, alone, error_bars, extremes_of
+from riser_soil.accuracy.key_results import KeyResult, key_results
+from riser_soil.accuracy.settings import settings_of, varied
+from riser_soil.assembly import Assembly, build, sized
+from riser_soil.assembly.motions import periods_of
+from riser_soil.core.snapshot import Instant, instants_at
+from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
+from riser_soil.interruption import agreeing
+from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
+from riser_soil.results.schedule import Schedule
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RigidSeabed
-from riser_soil.scene.stages import DynamicStage
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import StatelessObserver, lay, run_stage
 
 
 class Variation(NamedTuple):
-    """What a companion differs in from the one before. factors: of fineness by knob, of which the first is told."""
+    """What a comparison run differs in from the one before. factors: of fineness by setting, of which the first is
+    told.
+    """
 
     source: str
     factors: Mapping[str, float]
@@ -40,26 +49,26 @@ ON_SOIL = (
     Variation("penalty", {"penalty": 0.25}),
 )
 FINER_MESH = Variation("mesh", {"elements": 2.0, "penalty": 16.0})
-# Steps that a companion leaves to the shortest period, as the mesh tells little on longer ones; how many times as long
-# they are at least, at most, and where nothing has a period.
+# Steps that a comparison run leaves to the shortest period, as the mesh tells little on longer ones; how many times as
+# long they are at least, at most, and where nothing has a period.
 STEPS_LEFT, LONGER, LONGEST, USUAL = 20.0, 2.0, 4.0, 3.0
 LEAST_RATIO = 1.4  # below it two runs are too much alike
-# Errors that a companion may fail with: those that all ranks meet, and those that one may meet alone.
+# Errors that a comparison run may fail with: those that all ranks meet, and those that one may meet alone.
 OF_ALL, OF_ONE = (SolveError, MemoryShortageError, SceneError, MeshError), (ArithmeticError, ValueError)
 
 
-def companions(scene: Scene, comm: Any, varying: Sequence[Variation] | None = None) -> list[Companion]:
+def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None = None) -> list[ComparisonRun]:
     """Those of a scene, run one after the other; collective, their values on rank 0. varying: those of error bars by
     default.
 
     One that fails leaves nothing to compare the next ones with: they are not run.
     """
-    chain: list[Companion] = []
-    if scene.soil is not None and "soil_mesh" not in {knob.name for knob in knobs_of(scene)}:
-        chain.append(Companion("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
+    chain: list[ComparisonRun] = []
+    if scene.soil is not None and "soil_mesh" not in {setting.name for setting in settings_of(scene)}:
+        chain.append(ComparisonRun("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
     for step in _steps(scene, variations(scene) if varying is None else varying):
         if any(before.extremes is None for before in chain):
-            chain.append(Companion(step.source, step.finer, None, "a companion before failed"))
+            chain.append(ComparisonRun(step.source, step.finer, None, "a companion before failed"))
         else:
             chain.append(_run(step, comm))
     return chain
@@ -73,7 +82,7 @@ def variations(scene: Scene) -> Sequence[Variation]:
 
 
 def _longer(scene: Scene) -> float:
-    """How many times as long a companion's steps are."""
+    """How many times as long a comparison run's steps are."""
     steps = [
         period / stage.time_step
         for stage in scene.stages
@@ -83,23 +92,23 @@ def _longer(scene: Scene) -> float:
     return min(max(min(steps, default=USUAL * STEPS_LEFT) / STEPS_LEFT, LONGER), LONGEST)
 
 
-def bars_of(scene: Scene, run: RunValues, chain: Sequence[Companion]) -> list[ErrorBar]:
-    """The error bars of a run of the scene with its companions."""
+def bars_of(scene: Scene, run: RunValues, chain: Sequence[ComparisonRun]) -> list[ErrorBar]:
+    """The error bars of a run of the scene with its comparison runs."""
     rigid = scene.soil is None and isinstance(scene.seabed, RigidSeabed)
     return error_bars(run, chain, rigid, scene.has_path_dependent_soil)
 
 
-def run_values(told: Mapping[str, Headline], peaks: RunPeaks) -> RunValues:
+def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:
     """Of a run whose peaks were gathered on the way; of the soil, whose peaks may not be, as told."""
-    known = {key: headline.value for key, headline in told.items()}
+    known = {key: key_result.value for key, key_result in reported.items()}
     of_nodes, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "smooth"))
     followed = {key: alone(value) for key, value in known.items()} | extremes_of(peaks)
-    return RunValues(told, of_nodes, followed, smooth)
+    return RunValues(reported, of_nodes, followed, smooth)
 
 
 def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
-    """Of headline quantities by their keys; which: sampled, of_nodes, peaks or smooth."""
-    return {key: headline.value for key, headline in headlines(peaks.told(which)).items()}
+    """Of key results by their keys; which: sampled, of_nodes, peaks or smooth."""
+    return {key: key_result.value for key, key_result in key_results(peaks.reported(which)).items()}
 
 
 @dataclass(frozen=True)
@@ -114,7 +123,7 @@ class NextScene:
 
 def _steps(scene: Scene, varying: Sequence[Variation]) -> Iterator[NextScene]:
     """One scene after the other; one that can't be is None, and the next ones follow the one before it."""
-    now, known = _recording_all(scene), {knob.name for knob in knobs_of(scene)}
+    now, known = _recording_all(scene), {setting.name for setting in settings_of(scene)}
     for source, factors in varying:
         step = _step(now, source, {name: factor for name, factor in factors.items() if name in known})
         if step is not None:
@@ -126,32 +135,80 @@ def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> NextScene 
     """None where the scene has nothing to vary."""
     if not factors:
         return None
-    knobs = {knob.name: knob for knob in knobs_of(scene)}
-    first, other = knobs[next(iter(factors))], scene
+    settings = {setting.name: setting for setting in settings_of(scene)}
+    first, other = settings[next(iter(factors))], scene
     try:
         for name, factor in factors.items():
-            other = varied(other, knobs[name], factor)
+            other = varied(other, settings[name], factor)
     except SceneError as err:
         return NextScene(source, factors[first.name], None, str(err))
     reached = first.fineness(other) / first.fineness(scene)
     if max(reached, 1.0 / reached) < LEAST_RATIO:
-        return NextScene(source, reached, None, f"{first.told(scene)} can't be varied")
+        return NextScene(source, reached, None, f"{first.reported(scene)} can't be varied")
     return NextScene(source, reached, other)
 
 
-def _run(step: NextScene, comm: Any) -> Companion:
+def _run(step: NextScene, comm: Any) -> ComparisonRun:
     if step.scene is None:
-        return Companion(step.source, step.finer, None, step.reason)
+        return ComparisonRun(step.source, step.finer, None, step.reason)
     try:
-        return Companion(step.source, step.finer, extremes_of(peaks_of(step.scene, comm)))
+        return ComparisonRun(step.source, step.finer, extremes_of(peaks_of(step.scene, comm)))
     except (*OF_ALL, *OF_ONE) as err:
         if isinstance(err, OF_ONE) and comm.size > 1:
-            raise  # the others are within the companion still
+            raise  # the others are within the comparison run still
         reason = str(err).partition("\n")[0]
-        return Companion(step.source, step.finer, None, f"its companion failed: {reason}")
+        return ComparisonRun(step.source, step.finer, None, f"its companion failed: {reason}")
 
 
 def _recording_all(scene: Scene) -> Scene:
     """Automatic steps are not held back by output times."""
     output = scene.output.model_copy(update={"interval": None, "xdmf_interval": None})
     return scene.model_copy(update={"output": output})
+
+
+def peaks_of(scene: Scene, comm: Any, envelope: CurveEnvelope | None = None) -> RunPeaks:
+    """Peaks of a scene, computed without a results folder; collective, told on rank 0. Raises what a run would.
+
+    envelope: follows moments and tensions along the riser, where that is wanted; on rank 0.
+    """
+    assembly, clock = build(sized(scene), comm), Timer.new()
+    observer = PeakObserver(assembly, envelope)
+    with agreeing(comm):
+        before, _ = lay(assembly, clock)
+        for stage in assembly.scene.stages:
+            before = run_stage(assembly, stage, before, observer, clock)
+    return observer.peaks
+
+
+class PeakObserver(StatelessObserver):
+    """Follows a comparison_run: `peaks` has what the summary of a run would have of it; on rank 0."""
+
+    def __init__(self, assembly: Assembly, envelope: CurveEnvelope | None = None) -> None:
+        self._assembly, self._instants = assembly, InstantReader(assembly)
+        output, soil = assembly.scene.output, assembly.soil
+        self._schedule = Schedule(output.interval, output.xdmf_interval)
+        self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
+        self._envelope = envelope
+
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        first = not self.peaks.stages
+        self._schedule.begin_stage(stage.kind)
+        self.peaks.begin_stage(stage.name, stage.kind, stage.end)
+        if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
+            self.peaks.stages[-1].update([0.0], self._seen(stepper))  # not followed: no shape that a step has found
+
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
+        """Of a committed step; collective where there is soil."""
+        whole = self._assembly.recovered_soil() if self._schedule.due(step.t, last).pictures else None
+        soil = None if whole is None else whole.output_fields()
+        if self._assembly.comm.rank == 0:
+            seen = self._seen(stepper)
+            self.peaks.record([step.t], seen, soil)
+            if self._envelope is not None and (last or self.peaks.stages[-1].kind != "static"):
+                self._envelope.follow(instants_at(seen, 0))
+
+    def relaxed(self, relaxed: object) -> None:
+        pass
+
+    def _seen(self, stepper: TimeStepper) -> Instant:
+        return self._instants.reported([self._instants.look(stepper)])

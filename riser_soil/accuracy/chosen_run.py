@@ -63,5 +63,5 @@ def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
         found = hung(scene)
     assert found is not None
     if communicator_of(scene).rank == 0:
-        print(found.told)
+        print(found.reported)
     return found.scene, {"hang_off": found.summary}

@@ -2,7 +2,7 @@
 
 Between two nodes a straight line misses a curve by h^2 |f''|/8. The lengths h are such that it misses, at any time of a
 run, the largest moment by at most a share of it, and the least tension by the same share of its scale. Where a moment
-is far below the largest, or a tension far above the least, it may be missed by more, as no headline quantity is there.
+is far below the largest, or a tension far above the least, it may be missed by more, as no key result is there.
 A tension T bends elements into shapes that a cubic can't follow, which leaves T h^4 k''/384 in the moments (see
 `riser.resolution`): that keeps to the share, too.
 """
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from riser_soil.accuracy.headlines import FORCE_FLOOR
+from riser_soil.accuracy.key_results import FORCE_FLOOR
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Instant
 

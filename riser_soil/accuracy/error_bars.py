@@ -1,20 +1,26 @@
-"""Error bars: how far a run's headline quantities may be off, from companions of the same scene.
+"""Error bars: how far a run's key results may be off, from comparison runs of the same scene.
 
-Companions form a chain: each differs in one knob from the one before it, so that each difference has one source. The
-soil's cells and the time steps are coarser, as finer ones would cost more than the run; elements are finer, and so is
-the penalty. An error that falls with the power p of the fineness is, by Richardson's extrapolation, the difference over
-|f^-p - 1|, f being how much finer the companion is: of a finer one it is little more than the difference, whatever the
-order is, so that it can be relied on where the run is far from converged, too. A large difference from longer steps
+Comparison runs form a chain: each differs in one setting from the one before it, so that each difference has one
+source. The soil's cells and the time steps are coarser, as finer ones would cost more than the run; elements are finer,
+and so is the penalty. An error that falls with the power p of the fineness is, by Richardson's extrapolation, the
+difference over
+|f^-p - 1|, f being how much finer the comparison run is: of a finer one it is little more than the difference, whatever
+the order is, so that it can be relied on where the run is far from converged, too. A large difference from longer steps
 has not reached its order yet: the divisor falls towards 1 as it grows. A source's share of the bar is
 
     safety * (what falls between samples + difference / |f^-p - 1|).
 
-Differences are those of the extremes and of their course in time together (`extremes.apart`). What falls between the
+Differences are those of the extremes and of their course in time together (`apart`). What falls between the
 run's nodes is the mesh's, between its steps the time step's, as is what alternates from step to step around an extreme:
 short waves that the steps do not resolve (`results.peaks`). Largest moments and curvatures are told between nodes
-(`riser.bending_peaks`). Of two companions in one source, one coarser than the other, the larger share counts. Shares
-of different sources add up as squares do. With these factors the calibration (`benchmarks.error_bars`) finds the true
-error inside at least 95 % of the bars.
+(`riser.bending_peaks`). Of two comparison runs in one source, one coarser than the other, the larger share counts.
+Shares of different sources add up as squares do. With these factors the calibration (`benchmarks.error_bars`) finds the
+true error inside at least 95 % of the bars.
+
+Extremes of key results over a stage and in windows of its time, and how far two runs are apart in them.
+
+Two runs may agree in one extreme by chance, where their difference changes its sign. So what counts is the mean square
+of the differences in the extreme itself and in the windows in which the quantity comes near it.
 """
 
 from __future__ import annotations
@@ -22,9 +28,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from riser_soil.accuracy.extremes import Extremes, apart
-from riser_soil.accuracy.headlines import Headline
+import numpy as np
+
+from riser_soil.accuracy.key_results import KeyResult, key_results
+from riser_soil.core.arrays import Array
+from riser_soil.results.peaks import RunPeaks
 
 SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalty": "penalty"}
 SMALLEST = 5e-5  # bar told, over the quantity's scale
@@ -37,14 +47,15 @@ SAFETY = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}
 ON_PATH = {"soil": 1.4}  # where the soil's law depends on its path: its errors jump more, as cells yield one by one
 LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
 
-Values = Mapping[str, float]  # of headline quantities by their keys, in their units
+Values = Mapping[str, float]  # of key results by their keys, in their units
+NEAR = 0.2  # of a quantity's range over the windows, from its extreme
 
 
 @dataclass(frozen=True)
-class Companion:
+class ComparisonRun:
     """A run of the chain: the source in which it differs from the one before, and how many times as fine it is in it.
 
-    extremes: of its headline quantities; None where it failed, for the `reason`.
+    extremes: of its key results; None where it failed, for the `reason`.
     """
 
     source: str
@@ -55,9 +66,9 @@ class Companion:
 
 @dataclass(frozen=True)
 class RunValues:
-    """The run's headline quantities: as told, with peaks between nodes, between steps too, and without what rings."""
+    """The run's key results: as told, with peaks between nodes, between steps too, and without what rings."""
 
-    told: Mapping[str, Headline]
+    reported: Mapping[str, KeyResult]
     of_nodes: Values
     peaks: Extremes
     smooth: Values
@@ -65,58 +76,63 @@ class RunValues:
 
 @dataclass(frozen=True)
 class ErrorBar:
-    """The error of a headline quantity is at most `bar`, in its unit; None where it can't be told, for the `reason`.
+    """The error of a key result is at most `bar`, in its unit; None where it can't be told, for the `reason`.
 
     by_source: the shares of mesh, time, soil and penalty, as far as they are known, in the same unit. order: in which
     they fall.
     """
 
-    headline: Headline
+    key_result: KeyResult
     bar: float | None
     by_source: Mapping[str, float]
     reason: str = ""
     order: Mapping[str, float] = field(default_factory=lambda: ORDER)
 
 
-def error_bars(run: RunValues, chain: Sequence[Companion], rigid: bool, path_dependent: bool) -> list[ErrorBar]:
-    """Of all headline quantities. rigid: whether the ground is a rigid floor. path_dependent: whether its soil is."""
+def error_bars(run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, path_dependent: bool) -> list[ErrorBar]:
+    """Of all key results. rigid: whether the ground is a rigid floor. path_dependent: whether its soil is."""
     safety = SAFETY | (ON_PATH if path_dependent else {})
-    return [_bar(told, run, chain, orders(told.name, rigid), safety) for told in run.told.values()]
+    return [_bar(reported, run, chain, orders(reported.name, rigid), safety) for reported in run.reported.values()]
 
 
 def _bar(
-    headline: Headline,
+    key_result: KeyResult,
     run: RunValues,
-    chain: Sequence[Companion],
+    chain: Sequence[ComparisonRun],
     order: Mapping[str, float],
     safety: Mapping[str, float],
 ) -> ErrorBar:
-    key, scale = headline.key, headline.scale
+    key, scale = key_result.key, key_result.scale
     found, unknown, fineness = dict[str, float](), list[str](), dict[str, float]()
     before: Extremes | None = run.peaks
-    for companion in chain:
-        source, so_far = companion.source, fineness.get(companion.source, 1.0)
-        if before is not None and key in before and companion.extremes is not None and key in companion.extremes:
-            off = apart(before[key], companion.extremes[key])
-            of_before = off / divisor(companion, order[source], off / scale if scale > 0.0 else 0.0)
+    for comparison_run in chain:
+        source, so_far = comparison_run.source, fineness.get(comparison_run.source, 1.0)
+        if (
+            before is not None
+            and key in before
+            and comparison_run.extremes is not None
+            and key in comparison_run.extremes
+        ):
+            off = apart(before[key], comparison_run.extremes[key])
+            of_before = off / divisor(comparison_run, order[source], off / scale if scale > 0.0 else 0.0)
             found[source] = max(found.get(source, 0.0), of_before * so_far ** order[source])
         else:
-            unknown.append(f"{source}: {companion.reason or 'a companion does not have it'}")
-        fineness[source] = so_far * companion.finer
-        before = companion.extremes
-    between = gaps(headline, run)
+            unknown.append(f"{source}: {comparison_run.reason or 'a companion does not have it'}")
+        fineness[source] = so_far * comparison_run.finer
+        before = comparison_run.extremes
+    between = gaps(key_result, run)
     shares = {s: safety[s] * (between.get(s, 0.0) + found.get(s, 0.0)) for s in between | found}
     if unknown:
-        return ErrorBar(headline, None, shares, "; ".join(unknown), order)
-    return ErrorBar(headline, math.hypot(*shares.values()) + SMALLEST * scale, shares, "", order)
+        return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
+    return ErrorBar(key_result, math.hypot(*shares.values()) + SMALLEST * scale, shares, "", order)
 
 
-def divisor(companion: Companion, order: float, off: float) -> float:
+def divisor(comparison_run: ComparisonRun, order: float, off: float) -> float:
     """Ratio of the difference of two runs to the error of the first. off: the difference over its scale."""
-    asymptotic = abs(companion.finer**-order - 1.0)
-    if companion.source not in LARGE:
+    asymptotic = abs(comparison_run.finer**-order - 1.0)
+    if comparison_run.source not in LARGE:
         return asymptotic
-    return 1.0 + (asymptotic - 1.0) / (1.0 + off / LARGE[companion.source])
+    return 1.0 + (asymptotic - 1.0) / (1.0 + off / LARGE[comparison_run.source])
 
 
 def orders(name: str, rigid: bool) -> Mapping[str, float]:
@@ -124,10 +140,53 @@ def orders(name: str, rigid: bool) -> Mapping[str, float]:
     return ORDER | OF_CONTACT_FORCE if name == CONTACT_FORCE and rigid else ORDER
 
 
-def gaps(headline: Headline, run: RunValues) -> dict[str, float]:
+def gaps(key_result: KeyResult, run: RunValues) -> dict[str, float]:
     """What falls between nodes and between steps of the run itself, and what rings."""
-    key, value = headline.key, headline.value
+    key, value = key_result.key, key_result.value
     nodes = run.of_nodes.get(key, value)
     peak = run.peaks[key].value if key in run.peaks else nodes
     steps = abs(peak - nodes) + abs(run.smooth.get(key, nodes) - nodes)
     return {"mesh": abs(nodes - value)} | ({"time": steps} if steps else {})
+
+
+class Extreme(NamedTuple):
+    """Of a stage, between nodes and steps. windows (W,): of windows of a dynamic stage's time, nan where unknown; none
+    of a static one. least: whether it is the least value, not the largest.
+    """
+
+    value: float
+    windows: Array
+    least: bool = False
+
+
+Extremes = Mapping[str, Extreme]  # of key results by their keys, in their units
+
+
+def extremes_of(peaks: RunPeaks) -> dict[str, Extreme]:
+    stages = {stage.name: stage for stage in peaks.stages}
+    return {
+        key: Extreme(each.value, stages[each.stage].in_windows(each.figure, each.which), each.which == "min")
+        for key, each in key_results(peaks.reported("peaks")).items()
+    }
+
+
+def alone(value: float) -> Extreme:
+    """Of a quantity that was not followed in time."""
+    return Extreme(value, np.empty(0))
+
+
+def apart(run: Extreme, other: Extreme) -> float:
+    """How far two runs are apart, in the quantity's unit. run: the one that tells which windows count."""
+    off = run.value - other.value
+    if run.windows.size == 0 or other.windows.size == 0:
+        return abs(off)
+    between = (run.windows - other.windows)[_near(run)]
+    known = between[np.isfinite(between)]
+    return math.sqrt(0.5 * (off**2 + float(np.mean(known**2)))) if known.size else abs(off)
+
+
+def _near(run: Extreme) -> Array:
+    """Whether a window (W,) comes near the extreme; one that is unknown does not."""
+    height = -run.windows if run.least else run.windows
+    top, bottom = np.nanmax(height), np.nanmin(height)
+    return np.asarray(height >= top - NEAR * (top - bottom))

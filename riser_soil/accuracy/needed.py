@@ -6,8 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps
-from riser_soil.accuracy.extremes import apart
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, apart, gaps
 
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # what fineness costs, as a power
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to
@@ -63,8 +62,8 @@ def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, fact
     runs may agree by chance, and sources hide one another, a part of each stays. Of the soil it is all: in its meshes
     contact grows cell by cell, and two agree by chance often.
     """
-    known = {bar.headline.key: bar for bar in bars}
-    return [_expected(known.get(key), before, found, factors, key) for key in found.told]
+    known = {bar.key_result.key: bar for bar in bars}
+    return [_expected(known.get(key), before, found, factors, key) for key in found.reported]
 
 
 def doubtful(
@@ -73,33 +72,33 @@ def doubtful(
     """Whether bars that are left to expect of a run can't be relied on: where it is further from the one `before` than
     that one's bars, by more than a share of the accuracy, or would have fallen by more than orders can foretell.
     """
-    expected_of = {bar.headline.key: bar for bar in left}
-    return any(_doubtful(bar, before, found, expected_of.get(bar.headline.key), accuracy) for bar in bars)
+    expected_of = {bar.key_result.key: bar for bar in left}
+    return any(_doubtful(bar, before, found, expected_of.get(bar.key_result.key), accuracy) for bar in bars)
 
 
 def _doubtful(
     bar: ErrorBar, before: RunValues, found: RunValues, left: ErrorBar | None, accuracy: float
 ) -> bool:
-    key = bar.headline.key
+    key = bar.key_result.key
     if left is None or left.bar is None or bar.bar is None or key not in before.peaks or key not in found.peaks:
         return True
-    off, telling = apart(before.peaks[key], found.peaks[key]), DOUBT * accuracy * bar.headline.scale
+    off, telling = apart(before.peaks[key], found.peaks[key]), DOUBT * accuracy * bar.key_result.scale
     return off > max(bar.bar, telling) or bar.bar > MOST_FALL * max(left.bar, telling)
 
 
 def largest(bars: Sequence[ErrorBar]) -> tuple[float, str]:
     """The largest bar over its quantity's scale, inf where one is not known, and its key."""
-    return max((_relative(bar), bar.headline.key) for bar in bars)
+    return max((_relative(bar), bar.key_result.key) for bar in bars)
 
 
 def _relative(bar: ErrorBar) -> float:
-    return math.inf if bar.bar is None else bar.headline.relative(bar.bar)
+    return math.inf if bar.bar is None else bar.key_result.relative(bar.bar)
 
 
 def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
     if bar.bar is None:
         return {"mesh": NOT_KNOWN} | ({"time": NOT_KNOWN} if "time" in bar.by_source else {})
-    allowed = (MARGIN * accuracy - SMALLEST) * bar.headline.scale
+    allowed = (MARGIN * accuracy - SMALLEST) * bar.key_result.scale
     left, shares = allowed**2, dict(bar.by_source)
     while True:
         weights = {source: COST[source] / bar.order[source] for source in shares}
@@ -114,15 +113,15 @@ def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
 def _expected(
     bar: ErrorBar | None, before: RunValues, found: RunValues, factors: Factors, key: str
 ) -> ErrorBar:
-    headline = found.told[key]
+    key_result = found.reported[key]
     if bar is None or bar.bar is None or key not in before.peaks:
-        return ErrorBar(headline, None, {}, (bar and bar.reason) or "the run before does not have it")
-    own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
+        return ErrorBar(key_result, None, {}, (bar and bar.reason) or "the run before does not have it")
+    own = {source: SAFETY[source] * gap for source, gap in gaps(key_result, found).items()}
     left = {s: each / factors.get(s, 1.0) ** bar.order[s] for s, each in bar.by_source.items()}
     left |= _by_the_two_runs(left, apart(before.peaks[key], found.peaks[key]), factors, bar.order)
     shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
-    whole = math.hypot(*shares.values()) + SMALLEST * headline.scale
-    return replace(bar, headline=headline, bar=whole, by_source=shares)
+    whole = math.hypot(*shares.values()) + SMALLEST * key_result.scale
+    return replace(bar, key_result=key_result, bar=whole, by_source=shares)
 
 
 def _by_the_two_runs(
@@ -132,7 +131,7 @@ def _by_the_two_runs(
     shares, finer = {}, [source for source, ratio in factors.items() if ratio > 1.0]
     for source in finer:
         if source in left and source != "soil":
-            told = SAFETY[source] * off / (factors[source] ** order[source] - 1.0)
-            told = max(told, BY_CHANCE * left[source])
-            shares[source] = told if len(finer) == 1 else min(left[source], told)
+            reported = SAFETY[source] * off / (factors[source] ** order[source] - 1.0)
+            reported = max(reported, BY_CHANCE * left[source])
+            shares[source] = reported if len(finer) == 1 else min(left[source], reported)
     return shares

@@ -1,24 +1,25 @@
-"""Search for a setting that reaches an accuracy: a mesh graded by static runs, and a trial with coarser companions."""
+"""Search for a setting that reaches an accuracy: the first one, a mesh graded by static runs, a trial."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any, TypeVar
 
-from riser_soil.accuracy.chain import FINER_MESH, Variation, bars_of, companions, run_values, variations
-from riser_soil.accuracy.companions import peaks_of
+from riser_soil.accuracy.chain import FINER_MESH, Variation, bars_of, comparison_runs, peaks_of, run_values, variations
 from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues
-from riser_soil.accuracy.headlines import headlines
-from riser_soil.accuracy.knobs import KNOBS, varied
-from riser_soil.assembly.graded_segments import graded
+from riser_soil.accuracy.key_results import key_results
+from riser_soil.accuracy.settings import SETTINGS, resolved, varied
+from riser_soil.assembly.graded_segments import broken, graded
+from riser_soil.assembly.motions import periods_of
 from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import StaticStage
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 
 SHAPES = 3  # static runs at most that grade the mesh
 SETTLED = 1.5  # elements at most so many times as long as curvature asks for
@@ -27,6 +28,10 @@ FINER = Variation("mesh", {"elements": 2.0}), Variation("penalty", {"penalty": 1
 ATTEMPTS, EACH = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
 HELPING = ("elements", "time_step")
 _Found = TypeVar("_Found")
+EVEN, LEAST, BROKEN = 24, 4, 2  # elements of the riser; at least of a segment, and of a part of one between two places
+# Time steps to the shortest period of what moves, times the root of the accuracy, as errors fall with the step's
+# square; within limits. Where nothing has a period, to a quarter of a stage; so many to any stage at least.
+OF_PERIOD, FEWEST, MOST = 5.0, 16.0, 500.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,22 +45,22 @@ class TriedSetting:
 
 
 def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
-    """On a mesh that curvature has graded, with companions; collective. scene: in its first setting."""
+    """On a mesh that curvature has graded, with comparison runs; collective. scene: in its first setting."""
     segments = scene.riser.segments
     scene = _meshed(scene, accuracy, comm)
     scene, seen, peaks = _computed(scene, comm)
     if _excess(seen, accuracy, comm) > SETTLED:
         scene, _, peaks = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
-    values = run_values(headlines(peaks.told("sampled")), peaks) if comm.rank == 0 else None
+    values = run_values(key_results(peaks.reported("sampled")), peaks) if comm.rank == 0 else None
     return TriedSetting(scene, values, measured(scene, values, comm, LONGER))
 
 
 def measured(scene: Scene, values: RunValues | None, comm: Any, longer: Variation | None = None) -> list[ErrorBar]:
-    """Error bars of a run by companions, elements and penalty apart; collective. values: the run's, on rank 0. longer:
-    steps, if other than usual.
+    """Error bars of a run by comparison runs, elements and penalty apart; collective. values: the run's, on rank 0.
+    longer: steps, if other than usual.
     """
     usual = variations(scene)
-    chain = companions(scene, comm, [*_apart(usual if longer is None else _with(longer, usual))])
+    chain = comparison_runs(scene, comm, [*_apart(usual if longer is None else _with(longer, usual))])
     return _on_first(comm, lambda: bars_of(scene, _known(values), chain))
 
 
@@ -74,10 +79,10 @@ def _known(values: RunValues | None) -> RunValues:
 
 
 def finer(scene: Scene, factors: dict[str, float]) -> Scene:
-    """The scene with knobs finer by factors, where it has them."""
-    for knob in KNOBS:
-        if knob.name in factors and knob.there(scene):
-            scene = varied(scene, knob, factors[knob.name])
+    """The scene with settings finer by factors, where it has them."""
+    for setting in SETTINGS:
+        if setting.name in factors and setting.there(scene):
+            scene = varied(scene, setting, factors[setting.name])
     return scene
 
 
@@ -122,3 +127,33 @@ def _on_first(comm: Any, found: Callable[[], _Found]) -> _Found:
     """What rank 0 finds."""
     there: _Found = comm.bcast(found() if comm.rank == 0 else None)
     return there
+
+
+def first_setting(scene: Scene) -> Scene:
+    """The scene with elements, steps, soil mesh and penalty in numbers, and no accuracy asked any more."""
+    length, accuracy = scene.riser.length, scene.accuracy
+    assert accuracy is not None
+    of_period = min(max(OF_PERIOD / math.sqrt(accuracy), FEWEST), MOST)
+    segments = tuple(_cut(part, length, least) for part, least in _parts(scene))
+    stages = tuple(_stepped(scene, stage, of_period) for stage in scene.stages)
+    riser = scene.riser.model_copy(update={"segments": segments})
+    return resolved(scene.model_copy(update={"accuracy": None, "riser": riser, "stages": stages}))
+
+
+def _parts(scene: Scene) -> Iterator[tuple[Segment, int]]:
+    """Segments, broken where something acts, with their least number of elements."""
+    for parts in broken(scene):
+        yield from ((part, LEAST if len(parts) == 1 else BROKEN) for part in parts)
+
+
+def _cut(segment: Segment, length: float, least: int) -> Segment:
+    elements = max(least, round(EVEN * segment.length / length))
+    return segment.model_copy(update={"elements": elements, "element_length": None})
+
+
+def _stepped(scene: Scene, stage: Stage, of_period: float) -> Stage:
+    if not isinstance(stage, DynamicStage):
+        return stage
+    shortest = min((period for _, period in periods_of(scene, stage)), default=0.25 * stage.duration)
+    step = min(shortest, stage.duration) / of_period
+    return stage.model_copy(update={"time_step": step, "tolerance": None})

@@ -1,4 +1,4 @@
-"""Study of a scene: the error of its headline quantities against processor time, knob by knob."""
+"""Study of a scene: the error of its key results against processor time, setting by setting."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from riser_soil.accuracy.cheapest import next_setting
-from riser_soil.accuracy.findings import TARGETS, Says, Study
-from riser_soil.accuracy.knobs import Knob, knobs_of, resolved
-from riser_soil.accuracy.ladders import RATIOS, Ladders
+from riser_soil.accuracy.findings import TARGETS, Says, Study, next_setting
+from riser_soil.accuracy.refinements import RATIOS, Refinements
+from riser_soil.accuracy.settings import Setting, resolved, settings_of
 from riser_soil.accuracy.study_files import write_files
 from riser_soil.accuracy.study_points import POINTS
 from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError
@@ -18,27 +17,27 @@ from riser_soil.results.whole_file import refuse_file, unusable
 from riser_soil.scene.scene import Scene
 
 TRIES = 3  # settings foretold to reach a target that are run
-FINER = 2  # rungs at most by which a scene that fails is made finer
-HELPING = ("elements", "time_step")  # knobs that may help it
-LEAST_RUNGS, MOST_RUNGS = 3, 9
+FINER = 2  # levels at most by which a scene that fails is made finer
+HELPING = ("elements", "time_step")  # settings that may help it
+LEAST_LEVELS, MOST_LEVELS = 3, 9
 
 
 def study(
-    scene: Scene, folder: Path, *, knobs: Sequence[str] = (), rungs: int = 5, jobs: int = 1, force: bool = False,
+    scene: Scene, folder: Path, *, settings: Sequence[str] = (), levels: int = 5, jobs: int = 1, force: bool = False,
     says: Says = print,
 ) -> Study:  # fmt: skip
     """Run the study and leave its files in a folder; one that was interrupted goes on where it was.
 
-    knobs: names of those to vary, all that the scene has by default. rungs: of each ladder. jobs: processes at a time
-    for the finest points; the others, whose time counts, run one at a time. force: begin anew. Where the scene fails,
-    the study is around one with more elements and shorter steps. Raises SceneError, ResultsError, and SolveError where
-    those fail, too.
+    settings: names of those to vary, all that the scene has by default. levels: of each refinement series. jobs:
+    processes at a time for the finest points; the others, whose time counts, run one at a time. force: begin anew.
+    Where the scene fails, the study is around one with more elements and shorter steps. Raises SceneError,
+    ResultsError, and SolveError where those fail, too.
     """
-    ladders = Ladders(resolved(scene), _chosen(scene, knobs), rungs)
+    refinements = Refinements(resolved(scene), _chosen(scene, settings), levels)
     refuse(folder, force)
     try:
-        made = _around_what_runs(Study(ladders, folder, says))
-        _compute_ladders(made, jobs)
+        made = _around_what_runs(Study(refinements, folder, says))
+        _compute_refinements(made, jobs)
         _try_settings(made)
     except Interruption as end:
         end.place = f"in a study; call again to go on, {folder} keeps what was computed"
@@ -49,9 +48,9 @@ def study(
 
 def _around_what_runs(made: Study) -> Study:
     """The study, or one around a finer scene, whose scene has been run."""
-    made.compute([made.ladders.base], 1)
+    made.compute([made.refinements.base], 1)
     for _ in range(FINER):
-        if made.scene.done or not any(knob.name in HELPING for knob in made.ladders.knobs):
+        if made.scene.done or not any(setting.name in HELPING for setting in made.refinements.settings):
             break
         made = _finer(made)
     if made.scene.status == SceneError.exit_status:
@@ -62,14 +61,14 @@ def _around_what_runs(made: Study) -> Study:
 
 
 def _finer(made: Study) -> Study:
-    """A rung finer in what may help a scene that fails; what has been run is known in its terms."""
-    step = tuple(RATIOS[knob.name] if knob.name in HELPING else 1.0 for knob in made.ladders.knobs)
-    ladders = Ladders(made.ladders.scene_at(step), made.ladders.knobs, made.ladders.rungs)
-    finer = Study(ladders, made.folder, made.says, failure=made.failure or made.scene.reason)
+    """A level finer in what may help a scene that fails; what has been run is known in its terms."""
+    step = tuple(RATIOS[setting.name] if setting.name in HELPING else 1.0 for setting in made.refinements.settings)
+    refinements = Refinements(made.refinements.scene_at(step), made.refinements.settings, made.refinements.levels)
+    finer = Study(refinements, made.folder, made.says, failure=made.failure or made.scene.reason)
     for before in made.outcomes.values():
         factors = tuple(factor / ratio for factor, ratio in zip(before.factors, step, strict=True))
         finer.outcomes[factors] = replace(before, factors=factors)
-    finer.compute([ladders.base], 1)
+    finer.compute([refinements.base], 1)
     return finer
 
 
@@ -87,21 +86,21 @@ def refuse(folder: Path, force: bool) -> None:
         raise unusable(folder, err) from err
 
 
-def _chosen(scene: Scene, names: Sequence[str]) -> tuple[Knob, ...]:
-    there = knobs_of(scene)
-    known = [knob.name for knob in there]
+def _chosen(scene: Scene, names: Sequence[str]) -> tuple[Setting, ...]:
+    there = settings_of(scene)
+    known = [setting.name for setting in there]
     for name in names:
         if name not in known:
             raise ResultsError(f"--knob {name}: the scene has no such knob; choose among {', '.join(known)}")
-    return tuple(knob for knob in there if not names or knob.name in names)
+    return tuple(setting for setting in there if not names or setting.name in names)
 
 
-def _compute_ladders(made: Study, jobs: int) -> None:
-    """The finest of each ladder and the corner, which take longest, then the rest one at a time."""
-    ladders = made.ladders
-    along = [ladders.along(number) for number in range(len(ladders.knobs))]
+def _compute_refinements(made: Study, jobs: int) -> None:
+    """The finest of each refinement series and the corner, which take longest, then the rest one at a time."""
+    refinements = made.refinements
+    along = [refinements.along(number) for number in range(len(refinements.settings))]
     finest = [points[-1] for points in along]
-    made.compute([*finest, *([ladders.corner] if ladders.corner is not None else [])], jobs)
+    made.compute([*finest, *([refinements.corner] if refinements.corner is not None else [])], jobs)
     made.compute([point for points in along for point in points], 1)
 
 

@@ -16,9 +16,8 @@ import numpy as np
 from riser_soil import __version__
 from riser_soil.accuracy.assessment import TELLING, AssessedQuantity
 from riser_soil.accuracy.findings import TARGETS, Study
-from riser_soil.accuracy.study_page import page
+from riser_soil.accuracy.study_page import page, words
 from riser_soil.accuracy.study_points import PointOutcome
-from riser_soil.accuracy.study_words import words
 from riser_soil.results.summary import plain_json
 from riser_soil.results.whole_file import written_together
 
@@ -27,11 +26,11 @@ TABLE, NUMBERS, PAGE = "study.csv", "study.json", "study.html"
 
 def write_files(study: Study) -> None:
     """All three together."""
-    told = as_dict(study)
+    reported = as_dict(study)
     with written_together(study.folder, (TABLE, NUMBERS, PAGE)) as made:
         _write_table(study, made / TABLE)
-        (made / NUMBERS).write_text(json.dumps(plain_json(told), indent=1) + "\n", encoding="utf-8")
-        (made / PAGE).write_text(page(study, told), encoding="utf-8")
+        (made / NUMBERS).write_text(json.dumps(plain_json(reported), indent=1) + "\n", encoding="utf-8")
+        (made / PAGE).write_text(page(study, reported), encoding="utf-8")
 
 
 def as_dict(study: Study) -> dict[str, Any]:
@@ -39,11 +38,11 @@ def as_dict(study: Study) -> dict[str, Any]:
     quantities, front = study.quantities(), study.front()
     reaching = {f"{target:g}": study.reaching(target) for target in TARGETS}
     return {
-        "title": study.ladders.scene.title,
+        "title": study.refinements.scene.title,
         "version": __version__,
         "date": date.today().isoformat(),
         "machine": {"cores": os.cpu_count(), "processor": platform.machine(), "python": platform.python_version()},
-        "knobs": [knob.name for knob in study.ladders.knobs],
+        "knobs": [setting.name for setting in study.refinements.settings],
         "words": words(study),
         "quantities": {key: _quantity(study, each) for key, each in quantities.items()},
         "cheapest": {target: list(found.factors) if found else None for target, found in reaching.items()},
@@ -53,15 +52,15 @@ def as_dict(study: Study) -> dict[str, Any]:
 
 
 def _in_order(study: Study) -> list[PointOutcome]:
-    """The scene, the ladders from coarse to fine, then the rest."""
-    ladders = study.ladders
-    along = [point for number in range(len(ladders.knobs)) for point in ladders.along(number)]
-    order = dict.fromkeys([ladders.base, *along, *study.outcomes])
+    """The scene, the refinement series from coarse to fine, then the rest."""
+    refinements = study.refinements
+    along = [point for number in range(len(refinements.settings)) for point in refinements.along(number)]
+    order = dict.fromkeys([refinements.base, *along, *study.outcomes])
     return [study.outcomes[point] for point in order if point in study.outcomes]
 
 
 def _quantity(study: Study, each: AssessedQuantity) -> dict[str, Any]:
-    limits = zip(study.ladders.knobs, each.limits, strict=True)
+    limits = zip(study.refinements.settings, each.limits, strict=True)
     return {
         "unit": each.scene.unit,
         "value": each.scene.value,
@@ -71,18 +70,23 @@ def _quantity(study: Study, each: AssessedQuantity) -> dict[str, Any]:
         "judged": each.doubt <= TELLING,
         "error": each.error,
         "knobs": {
-            knob.name: {"share": each.share(n), "order": lim.order, "limit": lim.value, "uncertainty": lim.uncertainty}
-            for n, (knob, lim) in enumerate(limits)
+            setting.name: {
+                "share": each.share(n),
+                "order": lim.order,
+                "limit": lim.value,
+                "uncertainty": lim.uncertainty,
+            }
+            for n, (setting, lim) in enumerate(limits)
         },
     }
 
 
 def _point(study: Study, outcome: PointOutcome, on_front: bool) -> dict[str, Any]:
     error, key = study.error(outcome) if outcome.done else (np.nan, "")
-    names = [knob.name for knob in study.ladders.knobs]
+    names = [setting.name for setting in study.refinements.settings]
     return {
         "factors": dict(zip(names, outcome.factors, strict=True)),
-        "settings": study.ladders.told(outcome.factors),
+        "settings": study.refinements.reported(outcome.factors),
         "status": outcome.status,
         "reason": outcome.reason,
         "cpu": outcome.cpu,
@@ -91,7 +95,7 @@ def _point(study: Study, outcome: PointOutcome, on_front: bool) -> dict[str, Any
         "error": error,
         "in": key,
         "pareto": on_front,
-        "values": {key: each.value for key, each in outcome.headlines.items()},
+        "values": {key: each.value for key, each in outcome.key_results.items()},
     }
 
 
@@ -103,14 +107,14 @@ def _write_table(study: Study, file: Path) -> None:
 def _rows(study: Study) -> Iterator[list[str]]:
     """Head and points; the quantities' values and relative errors are the last columns."""
     quantities, front = study.quantities(), study.front()
-    names = [f"{knob.name} [times as fine]" for knob in study.ladders.knobs]
+    names = [f"{setting.name} [times as fine]" for setting in study.refinements.settings]
     values = [f"{key} [{each.scene.unit}]" for key, each in quantities.items()]
-    told = ["settings", "status", "reason", "cpu [s]", "timed alone", "steps", "largest error [-]", "in", "pareto"]
-    yield [*names, *told, *values, *(f"error of {key} [-]" for key in quantities)]
+    reported = ["settings", "status", "reason", "cpu [s]", "timed alone", "steps", "largest error [-]", "in", "pareto"]
+    yield [*names, *reported, *values, *(f"error of {key} [-]" for key in quantities)]
     for outcome in _in_order(study):
         point = _point(study, outcome, outcome in front)
         cells = [point[name] for name in ("settings", "status", "reason", "cpu", "timed_alone", "steps", "error", "in")]
-        found = outcome.headlines
+        found = outcome.key_results
         yield [
             *(f"{factor:.4g}" for factor in outcome.factors),
             *(_cell(cell) for cell in (*cells, point["pareto"])),

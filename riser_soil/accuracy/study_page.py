@@ -1,15 +1,16 @@
-"""Page of a study: words, the work-precision plot and tables, in one HTML file that needs no other."""
+"""Page of a study in one HTML file, and its words: how far the scene is off, which settings reach an accuracy."""
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from riser_soil.accuracy.assessment import TELLING, AssessedQuantity
 from riser_soil.accuracy.findings import TARGETS, Study
-from riser_soil.accuracy.study_words import percent
-from riser_soil.plots.work_precision import KnobLine, WorkPrecision, drawn_work_precision
+from riser_soil.plots.work_precision import SettingLine, WorkPrecision, drawn_work_precision
 
 STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #222 }
@@ -20,30 +21,32 @@ th { vertical-align: bottom }
 img { max-width: 100% }
 .note { color: #555; font-size: 13px }
 """
+Quantities = dict[str, AssessedQuantity]
 
 
-def page(study: Study, told: Mapping[str, Any]) -> str:
+def page(study: Study, reported: Mapping[str, Any]) -> str:
     """told: the numbers of study.json."""
-    machine = told["machine"]
+    machine = reported["machine"]
     made = (
-        f"riser-soil {told['version']}, {told['date']}; {machine['cores']} cores ({machine['processor']}), Python "
+        f"riser-soil {reported['version']}, {reported['date']}; {machine['cores']} cores ({machine['processor']}), "
+        "Python "
         f"{machine['python']}. Seconds are processor time of one core, without start-up."
     )
-    title = f"Accuracy and cost of “{told['title']}”"
+    title = f"Accuracy and cost of “{reported['title']}”"
     return "\n".join(
         [
             '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
             f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>",
             f"<h1>{escape(title)}</h1>",
-            *_list(told["words"]),
-            _image(study, told),
+            *_list(reported["words"]),
+            _image(study, reported),
             '<p class="note">Error: the largest relative error among the headline quantities, each line with one knob '
             "turned and the others as in the scene. Below the dotted line errors are less than what the reference is "
             "known to. Hollow points ran beside others.</p>",
             "<h2>Headline quantities</h2>",
-            _quantities(told),
+            _quantities(reported),
             "<h2>Points</h2>",
-            _points(told),
+            _points(reported),
             f'<p class="note">{escape(made)}</p></body></html>',
             "",
         ]
@@ -54,29 +57,31 @@ def _list(sentences: Iterable[str]) -> list[str]:
     return ["<ul>", *(f"<li>{escape(each[0].upper() + each[1:])}.</li>" for each in sentences), "</ul>"]
 
 
-def _image(study: Study, told: Mapping[str, Any]) -> str:
+def _image(study: Study, reported: Mapping[str, Any]) -> str:
     """Where no quantity can be judged, there are no errors to plot."""
-    if not any(each["judged"] for each in told["quantities"].values()):
+    if not any(each["judged"] for each in reported["quantities"].values()):
         return ""
-    svg = base64.b64encode(drawn_work_precision(plotted(study, told)).encode()).decode()
+    svg = base64.b64encode(drawn_work_precision(plotted(study, reported)).encode()).decode()
     return f'<img alt="Error against processor time" src="data:image/svg+xml;base64,{svg}">'
 
 
-def plotted(study: Study, told: Mapping[str, Any]) -> WorkPrecision:
+def plotted(study: Study, reported: Mapping[str, Any]) -> WorkPrecision:
     """What the plot shows; failed points have no place in it."""
-    ladders = study.ladders
-    places = {tuple(each["factors"].values()): each for each in told["points"] if each["status"] == 0}
+    refinements = study.refinements
+    places = {tuple(each["factors"].values()): each for each in reported["points"] if each["status"] == 0}
     lines, seen = [], set()
-    for number, knob in enumerate(ladders.knobs):
-        points = [point for point in ladders.along(number) if point in places]
+    for number, setting in enumerate(refinements.settings):
+        points = [point for point in refinements.along(number) if point in places]
         seen.update(points)
         found = [places[point] for point in points]
-        orders = [each["knobs"][knob.name]["order"] for each in told["quantities"].values() if each["judged"]]
-        lines.append(KnobLine(knob.words, _order_s([each for each in orders if each is not None]), *_places(found)))
+        orders = [each["knobs"][setting.name]["order"] for each in reported["quantities"].values() if each["judged"]]
+        lines.append(
+            SettingLine(setting.words, _order_s([each for each in orders if each is not None]), *_places(found))
+        )
     others = [each for point, each in places.items() if point not in seen]
-    front = [places[tuple(point)] for point in told["pareto_front"]]
-    scene = places[ladders.base]
-    doubts = [each["uncertainty"] / each["scale"] for each in told["quantities"].values() if each["judged"]]
+    front = [places[tuple(point)] for point in reported["pareto_front"]]
+    scene = places[refinements.base]
+    doubts = [each["uncertainty"] / each["scale"] for each in reported["quantities"].values() if each["judged"]]
     here, doubt = (scene["cpu"], scene["error"]), max(doubts, default=0.0)
     return WorkPrecision(lines, *_places(others)[:2], *_places(front)[:2], here, doubt, TARGETS)
 
@@ -93,11 +98,19 @@ def _order_s(orders: Sequence[float]) -> str:
     return f"order {low:.1f}" if high - low < 0.1 else f"order {low:.1f} to {high:.1f}"
 
 
-def _quantities(told: Mapping[str, Any]) -> str:
-    head = ["quantity", "scene", "reference", "±", "unit", "error", *(f"by {name}, order" for name in told["knobs"])]
+def _quantities(reported: Mapping[str, Any]) -> str:
+    head = [
+        "quantity",
+        "scene",
+        "reference",
+        "±",
+        "unit",
+        "error",
+        *(f"by {name}, order" for name in reported["knobs"]),
+    ]
     rows = []
-    for key, each in told["quantities"].items():
-        shares = (f"{percent(knob['share'])}, {_order(knob['order'])}" for knob in each["knobs"].values())
+    for key, each in reported["quantities"].items():
+        shares = (f"{percent(setting['share'])}, {_order(setting['order'])}" for setting in each["knobs"].values())
         error = percent(each["error"]) if each["judged"] else "not told"
         numbers = (f"{each[name]:.5g}" for name in ("value", "reference"))
         rows.append([key, *numbers, f"{each['uncertainty']:.2g}", each["unit"], error, *shares])
@@ -108,7 +121,7 @@ def _order(order: float | None) -> str:
     return "–" if order is None else f"{order:.1f}"
 
 
-def _points(told: Mapping[str, Any]) -> str:
+def _points(reported: Mapping[str, Any]) -> str:
     head = ["settings", "seconds", "steps", "largest error", "in", "Pareto front", "failed"]
     rows = [
         [
@@ -120,7 +133,7 @@ def _points(told: Mapping[str, Any]) -> str:
             "yes" if each["pareto"] else "",
             each["reason"],
         ]
-        for each in told["points"]
+        for each in reported["points"]
     ]
     return _table(head, rows)
 
@@ -130,3 +143,96 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
         return "<tr>" + "".join(f"<{kind}>{escape(cell)}</{kind}>" for cell in cells) + "</tr>"
 
     return "\n".join(["<table>", row(head, "th"), *(row(each, "td") for each in rows), "</table>"])
+
+
+def words(study: Study) -> list[str]:
+    """Sentences, in their order."""
+    return [
+        *_moved(study),
+        *_unknown(study.quantities()),
+        *_accuracy(study),
+        *_limiting(study),
+        *(sentence for target in TARGETS for sentence in _cheapest(study, target)),
+        *_failed(study),
+    ]
+
+
+def _moved(study: Study) -> Iterator[str]:
+    if study.failure:
+        settings = study.refinements.reported(study.refinements.base)
+        yield f"the scene itself fails: {study.failure}; the study is around finer settings: {settings}"
+
+
+def percent(part: float) -> str:
+    """Three figures; a part of inf or nan is unknown."""
+    return f"{100.0 * part:.3g} %" if math.isfinite(part) else "unknown"
+
+
+def _unknown(quantities: Quantities) -> Iterator[str]:
+    unknown = _doubtful(quantities, TELLING)
+    if unknown:
+        yield (
+            f"no error can be told of {unknown}, as the ladders do not close in on a value; they are left out of what "
+            "follows"
+        )
+
+
+def _doubtful(quantities: Quantities, doubt: float) -> str:
+    """Quantities whose reference is not known to a relative uncertainty."""
+    return ", ".join(f"{key} (± {percent(each.doubt)})" for key, each in quantities.items() if not each.doubt <= doubt)
+
+
+def _off(quantities: Quantities, error: float, key: str) -> str:
+    return f"{percent(error)} off at most (± {percent(quantities[key].doubt)}), in {key}"
+
+
+def _accuracy(study: Study) -> Iterator[str]:
+    error, key = study.error(study.scene)
+    if key:
+        scene = "with these settings the scene" if study.failure else "as it is, the scene"
+        yield f"{scene} takes {study.scene.cpu:.3g} s and is {_off(study.judged(), error, key)}"
+
+
+def _limiting(study: Study) -> Iterator[str]:
+    """Which setting has the largest share in an error."""
+    quantities = study.judged()
+    if not quantities:
+        return
+    shares = [(*_largest_share(quantities, n), setting.words) for n, setting in enumerate(study.refinements.settings)]
+    largest = "; ".join(f"{setting} {percent(share)} ({key})" for share, key, setting in sorted(shares, reverse=True))
+    most, key, setting = max(shares)
+    if most <= quantities[key].doubt:
+        yield f"no knob limits the accuracy by more than the study can tell; largest shares of error: {largest}"
+    else:
+        yield f"what limits the accuracy is the {setting}; largest shares of error: {largest}"
+
+
+def _largest_share(quantities: Quantities, number: int) -> tuple[float, str]:
+    return max((each.share(number), key) for key, each in quantities.items())
+
+
+def _cheapest(study: Study, target: float) -> Iterator[str]:
+    quantities, found = study.judged(), study.reaching(target)
+    if not quantities:
+        return
+    best = found if found is not None else study.front()[-1]
+    error, key = study.error(best)
+    settings, off = study.refinements.reported(best.factors), _off(quantities, error, key)
+    where = "" if len(quantities) == len(study.quantities()) else f" in {len(quantities)} quantities"
+    if found is None:
+        yield f"{percent(target)} is reached{where} by no setting that was run; the best, {settings}, is {off}"
+        return
+    at = f"at the least cost, {best.cpu:.3g} s, with {settings}: {off}"
+    if error <= target:
+        yield f"{percent(target)} is reached{where} {at}"
+    else:
+        yield f"{percent(target)} can't be told{where}; the reference is reached as far as it is known {at}"
+    beside = _doubtful(quantities, target)
+    if beside:
+        yield f"the reference is known less well than to {percent(target)} of {beside}"
+
+
+def _failed(study: Study) -> Iterator[str]:
+    failed = [each for each in study.outcomes.values() if not each.done]
+    if failed:
+        yield f"{len(failed)} of {len(study.outcomes)} points failed; study.csv has their reasons"

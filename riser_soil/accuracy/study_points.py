@@ -1,4 +1,4 @@
-"""Points of a study: runs of a scene with its knobs turned, each in a process and a folder of its own.
+"""Points of a study: runs of a scene with settings varied, each in a process of its own, several at a time.
 
 A point's folder is named by a digest of its scene and the program's version: what has been computed is found again.
 """
@@ -11,14 +11,16 @@ import math
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from riser_soil import __version__
-from riser_soil.accuracy.headlines import Headline, headlines
-from riser_soil.core.own_process import environment_alone
+from riser_soil.accuracy.key_results import KeyResult, key_results
+from riser_soil.core.environment import environment_alone
 from riser_soil.errors import MeshError, SolveError
 from riser_soil.results.folder import NAMES, SUMMARY
 from riser_soil.results.folder import SCENE as RESOLVED
@@ -29,7 +31,9 @@ POINTS, GIVEN, OUTCOME, COST, SAID = "points", "given.yaml", "outcome.json", "co
 LASTING = (0, MeshError.exit_status, SolveError.exit_status)  # exit statuses that a repetition would have again
 
 Factors = tuple[float, ...]
-"""How many times as fine as the scene a point is, knob by knob."""
+
+
+"""How many times as fine as the scene a point is, setting by setting."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,7 @@ class PointOutcome:
     cpu: float
     alone: bool
     steps: int = 0
-    headlines: Mapping[str, Headline] = field(default_factory=dict)
+    key_results: Mapping[str, KeyResult] = field(default_factory=dict)
 
     @property
     def done(self) -> bool:
@@ -75,13 +79,14 @@ class StudyPoint:
     def found(self) -> PointOutcome | None:
         """What became of it in an earlier study; None where it has not come to an end."""
         try:
-            told: dict[str, Any] = json.loads((self.folder / OUTCOME).read_text(encoding="utf-8"))
+            reported: dict[str, Any] = json.loads((self.folder / OUTCOME).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
-        if told["status"] not in LASTING:
+        if reported["status"] not in LASTING:
             return None
-        known = {key: Headline(**each) for key, each in told["headlines"].items()}
-        return PointOutcome(**told | {"factors": self.factors, "headlines": known, "cpu": _number(told["cpu"])})
+        known = {key: KeyResult(**each) for key, each in reported.pop("headlines").items()}
+        given = {"factors": self.factors, "key_results": known, "cpu": _number(reported["cpu"])}
+        return PointOutcome(**reported | given)
 
     def start(self) -> subprocess.Popen[bytes]:
         """The process that computes it; what it says goes to a file in its folder."""
@@ -100,18 +105,19 @@ class StudyPoint:
         cost = self._cost(status)
         summary = self._summary()
         steps = sum(stage["steps"] for stage in summary["stages"])
-        known = headlines(summary) if status == 0 else {}
+        known = key_results(summary) if status == 0 else {}
         outcome = PointOutcome(self.factors, status, _line(cost["reason"]), cost["cpu"], alone, steps, known)
         for name in set(NAMES) - {SUMMARY, RESOLVED}:
             (self.folder / name).unlink(missing_ok=True)
-        told = asdict(outcome) | {"cpu": None if math.isnan(outcome.cpu) else outcome.cpu}
-        (self.folder / OUTCOME).write_text(json.dumps(told, indent=1), encoding="utf-8")
+        reported = asdict(outcome) | {"cpu": None if math.isnan(outcome.cpu) else outcome.cpu}
+        reported["headlines"] = reported.pop("key_results")  # as the file has it
+        (self.folder / OUTCOME).write_text(json.dumps(reported, indent=1), encoding="utf-8")
         return outcome
 
     def _cost(self, status: int) -> dict[str, Any]:
         try:
-            told: dict[str, Any] = json.loads((self.folder / COST).read_text(encoding="utf-8"))
-            return told
+            reported: dict[str, Any] = json.loads((self.folder / COST).read_text(encoding="utf-8"))
+            return reported
         except (OSError, ValueError):
             return {"reason": self._last_words(status), "cpu": math.nan}
 
@@ -123,8 +129,8 @@ class StudyPoint:
 
     def _summary(self) -> dict[str, Any]:
         try:
-            told: dict[str, Any] = json.loads((self.folder / SUMMARY).read_text(encoding="utf-8"))
-            return told
+            reported: dict[str, Any] = json.loads((self.folder / SUMMARY).read_text(encoding="utf-8"))
+            return reported
         except (OSError, ValueError):
             return {"stages": []}
 
@@ -141,3 +147,52 @@ def _line(text: str) -> str:
 
 def _number(value: float | None) -> float:
     return math.nan if value is None else value
+
+
+Reported = Callable[[PointOutcome, bool], None]
+
+
+"""Is told of each point as it ends, and whether it was there before."""
+
+
+def compute(points: Sequence[StudyPoint], jobs: int, reported: Reported) -> list[PointOutcome]:
+    """What became of the points, `jobs` of them at a time. No process outlives the call, however it ends."""
+    workers = _Workers(jobs, reported)
+    pool = ThreadPoolExecutor(max_workers=jobs)
+    try:
+        return list(pool.map(workers.outcome, points))
+    finally:
+        workers.stop()
+        pool.shutdown(cancel_futures=True)
+
+
+class _Workers:
+    """Processes that are computing points."""
+
+    def __init__(self, jobs: int, reported: Reported) -> None:
+        self._alone, self._reported = jobs == 1, reported
+        self._running: set[subprocess.Popen[bytes]] = set()
+        self._lock, self._stopped = threading.Lock(), False
+
+    def outcome(self, point: StudyPoint) -> PointOutcome:
+        known = point.found()
+        outcome = known if known is not None else self._computed(point)
+        self._reported(outcome, known is not None)
+        return outcome
+
+    def stop(self) -> None:
+        with self._lock:
+            self._stopped = True
+            for process in self._running:
+                process.terminate()
+
+    def _computed(self, point: StudyPoint) -> PointOutcome:
+        with self._lock:
+            if self._stopped:
+                raise RuntimeError("the study has been stopped")
+            process = point.start()
+            self._running.add(process)
+        status = process.wait()
+        with self._lock:
+            self._running.discard(process)
+        return point.ended(status, self._alone)

@@ -1,7 +1,7 @@
-"""Run to an accuracy: mesh, steps, soil and penalty are chosen so that all headline quantities reach it.
+"""Run to an accuracy: mesh, steps, soil and penalty are chosen so that all key results reach it.
 
 A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
-bars are left is foretold from the trial before, and measured by companions of the run where that is doubtful
+bars are left is foretold from the trial before, and measured by comparison runs of the run where that is doubtful
 (`needed.doubtful`). Where they miss the accuracy, a finer run follows, unless the runs that are left would, too.
 """
 
@@ -11,13 +11,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from riser_soil.accuracy.barred_run import LEFT, values_of_run, write_bars
+from riser_soil.accuracy.barred_run import LEFT, print_bars, values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
-from riser_soil.accuracy.first_setting import first_setting
-from riser_soil.accuracy.knobs import knobs_of, settings_told
 from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, out_of_reach, too_dear
-from riser_soil.accuracy.screen import print_bars
-from riser_soil.accuracy.search import TriedSetting, finer, measured, trial
+from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measured, trial
+from riser_soil.accuracy.settings import settings_of, settings_reported
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
@@ -117,24 +115,25 @@ def _measured(scene: Scene, values: RunValues | None, folder: Path, comm: Any) -
 def _tell(last: TriedSetting, accuracy: float, comm: Any) -> None:
     if comm.rank == 0:
         off, key = largest(last.bars)
-        print(f"accuracy {accuracy:.2%}: with {settings_told(last.scene)} it is {off:.2%} ({key})")
+        print(f"accuracy {accuracy:.2%}: with {settings_reported(last.scene)} it is {off:.2%} ({key})")
 
 
 def _report(last: TriedSetting, accuracy: float, folder: Path, seconds: float) -> None:
     """seconds: of everything."""
     off, key = largest(last.bars)
-    told = {"asked": accuracy, "reached": off <= accuracy, "largest_error": off, "of": key}
-    settings = {knob.name: knob.told(last.scene) for knob in knobs_of(last.scene)}
+    reported = {"asked": accuracy, "reached": off <= accuracy, "largest_error": off, "of": key}
+    settings = {setting.name: setting.reported(last.scene) for setting in settings_of(last.scene)}
     taken = {"run": last.seconds, "search": seconds - last.seconds}
-    write_bars(folder, last.bars, taken, accuracy=told | {"settings": settings})
+    write_bars(folder, last.bars, taken, accuracy=reported | {"settings": settings})
     print_bars(last.bars, taken["search"] / taken["run"], what="the search for the accuracy")
 
 
 def _missed(last: TriedSetting, accuracy: float, folder: Path, limit: str) -> str:
     off, key = largest(last.bars)
-    bar = next(bar for bar in last.bars if bar.headline.key == key)
+    bar = next(bar for bar in last.bars if bar.key_result.key == key)
     return (
-        f"accuracy: {accuracy:.2%} was not reached: with {settings_told(last.scene)}, {_limits(bar)} leaves {key} at "
+        f"accuracy: {accuracy:.2%} was not reached: with {settings_reported(last.scene)}, {_limits(bar)} leaves {key} "
+        "at "
         f"{off:.2%}{limit}; {folder} has that run, with its error bars: ask for less"
     )
 

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.condensation import condensed_of
 from riser_soil.assembly.hang_off import hung_end
 from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
-from riser_soil.assembly.pressures import pressures_of
-from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
+from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, pressures_of, springs_of
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.shape import least_bend
+from riser_soil.assembly.soil_block import condensed_of
 from riser_soil.assembly.stage import dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
@@ -33,16 +32,14 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
     from riser_soil.contact.contact import LoadsSoil, RiserContact
-    from riser_soil.contact.cushion import Cushion
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.mesh_renewal import MeshRenewal
-    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.contact.seabed_contact import Cushion, SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
-    from riser_soil.riser.wall_sections import WallSections
-    from riser_soil.riser.wall_tension import Pressures
+    from riser_soil.riser.wall_stress import Pressures, WallSections
     from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
 
@@ -61,7 +58,8 @@ class Assembly:
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     vessels: those that carry ends, None where there are none.
     condensed: linear soil as it is solved for, in the place of `soil`, whose state is then that of `recovered_soil`.
-    begun: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow from it.
+    start_places: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow
+    from it.
     """
 
     scene: Scene
@@ -82,7 +80,7 @@ class Assembly:
     cushion: Cushion | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
-    begun: dict[str, Array] = field(default_factory=dict)
+    start_places: dict[str, Array] = field(default_factory=dict)
 
     @property
     def ground_fields(self) -> list[Field]:
@@ -140,7 +138,7 @@ class Assembly:
         """Sections of the walls that bear stress; None where no line type has one."""
         if not self.elements.wall_outer_diameter.any():
             return None
-        from riser_soil.riser.wall_sections import walls_of
+        from riser_soil.riser.wall_stress import walls_of
 
         return walls_of(self.elements)
 
@@ -210,22 +208,22 @@ class Assembly:
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
-        self.begun[stage.name] = end_positions(self.line)
-        return self._enter(stage, self.begun[stage.name])
+        self.start_places[stage.name] = end_positions(self.line)
+        return self._enter(stage, self.start_places[stage.name])
 
     def resume(self) -> tuple[Stage, Model]:
         """The last stage of those begun, its ends set in motion, and its parts: of an assembly that was restored."""
-        *before, stage = (stage for stage in self.scene.stages if stage.name in self.begun)
+        *before, stage = (stage for stage in self.scene.stages if stage.name in self.start_places)
         for earlier in before:
-            set_motions(self.line, earlier, self.vessels, self.begun[earlier.name])
-        return stage, self._enter(stage, self.begun[stage.name])
+            set_motions(self.line, earlier, self.vessels, self.start_places[earlier.name])
+        return stage, self._enter(stage, self.start_places[stage.name])
 
     def state(self) -> Saved:
         """The state of the prescribed motions; fields and parts have states of their own."""
-        return dict(self.begun)
+        return dict(self.start_places)
 
     def restore(self, saved: Saved) -> None:
-        self.begun = dict(saved)
+        self.start_places = dict(saved)
 
     def _enter(self, stage: Stage, origins: Array) -> Model:
         set_motions(self.line, stage, self.vessels, origins)

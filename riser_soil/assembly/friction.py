@@ -17,7 +17,7 @@ from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_law import strength_of
 
 if TYPE_CHECKING:
-    from riser_soil.contact.adhesion import Adhesion
+    from riser_soil.contact.coulomb import Adhesion
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
@@ -33,7 +33,7 @@ def friction_of(
     """Friction on the seabed, where the scene asks for it."""
     if settings.friction is None:
         return None
-    from riser_soil.contact.adhesion import adhesion_at
+    from riser_soil.contact.coulomb import adhesion_at
     from riser_soil.contact.friction import CoulombFriction, mobilised_within
 
     given, scales = settings.friction, scales_of(elements)
@@ -46,7 +46,7 @@ def friction_of(
 
 def _seabed_adhesion(seabed: Seabed | None, share: float | None, elements: Elements) -> Adhesion:
     """Of clay; without a limit on ground that has no strength."""
-    from riser_soil.contact.adhesion import Adhesion
+    from riser_soil.contact.coulomb import Adhesion
 
     strength = seabed.undrained_strength if seabed is not None else None
     if share is None or strength is None:

@@ -69,7 +69,7 @@ def _stretches(segment: Segment, begin: float, arc: Array, lengths: Array) -> li
     corners = _long_enough(at, h, _corners(at, np.log(h)))
     given = segment.model_dump(exclude={"length", "elements", "element_length"})
     return [
-        Segment(**given, length=float(at[j] - at[i]), element_length=(_told(h[i]), _told(h[j])))
+        Segment(**given, length=float(at[j] - at[i]), element_length=(_reported(h[i]), _reported(h[j])))
         for i, j in pairwise(corners)
     ]
 
@@ -92,6 +92,6 @@ def _long_enough(x: Array, h: Array, corners: list[int]) -> list[int]:
     return [*kept, corners[-1]]
 
 
-def _told(length: float) -> float:
+def _reported(length: float) -> float:
     """To four figures."""
     return float(f"{length:.4g}")

@@ -22,13 +22,11 @@ from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
 from riser_soil.scene.soil_law import law_of, volumes, weight_of
 
 if TYPE_CHECKING:
-    from riser_soil.contact.cushion import Cushion
-    from riser_soil.contact.law import Penalty
+    from riser_soil.contact.law import Penalty, SuctionLaw
     from riser_soil.contact.mesh_renewal import MeshRenewal
-    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.contact.seabed_contact import Cushion, SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
-    from riser_soil.contact.suction import SuctionLaw
     from riser_soil.contact.surface_contact import SurfaceContact
     from riser_soil.seabed.grounds import Ground
     from riser_soil.seabed.law import NormalLaw
@@ -184,7 +182,7 @@ def cushion_of(
     level = bool(np.ptp(top[:, 2]) < LEVEL * scales.diameter) if len(top) else True
     if not comm.bcast(level):
         return None
-    from riser_soil.contact.cushion import Cushion
+    from riser_soil.contact.seabed_contact import Cushion
 
     return Cushion(
         contact.line,
@@ -221,7 +219,7 @@ def _penalty(settings: ContactScene, scales: Scales, stiffness: float) -> Normal
 
 def _with_suction(penalty: Penalty, given: Suction, ground: str, width: float = 1.0) -> SuctionLaw:
     """A penalty with suction; on the soil both are pressures, the cap over that width [m]."""
-    from riser_soil.contact.suction import SuctionLaw
+    from riser_soil.contact.law import SuctionLaw
 
     cap, reach, peak = given.cap / width, given.reach, given.cap / width / penalty.stiffness
     if reach <= peak:
@@ -239,7 +237,7 @@ def _ground(scene: Scene, seabed: Seabed) -> Ground:
     plane = vertical_plane(scene)
     origin, direction = np.asarray(plane.origin), np.asarray(plane.direction)
     if seabed.profile is not None:
-        from riser_soil.seabed.profile import Profile
+        from riser_soil.seabed.height_field import Profile
 
         return Profile(origin[:2], direction[:2], *np.array(seabed.profile).T)
     if seabed.grid is not None:

@@ -13,12 +13,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.cross_checks import conflicts
-from riser_soil.scene.hang_off import HangOff
 from riser_soil.scene.problem import message
-from riser_soil.scene.relocated import with_end_at
-from riser_soil.scene.resized import with_segment_as_long
 from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.shapes import HangOff
+from riser_soil.scene.variants import with_end_at, with_segment_as_long
 
 NEAREST = 1e-3  # of the riser's length: the least layback or segment that is looked at
 LONGEST = 1.05  # times the riser's length: ends farthest apart
@@ -74,19 +73,19 @@ class HungEnd:
         return NEAREST * L, max(math.sqrt(max((LONGEST * L) ** 2 - rise**2, 0.0)), 2.0 * NEAREST * L)
 
     @property
-    def told(self) -> str:
+    def reported(self) -> str:
         """What is asked for, in words."""
         what = "a hang-off angle" if self.asked.angle is not None else "a top tension"
         return f"{what} of {self.asked.asked:g} {self.asked.unit}"
 
 
-def told(hung: HungEnd, value: float) -> str:
+def reported(hung: HungEnd, value: float) -> str:
     """What is asked for, and the value [m] with its place, in words."""
     if hung.asked.by == "length":
-        return f"{hung.told}: a length of {value:.6g} m of segments.{hung.segment}"
+        return f"{hung.reported}: a length of {value:.6g} m of segments.{hung.segment}"
     name = hung.name if hung.asked.by == "layback" else hung.other
     place = ", ".join(f"{x:.6g}" for x in _position(with_value(hung, value).riser, name))
-    return f"{hung.told}: a layback of {value:.6g} m, the {name} at [{place}],"
+    return f"{hung.reported}: a layback of {value:.6g} m, the {name} at [{place}],"
 
 
 def hung_end(scene: Scene) -> HungEnd | None:
@@ -122,7 +121,7 @@ def settled(hung: HungEnd, value: float) -> Scene:
     scene = with_value(hung, value)
     for problem in conflicts(scene):
         wrong = message(problem, scene.model_dump(by_alias=True))
-        raise SceneError(f"{hung.path}: {told(hung, value)} but then {wrong}")
+        raise SceneError(f"{hung.path}: {reported(hung, value)} but then {wrong}")
     return scene
 
 
@@ -141,7 +140,7 @@ def by_cable(hung: HungEnd, asked: float) -> float:
             return float(brentq(lambda x: _seen(hung, x) - asked, *between, xtol=close, rtol=CLOSE))
     what = "length" if hung.asked.by == "length" else "layback"
     raise SceneError(
-        f"{hung.path}: {hung.told} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
+        f"{hung.path}: {hung.reported} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
         f"{max(values):.4g} m, it has {min(seen):.4g} to {max(seen):.4g} {hung.asked.unit}; ask for what lies between, "
         "or change the segments or the height"
     )

@@ -1,25 +1,34 @@
-"""Assembly of the prescribed end motions of a stage as functions of time."""
+"""Assembly of prescribed end motions as functions of time, and the places of the ends, looked up before a solution."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from riser_soil.assembly.stage import times_to_hit
 from riser_soil.core.arrays import Array
 from riser_soil.core.quantities import Vector
 from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.line import Line
-from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
+from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.rao import TRANSLATIONS
+from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage, TimedStage
+from riser_soil.solve.step_control import from_last_to_first
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.motion.carried import SixDegreeMotion
+    from riser_soil.motion.rigid_body import SixDegreeMotion
+
+# Times at which a stage is looked at, at least: a prime number of intervals, as whole periods would always find the
+# same.
+LOOKS = 98
+# Instants of a period, and at most of a stage.
+PER_PERIOD, MOST_LOOKS = 24, 20000
 
 
 def vessels_of(scene: Scene) -> Vessels | None:
@@ -64,7 +73,7 @@ def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessel
 
 def _move(end: End, origin: Array, target: Vector | None) -> None:
     if target is not None:
-        from riser_soil.motion.move import SmoothMove
+        from riser_soil.motion.slow import SmoothMove
 
         end.motion = SmoothMove(origin, np.asarray(target))
 
@@ -105,14 +114,14 @@ def _harmonic(origin: Array, given: Harmonic) -> Motion:
 
 
 def _arc(origin: Array, given: ArcMotion) -> Motion:
-    from riser_soil.motion.swing import AngleOscillation, SwingingEnd
+    from riser_soil.motion.harmonic import AngleOscillation, SwingingEnd
 
     swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
     return SwingingEnd(origin, np.array(given.hub), np.array(given.axis), swing)
 
 
 def _rocking(given: Rotation) -> Callable[[float], SupportRotation]:
-    from riser_soil.motion.swing import AngleOscillation, RockingSupport
+    from riser_soil.motion.harmonic import AngleOscillation, RockingSupport
 
     swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
     return RockingSupport(np.array(given.axis) / np.linalg.norm(given.axis), swing)
@@ -136,7 +145,98 @@ def _sail(end: End, origin: Array, given: VesselHistory, stage: Stage) -> None:
 
 
 def _carry(end: End, origin: Array, six: SixDegreeMotion) -> None:
-    from riser_soil.motion.carried import CarriedEnd, CarriedSupport
+    from riser_soil.motion.rigid_body import CarriedEnd, CarriedSupport
 
     once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end
     end.motion, end.turning = CarriedEnd(origin, once), CarriedSupport(once)
+
+
+def end_places(scene: Scene) -> Iterator[dict[str, Array]]:
+    """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
+    ends = {name: getattr(scene.riser, name) for name in ("start", "end")}
+    last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
+    end, vessels = End(prescribed=True), vessels_of(scene)
+    for stage in scene.stages:
+        place = {}
+        for name, origin in last.items():
+            set_motion(end, name, origin, stage, vessels)
+            motion = end.motion
+            place[name] = np.array([origin if motion is None else motion(t)[0] for t in instants(scene, stage)])
+            if ends[name].tensioner is not None:
+                place[name][:, 2] = origin[2]
+        last = {name: x[-1] for name, x in place.items()}
+        yield place
+
+
+def instants(scene: Scene, stage: Stage) -> Array:
+    """Times [s] of a stage at which its ends are looked up: often in each period, and at the rows of tables."""
+    if isinstance(stage, StaticStage):
+        return np.array([0.0, 1.0])
+    periods = [period for _, period in periods_of(scene, stage)]
+    count = PER_PERIOD * stage.duration / min(periods, default=stage.duration)
+    even = np.linspace(0.0, stage.duration, int(np.clip(count, LOOKS, MOST_LOOKS)))
+    times = np.unique(np.concatenate([even, *_rows(stage)]))
+    return np.asarray(times[times <= stage.duration])
+
+
+def corners(scene: Scene, stage: QuasiStaticStage) -> list[float]:
+    """t of a quasi-static stage where an equilibrium is due whatever its steps are, its end the last: rows of tables,
+    parts of periods, ends of ramps, bends of load histories, outputs.
+    """
+    parts = [np.arange(0.0, stage.duration, period / PER_PERIOD) for _, period in periods_of(scene, stage)]
+    met = np.concatenate([times_to_hit(scene, stage), *_rows(stage), *parts])
+    return from_last_to_first(stage.duration, met.tolist())[::-1]
+
+
+def cycle_count(scene: Scene, stage: Stage) -> float:
+    """Cycles in a stage: periods of what moves, or turns of a table or load history, two to a cycle."""
+    if isinstance(stage, StaticStage):
+        return 0.0
+    periods = (stage.duration / period for _, period in periods_of(scene, stage))
+    given = [np.array(table.displacements) for table in _tables(stage)]
+    given += [np.array([factor for _, factor in load.history])[:, None] for load in stage.loads if load.history]
+    return max([*periods, *(0.5 * float(_turns(values).max()) for values in given)], default=0.0)
+
+
+def _turns(values: Array) -> Array:
+    """How often each column (n, m) turns back."""
+    ways = (np.sign(np.diff(column)) for column in values.T)
+    return np.array([np.count_nonzero(np.diff(way[way != 0.0])) for way in ways])
+
+
+def corner_count(scene: Scene, stage: QuasiStaticStage) -> float:
+    """About how many `corners` there are, outputs left out."""
+    of_periods = {period: PER_PERIOD * stage.duration / period for _, period in periods_of(scene, stage)}
+    bends = [np.array([t for t, _ in load.history or ()]) for load in stage.loads]
+    given = np.concatenate([np.array([stage.duration]), *_rows(stage), *bends])
+    return sum(of_periods.values()) + float(np.count_nonzero(np.unique(given) > 0.0))
+
+
+def _rows(stage: TimedStage) -> list[Array]:
+    """t of the rows of a stage's tables."""
+    return [np.array(table.columns.values["t"]) for table in _tables(stage)]
+
+
+def _tables(stage: TimedStage) -> list[Table | VesselHistory]:
+    motions = stage.motion.by_end.values() if stage.motion is not None else ()
+    return [table for motion in motions for table in (motion.table, motion.vessel_history) if table is not None]
+
+
+def periods_of(scene: Scene, stage: TimedStage) -> Iterator[tuple[str, float]]:
+    """Periods [s] of what moves in a stage."""
+    if isinstance(stage, DynamicStage) and scene.water is not None and scene.water.waves is not None:
+        yield "the waves", scene.water.waves.period
+    if stage.motion is not None:
+        for name, motion in stage.motion.by_end.items():
+            yield from ((f"the {name}'s {key}", period) for key, period in _own_periods(motion))
+
+
+def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:
+    for key, way in motion.ways.items():
+        match way:
+            case Harmonic() | ArcMotion() | Rotation():
+                yield key, way.period
+            case Table() | Vessel() | VesselHistory():  # as fast as its file, or as the waves
+                pass
+            case _:
+                assert_never(way)

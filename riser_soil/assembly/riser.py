@@ -15,14 +15,19 @@ from riser_soil.errors import SceneError
 from riser_soil.riser import sections, shapes
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import UP, Line
+from riser_soil.riser.sections import Elements
 from riser_soil.riser.springs import EndSpring
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.riser import Riser, RotationSpring, Support
 from riser_soil.scene.scene import Scene
 
+if TYPE_CHECKING:
+    from riser_soil.riser.wall_stress import HydrostaticPressure, Pressures
+
 MOST_SHAPES = 30  # tried for marine growth
 SETTLED = 1e-9  # of the riser's length: change of the first shape by which its growth is no other
+
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
@@ -46,7 +51,7 @@ def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections
 
     SceneError where shape and growth do not settle.
     """
-    from riser_soil.riser.marine_growth import Growth, with_growth
+    from riser_soil.riser.additions import Growth, with_growth
 
     growth, attachments, grown = Growth(*given.T), attachments_of(scene), bare
     unstressed, before = unstressed_shape(scene.riser, bare.arc), np.full(bare.arc.size, np.inf)
@@ -74,7 +79,7 @@ def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surro
     """With the bend stiffeners of the ends that have one."""
     for end, is_last in ((riser.start, False), (riser.end, True)):
         if isinstance(end, Support) and end.bend_stiffener is not None:
-            from riser_soil.riser.bend_stiffener import Taper, with_taper
+            from riser_soil.riser.additions import Taper, with_taper
 
             elements = with_taper(elements, Taper(**end.bend_stiffener.model_dump()), is_last, around)
     return elements
@@ -183,3 +188,43 @@ def _to_neutral(line: Line, node: int, angle: float) -> Array:
     across = np.cross(tangent, neutral)
     sine = float(np.linalg.norm(across))
     return np.asarray(across * (np.arctan2(sine, tangent @ neutral) / sine if sine > 0.0 else 1.0))
+
+
+def no_wall_tension(scene: Scene) -> str:
+    """Why there is no wall tension; empty where there is one."""
+    if scene.water is None:
+        needed = scene.riser.contents or any(line.wall for line in scene.used_line_types.values())
+        return "" if needed else "without water and contents it is the effective tension"
+    if scene.water.surface_level is None:
+        return "the pressure outside is unknown without water.surface_level"
+    if any(line.outer_diameter is None for line in scene.used_line_types.values()):
+        return "the pressure outside acts on outer_diameter, which a line type lacks"
+    return ""
+
+
+def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | None:
+    """Both pressures; None where the wall tension is not known."""
+    if no_wall_tension(scene):
+        return None
+    from riser_soil.riser.wall_stress import Pressures
+
+    return Pressures(_inside(scene, line), _outside(scene), elements.inner_diameter, elements.pipe_diameter)
+
+
+def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:
+    given = scene.riser.contents
+    if given is None:
+        return None
+    from riser_soil.riser.wall_stress import HydrostaticPressure
+
+    ends = line.to_global(line.x[[0, -1]])[:, 2]
+    level = float(ends.max()) if given.pressure_level is None else given.pressure_level
+    return HydrostaticPressure(level, scene.gravity * given.density, given.pressure)
+
+
+def _outside(scene: Scene) -> HydrostaticPressure | None:
+    if scene.water is None or scene.water.surface_level is None:
+        return None
+    from riser_soil.riser.wall_stress import HydrostaticPressure
+
+    return HydrostaticPressure(scene.water.surface_level, scene.gravity * scene.water.density)

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from riser_soil.sea.changing_current import ChangingCurrent
     from riser_soil.sea.components import Components
     from riser_soil.sea.current import SteadyCurrent
-    from riser_soil.sea.sea import FlowComponent, Sea
+    from riser_soil.sea.flows import FlowComponent, Sea
     from riser_soil.sea.steady_flow import SteadyFlow
     from riser_soil.sea.steady_wave import SteadyWave
-    from riser_soil.sea.wave_field import WaveField
+    from riser_soil.sea.waves import WaveField
 
 
 def water_of(scene: Scene, stage: Stage) -> Sea | None:
@@ -36,7 +36,7 @@ def water_of(scene: Scene, stage: Stage) -> Sea | None:
     flows = list(_flows(scene, stage))
     if not flows and scene.water.surface_level is None:
         return None
-    from riser_soil.sea.sea import Sea
+    from riser_soil.sea.flows import Sea
 
     return Sea(scene.water.surface_level, flows)
 
@@ -69,24 +69,24 @@ def _train(train: WaveKind, number: int, g: float, h: float) -> Components:
             angles = math.radians(train.direction_deg), math.radians(train.phase_deg)
             return regular(train.height, train.period, *angles, g, h)
         case Record():
-            from riser_soil.sea.elevation import recorded
+            from riser_soil.sea.spectra import recorded
 
             elevation = np.array(train.record.elevation)
             return recorded(elevation, train.record.step, train.harmonics, train.position, train.toward[0], g, h)
         case Jonswap() | PiersonMoskowitz():
-            from riser_soil.sea import jonswap
+            from riser_soil.sea import spectra
 
             gamma = train.gamma if isinstance(train, Jonswap) else 1.0
-            return jonswap.components(
+            return spectra.components(
                 *(train.Hs, train.Tp, gamma, train.components, _seed(train.seed, number)), np.array(train.toward), g, h
             )
         case GivenSpectrum():
-            from riser_soil.sea import given_spectrum
+            from riser_soil.sea import spectra
 
             w, density = np.array(train.table.frequency), np.array(train.table.density)
             seed, toward = _seed(train.seed, number), np.array(train.toward)
             by_direction = np.array(train.table.parts) if train.table.parts else None
-            return given_spectrum.components(w, density, train.components, seed, toward, g, h, by_direction)
+            return spectra.components_of_spectrum(w, density, train.components, seed, toward, g, h, by_direction)
     assert_never(train)
 
 
@@ -168,7 +168,7 @@ def _waves(scene: Scene, stage: Stage) -> WaveField | SteadyFlow:
 
         wave = steady_wave_of(waves.regular, scene.gravity, scene.water_depth)
         return SteadyFlow(wave, waves.regular.toward[0], math.radians(waves.regular.phase_deg), level, *times)
-    from riser_soil.sea.wave_field import WaveField
+    from riser_soil.sea.waves import WaveField
 
     components = components_of(scene)
     assert components is not None

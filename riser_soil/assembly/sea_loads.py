@@ -99,8 +99,8 @@ class _BodyLoads:
     @cached_property
     def _flow(self) -> FlowAtStations:
         """The water around the pipe, which may stand still."""
+        from riser_soil.sea.flows import Sea
         from riser_soil.sea.moving_water import FlowAtStations
-        from riser_soil.sea.sea import Sea
 
         return FlowAtStations(self.body.pipe, water_of(self.scene, self.stage) or Sea(None))
 

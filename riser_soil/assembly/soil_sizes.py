@@ -107,8 +107,8 @@ class SoilSizes:
             )
         across = min(self.width / ACROSS, self.scales.diameter / ROUND)
         strip = max(STRIP * across, BESIDE * self.width)
-        sizes = CellSizes(along=_told(max(self.along, across)), across=_told(across), strip=_told(strip))
-        return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=_told(max(FAR * block.depth, across)))
+        sizes = CellSizes(along=_reported(max(self.along, across)), across=_reported(across), strip=_reported(strip))
+        return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=_reported(max(FAR * block.depth, across)))
 
     @property
     def along(self) -> float:
@@ -151,6 +151,6 @@ def _rounded(values: Array) -> Array:
     return np.asarray(np.round(values / unit) * unit)
 
 
-def _told(size: float) -> float:
+def _reported(size: float) -> float:
     """To four figures."""
     return float(f"{size:.4g}")

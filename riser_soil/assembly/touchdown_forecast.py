@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.end_places import end_places
+from riser_soil.assembly.motions import end_places
 from riser_soil.assembly.riser import attachments_of
 from riser_soil.assembly.shape import catenary_between, resting_level
 from riser_soil.core.arrays import Array

@@ -13,8 +13,7 @@ from riser_soil.assembly.sea import components_of, wave_clock
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.quantities import Vector
 from riser_soil.errors import SceneError
-from riser_soil.motion.rao import RaoTable
-from riser_soil.motion.vessel import VesselAttachment, VesselMotion, VesselResponse
+from riser_soil.motion.vessel import RaoTable, VesselAttachment, VesselMotion, VesselResponse
 from riser_soil.scene.motions import Vessel as VesselScene
 from riser_soil.scene.rao import MODES
 from riser_soil.scene.scene import Scene
@@ -23,7 +22,7 @@ from riser_soil.sea.components import Components
 
 # Part of a mode's energy that waves beyond the table's frequencies may have, judged by its first and last rows, and the
 # part from which that is told.
-MOST_BEYOND, TOLD_BEYOND = 0.01, 1e-3
+MOST_BEYOND, REPORTED_BEYOND = 0.01, 1e-3
 
 _Key = tuple[Path, Vector, float]
 
@@ -174,4 +173,4 @@ def _beyond(
             f"{100.0 * share[worst]:.3g} % of the energy of {MODES[worst]}; add rows that cover "
             f"{waves.frequency.min():.4g} to {waves.frequency.max():.4g} rad/s"
         )
-    return EnergyOutsideTable(below, above, first, last) if share.max() > TOLD_BEYOND else None
+    return EnergyOutsideTable(below, above, first, last) if share.max() > REPORTED_BEYOND else None

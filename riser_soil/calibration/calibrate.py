@@ -6,9 +6,8 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from riser_soil.calibration.data import MeasuredResistance, read_resistance
 from riser_soil.calibration.least_squares import Fit, FitParameter, fit
-from riser_soil.calibration.path import path_through
+from riser_soil.calibration.path import MeasuredResistance, path_through, read_resistance
 from riser_soil.calibration.report import printed, refuse_folder, write_folder
 from riser_soil.calibration.segment import TABLE, PipeSegment, diameter, first_penetration, write_table
 from riser_soil.core.arrays import Array

@@ -79,16 +79,17 @@ def fit(
     model: Model,
     data: Array,
     parameters: tuple[FitParameter, ...],
-    told: Callable[[int, float, Mapping[str, float]], None] = lambda *_: None,
+    reported: Callable[[int, float, Mapping[str, float]], None] = lambda *_: None,
     *,
     relative: bool = False,
 ) -> Fit:
-    """The parameters whose model is nearest to data (n,). told: of runs so far, misfit and parameters, at each step.
+    """The parameters whose model is nearest to data (n,). reported: of runs so far, misfit and parameters, at each
+    step.
 
     relative: errors grow with the data, those below LEAST_SHARE of the largest excepted; else they are of one size.
     """
     sizes = error_sizes(data) if relative else np.full(len(data), np.sqrt(np.mean(data**2)))
-    search = _Search(model, data, sizes, parameters, told)
+    search = _Search(model, data, sizes, parameters, reported)
     first = np.array([p.scaled(p.guess) for p in parameters])
     low, high = np.array([p.scaled(p.low) for p in parameters]), np.array([p.scaled(p.high) for p in parameters])
     found = least_squares(
@@ -143,9 +144,15 @@ class _Search:
         data: Array,
         sizes: Array,
         parameters: tuple[FitParameter, ...],
-        told: Callable[[int, float, Mapping[str, float]], None],
+        reported: Callable[[int, float, Mapping[str, float]], None],
     ) -> None:
-        self._model, self._data, self._sizes, self._parameters, self._told = model, data, sizes, parameters, told
+        self._model, self._data, self._sizes, self._parameters, self._reported = (
+            model,
+            data,
+            sizes,
+            parameters,
+            reported,
+        )
         self.runs = 0
         self._last: tuple[Array, Array] | None = None
 
@@ -163,7 +170,7 @@ class _Search:
 
     def jacobian(self, x: Array) -> Array:
         here = self.residual(x)
-        self._told(self.runs, float(np.sqrt(np.mean((self._sizes * here) ** 2))), self._named(x))
+        self._reported(self.runs, float(np.sqrt(np.mean((self._sizes * here) ** 2))), self._named(x))
         columns = []
         for n, p in enumerate(self._parameters):
             inwards = 1.0 if x[n] + DIFFERENCE <= p.scaled(p.high) else -1.0

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from riser_soil.calibration.data import MeasuredResistance
 from riser_soil.calibration.least_squares import CONFIDENCE, Fit
-from riser_soil.calibration.path import PenetrationPath
+from riser_soil.calibration.path import MeasuredResistance, PenetrationPath
 from riser_soil.calibration.segment import TABLE, PipeSegment
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.plots.resistance import draw_resistance
+from riser_soil.plots.soil_curves import draw_resistance
 from riser_soil.results.whole_file import refuse_file, written_together
 from riser_soil.scene.dump import dump_scene
 
@@ -35,8 +34,8 @@ def refuse_folder(folder: Path, force: bool) -> None:
 
 def printed(runs: int, misfit: float, parameters: Mapping[str, float]) -> None:
     """A step of the search."""
-    told = ", ".join(f"{name} = {value:.5g}" for name, value in parameters.items())
-    print(f"{runs:3d} runs, misfit {misfit:.4g} N/m: {told}", flush=True)
+    reported = ", ".join(f"{name} = {value:.5g}" for name, value in parameters.items())
+    print(f"{runs:3d} runs, misfit {misfit:.4g} N/m: {reported}", flush=True)
 
 
 def result_lines(fit: Fit) -> list[str]:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray
 
-from riser_soil.cases.case_dataset import dataset
+from riser_soil import __version__
 from riser_soil.cases.case_folder import DATA, EXTREMES, FILES, PLOT, TABLE
 from riser_soil.cases.case_table import CaseTable
 from riser_soil.plots.load_cases import Panel, draw_load_cases
@@ -28,7 +30,7 @@ def write_files(table: CaseTable, folder: Path) -> None:
 
 
 def _draw(table: CaseTable, png: Path) -> None:
-    """The headline quantities of the last stage that the table tells of."""
+    """The key results of the last stage that the table tells of."""
     names = [case.name for case in table.cases]
     stage = next((value.stage for value in reversed(table.quantities.values())), "no stage")
     shown = {key: each for key, each in table.quantities.items() if each.stage == stage and not each.in_time}
@@ -49,8 +51,8 @@ def _rows(table: CaseTable) -> Iterator[list[str]]:
     for n, case in enumerate(table.cases):
         outcome = table.outcomes[case.name]
         given = [_given(case.values[path]) if path in case.values else "" for path in table.paths]
-        told = [str(outcome.status), outcome.reason, f"{outcome.seconds:.3g}", outcome.machine]
-        yield [case.name, *given, *told, *(_number(column[n]) for column in columns)]
+        reported = [str(outcome.status), outcome.reason, f"{outcome.seconds:.3g}", outcome.machine]
+        yield [case.name, *given, *reported, *(_number(column[n]) for column in columns)]
 
 
 def _extremes(table: CaseTable) -> Iterator[list[str]]:
@@ -69,3 +71,41 @@ def _given(value: Any) -> str:
 
 def _number(value: float) -> str:
     return f"{value:.8g}" if math.isfinite(value) else ""
+
+
+def dataset(table: CaseTable) -> xarray.Dataset:
+    """Dimension `case`: its name; `set_…`, what it differs in from the base scene; status, reason, seconds; a variable
+    for each quantity, nan where a case failed.
+    """
+    names = [case.name for case in table.cases]
+    outcomes = [table.outcomes[name] for name in names]
+    variables: dict[str, Any] = {
+        "status": ("case", np.array([o.status for o in outcomes], "i4"), {"long_name": "exit status; 0 is done"}),
+        "reason": ("case", _texts([o.reason for o in outcomes]), {"long_name": "why a case failed"}),
+        "seconds": ("case", [o.seconds for o in outcomes], {"units": "s", "long_name": "from its start to its end"}),
+    }
+    for path in table.paths:
+        given = _given_values([case.values.get(path) for case in table.cases])
+        variables[_identifier(f"set_{path}")] = ("case", given, {"long_name": path})
+    for key, value in table.quantities.items():
+        reported = {"units": value.unit.replace(".", " "), "long_name": value.name, "stage": value.stage}
+        reported |= {"sign_convention": value.sign} if value.sign else {}
+        variables[_identifier(key)] = ("case", table.column(key), reported)
+    about = {"title": table.title, "source": f"riser_soil {__version__}", "Conventions": "CF-1.11"}
+    return xarray.Dataset(variables, {"case": ("case", _texts(names), {"long_name": "name of the case"})}, about)
+
+
+def _given_values(values: Sequence[Any]) -> Any:
+    """Numbers as such, nan where the base scene's holds; what is not all numbers as text."""
+    if all(value is None or (isinstance(value, int | float) and not isinstance(value, bool)) for value in values):
+        return np.array([np.nan if value is None else value for value in values], "f8")
+    return _texts(["" if v is None else v if isinstance(v, str) else json.dumps(v, ensure_ascii=False) for v in values])
+
+
+def _texts(values: Sequence[str]) -> Any:
+    return np.array(values, dtype=object)
+
+
+def _identifier(text: str) -> str:
+    """`heave_top_tension_mean`."""
+    return re.sub(r"\W+", "_", text).strip("_")

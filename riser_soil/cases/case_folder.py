@@ -43,8 +43,8 @@ class Outcome:
         return self.status == 0
 
     @classmethod
-    def of(cls, told: Mapping[str, Any]) -> Self:
-        return cls(**{name: told[name] for name in cls.__dataclass_fields__})
+    def of(cls, reported: Mapping[str, Any]) -> Self:
+        return cls(**{name: reported[name] for name in cls.__dataclass_fields__})
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -58,10 +58,10 @@ def place(folder: Path, name: str) -> Path:
 def found(folder: Path, name: str, key: str) -> Outcome | None:
     """The outcome of a case whose results are there; None where they are not, or those of another scene."""
     try:
-        told = Outcome.of(json.loads((place(folder, name) / CASE).read_text(encoding="utf-8")))
+        reported = Outcome.of(json.loads((place(folder, name) / CASE).read_text(encoding="utf-8")))
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return told if told.done and told.key == key and is_finished(place(folder, name)) else None
+    return reported if reported.done and reported.key == key and is_finished(place(folder, name)) else None
 
 
 def attempt(folder: Path, name: str, scene: str) -> Path:

@@ -99,8 +99,10 @@ def _connected(address: str) -> Client:
     try:
         return Client(address, timeout=CONNECTING)
     except (OSError, ValueError) as err:
-        told = " ".join(str(err).split())
-        raise SceneError(f"--scheduler {address}: nobody answers there ({told}); start one by: dask scheduler") from err
+        reported = " ".join(str(err).split())
+        raise SceneError(
+            f"--scheduler {address}: nobody answers there ({reported}); start one by: dask scheduler"
+        ) from err
 
 
 def _refuse_strangers(client: Client, address: str) -> None:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from datetime import timedelta
 from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from riser_soil import __version__
 from riser_soil.cases.case_folder import ATTEMPTS, CASE, CASES, FILES, Outcome, clear_attempts, found, place
-from riser_soil.cases.case_progress import CaseProgress
 from riser_soil.cases.case_table import CaseTable, case_table
 from riser_soil.cases.expansion import Case, read_cases
 from riser_soil.cases.work import Task
@@ -39,14 +45,14 @@ def run_cases(
     overrides: of the base scene, beside those of the file. Cases that fail are rows with their reasons. Raises
     SceneError before the first case is run; Interruption leaves what has ended, and a further call goes on.
     """
-    told, cases = read_cases(file, overrides)
+    reported, cases = read_cases(file, overrides)
     folder = folder.absolute()
     with _held(folder, cases):
         outcomes = {case.name: known for case in cases if (known := found(folder, case.name, case.key))}
         todo = [_task(case, folder, workers.limit) for case in cases if case.name not in outcomes]
         says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
         outcomes |= _computed(todo, workers, len(cases), folder) if todo else {}
-        table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, told.statistics.since)
+        table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, reported.statistics.since)
         from riser_soil.cases.case_files import write_files
 
         write_files(table, folder)
@@ -115,3 +121,57 @@ def _refuse(folder: Path, cases: Sequence[Case]) -> None:
         at = place(folder, case.name)
         if at.exists() and not (at / CASE).is_file():
             raise SceneError(f"{at}: is no case's folder, and would be replaced; move it away, or choose another (-o)")
+
+
+class CaseProgress:
+    """Cases that have ended, and the time left. Use in a `with` statement.
+
+    The bar goes to standard error, so that what the command prints can be piped; lines go to standard output, on a
+    terminal those of failed cases alone.
+    """
+
+    def __init__(self, count: int, known: int, console: Console | None = None) -> None:
+        console = console or Console(stderr=True)
+        self._count, self._ended, self._failed = count, known, 0
+        self._on_terminal = console.is_terminal
+        self._bar = Progress(
+            TextColumn("[bold]cases"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[failed]}"),
+            TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
+            console=console, disable=not self._on_terminal, refresh_per_second=4,
+        )  # fmt: skip
+        self._task = self._bar.add_task("", total=count, completed=known, failed="", left="")
+        self._known, self._start = known, time.monotonic()
+
+    def __enter__(self) -> Self:
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.stop()
+
+    @property
+    def ended(self) -> int:
+        """Cases that have ended, those of earlier calls included."""
+        return self._ended
+
+    def take(self, outcome: Outcome) -> None:
+        """One more has ended."""
+        self._ended += 1
+        self._failed += not outcome.done
+        failed = f"{self._failed} failed" if self._failed else ""
+        self._bar.update(self._task, completed=self._ended, failed=failed, left=self._left())
+        if not (outcome.done and self._on_terminal):
+            print(f"{self._ended} of {self._count}: {outcome.name}: {_reported(outcome)}", flush=True)
+
+    def _left(self) -> str:
+        """By the mean over this call: cases that run side by side end in bunches."""
+        seconds = (time.monotonic() - self._start) / (self._ended - self._known) * (self._count - self._ended)
+        return f"{timedelta(seconds=round(seconds))} left"
+
+
+def _reported(outcome: Outcome) -> str:
+    if outcome.done:
+        return f"done in {outcome.seconds:.3g} s"
+    return f"failed with status {outcome.status}: {outcome.reason}"

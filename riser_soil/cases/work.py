@@ -17,7 +17,7 @@ from typing import Any
 
 from riser_soil import __version__
 from riser_soil.cases.case_folder import SAID, Outcome, attempt, found, settle
-from riser_soil.core.own_process import environment_alone
+from riser_soil.core.environment import environment_alone
 from riser_soil.errors import ResultsError, WriteError
 from riser_soil.results.folder import SCENE
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.end_places import cycle_count
 from riser_soil.assembly.ground import smoothing
+from riser_soil.assembly.motions import cycle_count
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
-from riser_soil.checks.mesh_plausibility import mesh_warnings, told_size
+from riser_soil.checks.mesh_plausibility import mesh_warnings, reported_size
 from riser_soil.checks.motion_plausibility import farthest_move, top_speed
 from riser_soil.core.arrays import Array
 from riser_soil.scene.scene import Scene
@@ -113,7 +113,7 @@ def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
     if scene.contact is None or not scene.contact.at_nodes or scene.soil is None:
         return
     mesh = scene.soil.mesh
-    cells = f"cells of {told_size(mesh)}" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
+    cells = f"cells of {reported_size(mesh)}" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
     yield (
         f"the pipe, D = {_diameter(assembly):.4g} m, touches the soil at its nodes only, "
         f"{assembly.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.assembly.pressures import no_wall_tension
+from riser_soil.assembly.riser import no_wall_tension
 from riser_soil.assembly.soil_block import why_all
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
@@ -20,8 +20,8 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 def left_out(scene: Scene) -> dict[str, str]:
     """Parts and results that the scene leaves out, each with its reason."""
-    told = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": no_wall_tension(scene)}
-    return {name: reason for name, reason in told.items() if reason}
+    reported = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": no_wall_tension(scene)}
+    return {name: reason for name, reason in reported.items() if reason}
 
 
 def _reasons(scene: Scene) -> dict[str, str]:

@@ -1,13 +1,15 @@
-"""Memory and disk limits: a scene that exceeds them is refused before anything is built."""
+"""Memory and disk limits: a scene that exceeds what the machine has is refused before anything is built."""
 
 from __future__ import annotations
 
+import math
+import resource
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from riser_soil.checks.estimate import WITHIN, ProblemSize, riser_memory, size_of
-from riser_soil.checks.machine import available_memory, free_disk
 from riser_soil.core.communicator import Communicator
 from riser_soil.errors import SceneError
 from riser_soil.scene.scene import Scene
@@ -20,6 +22,12 @@ _REMEDIES = {
     "soil.mesh": "take larger cells or a smaller block, or solver: {linear: iterative}",
 }
 _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
+_MEMORY = Path("/proc/meminfo")
+_STATUS = Path("/proc/self/status")
+_GROUPS = (
+    (Path("/sys/fs/cgroup"), "memory.max", "memory.current"),
+    (Path("/sys/fs/cgroup/memory"), "memory.limit_in_bytes", "memory.usage_in_bytes"),
+)
 
 
 def size_that_fits(scene: Scene, folder: Path, comm: Communicator) -> ProblemSize:
@@ -55,7 +63,7 @@ def too_long(size: ProblemSize) -> Iterator[str]:
     """A warning of a long run."""
     if size.seconds > LONG:
         yield (
-            f"the run takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}: check duration, "
+            f"the run takes about {in_words(size.seconds)}, {size.reported_steps} of {_parts(size)}: check duration, "
             "time_step and load_steps, and what is meshed more finely than it needs to be"
         )
 
@@ -63,7 +71,7 @@ def too_long(size: ProblemSize) -> Iterator[str]:
 def tell(size: ProblemSize, comm: Communicator) -> None:
     """Tell of a run that lasts a while, before it begins."""
     if size.seconds > NOTED and comm.rank == 0:
-        print(f"this takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}", flush=True)
+        print(f"this takes about {in_words(size.seconds)}, {size.reported_steps} of {_parts(size)}", flush=True)
 
 
 def in_words(seconds: float) -> str:
@@ -113,6 +121,60 @@ def _largest(size: ProblemSize) -> str:
 
 
 def _too_much_disk(size: ProblemSize, free: float) -> str:
-    what = f"{size.records:.4g} records and {size.pictures:.4g} pictures of {_parts(size)}, {size.told_steps}"
+    what = f"{size.records:.4g} records and {size.pictures:.4g} pictures of {_parts(size)}, {size.reported_steps}"
     remedy = "take longer intervals of output, a shorter duration or a longer time_step"
     return f"output.interval: {what}: about {in_bytes(size.disk)} on disk, and {in_bytes(free)} are free; {remedy}"
+
+
+def available_memory() -> float:
+    """Bytes that this process can still have: of the machine, of its control group, of its own limit; inf if it is not
+    known.
+    """
+    return max(0.0, min([*_of_the_machine(), *_of_the_group(), *_of_the_process()], default=math.inf))
+
+
+def free_disk(folder: Path) -> float:
+    """Bytes left where a folder is, or is going to be."""
+    there = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.exists())
+    return float(shutil.disk_usage(there).free)
+
+
+def _of_the_machine() -> Iterator[float]:
+    yield from _kilobytes(_MEMORY, "MemAvailable:")
+
+
+def _of_the_group() -> Iterator[float]:
+    """In a container; the file cache counts as available."""
+    for folder, limit, used in _GROUPS:
+        for most, now in zip(_number(folder / limit), _number(folder / used), strict=False):
+            yield most - now + sum(_fields(folder / "memory.stat", "inactive_file"))
+
+
+def _of_the_process() -> Iterator[float]:
+    most, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if most != resource.RLIM_INFINITY:
+        yield from (most - used for used in _kilobytes(_STATUS, "VmSize:"))
+
+
+def _kilobytes(file: Path, name: str) -> Iterator[float]:
+    yield from (1024.0 * value for value in _fields(file, name))
+
+
+def _fields(file: Path, name: str) -> Iterator[float]:
+    """The number after a name in a file of lines."""
+    words = (line.split() for line in _text(file).splitlines())
+    yield from (float(line[1]) for line in words if len(line) > 1 and line[0] == name)
+
+
+def _number(file: Path) -> Iterator[float]:
+    """The number that a file holds, if it holds one."""
+    text = _text(file).strip()
+    if text.isdecimal():
+        yield float(text)
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="ascii", errors="replace")
+    except OSError:
+        return ""

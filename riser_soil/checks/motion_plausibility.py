@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly.end_places import LOOKS, end_places, instants, periods_of
-from riser_soil.assembly.motions import set_motion, vessels_of
+from riser_soil.assembly.motions import LOOKS, end_places, instants, periods_of, set_motion, vessels_of
 from riser_soil.core.arrays import Array
 from riser_soil.riser.ends import End
 from riser_soil.scene.riser import Support
@@ -128,10 +127,10 @@ def _course(end: End, times: Array, turns: bool) -> VelocitiesByEnd:
     spins = None
     if end.turning is not None and turns:
         spins = np.degrees([end.turning(t).angular_velocity for t in times])
-    return {"m/s": _told(velocities), "deg/s": _told(spins)}
+    return {"m/s": _reported(velocities), "deg/s": _reported(spins)}
 
 
-def _told(velocities: Array | None) -> EndVelocities:
+def _reported(velocities: Array | None) -> EndVelocities:
     if velocities is None:
         return STILL
     return EndVelocities(True, velocities[0], velocities[-1], float(np.linalg.norm(velocities, axis=1).max()))

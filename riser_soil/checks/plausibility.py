@@ -88,7 +88,7 @@ def _loads_that_end(scene: Scene) -> Iterator[str]:
             if not load.keep and not _has_ended(load, stage) and _acting(load) not in acting_after:
                 back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
                 yield (
-                    f"stages.{n}.loads.{m}: {_told(load)} ends with its stage; {after.name} is without it, and the "
+                    f"stages.{n}.loads.{m}: {_reported(load)} ends with its stage; {after.name} is without it, and the "
                     f"riser {back}: give it keep: true if it stays"
                 )
 
@@ -106,7 +106,7 @@ def _acting(load: Load) -> tuple[object, ...]:
     return load.at, load.force, load.moment, load.distributed
 
 
-def _told(load: Load) -> str:
+def _reported(load: Load) -> str:
     given = {"force": (load.force, "N"), "moment": (load.moment, "N.m"), "distributed": (load.distributed, "N/m")}
     parts = [f"{key} {[float(f'{x:.4g}') for x in v]} {unit}" for key, (v, unit) in given.items() if v is not None]
     return " and ".join(parts) + (f" at {load.at}" if load.at is not None else "")

@@ -11,7 +11,7 @@ from riser_soil.checks.inventory import has_dynamics
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.wave_kinds import Airy, Regular, WaveKind
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import wave_number
 
 # Height over Miche's breaking height from which linear theory is well off: Stokes's crests are a tenth higher there.
 STEEP = 0.5
@@ -43,7 +43,7 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
         yield "water.waves: waves act in dynamic stages, and no stage is dynamic: nothing will come of them"
 
 
-def told_regular(scene: Scene) -> Iterator[str]:
+def reported_regular(scene: Scene) -> Iterator[str]:
     """The theory and shape of a regular wave of finite height, where the scene has one."""
     waves = scene.water.waves if scene.water is not None else None
     if waves is None or waves.regular is None:

@@ -5,18 +5,12 @@ from typing import Annotated
 import typer
 
 from riser_soil import __version__
-from riser_soil.commands.accuracy import study
-from riser_soil.commands.cases import cases
-from riser_soil.commands.fatigue import fatigue
+from riser_soil.commands.cases import cases, stress, study
 from riser_soil.commands.ground import calibrate, material
-from riser_soil.commands.imports import export, import_
-from riser_soil.commands.modes import modes
-from riser_soil.commands.new import new
-from riser_soil.commands.pictures import plot, report
-from riser_soil.commands.results import film, stiffness
-from riser_soil.commands.run import check, run, schema
+from riser_soil.commands.imports import export, import_, new
+from riser_soil.commands.results import fatigue, film, plot, report, stiffness
+from riser_soil.commands.run import check, modes, run, schema
 from riser_soil.commands.statistics import histories, statistics
-from riser_soil.commands.stress import stress
 from riser_soil.commands.telling import telling
 
 PRINTING = (schema, statistics, histories, stiffness)  # what they print is their result

@@ -1,12 +1,12 @@
-"""Command about many runs of one scene: riser-soil cases."""
+"""Commands about many runs of one scene: riser-soil cases | study | stress."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from riser_soil.commands.arguments import Overrides, positive
 from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.scenes import Overrides, SceneFile, placed, positive, read_solved
 from riser_soil.errors import ResultsError, SolveError
 
 _NAMED = 5
@@ -48,3 +48,75 @@ def cases(
             names = ", ".join(outcome.name for outcome in failed[:_NAMED])
             more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
             raise SolveError(f"failed: {names}{more}; reasons are in {folder / 'cases.csv'}")
+
+
+def study(
+    scene: SceneFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the scene's name and -study"),
+    ] = None,
+    setting: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--knob",
+            metavar="NAME",
+            help="vary only this one: elements, time_step, soil_mesh or penalty; may be repeated",
+        ),
+    ] = None,
+    levels: Annotated[int, typer.Option("--rungs", help="runs of each knob's ladder, 3 to 9")] = 5,
+    jobs: Annotated[
+        int, typer.Option("--jobs", help="processes at a time for the finest runs; the others are timed one at a time")
+    ] = 1,
+    force: Annotated[bool, typer.Option("--force", help="begin anew; else what was computed is kept")] = False,
+    overrides: Overrides = None,
+) -> None:
+    """Vary elements, time step, soil mesh and penalty: the error of the answers against what they cost."""
+    with expected_errors():
+        checked = read_solved(scene, overrides)
+        if rank() > 0:
+            return
+        from riser_soil.accuracy.study import LEAST_LEVELS, MOST_LEVELS
+        from riser_soil.accuracy.study import study as vary
+        from riser_soil.accuracy.study_page import words
+
+        if not LEAST_LEVELS <= levels <= MOST_LEVELS:
+            raise ResultsError(f"--rungs {levels}: must be from {LEAST_LEVELS} to {MOST_LEVELS}")
+        if jobs < 1:
+            raise ResultsError(f"--jobs {jobs}: must be 1 or more")
+        folder = output or Path(f"{Path(scene).stem}-study")
+        with placed(scene, overrides):
+            done = vary(checked, folder, settings=setting or (), levels=levels, jobs=jobs, force=force, says=typer.echo)
+        typer.echo("\n".join([*words(done), f"tables and plot are in {folder}: study.html, study.csv, study.json"]))
+
+
+def stress(
+    scene: SceneFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the scene's name and -stress"),
+    ] = None,
+    limit: Annotated[
+        int, typer.Option("--limit", metavar="SECONDS", help="processor time that each run may take")
+    ] = 120,
+    jobs: Annotated[int, typer.Option("--jobs", help="runs at a time, each a process")] = 1,
+    overrides: Overrides = None,
+) -> None:
+    """Run a scene's extremes: stiffnesses, penalty, steps, meshes, motions; tell which end quietly wrong."""
+    with expected_errors():
+        checked = read_solved(scene, overrides)
+        if rank() > 0:
+            return
+        for name, value in (("limit", limit), ("jobs", jobs)):
+            if value < 1:
+                raise ResultsError(f"--{name} {value}: must be 1 or more")
+        from riser_soil.stress.around import stress as around
+        from riser_soil.stress.limited_process import Limits
+
+        folder = output or Path(f"{Path(scene).stem}-stress")
+        with placed(scene, overrides):
+            rows = around(checked, folder, Limits(cpu=limit), jobs, f"riser-soil stress {scene}", typer.echo)
+        bad = [row.name for row in rows if not row.as_hoped]
+        typer.echo(f"{len(rows)} runs, {len(bad)} quietly wrong, broken or out of time; tables are in {folder}")
+        if bad:
+            raise SolveError(f"not borne: {'; '.join(bad)}")

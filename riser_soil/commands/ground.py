@@ -5,9 +5,8 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.arguments import Overrides, SceneFile
 from riser_soil.commands.endings import expected_errors, rank
-from riser_soil.commands.scenes import placed, read
+from riser_soil.commands.scenes import Overrides, SceneFile, placed, read
 
 
 def material(
@@ -38,8 +37,8 @@ def material(
         from riser_soil.material.study import study
 
         with placed(scene, overrides):
-            told = study(checked, output or Path(f"{Path(scene).stem}_material"), path, depth, force)
-        typer.echo(told)
+            reported = study(checked, output or Path(f"{Path(scene).stem}_material"), path, depth, force)
+        typer.echo(reported)
 
 
 def calibrate(

@@ -1,4 +1,4 @@
-"""Commands that take the results of a run: riser-soil stiffness | film."""
+"""Commands that take the results of runs: riser-soil plot | report | stiffness | film | fatigue."""
 
 import sys
 from pathlib import Path
@@ -6,8 +6,13 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.arguments import Period, RunFolder, StageName, positive
-from riser_soil.commands.endings import expected_errors
+from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.scenes import Period, RunFolder, StageName, positive
+from riser_soil.errors import ResultsError
+
+AnyStage = Annotated[
+    str | None, typer.Option("--stage", metavar="NAME", help="a stage; by default the last dynamic one, else the last")
+]
 
 
 def stiffness(
@@ -21,8 +26,8 @@ def stiffness(
 ) -> None:
     """Print the ground's secant stiffness at arc lengths of a run, cycle by cycle, also over su, as CSV."""
     with expected_errors():
+        from riser_soil.results.cycles import secant_stiffness, write_csv
         from riser_soil.results.read import Run
-        from riser_soil.results.secant_stiffness import secant_stiffness, write_csv
         from riser_soil.results.whole_file import written_whole
 
         positive("period", period)
@@ -61,3 +66,81 @@ def film(
             positive(name, value)
         file = output or Path(f"{folder.resolve().name}.gif")
         typer.echo(draw(folder, file, stage=stage, period=period, field=field, magnify=magnify))
+
+
+def plot(
+    folder: RunFolder,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder of the pictures; by default RUN/plots"),
+    ] = None,
+    what: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--what",
+            metavar="NAME,…",
+            help="ranges, histories, shape, soil, energy, solver, touchdown, film, or a picture by the name of its "
+            "file; may be repeated; by default all that the run has",
+        ),
+    ] = None,
+    ending: Annotated[str, typer.Option("--format", metavar="png|svg|pdf", help="format of the curves")] = "png",
+    stage: AnyStage = None,
+) -> None:
+    """Draw a run: ranges along the riser, histories, shapes through a cycle, soil, energy, touchdown zone, film."""
+    with expected_errors():
+        from riser_soil.plots.album import FORMATS, album
+        from riser_soil.results.read import Run
+
+        if ending not in FORMATS:
+            raise ResultsError(f'--format "{ending}": must be one of {", ".join(FORMATS)}')
+        wanted = [name for group in what or () for name in group.split(",") if name]
+        for file, words in album(Run(folder), output or folder / "plots", wanted, ending, stage):
+            typer.echo(f"{file}: {words}" if file else words)
+
+
+def report(
+    folders: Annotated[
+        list[Path], typer.Argument(metavar="RUN…", help="folders of runs; several are put side by side")
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="the page; by default report.html")
+    ] = Path("report.html"),
+    stage: Annotated[
+        str | None, typer.Option("--stage", metavar="NAME", help="the stage that is drawn; by default all dynamic ones")
+    ] = None,
+) -> None:
+    """Report runs on one HTML page: scene, warnings, extremes, pictures, energy, solver, how to reproduce them."""
+    with expected_errors():
+        from riser_soil.report.report import write_report
+
+        if output.suffix not in (".html", ".htm"):
+            raise ResultsError(f"{output}: a report is an .html file; change its ending")
+        typer.echo(write_report(folders, output, stage))
+
+
+def fatigue(
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="FATIGUE", help="fatigue file (.yaml): S-N curve, runs with their shares of the year"),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the fatigue file's name and -damage"),
+    ] = None,
+    plot: Annotated[bool, typer.Option("--plot", help="draw damage along the pipe and in the touchdown zone")] = False,
+    force: Annotated[bool, typer.Option("--force", help="overwrite an assessment, which is refused otherwise")] = False,
+) -> None:
+    """Damage in a year and life of a pipe's wall, by rainflow cycles of runs, an S-N curve and Miner's sum."""
+    with expected_errors():
+        if rank() > 0:
+            return
+        from riser_soil.fatigue.assessment import assess
+        from riser_soil.fatigue.fatigue_file import read_fatigue_file
+        from riser_soil.fatigue.report import refuse_folder, result_lines, write_folder
+
+        folder = output or Path(f"{file.stem}-damage")
+        given = read_fatigue_file(file)
+        refuse_folder(folder, force)
+        found = assess(file, given)
+        write_folder(folder, found, plot)
+        typer.echo("\n".join([*result_lines(found), f"tables are in {folder}"]))

@@ -1,15 +1,37 @@
-"""A command's scene: read, its errors placed in the file, its result folder."""
+"""What commands share: arguments and options, the scene with its errors placed in the file, its result folder."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from riser_soil.commands.endings import rank
-from riser_soil.errors import MeshError, SceneError
+from riser_soil.errors import MeshError, ResultsError, SceneError
 
 if TYPE_CHECKING:
     from riser_soil.scene.scene import Scene
+
+SceneFile = Annotated[str, typer.Argument(metavar="SCENE", help="scene file (.yaml)")]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="PATH=VALUE",
+        help="override a value of the scene, e.g. riser.segments.0.elements=70; may be repeated; "
+        "list items are counted from 0",
+    ),
+]
+
+RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="folder of a run's results")]
+StageName = Annotated[
+    str | None, typer.Option("--stage", metavar="NAME", help="a dynamic stage; by default the last one")
+]
+Period = Annotated[
+    float | None,
+    typer.Option("--period", metavar="SECONDS", help="length of a cycle; by default that of the stage's motion"),
+]
 
 
 def read(scene: str, overrides: list[str] | None) -> "Scene":
@@ -26,7 +48,7 @@ def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
     """The scene with its hang-off as a cable would have it, where it asks for one."""
     if not scene.riser.hangs_off:
         return scene
-    from riser_soil.assembly.hang_off import by_cable, hung_end, settled, told
+    from riser_soil.assembly.hang_off import by_cable, hung_end, reported, settled
 
     with placed(file, overrides):
         wanted = hung_end(scene)
@@ -34,7 +56,7 @@ def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
         value = by_cable(wanted, wanted.asked.asked)
         found = settled(wanted, value)
     if rank() == 0:
-        print(f"{told(wanted, value)} by the cable without bending stiffness; a run solves it on the riser itself")
+        print(f"{reported(wanted, value)} by the cable without bending stiffness; a run solves it on the riser itself")
     return found
 
 
@@ -43,7 +65,7 @@ def read_begun(scene: str, overrides: list[str] | None) -> "Scene":
     checked = read(scene, overrides)
     if checked.accuracy is None:
         return checked
-    from riser_soil.accuracy.first_setting import first_setting
+    from riser_soil.accuracy.search import first_setting
 
     if rank() == 0:
         print(f"accuracy {checked.accuracy:.2%}: a run chooses elements and steps; here are those that it begins with")
@@ -81,3 +103,15 @@ def placed(file: str, overrides: list[str] | None) -> Iterator[None]:
         from riser_soil.scene.reader import with_place
 
         raise type(err)(with_place(str(err), file, overrides or ())) from err
+
+
+def positive(name: str, value: float | None) -> None:
+    """ResultsError where an option is given and not greater than 0."""
+    if value is not None and not value > 0.0:
+        raise ResultsError(f"--{name} {value:g}: must be greater than 0")
+
+
+def refuse_existing(file: Path, force: bool) -> None:
+    """SceneError where a command would overwrite a file without being asked to."""
+    if file.exists() and not force:
+        raise SceneError(f"{file}: is there already; choose another with -o, or overwrite it with --force")

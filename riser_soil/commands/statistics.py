@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from riser_soil.commands.arguments import RunFolder, StageName, positive
 from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.scenes import RunFolder, StageName, positive
 from riser_soil.errors import ResultsError
 
 if TYPE_CHECKING:
@@ -89,12 +89,12 @@ def statistics(
             for where, found in zip(records.arc, statistics_of(records, wanted), strict=True)
         ]
         levels = above or []
-        told = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
+        reported = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
         if plot is not None:  # first: it refuses what it can't draw
             _draw(plot, places)
         if output is not None:
             write(output, places, levels, wanted)
-        typer.echo("\n".join(told))
+        typer.echo("\n".join(reported))
 
 
 def histories(
@@ -114,8 +114,8 @@ def histories(
             return
         from riser_soil.results.read import Run
         from riser_soil.results.whole_file import written_whole
-        from riser_soil.statistics.histories import write_histories
         from riser_soil.statistics.records import records_of
+        from riser_soil.statistics.report import write_histories
 
         run = Run(folder)
         found = [records_of([run], name, _arcs([run], arc or [], at or []), stage, since) for name in of]

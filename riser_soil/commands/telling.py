@@ -34,7 +34,7 @@ def telling(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def with_options(*, quiet: bool, log_file: Path | None, **given: Any) -> None:
-        with _told(quiet, log_file):
+        with _reported(quiet, log_file):
             command(**given)
 
     own = inspect.signature(command, eval_str=True)
@@ -46,7 +46,7 @@ def telling(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @contextmanager
-def _told(quiet: bool, log_file: Path | None) -> Iterator[None]:
+def _reported(quiet: bool, log_file: Path | None) -> Iterator[None]:
     """Standard output and error as the options want them; as they were afterwards."""
     with expected_errors():
         log = None if log_file is None or rank() > 0 else _Log(log_file)
@@ -79,20 +79,20 @@ class _Lines:
     """
 
     def __init__(self, stream: TextIO, keeps: Callable[[str], bool] | Literal[False], log: _Log | None) -> None:
-        self._stream, self._keeps, self._log, self._begun = stream, keeps, log, ""
+        self._stream, self._keeps, self._log, self._partial = stream, keeps, log, ""
 
     def write(self, text: str) -> int:
         if not self._keeps:
             self._stream.write(text)
-        *whole, self._begun = (self._begun + text).split("\n")
+        *whole, self._partial = (self._partial + text).split("\n")
         for line in whole:
             self._take(line)
         return len(text)
 
     def end(self) -> None:
         """Nothing more comes."""
-        if self._begun:
-            self._take(self._begun)
+        if self._partial:
+            self._take(self._partial)
         self._stream.flush()
 
     def isatty(self) -> bool:
@@ -122,10 +122,10 @@ class _Log:
         self.take(f"riser-soil {__version__}: {' '.join(sys.argv[1:])}")
 
     def take(self, line: str) -> None:
-        told = _STYLE.sub("", _DRAWN.sub("", line)).rstrip()
-        if told and self._file is not None:
+        reported = _STYLE.sub("", _DRAWN.sub("", line)).rstrip()
+        if reported and self._file is not None:
             try:
-                self._file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} {told}\n")
+                self._file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} {reported}\n")
             except OSError as err:
                 name, self._file = self._file.name, None
                 print(f"warning: --log-file {name}: ends here: {err.strerror}", file=sys.__stderr__)

@@ -1,12 +1,19 @@
-"""Interface of the riser's contact with any ground, for steps, checks and results."""
+"""Interface of the riser's contact with any ground, base class of its contacts, and what results tell of them."""
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+import math
+from abc import ABC, abstractmethod
+from typing import NamedTuple, Protocol, runtime_checkable
 
-from riser_soil.contact.touchdown import ContactInterval, PointsAlong
-from riser_soil.core.arrays import Array
+from riser_soil.contact.touchdown import ContactInterval, PointsAlong, contact_intervals, touchdown
+from riser_soil.core.arrays import Array, views
+from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.part import Part, State
+from riser_soil.riser.configuration import Configuration
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
+from riser_soil.seabed.law import NormalLaw
 
 
 @runtime_checkable
@@ -55,7 +62,7 @@ class RiserContact(Part, Protocol):
         ...
 
     def predict(self, guess: State) -> Array:
-        """Increments (all local dofs) of a first guess of a step in which the riser lands, see `landing`."""
+        """Increments (all local dofs) of a first guess of a step in which the riser lands, see `along_step`."""
         ...
 
 
@@ -65,3 +72,68 @@ class LoadsSoil(Protocol):
     def force_on_soil_per_length(self, state: State) -> Array:
         """Force on the soil by length of the riser at its nodes (nn, 3) [N/m], global axes."""
         ...
+
+
+class LineContact(LinePart, ABC):
+    """Base of the contacts of a line with a ground, by a law of the force per length. A `RiserContact`."""
+
+    def __init__(self, line: Line, law: NormalLaw) -> None:
+        super().__init__(line)
+        self.law = law
+
+    @property
+    @abstractmethod
+    def along(self) -> PointsAlong:
+        """Where contact forces and gaps are told along the line."""
+
+    @abstractmethod
+    def contact_along_line(self, state: State) -> tuple[Array, Array]:
+        """Gaps (n,) there, less that at which the force begins [m], and forces (n,) per length [N/m]; called only on
+        the rank that evaluates contact.
+        """
+
+    def touchdown_arc(self, state: State) -> float:
+        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
+        return touchdown(*self.along, *self.contact_along_line(state)) if self.active else float("nan")
+
+    def contact_intervals(self, state: State) -> list[ContactInterval]:
+        """Intervals of contact along the riser, from its start on."""
+        return contact_intervals(*self.along, *self.contact_along_line(state)) if self.active else []
+
+
+class ContactResults(NamedTuple):
+    """Contact at nn nodes and n points along the line, see `RiserContact`. Those of many instants have one axis more in
+    front.
+
+    force_per_length (nn,): [N/m], > 0 where it pushes the riser away. penetration, depth (nn,): of the nodes'
+    undersides into the ground as it is now, and below it as it lay at first [m]. clearance (n,): gap less that at which
+    the force begins [m]; force (n,): per length [N/m]. deepest (1,): penetration of what the contact looks at [m].
+    on_riser (3,): sum of the forces [N], global axes.
+    """
+
+    force_per_length: Array
+    penetration: Array
+    depth: Array
+    clearance: Array
+    force: Array
+    deepest: Array
+    on_riser: Array
+
+    @classmethod
+    def within(cls, vector: Array, nodes: int, points: int) -> ContactResults:
+        """As views of the numbers (..., n); see `size_of`."""
+        return cls(*views(vector, _shapes(nodes, points)))
+
+
+def _shapes(nodes: int, points: int) -> list[tuple[int, ...]]:
+    return [(nodes,), (nodes,), (nodes,), (points,), (points,), (1,), (3,)]
+
+
+def size_of(nodes: int, points: int) -> int:
+    """How many numbers they are."""
+    return sum(math.prod(shape) for shape in _shapes(nodes, points))
+
+
+@bound_by_type
+def put_results(part: tuple, at: Configuration, out: ContactResults) -> None:
+    """Write the results of a contact in numbers, see `part_kernels`, in the configuration of the forces found last."""

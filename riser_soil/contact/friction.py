@@ -7,11 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.contact import friction_stations, seabed_stations
-from riser_soil.contact.adhesion import Adhesion, adhesions
-from riser_soil.contact.coulomb import stuck, traction
+from riser_soil.contact.coulomb import Adhesion, adhesions, stuck, traction
 from riser_soil.contact.seabed_contact import SeabedContact, StationContact
-from riser_soil.contact.seabed_loop import FrictionNumbers
-from riser_soil.contact.station_forces import StationForces
+from riser_soil.contact.seabed_loop import FrictionData
+from riser_soil.contact.seabed_stations import StationForces
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful
@@ -49,7 +48,7 @@ class CoulombFriction(LinePart):
     """
 
     name = "friction"
-    traits = Traits("E", symmetric=False, keeps_way=True, gradual=True, roles=(Stateful,))
+    traits = Traits("E", symmetric=False, path_dependent=True, gradual=True, roles=(Stateful,))
 
     def __init__(
         self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array, adhesion: Adhesion | None = None
@@ -58,7 +57,7 @@ class CoulombFriction(LinePart):
         self.contact = contact
         self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
         self._stiffness, self._adhesion = stiffness, adhesion or Adhesion()
-        self._begun: FrictionState | None = None
+        self._start_state: FrictionState | None = None
         self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
         self._sticks = False
@@ -75,10 +74,10 @@ class CoulombFriction(LinePart):
 
     def _evaluate(self, trial: Trial) -> FrictionTraction:
         found = self.contact.evaluate(trial)
-        touching, begun, k = found.touching, self._friction_state(trial), self._stiffness
-        elastic = friction_stations.elastic_guesses(touching.elements, tuple(begun), k, found.position)
+        touching, start_state, k = found.touching, self._friction_state(trial), self._stiffness
+        elastic = friction_stations.elastic_guesses(touching.elements, tuple(start_state), k, found.position)
         tractions = stuck(elastic, touching.force) if self._sticks else self._limited(elastic, found)
-        resistance = friction_stations.resistances(touching.elements, begun.along, k, tractions, touching.normal)
+        resistance = friction_stations.resistances(touching.elements, start_state.along, k, tractions, touching.normal)
         return FrictionTraction(touching.elements, *resistance)
 
     def _limited(self, elastic: Array, found: StationContact) -> tuple[Array, Array, Array]:
@@ -90,10 +89,10 @@ class CoulombFriction(LinePart):
         return self._friction_state_from(trial.state.t)
 
     def _friction_state_from(self, t: float) -> FrictionState:
-        if self._begun is None:
+        if self._start_state is None:
             start = self.line.trial(State.at_rest(t, self.line.size))
-            self._begun = self._friction_state_at(start, np.zeros_like(self.contact.evaluate(start).position))
-        return self._begun
+            self._start_state = self._friction_state_at(start, np.zeros_like(self.contact.evaluate(start).position))
+        return self._start_state
 
     def _friction_state_at(self, trial: Trial, traction: Array) -> FrictionState:
         found = self.contact.evaluate(trial)
@@ -114,24 +113,27 @@ class CoulombFriction(LinePart):
         trial = self.line.trial(state)
         self._forces.add_tangent(values[self.line.name], trial, *self.evaluate(trial))
 
-    def numbers(self) -> FrictionNumbers | None:
+    def kernel_data(self) -> FrictionData | None:
         """After those of its contact have been asked for."""
         shape, d = self.contact.share.shape, self.line.dimension
         vectors = (np.zeros((*shape, d)) for _ in range(3))
         position, traction, resistance = vectors
         along, mu = np.zeros((*shape, d, d - 1)), (float(self._mu[0]), float(self._mu[-1]))
-        self._in_loop = FrictionNumbers(
+        self._in_loop = FrictionData(
             *(self.contact.in_loop, mu, self._adhesion, self._stiffness),
             *(position, along, traction, np.zeros(shape), resistance),
         )
         return self._in_loop
 
-    def renew_numbers(self, start: float, end: float) -> None:
-        begun, numbers = self._friction_state_from(end), self._in_loop
-        if begun.position is not numbers.position:  # else the loop has kept it
-            numbers.position[:], numbers.along[:], numbers.traction[:] = begun
+    def renew_kernel_data(self, start: float, end: float) -> None:
+        start_state, numbers = self._friction_state_from(end), self._in_loop
+        if start_state.position is not numbers.position:  # else the loop has kept it
+            numbers.position[:], numbers.along[:], numbers.traction[:] = start_state
             numbers.slid[:] = self._slid
-            self._begun, self._slid = FrictionState(numbers.position, numbers.along, numbers.traction), numbers.slid
+            self._start_state, self._slid = (
+                FrictionState(numbers.position, numbers.along, numbers.traction),
+                numbers.slid,
+            )
 
     def energy(self, state: State) -> Energy:
         """Stored in what the ground gives elastically along itself."""
@@ -144,10 +146,10 @@ class CoulombFriction(LinePart):
     def work(self, before: State, after: State) -> Work:
         """Energy dissipated by friction: its work less the change of the energy stored; never negative."""
         trial = self.line.trial(after)
-        sliding, begun, share = self.evaluate(trial), self._friction_state(trial), self.contact.share
-        way = begun.position, self.contact.evaluate(trial).position
+        sliding, start_state, share = self.evaluate(trial), self._friction_state(trial), self.contact.share
+        way = start_state.position, self.contact.evaluate(trial).position
         taken = seabed_stations.work_of(share, sliding.elements, sliding.resistance, *way)
-        stored = self._stored(np.arange(self.line.length.size), begun.traction)
+        stored = self._stored(np.arange(self.line.length.size), start_state.traction)
         return Work(dissipated=taken - self.energy(after).potential + stored)
 
     def commit(self, state: State) -> None:
@@ -157,13 +159,13 @@ class CoulombFriction(LinePart):
         traction = np.zeros_like(self.contact.evaluate(trial).position)
         traction[sliding.elements] = -sliding.resistance
         slid = self._slide(trial, sliding)
-        self._begun, self._slid = self._friction_state_at(trial, traction), self._slid + slid
+        self._start_state, self._slid = self._friction_state_at(trial, traction), self._slid + slid
 
     def _slide(self, trial: Trial, sliding: FrictionTraction) -> Array:
         """Plastic slip of each station (ne, ng) in the step, beyond the elastic mobilisation [m]."""
-        found, begun = self.contact.evaluate(trial), tuple(self._friction_state(trial))
+        found, start_state = self.contact.evaluate(trial), tuple(self._friction_state(trial))
         slid: Array = friction_stations.slips(
-            sliding.elements, begun, self._stiffness, found.position, sliding.resistance, found.touching.force
+            sliding.elements, start_state, self._stiffness, found.position, sliding.resistance, found.touching.force
         )
         return slid
 
@@ -181,12 +183,12 @@ class CoulombFriction(LinePart):
 
     def state(self) -> Saved:
         """The state at the start of the next step, if there was one, and the slip of the stations."""
-        kept = {"slid": self._slid} | (self._begun._asdict() if self._begun is not None else {})
+        kept = {"slid": self._slid} | (self._start_state._asdict() if self._start_state is not None else {})
         return {name: values.copy() for name, values in kept.items()}
 
     def restore(self, saved: Saved) -> None:
-        begun = [saved[name] for name in FrictionState._fields if name in saved]
-        self._begun, self._slid = FrictionState(*begun) if begun else None, saved["slid"]
+        start_state = [saved[name] for name in FrictionState._fields if name in saved]
+        self._start_state, self._slid = FrictionState(*start_state) if start_state else None, saved["slid"]
 
 
 def mobilised_within(

@@ -97,9 +97,9 @@ def directions(tau: Array, normal: Array) -> Array:
 
 
 @njit
-def elastic_guesses(elements: IntArray, begun: tuple[Array, Array, Array], k: Array, position: Array) -> Array:
-    """`elastic_guess` (m, ng, r) of some elements; begun: a `FrictionState`, k (ne,)."""
-    before, along, traction = begun
+def elastic_guesses(elements: IntArray, start_state: tuple[Array, Array, Array], k: Array, position: Array) -> Array:
+    """`elastic_guess` (m, ng, r) of some elements; start_state: a `FrictionState`, k (ne,)."""
+    before, along, traction = start_state
     m, ng, r = elements.size, along.shape[1], along.shape[3]
     out = np.empty((m, ng, r))
     for i in range(m):
@@ -137,10 +137,15 @@ def resistances(
 
 @njit
 def slips(
-    elements: IntArray, begun: tuple[Array, Array, Array], k: Array, position: Array, resistance: Array, force: Array
+    elements: IntArray,
+    start_state: tuple[Array, Array, Array],
+    k: Array,
+    position: Array,
+    resistance: Array,
+    force: Array,
 ) -> Array:
     """`slip_at` all stations (ne, ng), 0 where they do not press; arguments as above."""
-    before, along, traction = begun
+    before, along, traction = start_state
     out = np.zeros(along.shape[:2])
     for i in range(elements.size):
         e = elements[i]

@@ -1,4 +1,4 @@
-"""Integration points of contact on the soil's surface: facets divided evenly, as fine as the contact asks for.
+"""Integration points of contact on the soil's surface: facets divided evenly, and the history kept at points.
 
 Points are fixed to the soil: each keeps its place on its facet and the area that it stands for. They lie in rows,
 spaced evenly on straight lines in (xi, eta). quad4 and strip8 are cut into rows along eta and these into columns. tri6
@@ -12,10 +12,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from riser_soil.contact.facets import triangular
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.core.saved_state import Saved
 
 Place = tuple[float, float]  # (xi, eta)
 
@@ -111,3 +113,38 @@ def area(points: Array, facet: IntArray, dN: Array) -> float:
         a1, a2, a3 = a1 + x * dN[v, 0], a2 + y * dN[v, 0], a3 + z * dN[v, 0]
         b1, b2, b3 = b1 + x * dN[v, 1], b2 + y * dN[v, 1], b3 + z * dN[v, 1]
     return math.sqrt((a2 * b3 - a3 * b2) ** 2 + (a3 * b1 - a1 * b3) ** 2 + (a1 * b2 - a2 * b1) ** 2)
+
+
+class PointMemory:
+    """Rows (n, k) by the numbers (n,) of points; `untouched` (k,) where none is kept."""
+
+    def __init__(self, untouched: Array) -> None:
+        self._untouched = untouched
+        self.numbers: IntArray = np.empty(0, dtype=np.int64)
+        self.rows: Array = np.empty((0, len(untouched)))
+
+    def at(self, numbers: IntArray) -> Array:
+        """Rows (n, k) of points (n,)."""
+        out = np.tile(self._untouched, (len(numbers), 1))
+        if len(self.numbers):
+            place = np.minimum(np.searchsorted(self.numbers, numbers), len(self.numbers) - 1)
+            found = self.numbers[place] == numbers
+            out[found] = self.rows[place[found]]
+        return out
+
+    def keep(self, numbers: IntArray, rows: Array) -> None:
+        """Keep the rows (n, k) of these points (n,), each at most once, and forget those of all others."""
+        changed = np.any(rows != self._untouched, axis=1)
+        order = np.argsort(numbers[changed])
+        self.numbers, self.rows = numbers[changed][order], rows[changed][order]
+
+    def go_over(self, numbers: IntArray, before: Array, after: Array) -> None:
+        """Points (n,) that lay at places (n, 3) lie at others now: each takes the row of that which was nearest."""
+        if len(self.numbers):
+            self.keep(numbers, self.at(numbers[cKDTree(before).query(after)[1]]))
+
+    def state(self) -> Saved:
+        return {"numbers": self.numbers, "rows": self.rows}
+
+    def restore(self, saved: Saved) -> None:
+        self.numbers, self.rows = saved["numbers"], saved["rows"]

@@ -80,17 +80,17 @@ def boxes(axis: Axis, above: float, around: float) -> tuple[Array, Array]:
 
 def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float) -> NearPoints:
     """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m]."""
-    pairs, room = by_facet(elements, facets, len(surface.facets)), FEW
+    pairs, capacity = by_facet(elements, facets, len(surface.facets)), FEW
     while True:
-        points = points_room(room)
+        points = points_workspace(capacity)
         found = fill_near(axis, surface, pairs, within, points)
-        if found <= room:
+        if found <= capacity:
             return first_of(points, found)
-        room = found
+        capacity = found
 
 
-def points_room(count: int) -> NearPoints:
-    """Room for so many points."""
+def points_workspace(count: int) -> NearPoints:
+    """Workspace for so many points."""
     element, facet, number = (np.empty(count, dtype=np.int64) for _ in range(3))
     along, share, gap = (np.empty(count) for _ in range(3))
     return NearPoints(element, facet, number, along, np.empty((count, 2)), share, gap)
@@ -129,7 +129,7 @@ def by_facet(elements: IntArray, facets: IntArray, count: int) -> PairsByFacet:
 def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, out: NearPoints) -> int:
     """Write points of some pairs whose gap is less than `within` [m], as far as there is room; how many there are."""
     bow = bow_of(axis)
-    room, n, nv = len(out.gap), 0, surface.facets.shape[1]
+    capacity, n, nv = len(out.gap), 0, surface.facets.shape[1]
     N, dN, hull, kept = np.empty(nv), np.empty((nv, 2)), np.empty((nv, 3)), np.empty_like(pairs.elements)
     for i, f in enumerate(pairs.facets):
         nodes, cut = surface.facets[f], surface.parts[f]
@@ -147,7 +147,7 @@ def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, 
                 p = _on_curve(a, b, bends, part)
                 e, along, gap, clearance = nearest(axis, bow, beside, p, within)
                 if gap < within:
-                    if n < room:
+                    if n < capacity:
                         xi, eta = first[0] + part * (last[0] - first[0]), first[1] + part * (last[1] - first[1])
                         fill_shape(xi, eta, N, dN)
                         out.element[n], out.facet[n] = e, f

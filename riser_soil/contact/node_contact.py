@@ -5,9 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.contact.candidates import CandidatePairs, pairs_around
-from riser_soil.contact.detection import ContactDetection, ContactState, add_blocks, add_shares
-from riser_soil.contact.gap import heights
-from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface
+from riser_soil.contact.facets import heights
+from riser_soil.contact.ground import (
+    ASPECT,
+    ContactDetection,
+    ContactPoints,
+    ContactState,
+    DeformedSurface,
+    add_blocks,
+    add_shares,
+)
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.core.arrays import Array, IntArray

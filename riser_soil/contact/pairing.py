@@ -33,7 +33,7 @@ class Plan(NamedTuple):
 
 class Cover(NamedTuple):
     """A surface that covers what lies below it, for compiled code. points (np, 3) [m] with the boxes of their facets,
-    see `bounds`, and the box around these; work (nv, 3), xy and xi (2,): room.
+    see `bounds`, and the box around these; work (nv, 3), xy and xi (2,): workspace.
     """
 
     plan: Plan

@@ -8,13 +8,12 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from riser_soil.contact import seabed_stations
-from riser_soil.contact.contact_results import ContactResults, size_of
-from riser_soil.contact.landing import landing_predictor
-from riser_soil.contact.line_contact import LineContact
-from riser_soil.contact.seabed_loop import SeabedNumbers, seabed_numbers
-from riser_soil.contact.station_forces import StationForces
+from riser_soil.contact.along_step import landing_predictor, work_along_step
+from riser_soil.contact.contact import ContactResults, LineContact, size_of
+from riser_soil.contact.law import Penalty
+from riser_soil.contact.seabed_loop import SeabedData, seabed_data
+from riser_soil.contact.seabed_stations import StationForces
 from riser_soil.contact.touchdown import PointsAlong
-from riser_soil.contact.work_along_step import work_along_step
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor
@@ -23,10 +22,12 @@ from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
-from riser_soil.seabed.grounds import Ground
+from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.law import NormalLaw
 
 CoveredBySoil = Callable[[Array], BoolArray]
+
+
 """Horizontal positions (n, 2) [m] -> whether something other than the seabed lies there, such as a block of soil."""
 
 
@@ -104,7 +105,7 @@ class SeabedContact(LineContact):
         self._nodes = seabed_stations.OverNodes(larger_beside(radius), line.tributary_length, linear)
         self.memory = law.initial_history((line.length.size, rule.points.size))
         roles = Predictor, Stateful
-        self.traits = Traits("E", symmetric=True, keeps_way=True, gradual=law.gradual, roles=roles)
+        self.traits = Traits("E", symmetric=True, path_dependent=True, gradual=law.gradual, roles=roles)
 
     def evaluate(self, trial: Trial) -> StationContact:
         """The stations over the ground, and what touches."""
@@ -114,9 +115,9 @@ class SeabedContact(LineContact):
     def _evaluate(self, trial: Trial) -> StationContact:
         x = stations.interpolate(self.at, trial.q)
         penetration, normal, bend = self._over_ground(x, self._radius)
-        at = seabed_stations.touched(self.law.numbers, penetration, self.memory)
+        at = seabed_stations.touched(self.law.kernel_data, penetration, self.memory)
         force, slope, stored, normals, resistance = seabed_stations.answers(
-            self.law.numbers, at, penetration, self.memory, normal
+            self.law.kernel_data, at, penetration, self.memory, normal
         )
         bends = None if self.ground.flat else bend[at]
         return StationContact(
@@ -137,7 +138,7 @@ class SeabedContact(LineContact):
         """The same, whatever covers the ground."""
         ne, ng, d = x.shape
         found = np.empty((ne, ng)), np.empty((ne, ng, d)), np.empty((0 if self.ground.flat else ne, ng, d, d))
-        seabed_stations.over_ground(self._frame, self.ground.numbers, radius, x, *found)
+        seabed_stations.over_ground(self._frame, self.ground.kernel_data, radius, x, *found)
         return found
 
     def element_forces(self, state: State) -> tuple[None, Array]:
@@ -160,15 +161,15 @@ class SeabedContact(LineContact):
         found: Array = seabed_stations.by_positions(t.force, t.slope, t.normal, t.bend)
         return found
 
-    def numbers(self) -> SeabedNumbers | None:
+    def kernel_data(self) -> SeabedData | None:
         if self._covered is not None and self._covering is None:
             return None
         stations = self.at, self.share, self._radius, self.memory, self._nodes
         cover = None if self._covering is None else self._covering.cover()
-        self.in_loop = seabed_numbers(self.line, *stations, self.ground.numbers, self.law, cover)
+        self.in_loop = seabed_data(self.line, *stations, self.ground.kernel_data, self.law, cover)
         return self.in_loop
 
-    def renew_numbers(self, start: float, end: float) -> None:
+    def renew_kernel_data(self, start: float, end: float) -> None:
         if self.memory is not self.in_loop.memory:  # else the loop has kept it
             self.in_loop.memory[:] = self.memory
             self.memory = self.in_loop.memory
@@ -214,7 +215,7 @@ class SeabedContact(LineContact):
             found, results = self.evaluate(trial), ContactResults.within(out, self.line.nodes, self.share.size)
             touching, force = np.zeros(len(self.share), dtype=bool), np.zeros_like(self.share)
             touching[found.touching.elements], force[found.touching.elements] = True, found.touching.force
-            over = self._frame, self.ground.numbers, self._nodes, float(self.law.start), self.share, trial.x
+            over = self._frame, self.ground.kernel_data, self._nodes, float(self.law.start), self.share, trial.x
             seabed_stations.put_contact(*over, (touching, found.penetration, force, found.normal), results)
             if self._covered is not None:
                 below = self._covered(self.line.to_global(trial.x)[:, :2])
@@ -263,12 +264,12 @@ class SeabedContact(LineContact):
         return -penetration[:, 0] - self.law.start
 
     def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `landing`; into soft clay the riser sinks on as it does."""
+        """Increments of a first guess that lands, see `along_step`; into soft clay the riser sinks on as it does."""
         if not self.active or self.traits.gradual:
             return guess.u
         if self._covered is None:
             increments = guess.u.copy()
-            ground, moved = self.ground.numbers, self.line.nodal(increments)
+            ground, moved = self.ground.kernel_data, self.line.nodal(increments)
             seabed_stations.land(self._frame, ground, self._nodes.radius, self.law.start, self.line.x, moved)
             return increments
         moved = self.line.nodal(guess.u)[:, : self.line.dimension]
@@ -282,3 +283,29 @@ class SeabedContact(LineContact):
 
     def restore(self, saved: Saved) -> None:
         self.memory = saved["memory"]
+
+
+class Cushion(SeabedContact):
+    """Part "cushion": a seabed of springs over the soil, whose stiffness falls with the load factor t as (1 - t)².
+
+    At first it holds the riser just above the soil; its last share goes over to the soil at t = 1. The soil is loaded
+    gradually, and Newton's method meets a contact that grows, instead of a riser that falls from its first shape into
+    soil that has not felt it yet. level: of the soil's top [m]; it bears the weight per length [N/m] at a penetration
+    of `depth` [m], with which the riser's underside touches the soil.
+    """
+
+    name = "cushion"
+
+    def __init__(
+        self, line: Line, radius: Array, level: float, weight: float, depth: float, covered: CoveredBySoil
+    ) -> None:
+        law = Penalty(weight / depth, 0.25 * depth)
+        super().__init__(line, radius, Plane.level(level + depth), law, stations.THREE_POINTS, covered)
+
+    def _evaluate(self, trial: Trial) -> StationContact:
+        found, share = super()._evaluate(trial), (1.0 - min(trial.state.t, 1.0)) ** 2
+        t = found.touching
+        faded = t._replace(
+            force=share * t.force, slope=share * t.slope, resistance=share * t.resistance, stored=share * t.stored
+        )
+        return found._replace(touching=faded)

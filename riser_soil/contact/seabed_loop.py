@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.adhesion import Adhesion, adhesion_at
-from riser_soil.contact.contact_results import ContactResults, put_results
-from riser_soil.contact.coulomb import Pair, limits, return_map
+from riser_soil.contact.along_step import work_at
+from riser_soil.contact.contact import ContactResults, put_results
+from riser_soil.contact.coulomb import Adhesion, Pair, adhesion_at, limits, return_map
 from riser_soil.contact.friction_stations import (
     directions_at,
     elastic_guess,
@@ -27,7 +27,6 @@ from riser_soil.contact.seabed_stations import (
     global_place,
     put_contact,
 )
-from riser_soil.contact.work_along_step import work_at
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
@@ -64,10 +63,10 @@ class Bare(NamedTuple):
     nothing: int
 
 
-class SeabedNumbers(NamedTuple):
+class SeabedData(NamedTuple):
     """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), the
-    nodes, and the numbers of its ground and law; the law's start and reach; what covers the ground in places; room for
-    an element, for the force and its derivative at a station, and for a history (nh,).
+    nodes, and the numbers of its ground and law; the law's start and reach; what covers the ground in places; workspace
+    for an element, for the force and its derivative at a station, and for a history (nh,).
     """
 
     at: stations.Stations
@@ -88,12 +87,12 @@ class SeabedNumbers(NamedTuple):
     after: Array
 
 
-class FrictionNumbers(NamedTuple):
+class FrictionData(NamedTuple):
     """A `CoulombFriction` at the stations of a contact: coefficients, adhesion, stiffness (ne,), its `FrictionState`
     and way slid (ne, ng), and minus the traction found last (ne, ng, d).
     """
 
-    contact: SeabedNumbers
+    contact: SeabedData
     mu: Pair
     adhesion: Adhesion
     stiffness: Array
@@ -104,7 +103,7 @@ class FrictionNumbers(NamedTuple):
     resistance: Array
 
 
-def seabed_numbers(
+def seabed_data(
     line: Line,
     at: stations.Stations,
     share: Array,
@@ -114,18 +113,18 @@ def seabed_numbers(
     ground: Any,
     law: NormalLaw,
     cover: Any = None,
-) -> SeabedNumbers:
-    """With the room that they need; ground: its numbers; cover: what lies on it in places, if anything."""
+) -> SeabedData:
+    """With the workspace that they need; ground: its numbers; cover: what lies on it in places, if anything."""
     (ne, ng), d = share.shape, line.dimension
     position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
     touches, below = np.zeros(ne, dtype=np.bool_), np.full((ne, ng), -1)
     found = Found(touches, position, normal, penetration, force, slope, stored, below, np.zeros(memory.shape))
-    element = stations.element_room(2 * line.ndof, fixed(d))
-    room = element, np.zeros(d), np.zeros((d, d)), np.zeros(memory.shape[2])
-    law_numbers = law.numbers, float(law.start), float(law.reach)
-    given = at, share, radius, memory.copy(), nodes, frame_of(line), ground, *law_numbers
-    return SeabedNumbers(*given, Bare(-1) if cover is None else cover, found, *room)
+    element = stations.element_workspace(2 * line.ndof, fixed(d))
+    workspace = element, np.zeros(d), np.zeros((d, d)), np.zeros(memory.shape[2])
+    law_data = law.kernel_data, float(law.start), float(law.reach)
+    given = at, share, radius, memory.copy(), nodes, frame_of(line), ground, *law_data
+    return SeabedData(*given, Bare(-1) if cover is None else cover, found, *workspace)
 
 
 @by_type
@@ -139,15 +138,15 @@ def _never(cover: Bare, x: Vec, known: int) -> int:
 
 
 @njit
-def _is_covered(part: SeabedNumbers, place: Array, e: int, g: int) -> bool:
+def _is_covered(part: SeabedData, place: Array, e: int, g: int) -> bool:
     """Whether something else lies on the ground below a station."""
     below = part.found.below
     below[e, g] = covered_by(part.cover, global_place(part.frame, padded(place)), below[e, g])
     return bool(below[e, g] >= 0)
 
 
-@add_forces.of(SeabedNumbers)
-def _contact_forces(part: SeabedNumbers, at: Configuration, out: LineForces) -> None:
+@add_forces.of(SeabedData)
+def _contact_forces(part: SeabedData, at: Configuration, out: LineForces) -> None:
     found, ng = part.found, part.share.shape[1]
     for e in range(part.radius.size):
         touches = False
@@ -169,7 +168,7 @@ def _contact_forces(part: SeabedNumbers, at: Configuration, out: LineForces) -> 
 
 
 @njit
-def _press(part: SeabedNumbers, at: Configuration, e: int, out: LineForces) -> None:
+def _press(part: SeabedData, at: Configuration, e: int, out: LineForces) -> None:
     """Forces on an element that touches."""
     found = part.found
     for g in range(part.share.shape[1]):
@@ -180,31 +179,31 @@ def _press(part: SeabedNumbers, at: Configuration, e: int, out: LineForces) -> N
         stations.add_integrand_at(part.at.weighted, p, held(part.f, at.D), out.end_q, e, at.D)
 
 
-@add_tangent.of(SeabedNumbers)
-def _contact_tangent(part: SeabedNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    found, room = part.found, part.element
+@add_tangent.of(SeabedData)
+def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    found, workspace = part.found, part.element
     for e in range(part.radius.size):
         if not found.touches[e]:
             continue
-        room[:] = 0.0
+        workspace[:] = 0.0
         for g in range(part.share.shape[1]):
             _, _, bend = distance_in(part.frame, part.ground, padded(found.position[e, g]))
             put_matrix(by_position(found.force[e, g], found.slope[e, g], padded(found.normal[e, g]), bend), part.by)
             pressed = part.at.N[e, g], part.by, maps.place_rows[e]
-            add_weighed(room, part.at.weighted[e, g], (pressed,), at.D, at.R)
-        add_pulled_back(K[e], at.P[e], room, at.D, at.R)
+            add_weighed(workspace, part.at.weighted[e, g], (pressed,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], workspace, at.D, at.R)
 
 
-@add_energy.of(SeabedNumbers)
-def _contact_energy(part: SeabedNumbers, at: Configuration, energy: Array) -> None:
+@add_energy.of(SeabedData)
+def _contact_energy(part: SeabedData, at: Configuration, energy: Array) -> None:
     for e in range(part.radius.size):
         if part.found.touches[e]:
             for g in range(part.share.shape[1]):
                 energy[2] += part.share[e, g] * part.found.stored[e, g]
 
 
-@add_work.of(SeabedNumbers)
-def _contact_work(part: SeabedNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+@add_work.of(SeabedData)
+def _contact_work(part: SeabedData, first: Configuration, last: Configuration, work: Array) -> None:
     """See `SeabedContact.work`; the last configuration is that of the forces found last."""
     found, ng = part.found, part.share.shape[1]
     taken, gained, by_law = 0.0, 0.0, 0.0
@@ -235,8 +234,8 @@ def _contact_work(part: SeabedNumbers, first: Configuration, last: Configuration
     work[3] += taken - by_law if part.memory.shape[2] > 0 else taken - gained
 
 
-@keep.of(SeabedNumbers)
-def _keep_memory(part: SeabedNumbers, at: Configuration) -> None:
+@keep.of(SeabedData)
+def _keep_memory(part: SeabedData, at: Configuration) -> None:
     """See `SeabedContact.commit`."""
     found, memory = part.found, part.memory
     for e in range(memory.shape[0] if memory.shape[2] > 0 else 0):
@@ -247,15 +246,15 @@ def _keep_memory(part: SeabedNumbers, at: Configuration) -> None:
                 memory[e, g, k] = found.after[e, g, k]
 
 
-@put_results.of(SeabedNumbers)
-def _contact_results(part: SeabedNumbers, at: Configuration, out: ContactResults) -> None:
+@put_results.of(SeabedData)
+def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -> None:
     """Of ground on which nothing lies anywhere."""
     found = part.found.touches, part.found.penetration, part.found.force, part.found.normal
     put_contact(part.frame, part.ground, part.nodes, part.start, part.share, at.x, found, out)
 
 
 @njit
-def _elastic(part: FrictionNumbers, e: int, g: int) -> Pair:
+def _elastic(part: FrictionData, e: int, g: int) -> Pair:
     """t* of `coulomb` at a station."""
     guess: Pair = elastic_guess(
         read_along(part.along[e, g]), padded(part.traction[e, g]), part.stiffness[e], _moved(part, e, g)
@@ -264,14 +263,14 @@ def _elastic(part: FrictionNumbers, e: int, g: int) -> Pair:
 
 
 @njit
-def _moved(part: FrictionNumbers, e: int, g: int) -> Vec:
+def _moved(part: FrictionData, e: int, g: int) -> Vec:
     """The movement of a station in the step."""
     moved: Vec = sub(padded(part.contact.found.position[e, g]), padded(part.position[e, g]))
     return moved
 
 
 @njit
-def _limits(part: FrictionNumbers, e: int, g: int) -> tuple[Pair, Pair]:
+def _limits(part: FrictionData, e: int, g: int) -> tuple[Pair, Pair]:
     """L of `coulomb` at a station, and its derivative by the penetration."""
     found = part.contact.found
     most = adhesion_at(part.adhesion, found.penetration[e, g])
@@ -279,8 +278,8 @@ def _limits(part: FrictionNumbers, e: int, g: int) -> tuple[Pair, Pair]:
     return limit
 
 
-@add_forces.of(FrictionNumbers)
-def _friction_forces(part: FrictionNumbers, at: Configuration, out: LineForces) -> None:
+@add_forces.of(FrictionData)
+def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> None:
     """After those of the contact that it belongs to."""
     contact = part.contact
     for e in range(part.stiffness.size):
@@ -294,13 +293,13 @@ def _friction_forces(part: FrictionNumbers, at: Configuration, out: LineForces) 
             stations.add_integrand_at(contact.at.weighted, p, held(part.resistance[e, g], at.D), out.end_q, e, at.D)
 
 
-@add_tangent.of(FrictionNumbers)
-def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    contact, found, room = part.contact, part.contact.found, part.contact.element
+@add_tangent.of(FrictionData)
+def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    contact, found, workspace = part.contact, part.contact.found, part.contact.element
     for e in range(part.stiffness.size):
         if not found.touches[e]:
             continue
-        room[:] = 0.0
+        workspace[:] = 0.0
         for g in range(contact.share.shape[1]):
             limit, rise = _limits(part, e, g)
             _, by_elastic, by_penetration = return_map(_elastic(part, e, g), limit, rise)
@@ -309,12 +308,12 @@ def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weig
                 resistance_by_position(ways, part.stiffness[e], by_elastic, by_penetration, normal), contact.by
             )
             dragged = contact.at.N[e, g], contact.by, maps.place_rows[e]
-            add_weighed(room, contact.at.weighted[e, g], (dragged,), at.D, at.R)
-        add_pulled_back(K[e], at.P[e], room, at.D, at.R)
+            add_weighed(workspace, contact.at.weighted[e, g], (dragged,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], workspace, at.D, at.R)
 
 
-@add_energy.of(FrictionNumbers)
-def _friction_energy(part: FrictionNumbers, at: Configuration, energy: Array) -> None:
+@add_energy.of(FrictionData)
+def _friction_energy(part: FrictionData, at: Configuration, energy: Array) -> None:
     for e in range(part.stiffness.size):
         if part.contact.found.touches[e]:
             for g in range(part.contact.share.shape[1]):
@@ -322,8 +321,8 @@ def _friction_energy(part: FrictionNumbers, at: Configuration, energy: Array) ->
                 energy[2] += 0.5 * part.contact.share[e, g] / part.stiffness[e] * dot(t, t)
 
 
-@add_work.of(FrictionNumbers)
-def _friction_work(part: FrictionNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+@add_work.of(FrictionData)
+def _friction_work(part: FrictionData, first: Configuration, last: Configuration, work: Array) -> None:
     """See `CoulombFriction.work`."""
     contact = part.contact
     for e in range(part.stiffness.size):
@@ -335,8 +334,8 @@ def _friction_work(part: FrictionNumbers, first: Configuration, last: Configurat
                 work[0] += share * dot(t, _moved(part, e, g)) - 0.5 * share / part.stiffness[e] * dot(t, t)
 
 
-@keep.of(FrictionNumbers)
-def _keep_traction(part: FrictionNumbers, at: Configuration) -> None:
+@keep.of(FrictionData)
+def _keep_traction(part: FrictionData, at: Configuration) -> None:
     """See `CoulombFriction.commit`."""
     found = part.contact.found
     for e in range(part.stiffness.size):

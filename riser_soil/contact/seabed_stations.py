@@ -10,11 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.contact_results import ContactResults
-from riser_soil.contact.landing import lift
+from riser_soil.contact.along_step import lift
+from riser_soil.contact.contact import ContactResults
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.riser import stations
 from riser_soil.riser.line import Line
+from riser_soil.riser.trial import Trial
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
@@ -93,7 +95,7 @@ def over_ground(
 
 @njit
 def land(frame: LineFrame, ground: Any, radius: Array, start: float, x: Array, moved: Array) -> None:
-    """Raise the increments (nn, ndof) of nodes at x (nn, d) that would sink, see `landing`; radius (nn,)."""
+    """Raise the increments (nn, ndof) of nodes at x (nn, d) that would sink, see `along_step`; radius (nn,)."""
     d = x.shape[1]
     for n in range(x.shape[0]):
         at = padded(x[n])
@@ -219,3 +221,34 @@ def work_of(share: Array, elements: IntArray, force: Array, before: Array, after
             way = sub(padded(after[e, g]), padded(before[e, g]))
             total += share[e, g] * dot(padded(force[m, g]), way)
     return total
+
+
+class StationForces:
+    """Forces of a part with a resistance (m, ng, d) [N/m] at the stations `at` of some elements (m,); kept by trial."""
+
+    def __init__(self, line: Line, at: stations.Stations) -> None:
+        self._line, self._at = line, at
+
+    def in_elements(self, trial: Trial, elements: IntArray, resistance: Array) -> Array:
+        """Element residuals (ne, 2 ndof)."""
+        found: Array = trial.once(
+            (self, "element forces"), lambda trial: trial.pull_back(self._F(trial, elements, resistance))
+        )
+        return found
+
+    def add_tangent(self, K: Array, trial: Trial, elements: IntArray, resistance: Array, by_position: Array) -> None:
+        """Add to K (ne, n, n), unweighted, what a resistance with the derivative (m, ng, d, d) by the position has."""
+        if elements.size == 0:
+            return
+        stations.add_stiffness(K, self._at, elements, by_position, trial.turn.P)
+        trial.add_turning(K, 1.0, self._F(trial, elements, resistance))
+
+    def _F(self, trial: Trial, elements: IntArray, resistance: Array) -> Array:
+        """Residual conjugate to q (ne, 4, d)."""
+        found: Array = trial.once((self, "F"), lambda _: self._integrated(elements, resistance))
+        return found
+
+    def _integrated(self, elements: IntArray, resistance: Array) -> Array:
+        F = np.zeros((self._line.length.size, 4, self._line.dimension))
+        F[elements] = stations.integrate(self._at.of(elements), resistance)
+        return F

@@ -7,19 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.contact.along_step import landing_predictor
 from riser_soil.contact.candidates import CandidatePairs
+from riser_soil.contact.contact import LineContact
 from riser_soil.contact.ground import DeformedSurface
-from riser_soil.contact.landing import landing_predictor
-from riser_soil.contact.law import Penalty
-from riser_soil.contact.line_contact import LineContact
-from riser_soil.contact.seabed_cover import Cover
-from riser_soil.contact.suction import SuctionLaw
+from riser_soil.contact.law import Penalty, SuctionLaw
+from riser_soil.contact.pairing import Cover, facet_below
+from riser_soil.contact.seabed_loop import covered_by
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
+from riser_soil.riser.vectors import Vec
 from riser_soil.soil.surface import SoilSurface
 
 SOIL = "contact.soil"
@@ -185,7 +186,7 @@ class SoilContact(LineContact):
         return np.maximum(0.0, -self.clearance(state) - self.law.start)
 
     def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `landing`."""
+        """Increments of a first guess that lands, see `along_step`."""
         if not self.active:
             return guess.u
         present = self.clearance(State.at_rest(guess.t, guess.u.size))
@@ -201,3 +202,8 @@ class SoilContact(LineContact):
     def restore(self, saved: Saved) -> None:
         if self.active:
             self._patch = CandidatePairs(len(self._soil.facets), saved["patch"])
+
+
+@covered_by.of(Cover)
+def _by_surface(cover: Cover, x: Vec, known: int) -> int:
+    return facet_below(cover, x[0], x[1], known)

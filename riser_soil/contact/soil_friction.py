@@ -10,9 +10,9 @@ import numpy as np
 from riser_soil.contact.active_pairs import ActivePairs, add_products, add_rows
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.coulomb import stuck, traction
+from riser_soil.contact.cylinder_gap import Slide, slide
+from riser_soil.contact.integration_points import PointMemory
 from riser_soil.contact.near_points import NearPoints, Surface
-from riser_soil.contact.point_memory import PointMemory
-from riser_soil.contact.sliding import Slide, slide
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
@@ -53,7 +53,7 @@ class SoilFriction(LinePart):
     """
 
     name = "soil friction"
-    traits = Traits("E", symmetric=False, keeps_way=True, roles=(Stateful,))
+    traits = Traits("E", symmetric=False, path_dependent=True, roles=(Stateful,))
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class SoilFriction(LinePart):
         self.contact = contact
         self._mu, self._stiffness, self._adhesion = np.array([axial, lateral]), stiffness, adhesion
         self._memory = PointMemory(np.zeros(AREA + 1))
-        self._begun: tuple[Axis, Surface] | None = None
+        self._at_start: tuple[Axis, Surface] | None = None
         self._slid: Array = np.zeros(self.line.nodes)
         self._sticks = False
 
@@ -111,11 +111,11 @@ class SoilFriction(LinePart):
 
     def _start(self, state: State) -> tuple[Axis, Surface]:
         """The pipe's axis and the soil's surface at the start of the step."""
-        if self._begun is None:
+        if self._at_start is None:
             rest = State.at_rest(state.t, state.u.size)
             found = self.contact.evaluate(rest)
-            self._begun = self.contact.axis(found.trial), self.contact.surface(found.deformed)
-        return self._begun
+            self._at_start = self.contact.axis(found.trial), self.contact.surface(found.deformed)
+        return self._at_start
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -153,7 +153,7 @@ class SoilFriction(LinePart):
 
     def anew(self) -> PointMemory:
         """The next step starts from a surface with other nodes: tractions of the points, to go over to them."""
-        self._begun = None
+        self._at_start = None
         return self._memory
 
     def energy(self, state: State) -> Energy:
@@ -177,7 +177,7 @@ class SoilFriction(LinePart):
         points = sliding.found.pressed.points
         self._slid = self._slid + self._nodal_slip(sliding)
         self._memory.keep(points.number, np.column_stack([sliding.traction, points.area]))
-        self._begun = None
+        self._at_start = None
 
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
@@ -216,7 +216,7 @@ class SoilFriction(LinePart):
         return {"slid": self._slid} | gathered({"points": self._memory})
 
     def restore(self, saved: Saved) -> None:
-        self._slid, self._begun = saved["slid"], None
+        self._slid, self._at_start = saved["slid"], None
         self._memory.restore(within(saved, "points"))
 
 

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.contact.active_pairs import ActivePairs, add_rows, in_dofs, paired
+from riser_soil.contact.along_step import landing_predictor, work_along_step
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gap_forms, gaps_of
-from riser_soil.contact.detection import add_blocks, add_shares
-from riser_soil.contact.gap import heights
-from riser_soil.contact.integration_points import divisions
-from riser_soil.contact.landing import landing_predictor
-from riser_soil.contact.law import Penalty
+from riser_soil.contact.facets import heights
+from riser_soil.contact.ground import add_blocks, add_shares
+from riser_soil.contact.integration_points import PointMemory, divisions
+from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.near_points import (
     NearPoints,
     PairsByFacet,
@@ -25,11 +25,8 @@ from riser_soil.contact.near_points import (
     near_points,
     points_of,
 )
-from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
-from riser_soil.contact.suction import SuctionLaw
-from riser_soil.contact.surface_loop import TouchNumbers
-from riser_soil.contact.work_along_step import work_along_step
+from riser_soil.contact.surface_loop import TouchData
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
 from riser_soil.core.saved_state import Saved, gathered, within
@@ -116,14 +113,14 @@ class SurfaceContact(SoilContact):
         touching = near, pair, element, facet, forms, C, by_place
         return ActivePairs(*touching, *weighed, answer.history, self.line.dimension)
 
-    def touch_numbers(self) -> TouchNumbers | None:
-        """For the compiled loop, with room for axis and surface; None with a history."""
+    def touch_data(self) -> TouchData | None:
+        """For the compiled loop, with workspace for axis and surface; None with a history."""
         if self.law.columns:
             return None
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
         frame = np.ascontiguousarray(self.line.basis), self.line.origin
         surface = self.surface(self._soil.settled)
-        return TouchNumbers(axis, surface, *frame, self.law.numbers, float(self.law.start))
+        return TouchData(axis, surface, *frame, self.law.kernel_data, float(self.law.start))
 
     def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
         """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
@@ -350,7 +347,7 @@ class SurfaceContact(SoilContact):
         return self._above(self.line.trial(state), self._soil.deformed(state)) - self.law.start
 
     def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `landing`: only of nodes below the highest point of the soil."""
+        """Increments of a first guess that lands, see `along_step`: only of nodes below the soil's highest point."""
         if not self.active:
             return guess.u
         moved = self.line.nodal(guess.u)[:, : self.line.dimension]

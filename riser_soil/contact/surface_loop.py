@@ -23,12 +23,12 @@ from riser_soil.riser.vectors import Vec
 from riser_soil.seabed.compiled_law import answer
 
 HELD, BEYOND = -1, -2  # in place of the border's row: of dofs that are supported, and of those that are not reached
-POINTS, LEFT = range(2)  # in `TouchRoom.found`: how many points touch; whether something has left what is watched
+POINTS, LEFT = range(2)  # in `TouchWorkspace.found`: how many points touch; whether something has left what is watched
 
 
-class TouchNumbers(NamedTuple):
-    """The pipe and the surface. axis: room for q; surface: with room for its present points. basis (3, d), origin (3,):
-    of the line. law: its numbers, its force begins at a gap of `reach` [m].
+class TouchData(NamedTuple):
+    """The pipe and the surface. axis: workspace for q; surface: with workspace for its present points. basis (3, d),
+    origin (3,): of the line. law: its numbers, its force begins at a gap of `reach` [m].
     """
 
     axis: Axis
@@ -72,7 +72,7 @@ class Border(NamedTuple):
     coupled: BoolArray
 
 
-class TouchRoom(NamedTuple):
+class TouchWorkspace(NamedTuple):
     """What was found last. near: the points, their force [N] and its derivative by the penetration [N/m] (n,), area
     included; found (2,): see POINTS, LEFT; met (np,): nodes of the top that are not reached, and bear a force. energy
     (1,): stored [J].
@@ -87,7 +87,7 @@ class TouchRoom(NamedTuple):
 
 
 @njit
-def move_top(touch: TouchNumbers, top: TopMotion, border: Border) -> None:
+def move_top(touch: TouchData, top: TopMotion, border: Border) -> None:
     """Write where the watched nodes are."""
     moved = np.dot(top.by, border.u)
     for k in range(top.nodes.size):
@@ -97,32 +97,32 @@ def move_top(touch: TouchNumbers, top: TopMotion, border: Border) -> None:
 
 @njit
 def add_touch(
-    touch: TouchNumbers,
+    touch: TouchData,
     watched: Watched,
     top: TopMotion,
     at: Configuration,
     out: LineForces,
     border: Border,
-    room: TouchRoom,
+    workspace: TouchWorkspace,
 ) -> None:
     """Add the contact's residual to that of the line and to the border's."""
     _put_axis(touch, at.q)
-    n = fill_near(touch.axis, touch.surface, watched.pairs, touch.reach, room.near)
-    room.energy[0], room.met[:] = 0.0, False
-    room.found[LEFT] = n > len(room.force) or _leaves(touch.axis, watched)
-    n = room.found[POINTS] = min(n, len(room.force))
+    n = fill_near(touch.axis, touch.surface, watched.pairs, touch.reach, workspace.near)
+    workspace.energy[0], workspace.met[:] = 0.0, False
+    workspace.found[LEFT] = n > len(workspace.force) or _leaves(touch.axis, watched)
+    n = workspace.found[POINTS] = min(n, len(workspace.force))
     nv, after = touch.surface.facets.shape[1], np.empty(0)
     N, dN = np.empty(nv), np.empty((nv, 2))
     for i in range(n):
-        force, slope, stored = answer(touch.law, -room.near.gap[i], after, after)
-        area = room.near.area[i]
-        room.force[i], room.slope[i] = area * force, area * slope
-        room.energy[0] += area * stored
-        _press(touch, top, i, N, dN, out.end_q, border.residual, room)
+        force, slope, stored = answer(touch.law, -workspace.near.gap[i], after, after)
+        area = workspace.near.area[i]
+        workspace.force[i], workspace.slope[i] = area * force, area * slope
+        workspace.energy[0] += area * stored
+        _press(touch, top, i, N, dN, out.end_q, border.residual, workspace)
 
 
 @njit
-def _put_axis(touch: TouchNumbers, q: Array) -> None:
+def _put_axis(touch: TouchData, q: Array) -> None:
     """Write q (ne, 4, d) of a line in global axes."""
     axis, basis = touch.axis.q, touch.basis
     for e in range(q.shape[0]):
@@ -148,7 +148,7 @@ def _leaves(axis: Axis, watched: Watched) -> bool:
 
 
 @njit
-def _normal(touch: TouchNumbers, near: NearPoints, i: int, N: Array, dN: Array) -> Vec:
+def _normal(touch: TouchData, near: NearPoints, i: int, N: Array, dN: Array) -> Vec:
     """Away from the axis at a point; writes the facet's shape functions."""
     e, axis = near.element[i], touch.axis
     p = point_on(touch.surface.deformed, touch.surface.facets[near.facet[i]], near.xi[i, 0], near.xi[i, 1], N, dN)
@@ -158,14 +158,21 @@ def _normal(touch: TouchNumbers, near: NearPoints, i: int, N: Array, dN: Array) 
 
 @njit
 def _press(
-    touch: TouchNumbers, top: TopMotion, i: int, N: Array, dN: Array, end_q: Array, residual: Array, room: TouchRoom
+    touch: TouchData,
+    top: TopMotion,
+    i: int,
+    N: Array,
+    dN: Array,
+    end_q: Array,
+    residual: Array,
+    workspace: TouchWorkspace,
 ) -> None:
     """Add minus the force of a point on the element, and on the facet's nodes: dψ = -force n·(δp - N δq)."""
-    near, basis = room.near, touch.basis
+    near, basis = workspace.near, touch.basis
     n, e = _normal(touch, near, i, N, dN), near.element[i]
     shares = axis_shape(near.along[i], touch.axis.length[e])
     for j in range(basis.shape[1]):
-        along = room.force[i] * (basis[0, j] * n[0] + basis[1, j] * n[1] + basis[2, j] * n[2])
+        along = workspace.force[i] * (basis[0, j] * n[0] + basis[1, j] * n[1] + basis[2, j] * n[2])
         for a in range(4):
             end_q[e, a, j] += along * shares[a]
     nodes = touch.surface.facets[near.facet[i]]
@@ -173,25 +180,25 @@ def _press(
         for j in range(3):
             row = top.rows[nodes[a], j]
             if row >= 0:
-                residual[row] -= room.force[i] * N[a] * n[j]
-            elif row == BEYOND and room.force[i] != 0.0:
-                room.met[nodes[a]] = True
+                residual[row] -= workspace.force[i] * N[a] * n[j]
+            elif row == BEYOND and workspace.force[i] != 0.0:
+                workspace.met[nodes[a]] = True
 
 
 @njit
 def add_touch_tangent(
-    touch: TouchNumbers, top: TopMotion, at: Configuration, K: Array, border: Border, room: TouchRoom
+    touch: TouchData, top: TopMotion, at: Configuration, K: Array, border: Border, workspace: TouchWorkspace
 ) -> None:
     """Add the derivative of the contact's residual, found last, to K (ne, n, n) and to the border's."""
-    n, facets = room.found[POINTS], touch.surface.facets
-    near = first_of(room.near, n)
+    n, facets = workspace.found[POINTS], touch.surface.facets
+    near = first_of(workspace.near, n)
     nq = 4 * touch.basis.shape[1]
     nz = nq + 3 * facets.shape[1]
     forms, C = np.empty((n, FORMS, nz)), np.zeros((n, FORMS, FORMS))
     put_gap_forms(touch.axis, touch.surface, near, touch.basis, forms, C)
     pair, element, facet = paired(near.element, near.facet, K.shape[0])
     by_z = np.zeros((element.size, nz, nz))
-    add_products(by_z, pair, forms, by_curvature(forms, C, room.force[:n], room.slope[:n]))
+    add_products(by_z, pair, forms, by_curvature(forms, C, workspace.force[:n], workspace.slope[:n]))
     by_dofs = in_dofs(by_z, element, at.P)
     for k in range(element.size):
         _spread(by_dofs[k], element[k], top.rows, facets[facet[k]], K, border)
@@ -219,14 +226,14 @@ def _spread(block: Array, e: int, rows: IntArray, nodes: IntArray, K: Array, bor
 
 @njit
 def put_touch_work(
-    touch: TouchNumbers, top: TopMotion, first: Configuration, last: Configuration, room: TouchRoom, work: Array
+    touch: TouchData, top: TopMotion, first: Configuration, last: Configuration, workspace: TouchWorkspace, work: Array
 ) -> None:
     """Write to work (1,) what the force at a step's end, found last, takes along the step [J]: see
     `SurfaceContact.work`.
     """
-    near, nv, taken = room.near, touch.surface.facets.shape[1], 0.0
+    near, nv, taken = workspace.near, touch.surface.facets.shape[1], 0.0
     N, dN = np.empty(nv), np.empty((nv, 2))
-    for i in range(room.found[POINTS]):
+    for i in range(workspace.found[POINTS]):
         n, e = _normal(touch, near, i, N, dN), near.element[i]
         nodes, shares, moved = touch.surface.facets[near.facet[i]], axis_shape(near.along[i], touch.axis.length[e]), 0.0
         for j in range(3):
@@ -236,5 +243,5 @@ def put_touch_work(
             for a in range(4):
                 for k in range(touch.basis.shape[1]):
                     moved -= n[j] * shares[a] * touch.basis[j, k] * (last.q[e, a, k] - first.q[e, a, k])
-        taken -= room.force[i] * moved
+        taken -= workspace.force[i] * moved
     work[0] = taken

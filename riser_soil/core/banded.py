@@ -22,15 +22,15 @@ HUGE = 1e300  # a pivot beyond it is no number to divide by
 THRESHOLD = 0.1
 
 
-def room(n: int, b: int) -> tuple[Array, Size]:
-    """Room for a matrix (n + b, 3 b + 1), all zero, and its band as `factorise` takes it."""
+def workspace(n: int, b: int) -> tuple[Array, Size]:
+    """Workspace for a matrix (n + b, 3 b + 1), all zero, and its band as `factorise` takes it."""
     return np.zeros((n + b, 3 * b + 1)), fixed(b)
 
 
 @njit
 def factorise(ab: Array, pivots: IntArray, B: Size) -> bool:
     """Factorise a matrix in place; whether it is regular. pivots (n,): the rows that were taken as pivots'; B: see
-    `room`.
+    `workspace`.
     """
     b, width, reach = len(B), ab.shape[1], 0
     for k in range(pivots.size):

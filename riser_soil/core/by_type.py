@@ -6,7 +6,7 @@ kernels while what calls them is compiled:
     @by_type
     def add_forces(part, at, out): "…"
 
-    @add_forces.of(InertiaNumbers)
+    @add_forces.of(InertiaData)
     def _inertia(part, at, out): …
 """
 

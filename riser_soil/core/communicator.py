@@ -100,9 +100,9 @@ def world(with_mpi: bool = False) -> Communicator:
 def _started_together() -> str:
     """What of the environment tells that there are several processes, or may be; "" where nothing does."""
     environment = os.environ
-    told = [name for name in SIZES if environment.get(name, "").isdecimal()]
-    several = [name for name in told if int(environment[name]) > 1]
-    among = [] if told else [name for name in RANKS if name in environment]
+    reported = [name for name in SIZES if environment.get(name, "").isdecimal()]
+    several = [name for name in reported if int(environment[name]) > 1]
+    among = [] if reported else [name for name in RANKS if name in environment]
     return next((f"{name}={environment[name]}" for name in (*several, *among)), "")
 
 

@@ -1,4 +1,4 @@
-"""Memory of MUMPS' factorisation: the room that it is given for fill-in, and what it says of a want of memory.
+"""Memory of MUMPS' factorisation: the workspace that it is given for fill-in, and what it says of a want of memory.
 
 MUMPS sets aside what its analysis foretells and some room beyond it, as pivots that are put off fill in more. Where
 that was too little the factorisation is tried again with twice the room; where there is no memory, less soil helps.
@@ -10,18 +10,18 @@ from petsc4py import PETSc
 
 from riser_soil.errors import MemoryShortageError
 
-ROOM, MOST_ROOM = 60, 960  # for fill-in beyond what is foretold [%]
+WORKSPACE, MOST_WORKSPACE = 60, 960  # for fill-in beyond what is foretold [%]
 IN_PERCENT = 14  # MUMPS' control of it
-TOO_LITTLE_ROOM = (-8, -9, -14, -15, -17, -20)  # INFOG(1): work arrays and buffers that are sized by it
+TOO_LITTLE_WORKSPACE = (-8, -9, -14, -15, -17, -20)  # INFOG(1): work arrays and buffers that are sized by it
 WITHOUT_MEMORY = (-7, -13, -19, -22)  # INFOG(1): memory that was refused, or beyond a limit that is set
 PER_ENTRY = 8.0  # bytes
 REMEDY = "take larger cells or a smaller block (soil.mesh, soil.block), solver: {linear: iterative}, or more memory"
 
 
-class Room:
-    """Room for fill-in of a system's factorisations [%]; it grows where it was too little. Collective."""
+class Workspace:
+    """Workspace for fill-in of a system's factorisations [%]; it grows where it was too little. Collective."""
 
-    def __init__(self, percent: int = ROOM) -> None:
+    def __init__(self, percent: int = WORKSPACE) -> None:
         self.percent = percent
 
     @property
@@ -34,11 +34,11 @@ class Room:
         for want of memory.
         """
         said, wanted = _said(pc)
-        if said in WITHOUT_MEMORY or (said in TOO_LITTLE_ROOM and self.percent >= MOST_ROOM):
+        if said in WITHOUT_MEMORY or (said in TOO_LITTLE_WORKSPACE and self.percent >= MOST_WORKSPACE):
             raise MemoryShortageError(_too_little(said, wanted, pc))
-        if said not in TOO_LITTLE_ROOM:
+        if said not in TOO_LITTLE_WORKSPACE:
             return False
-        self.percent = min(MOST_ROOM, 2 * max(self.percent, ROOM // 2))
+        self.percent = min(MOST_WORKSPACE, 2 * max(self.percent, WORKSPACE // 2))
         return True
 
 

@@ -89,8 +89,8 @@ def _loaded(cache: FunctionCache, sig: Any, target_context: Any) -> Any:
 
 def _names(cres: Any) -> bytes:
     """Intermediate code of empty functions of the same names, by which numba knows what the machine code has."""
-    told, empty = cres.fndesc, ir.Module()
-    wanted = {told.llvm_func_name, told.llvm_cpython_wrapper_name, told.llvm_cfunc_wrapper_name}
+    reported, empty = cres.fndesc, ir.Module()
+    wanted = {reported.llvm_func_name, reported.llvm_cpython_wrapper_name, reported.llvm_cfunc_wrapper_name}
     for found in cres.library._get_module_for_linking().functions:
         if found.name in wanted and not found.is_declaration:
             function = ir.Function(empty, ir.FunctionType(ir.VoidType(), ()), found.name)
@@ -124,8 +124,8 @@ def _named(types: Iterable[Any]) -> Iterator[type]:
 
 def _marks(kinds: Iterable[Any]) -> list[str]:
     """A word for the NamedTuples among types, if there are any; another one where their source is edited."""
-    told = sorted(f"{each.__module__}.{each.__qualname__} {_source(each)}" for each in set(_named(kinds)))
-    return [hashlib.sha256("\n".join(told).encode()).hexdigest()[:12]] if told else []
+    reported = sorted(f"{each.__module__}.{each.__qualname__} {_source(each)}" for each in set(_named(kinds)))
+    return [hashlib.sha256("\n".join(reported).encode()).hexdigest()[:12]] if reported else []
 
 
 def _source(named: type) -> str:

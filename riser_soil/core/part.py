@@ -137,7 +137,7 @@ class Traits:
     groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
     symmetric: its tangent.
     follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
-    keeps_way: its state depends on the path that the riser took, and is no part of its present configuration.
+    path_dependent: its state depends on the path that the riser took, and is no part of its present configuration.
     gradual: its forces in E grow along a curve, as clay's do; at a penalty's corner Newton's method may go astray.
     roles: what it does beyond the contract of a part, see `roles`.
     """
@@ -145,7 +145,7 @@ class Traits:
     groups: str
     symmetric: bool
     follows: bool = False
-    keeps_way: bool = False
+    path_dependent: bool = False
     gradual: bool = False
     roles: tuple[type, ...] = ()
 

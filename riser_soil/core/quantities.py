@@ -1,4 +1,4 @@
-"""Physical quantities of the scene language: number types with their units and bounds.
+"""Quantities of the scene language, numbers with units and bounds, and its tagged unions by the key `kind`.
 
 Every quantity has a physical range. A riser is from a tenth of a metre to some kilometres long; the ranges hold all
 that such a riser has when it is scaled in length by a millionth to a million, by Froude's law (forces by the cube of
@@ -6,9 +6,11 @@ the length, EI by its fifth power) or with the materials kept (gravity by its in
 units or powers of ten, and would lead to overflow or round-off during the run.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -16,6 +18,9 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 FROZEN = ConfigDict(defer_build=True, extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
 
 MOST_ELEMENTS = 1_000_000
+Model = TypeVar("Model", bound=BaseModel)
+
+
 """Of a riser: each of them costs some 10 kB, and every step of the run half a minute with so many."""
 
 
@@ -37,10 +42,10 @@ class Bounds:
         """The value, or PydanticCustomError."""
         if value == 0.0 or self.least <= abs(value) <= self.most:
             return value
-        raise PydanticCustomError("size", "{text}", {"text": self._told})
+        raise PydanticCustomError("size", "{text}", {"text": self._reported})
 
     @property
-    def _told(self) -> str:
+    def _reported(self) -> str:
         if self.least == 0.0:
             return f"must be at most {self.most:g} {self.unit} in size"
         return f"must be {'0, or ' if self.zero else ''}from {self.least:g} to {self.most:g} {self.unit} in size"
@@ -190,3 +195,37 @@ def by_kind(models: dict[str, type[BaseModel]]) -> Callable[[Any], str | None]:
         return tag_of(models[kind]) if isinstance(kind, str) and kind in models else None
 
     return pick
+
+
+def registry(*models: type[Model]) -> dict[str, type[Model]]:
+    """Models by their `kind`, a Literal of one word."""
+    return {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
+
+
+@dataclass(frozen=True, eq=False)
+class OneOf:
+    """Annotates a key whose value is a mapping read by the model of its kind."""
+
+    models: Mapping[str, type[BaseModel]]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        tagged = tuple(Annotated[model, Tag(tag_of(model))] for model in self.models.values())
+        chosen = Discriminator(
+            by_kind(dict(self.models)), custom_error_type="kind", custom_error_message=", ".join(self.models)
+        )
+        return handler.generate_schema(Annotated[reduce(or_, tagged), chosen])
+
+    @property
+    def words(self) -> str:
+        """The kinds, for a description."""
+        return " or ".join(self.models)
+
+    @property
+    def examples(self) -> str:
+        """A mapping of each kind with the keys that it requires, for a description."""
+        return " or ".join(_example(kind, model) for kind, model in self.models.items())
+
+
+def _example(kind: str, model: type[BaseModel]) -> str:
+    required = [name for name, key in model.model_fields.items() if key.is_required() and name != "kind"]
+    return f"{{{', '.join([f'kind: {kind}', *(f'{name}: ...' for name in required)])}}}"

@@ -158,7 +158,7 @@ class System:
 
     def magnitudes(self, state: State, weights: Weights) -> Array:
         """Sizes (size,) of the terms that this rank's residual is made of, to be summed by the numbering [N]: those of
-        the tangent at held rates, which takes the matrix' place, times those of the coordinates. See `round_off`.
+        the tangent at held rates, which takes the matrix' place, times those of the coordinates. See `newton_progress`.
         """
         self.assemble(state, replace(weights, shift_v=0.0, shift_a=0.0))
         return self.matrix.magnitudes(np.concatenate([f.magnitudes(state) for f in self.model.fields]))
@@ -186,8 +186,8 @@ class System:
         first, last: forces where the step begins and in its balance; bulk: F where it begins, in the step's own axes.
         share: of the means, what is there as the step begins.
         """
-        begun, ended = ((forces.inertia, forces.force, forces.end) for forces in (first, last))
-        work = _work_of(self.prescribed_dofs, share, begun, bulk, ended, u)
+        at_start, ended = ((forces.inertia, forces.force, forces.end) for forces in (first, last))
+        work = _work_of(self.prescribed_dofs, share, at_start, bulk, ended, u)
         put_in, taken, ahead = self.sum([float(joules) for joules in work])
         return put_in, taken, ahead
 
@@ -240,8 +240,8 @@ def _work_of(
     """Work of the mean of all groups on some of the dofs; of the mean F and of E on all; of E beyond its mean."""
     work, against, ahead = 0.0, 0.0, 0.0
     for i in dofs:
-        begun, ended = first[0][i] + first[1][i] + first[2][i], last[0][i] + last[1][i] + last[2][i]
-        work += (share * begun + (1.0 - share) * ended) * u[i]
+        at_start, ended = first[0][i] + first[1][i] + first[2][i], last[0][i] + last[1][i] + last[2][i]
+        work += (share * at_start + (1.0 - share) * ended) * u[i]
     for i in range(u.size):
         against += (share * bulk[i] + (1.0 - share) * last[1][i] + last[2][i]) * u[i]
         ahead += share * (last[2][i] - first[2][i]) * u[i]

@@ -1,4 +1,12 @@
-"""Layout of a draft: stretches of the line with their elements, and places of its ends, by depth and weight."""
+"""Layout of a draft: stretches of the line with their elements, and places of its ends, by depth and weight.
+
+Shapes of drafts: arcs of catenaries with one horizontal tension, from the seabed up to the hang-off.
+
+An arc of weight w under the horizontal tension H = w a has the slope t = s/a at the arc length s from its lowest point,
+the height a (c - 1) with c = sqrt(1 + t^2), and the distance a asinh t from there. A lazy wave follows its lower, its
+buoyant and its upper stretch from slope to slope. The tension is H c; it lengthens the arc by the integral of H c/EA,
+H a (t c + asinh t)/2 EA.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +14,8 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from riser_soil.drafts.hanging import Hanging, HangingLine, Stretch, free_hanging, lazy_wave
-from riser_soil.drafts.kinds import Kind
 from riser_soil.drafts.pipes import CrossSection, buoyant
+from riser_soil.drafts.wishes import Kind
 from riser_soil.errors import SceneError
 
 PIPE, FLOATS = "pipe", "buoyant"
@@ -21,6 +28,7 @@ FINE, ZONE = 0.25, 3.0  # element and half of the touchdown zone, over the bound
 GROWTH = 0.2  # of elements from one to the next
 
 Place = tuple[float, float, float]
+SAG, HOG = 0.35, 0.5  # heights of a lazy wave's sag and hog, over the hang-off's
 
 
 class Cut(NamedTuple):
@@ -47,8 +55,8 @@ class LineLayout(NamedTuple):
 def layout_of(kind: Kind, pipe: CrossSection, depth: float) -> LineLayout:
     """The line of a kind in water of a depth [m]; SceneError where it is too shallow."""
     if depth < SHALLOW * pipe.outer:
-        told = f"too shallow for a line of {pipe.outer:.3g} m"
-        raise SceneError(f"--depth {depth:g}: {told}: take {SHALLOW * pipe.outer:.3g} m or more")
+        reported = f"too shallow for a line of {pipe.outer:.3g} m"
+        raise SceneError(f"--depth {depth:g}: {reported}: take {SHALLOW * pipe.outer:.3g} m or more")
     return _hung(kind, pipe, depth) if kind.hangs else _upright(pipe, depth)
 
 
@@ -100,3 +108,54 @@ def _growing(name: str, length: float, fine: float, coarse: float) -> Iterator[C
         yield Cut(name, length, fine, coarse)
     else:
         yield from (Cut(name, grows, fine, coarse), Cut(name, length - grows, coarse, coarse))
+
+
+class Stretch(NamedTuple):
+    """A piece of the line: name of its line type, unstressed length [m]."""
+
+    line_type: str
+    length: float
+
+
+class Hanging(NamedTuple):
+    """A line that hangs: its stretches from the seabed up, the distance that they cover [m], and a = H/w [m]."""
+
+    stretches: tuple[Stretch, ...]
+    across: float
+    a: float
+
+
+class HangingLine(NamedTuple):
+    """What hangs: name of the line type, weight in water [N/m], EA [N]."""
+
+    name: str
+    weight: float
+    EA: float
+
+    def arc(self, H: float, *slopes: float) -> Stretch:
+        """From the seabed's or an extreme's level to each of the slopes."""
+        a = H / abs(self.weight)
+        return Stretch(self.name, a * sum(t - 0.5 * H / self.EA * _of_tension(t) for t in slopes))
+
+
+def _of_tension(t: float) -> float:
+    return t * math.sqrt(1.0 + t * t) + math.asinh(t)
+
+
+def free_hanging(line: HangingLine, height: float, angle: float) -> Hanging:
+    """A catenary that rises by `height` [m] from its touchdown point and leaves at an angle [rad] from the vertical."""
+    a, t = height / (1.0 / math.sin(angle) - 1.0), 1.0 / math.tan(angle)
+    return Hanging((line.arc(line.weight * a, t),), a * math.asinh(t), a)
+
+
+def lazy_wave(line: HangingLine, floats: HangingLine, height: float, angle: float) -> Hanging:
+    """The same with a hog, where a stretch floats, and a sag."""
+    top = 1.0 / math.sin(angle)
+    a = (1.0 - SAG) * height / (top - 1.0)
+    H = line.weight * a
+    b = H / -floats.weight
+    hog, sag = (1.0 + part * height / (a + b) for part in (HOG, HOG - SAG))
+    up, down, last = (math.sqrt(c * c - 1.0) for c in (hog, sag, top))
+    stretches = line.arc(H, up), floats.arc(H, up, down), line.arc(H, down, last)
+    across = (a + b) * (math.asinh(up) + math.asinh(down)) + a * math.asinh(last)
+    return Hanging(stretches, across, a)

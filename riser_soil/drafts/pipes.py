@@ -53,8 +53,8 @@ def steel(diameter: float, wall: float | None, mass: float | None) -> CrossSecti
         inner = _bore(diameter, wall, mass)
     area, second = 0.25 * math.pi * (diameter**2 - inner**2), math.pi / 64.0 * (diameter**4 - inner**4)
     stiffness = E_STEEL * area, E_STEEL * second
-    told = f"steel pipe, wall {500.0 * (diameter - inner):.4g} mm"
-    return CrossSection(diameter, inner, STEEL * area, *stiffness, (1.0, 0.0), 1.0, wall=True, source=told)
+    reported = f"steel pipe, wall {500.0 * (diameter - inner):.4g} mm"
+    return CrossSection(diameter, inner, STEEL * area, *stiffness, (1.0, 0.0), 1.0, wall=True, source=reported)
 
 
 def _bore(diameter: float, wall: float | None, mass: float) -> float:
@@ -73,17 +73,17 @@ def flexible(diameter: float, wall: float | None, mass: float | None) -> CrossSe
     inner = BORE * diameter if wall is None else diameter - 2.0 * wall
     mass = MASS * diameter**2 if mass is None else mass
     stiffness = AXIAL * diameter**2, BENDING * diameter**4
-    told = "flexible pipe, stiffness by rule of thumb: take its maker's numbers"
-    return CrossSection(diameter, inner, mass, *stiffness, (1.1, 0.05), 1.0, wall=False, source=told)
+    reported = "flexible pipe, stiffness by rule of thumb: take its maker's numbers"
+    return CrossSection(diameter, inner, mass, *stiffness, (1.1, 0.05), 1.0, wall=False, source=reported)
 
 
 def buoyant(pipe: CrossSection) -> CrossSection:
     """The same pipe inside buoyancy modules spread evenly, which lift it by its own submerged weight."""
     volume = (1.0 + LIFT) * pipe.weight / (GRAVITY * (WATER - FLOAT_DENSITY))
     outer = math.sqrt(pipe.outer**2 + 4.0 * volume / math.pi)
-    told = "the same pipe inside buoyancy modules, spread evenly"
+    reported = "the same pipe inside buoyancy modules, spread evenly"
     mass = pipe.mass + FLOAT_DENSITY * volume
-    return replace(pipe, outer=outer, mass=mass, drag=(1.0, 0.1), wall=False, source=told)
+    return replace(pipe, outer=outer, mass=mass, drag=(1.0, 0.1), wall=False, source=reported)
 
 
 def chain(diameter: float, wall: float | None, mass: float | None) -> CrossSection:
@@ -92,5 +92,5 @@ def chain(diameter: float, wall: float | None, mass: float | None) -> CrossSecti
         raise SceneError(f"--wall {wall:g}: chain has none; leave it out")
     mass = 19.9e3 * diameter**2 if mass is None else mass
     drag = 2.4 / BAR, round(1.15 / (math.pi * BAR), 3)
-    told = f"studless chain, bar of {1e3 * diameter:.4g} mm; outer_diameter is that of a rod of its volume"
-    return CrossSection(BAR * diameter, 0.0, mass, 8.54e10 * diameter**2, 0.0, drag, 1.0, wall=False, source=told)
+    reported = f"studless chain, bar of {1e3 * diameter:.4g} mm; outer_diameter is that of a rod of its volume"
+    return CrossSection(BAR * diameter, 0.0, mass, 8.54e10 * diameter**2, 0.0, drag, 1.0, wall=False, source=reported)

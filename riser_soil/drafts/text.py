@@ -1,12 +1,15 @@
-"""Text of a draft: YAML with comments."""
+"""Draft of a scene from wishes to its text: YAML with comments."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
-from riser_soil.drafts.layout import Cut, LineLayout, Place
+from riser_soil.drafts.layout import Cut, LineLayout, Place, layout_of
 from riser_soil.drafts.pipes import NU_STEEL, OIL, WATER, YIELD, CrossSection
-from riser_soil.drafts.wishes import SeaState
+from riser_soil.drafts.wishes import GROUNDS, SeaState, Wishes, kind_of, pipe_of, refuse, sea_of
+from riser_soil.scene.document import parse
+from riser_soil.scene.reader import checked
 
 RESPONSE = 0.25  # amplitude of the floater over Hs, where its RAOs are not known
 WAVES, STEPS = 10, 40  # periods that the dynamic stage lasts, steps in one
@@ -30,16 +33,16 @@ def text(title: str, call: str, layout: LineLayout, sea: SeaState, ground: str |
         f"title: {title}",
     )
     parts = _water(sea), _line_types(layout), _riser(layout), _seabed(ground), _stages(layout, sea)
-    lines = (f"{code:<{COMMENT - 2}}  # {told}" if told else code for part in parts for code, told in part)
+    lines = (f"{code:<{COMMENT - 2}}  # {reported}" if reported else code for part in parts for code, reported in part)
     return "\n".join([*head, *lines]) + "\n"
 
 
 def number(value: float, figures: int = 4) -> str:
     """A float in so many figures that every reader of YAML takes for one: it has a point, and its exponent a sign."""
-    told = f"{value:.{figures}g}"
-    if "e" not in told and abs(value) >= 1e5:
-        told = f"{value:.{figures - 1}e}"
-    mantissa, _, exponent = told.partition("e")
+    reported = f"{value:.{figures}g}"
+    if "e" not in reported and abs(value) >= 1e5:
+        reported = f"{value:.{figures - 1}e}"
+    mantissa, _, exponent = reported.partition("e")
     if exponent:
         mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
     whole = mantissa if "." in mantissa else f"{mantissa}.0"
@@ -135,3 +138,21 @@ def _harmonic(layout: LineLayout, sea: SeaState) -> str:
     surge, period = number(RESPONSE * sea.Hs, 3), number(sea.Tp)
     heave = surge if layout.tension is None else "0.0"
     return f"{{amplitude: [{surge}, 0.0, {heave}], period: {period}, phase_deg: [90.0, 0.0, 0.0], ramp: {period}}}"
+
+
+def checked_draft(name: str, wishes: Wishes, call: str) -> str:
+    """The scene file of a kind; SceneError where a wish can't be met, or the scene breaks a rule of its language.
+
+    call: the command, for the file's first line.
+    """
+    written = _draft(name, wishes, call)
+    checked(parse(written, "draft"), Path())
+    return written
+
+
+def _draft(name: str, wishes: Wishes, call: str) -> str:
+    kind = kind_of(name)
+    refuse(wishes, kind)
+    sea = sea_of(kind, wishes)
+    layout = layout_of(kind, pipe_of(kind, wishes), sea.depth)
+    return text(kind.title, call, layout, sea, (wishes.ground or GROUNDS[0]) if kind.hangs else None)

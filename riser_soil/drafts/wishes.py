@@ -1,17 +1,58 @@
-"""What a draft is asked for, and what of it can't be."""
+"""What a draft is asked for: kinds of drafts with their defaults, questions, and what can't be."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
-from riser_soil.drafts.kinds import Kind
-from riser_soil.drafts.pipes import CrossSection
+from riser_soil.drafts.pipes import CrossSection, chain, flexible, steel
 from riser_soil.errors import SceneError
 
 GROUNDS = ("spring", "rigid", "hysteretic")
 STEEPNESS = 4.3  # default Tp/sqrt(Hs) [s/m^0.5], between DNV-RP-C205's 3.6 and 5
+Prompt = Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of line.
+
+    pipe: its cross-section from diameter, wall and mass. depth, diameter [m], Hs [m]: defaults. angle: of the line at
+    its top from the vertical [rad]; 0: it stands upright. laid: length on the seabed, over the depth. floats: whether
+    a stretch of it is buoyant.
+    """
+
+    title: str
+    pipe: Callable[[float, float | None, float | None], CrossSection]
+    depth: float
+    diameter: float
+    Hs: float
+    angle: float = 0.0
+    laid: float = 0.0
+    floats: bool = False
+
+    @property
+    def hangs(self) -> bool:
+        """Whether it comes down on the seabed."""
+        return self.angle > 0.0
+
+
+KINDS = {
+    "steel-catenary": Kind("Steel catenary riser", steel, 1000.0, 0.273, 3.0, math.radians(12.0), 0.25),
+    "flexible": Kind("Free-hanging flexible riser", flexible, 100.0, 0.30, 2.0, math.radians(10.0), 0.4),
+    "lazy-wave": Kind("Lazy wave", flexible, 150.0, 0.26, 4.0, math.radians(12.0), 0.3, floats=True),
+    "top-tensioned": Kind("Top-tensioned riser", steel, 500.0, 0.34, 4.0),
+    "mooring": Kind("Mooring line", chain, 150.0, 0.10, 4.0, math.radians(45.0), 0.8),
+}
+
+
+def kind_of(name: str) -> Kind:
+    """The kind by its name, or SceneError."""
+    if name not in KINDS:
+        raise SceneError(f'new "{name}": must be one of {", ".join(KINDS)}')
+    return KINDS[name]
 
 
 @dataclass(frozen=True)
@@ -76,6 +117,26 @@ def pipe_of(kind: Kind, wishes: Wishes) -> CrossSection:
         raise SceneError(f"--wall {wishes.wall:g}: must be less than half the diameter, {diameter:g} m")
     pipe = kind.pipe(diameter, wishes.wall, wishes.mass)
     if pipe.weight <= 0.0:
-        told = f"in water, with its contents, this weighs {pipe.weight:.4g} N/m and floats"
-        raise SceneError(f"--diameter {diameter:g}: {told}; give more --mass or, to a pipe of steel, a thicker --wall")
+        reported = f"in water, with its contents, this weighs {pipe.weight:.4g} N/m and floats"
+        raise SceneError(
+            f"--diameter {diameter:g}: {reported}; give more --mass or, to a pipe of steel, a thicker --wall"
+        )
     return pipe
+
+
+def ask(given: Wishes, prompt: Prompt) -> tuple[str, Wishes]:
+    """The kind, and the wishes with answers to what is not given.
+
+    prompt: text, default -> answer, of the default's type.
+    """
+    name = prompt(f"kind ({', '.join(KINDS)})", default=next(iter(KINDS)))
+    kind = kind_of(name)
+    questions: dict[str, tuple[str, float | str]] = {
+        "depth": ("depth of the water [m]", kind.depth),
+        "diameter": ("outer diameter, of chain that of its bar [m]", kind.diameter),
+        "Hs": ("significant wave height, 0 for none [m]", kind.Hs),
+    }
+    if kind.hangs:
+        questions["ground"] = (f"ground ({', '.join(GROUNDS)})", GROUNDS[0])
+    open_ones = {key: question for key, question in questions.items() if getattr(given, key) is None}
+    return name, replace(given, **{key: prompt(text, default=value) for key, (text, value) in open_ones.items()})

@@ -23,8 +23,7 @@ from riser_soil.core.quantities import (
     wrong,
 )
 from riser_soil.errors import SceneError
-from riser_soil.fatigue.dnv_curves import CurveClass, Environment, dnv_curve
-from riser_soil.fatigue.sn_curve import REFERENCE_THICKNESS, SNCurve, curve_through
+from riser_soil.fatigue.sn_curve import REFERENCE_THICKNESS, CurveClass, Environment, SNCurve, curve_through, dnv_curve
 from riser_soil.scene.document import parse, read_text
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.reader import error_of
@@ -63,8 +62,8 @@ class GivenCurve(BaseModel):
     @model_validator(mode="after")
     def _branches_fit(self) -> Self:
         if not len(self.log_a) == len(self.m) == len(self.change) + 1:
-            told = f"{len(self.log_a)} log_a, {len(self.m)} m, {len(self.change)} change"
-            raise wrong("m", f"branches do not fit: {told}", "give as many log_a as m, and one change fewer")
+            reported = f"{len(self.log_a)} log_a, {len(self.m)} m, {len(self.change)} change"
+            raise wrong("m", f"branches do not fit: {reported}", "give as many log_a as m, and one change fewer")
         if any(not second > first for first, second in pairwise(self.change)):
             raise wrong("change", "cycles must grow", "sort the branches from few to many cycles")
         branches = pairwise(zip(self.log_a, self.m, strict=True))
@@ -72,8 +71,8 @@ class GivenCurve(BaseModel):
             log_N = math.log10(N)
             after = next_log_a - next_m * (log_a - log_N) / m
             if abs(after - log_N) > APART:
-                told = f"one ends with log10 N = {log_N:.4g}, there the next begins with {after:.4g}"
-                raise wrong("change", f"branches do not meet: {told}", "correct log_a, m or change")
+                reported = f"one ends with log10 N = {log_N:.4g}, there the next begins with {after:.4g}"
+                raise wrong("change", f"branches do not meet: {reported}", "correct log_a, m or change")
         return self
 
     def curve(self) -> SNCurve:

@@ -12,8 +12,7 @@ from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.cycles import beginning, dynamic_stage
 from riser_soil.riser.sections import Surroundings
-from riser_soil.riser.wall_sections import WallSections, walls_of
-from riser_soil.riser.wall_stress import Loads, Wall, axial_stress_at
+from riser_soil.riser.wall_stress import Loads, Wall, WallSections, axial_stress_at, walls_of
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.riser import Riser
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SceneError
-from riser_soil.material.loops import ClosedCycle, closed_cycles
-from riser_soil.material.memory import columns, memory, told
 from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
-from riser_soil.material.point import MaterialCurve, drive, law_at, point_at
+from riser_soil.material.point import MaterialCurve, columns, drive, law_at, memory, point_at, reported
 from riser_soil.results.whole_file import refuse_file, written_together
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
@@ -22,6 +21,7 @@ FILES = CURVE, CYCLES, MEMORY, PICTURE = "material.csv", "material_cycles.csv", 
 USUAL_DEPTH = 1.0  # m, at most half of the block's depth
 _LEFT = f"{CURVE}, {CYCLES}, {MEMORY} and {PICTURE}"
 SIGNED = "# riser_soil material: "  # the first line's beginning, by which the program knows its files
+CLOSED = 1e-9  # how far a cycle may end from its beginning, over its width
 
 
 def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | None = None, force: bool = False) -> str:
@@ -43,7 +43,9 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     heading = f"{SIGNED}{kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
     remembered = memory(point)
     _leave(folder, heading, {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: columns(remembered)})
-    return "\n".join([*_told(soil, z, taken, curve, cycles), *told(remembered), f"written: {_LEFT} in {folder}"])
+    return "\n".join(
+        [*_reported(soil, z, taken, curve, cycles), *reported(remembered), f"written: {_LEFT} in {folder}"]
+    )
 
 
 def _soil_of(scene: Scene) -> SoilScene:
@@ -82,7 +84,7 @@ def _own(file: Path) -> bool:
 
 def _leave(folder: Path, heading: str, tables: dict[str, dict[str, Array]]) -> None:
     """Write all files, none of them by halves."""
-    from riser_soil.plots.material import draw
+    from riser_soil.plots.soil_curves import draw
 
     with written_together(folder, FILES) as drafts:
         for name, columns_of in tables.items():
@@ -114,7 +116,7 @@ def _cycle_columns(cycles: list[ClosedCycle]) -> dict[str, Array]:
     return dict(zip((*names, "damping_ratio [-]"), columns, strict=True))
 
 
-def _told(
+def _reported(
     soil: SoilScene, z: float, path: MaterialPath, curve: MaterialCurve, cycles: list[ClosedCycle]
 ) -> list[str]:
     k = path.driven
@@ -129,3 +131,46 @@ def _told(
         last = {f"{c.amplitude:.6g}": c for c in cycles}.values()
         lines += [f"{c.amplitude:15.4g} {1e-3 * c.secant_modulus:14.5g} {100.0 * c.damping_ratio:12.3f}" for c in last]
     return lines
+
+
+class ClosedCycle(NamedTuple):
+    """Rows from first to last; strain amplitude and mean strain [-]; secant modulus [Pa]: stress over strain, from turn
+    to turn; damping ratio [-]: area of the loop over 4π times the elastic energy ½ stress amplitude × strain amplitude.
+    """
+
+    first: int
+    last: int
+    amplitude: float
+    mean: float
+    secant_modulus: float
+    damping_ratio: float
+
+
+def turns(x: Array) -> IntArray:
+    """Rows where x (n,) turns back, the first and last row among them; of rows that stand still the last."""
+    moves = np.flatnonzero(np.diff(x))
+    sense = np.sign(np.diff(x)[moves])
+    back = moves[1:][sense[1:] != sense[:-1]]
+    return np.unique([0, *back, len(x) - 1]).astype(np.int64)
+
+
+def closed_cycles(driven: Array, strain: Array, stress: Array) -> list[ClosedCycle]:
+    """Cycles between a turn and the next but one that is at the same `driven` value (n,), strain or stress; strain (n,)
+    and stress (n,) [Pa] make the loop.
+    """
+    at = turns(driven)
+    out = []
+    for a, b, c in zip(at, at[1:], at[2:], strict=False):
+        if abs(driven[c] - driven[a]) <= CLOSED * abs(driven[b] - driven[a]):
+            out.append(_cycle(a, b, c, strain, stress))
+    return out
+
+
+def _cycle(a: int, b: int, c: int, strain: Array, stress: Array) -> ClosedCycle:
+    gamma, tau = strain[a : c + 1], stress[a : c + 1]
+    area = abs(float(np.sum(0.5 * (tau[1:] + tau[:-1]) * np.diff(gamma))))
+    width, height = abs(float(strain[b] - strain[a])), abs(float(stress[b] - stress[a]))
+    elastic = 0.125 * width * height
+    mean = 0.5 * float(strain[a] + strain[b])
+    damping = area / (4.0 * np.pi * elastic) if elastic > 0.0 else 0.0
+    return ClosedCycle(int(a), int(c), 0.5 * width, mean, height / width if width > 0.0 else np.inf, float(damping))

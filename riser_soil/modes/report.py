@@ -34,8 +34,8 @@ def table(modes: Modes, asked: int) -> list[str]:
     ]
     rows = zip(modes.frequency, modes.period, modes.direction, modes.share, strict=True)
     for n, (f, T, direction, share) in enumerate(rows, 1):
-        told = " ".join(f"{100.0 * part:10.1f} %" for part in share)
-        lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {told}")
+        reported = " ".join(f"{100.0 * part:10.1f} %" for part in share)
+        lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {reported}")
     if len(modes.frequency) < asked:
         lines.append(f"no more than {len(modes.frequency)} were found: the riser has so few unknowns with mass")
     if modes.asymmetry > 0.0:

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from riser_soil.imported_scene import ImportedScene, Remark, friction
-from riser_soil.moordyn.chain import COUPLED, Chain, chain_with, elsewhere, is_free, place, point
-from riser_soil.moordyn.deck import Deck, DeckRow
+from riser_soil.moordyn.deck import COUPLED, Chain, Deck, DeckRow, chain_with, elsewhere, is_free, place, point
 
 DEFAULTS = {"g": 9.81, "rho": 1025.0, "wtrdpth": 0.0, "kbot": 3.0e6, "frictioncoefficient": 0.0}
 ALONG_AND_ACROSS = ("mu_ka", "mu_kt")  # in MoorDyn-F in the place of one coefficient of friction
@@ -21,7 +20,7 @@ PHYSICAL = {
     "statdynfricscale": "static friction larger than dynamic friction",
     "seafloorfile": "the seabed's shape; it is level here",
 }
-TOLD_APART = ("line types", "rod types", "points", "lines", "options", "bodies", "rods")
+REPORTED_APART = ("line types", "rod types", "points", "lines", "options", "bodies", "rods")
 
 
 def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
@@ -30,14 +29,14 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
     first, last = (place(deck, name, row) for name, row in _ends(chain))
     if first[2] > last[2]:
         chain = chain.reversed()
-    options, told = _options(deck)
+    options, reported = _options(deck)
     seabed, about_seabed = _seabed(deck, chain, options)
     types, about_types = _line_types(deck, chain)
     data: dict[str, Any] = {"title": deck.title.strip("- ") or deck.name, "gravity": options["g"]}
     data |= {"water": {"density": options["rho"], "surface_level": 0.0}, "line_types": types}
     data |= {"riser": _riser(deck, chain)} | seabed
     data |= {"stages": [{"name": "hang", "kind": "static"}]}
-    remarks = [*told, *about_seabed, *about_types, *_about_ends(deck, chain), *_left_out(deck, chain)]
+    remarks = [*reported, *about_seabed, *about_types, *_about_ends(deck, chain), *_left_out(deck, chain)]
     return ImportedScene(data, sorted(remarks))
 
 
@@ -67,13 +66,13 @@ def _seabed(
     diameters = [_diameter(deck, row) for row in chain.lines]
     bed = {"kind": "spring", "stiffness": options["kbot"] * diameters[0], "level": -options["wtrdpth"]}
     data: dict[str, Any] = {"seabed": bed | {"contact_at": "axis"}}
-    contact, told = friction(*(options.get(key, options["frictioncoefficient"]) for key in ALONG_AND_ACROSS))
+    contact, reported = friction(*(options.get(key, options["frictioncoefficient"]) for key in ALONG_AND_ACROSS))
     rows = (row.line for row in deck.of("options") if row.words[1].lower() in ALONG_AND_ACROSS)
-    remarks = [(next(rows), told)] if told else []
+    remarks = [(next(rows), reported)] if reported else []
     data |= contact
-    told = f"kBot times the diameter differs along the riser; the seabed has that of line {chain.lines[0].words[0]}"
+    reported = f"kBot times the diameter differs along the riser; the seabed has that of line {chain.lines[0].words[0]}"
     if len(set(diameters)) > 1:
-        remarks.append((chain.lines[0].line, told))
+        remarks.append((chain.lines[0].line, reported))
     return data, remarks
 
 
@@ -108,8 +107,8 @@ def _line_types(deck: Deck, chain: Chain) -> tuple[dict[str, Any], list[Remark]]
         if more:
             remarks.append((row.line, f"EA {stiffnesses[0]} of {name}: the first alone, for all loads"))
         if row.words[4] not in ("0", "0.0"):
-            told = "axial damping alone; `damping` of a line type would damp bending, too"
-            remarks.append((row.line, f"BA/-zeta {row.words[4]} of {name}: {told}"))
+            reported = "axial damping alone; `damping` of a line type would damp bending, too"
+            remarks.append((row.line, f"BA/-zeta {row.words[4]} of {name}: {reported}"))
         if len(row.words) > 10 and deck.number(row, 10, "Cl") != 0.0:
             remarks.append((row.line, f"Cl {row.words[10]} of {name}: vortex-induced vibration"))
     return types, remarks
@@ -165,5 +164,5 @@ def _left_out(deck: Deck, chain: Chain) -> Iterator[Remark]:
             yield row.line, f"outputs {row.words[6]} of line {row.words[0]}: a run writes its own"
     for section in ("bodies", "rods"):
         yield from ((row.line, f"{section}: {' '.join(row.words)}") for row in deck.of(section))
-    for section in deck.rows.keys() - set(TOLD_APART):
+    for section in deck.rows.keys() - set(REPORTED_APART):
         yield from ((row.line, f"{section}: {' '.join(row.words)}") for row in deck.of(section))

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
 from riser_soil.core.arrays import Array
-from riser_soil.motion.ramped import ramped
+from riser_soil.motion.harmonic import ramped
 from riser_soil.riser.ends import Kinematics
 
 

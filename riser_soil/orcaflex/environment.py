@@ -1,12 +1,26 @@
-"""Water, current and seabed of a data file."""
+"""Water, current, waves and seabed of a data file.
+
+Waves of a data file.
+
+Their directions are those of a scene: towards which they run, from x towards y. Their clock is another: OrcaFlex's time
+is 0 where the build-up ends, and a scene's where its first dynamic stage begins, which is the build-up here.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import numpy as np
+
 from riser_soil.orcaflex.data_file import FORCE, MASS, Item, unit_vector
+from riser_soil.sea.components import wave_number
+from riser_soil.sea.spectra import mean_period
 
 _DEPTHS = ("WaterDepth", "SeabedOriginDepth")
+_REGULAR = {"Airy": "airy", "Single Airy": "airy", "Stokes' 5th": "stokes", "Dean stream": "stream-function"}
+_PEAKED = {"JONSWAP": "jonswap", "ISSC": "pierson_moskowitz"}
+_STRETCHING = {"Vertical stretching": "vertical", "Wheeler stretching": "wheeler"}
 
 
 def water_depth(environment: Item) -> float:
@@ -76,3 +90,83 @@ def _velocity(row: Item, speed: float, direction: float, surface: float) -> list
 
 def _along(speed: float, direction: float) -> list[float]:
     return [speed * part for part in unit_vector(direction)]
+
+
+def waves(environment: Item, build_up: float, g: float, depth: float) -> dict[str, Any] | None:
+    """The scene's waves, which grow in the build-up [s]; None where there are none."""
+    trains = environment.items("WaveTrains") or ([environment] if environment.has("WaveType") else [])
+    found = [train for each in trains if (train := _train(each, build_up, g, depth))]
+    alone = [train for train in found if "regular" in train]
+    if not found:
+        return None
+    kinds = found[0] if len(found) == 1 else alone[0] if alone else {"trains": found}
+    for _ in found[1:] if alone else []:
+        environment.left("WaveTrains", "a wave of finite height is alone here; the other trains are left out")
+    ramp = {"ramp": build_up} if build_up else {}
+    return kinds | ramp | ({} if "regular" in kinds else _stretching(environment))
+
+
+def _stretching(environment: Item) -> dict[str, str]:
+    given = environment.word("KinematicStretchingMethod")
+    if given not in _STRETCHING:
+        environment.left("KinematicStretchingMethod", f"KinematicStretchingMethod {given or '~'}: Wheeler's here")
+        return {}
+    return {"stretching": _STRETCHING[given]}
+
+
+def _train(train: Item, build_up: float, g: float, depth: float) -> dict[str, Any] | None:
+    kind = train.word("WaveType")
+    if kind in _REGULAR:
+        return _regular(train, _REGULAR[kind], build_up, g, depth)
+    if kind in _PEAKED:
+        return _peaked(train, _PEAKED[kind])
+    if kind not in ("None", ""):
+        train.left("WaveType", f"WaveType {kind}: give the waves anew")
+    return None
+
+
+def _regular(train: Item, kind: str, build_up: float, g: float, depth: float) -> dict[str, Any] | None:
+    height, direction = train.number("WaveHeight"), train.number("WaveDirection", 0.0)
+    if height == 0.0:
+        return None
+    period = train.number("WavePeriod")
+    x, y = train.numbers("WaveOrigin", 2)
+    w, toward = 2.0 * math.pi / period, math.radians(direction)
+    if kind != "airy" and (x or y):
+        train.left("WaveOrigin", "WaveOrigin: the crest passes x = y = 0 here at that time")
+        x = y = 0.0
+    k = float(wave_number(np.array([w]), g, depth)[0])
+    lag = w * (build_up + train.number("WaveTimeOrigin", 0.0)) - k * (x * math.cos(toward) + y * math.sin(toward))
+    found = {"height": height, "period": period, "direction_deg": direction, "phase_deg": math.degrees(lag) % 360.0}
+    train.get("WaveStreamFunctionOrder")  # ours has as many terms as the crest needs
+    return {"airy": found} if kind == "airy" else {"regular": found | {"theory": kind}}
+
+
+def _peaked(train: Item, kind: str) -> dict[str, Any] | None:
+    found = {"Hs": train.number("WaveHs"), "direction_deg": train.number("WaveDirection", 0.0)}
+    if found["Hs"] == 0.0:
+        return None
+    train.get("WaveJONSWAPParameters")
+    if kind == "jonswap" and not train.has("WaveGamma"):
+        train.left("WaveType", "WaveGamma is not given: no such waves here; give them anew")
+        return None
+    gamma = train.number("WaveGamma") if kind == "jonswap" else 1.0
+    peak = _peak_period(train, gamma)
+    if peak is None:
+        train.left("WaveType", "neither WaveTp nor WaveTz is given: no such waves here; give them anew")
+        return None
+    found |= {"Tp": peak} | ({"gamma": gamma} if kind == "jonswap" else {})
+    if train.has("WaveNumberOfComponents"):
+        found["components"] = int(train.number("WaveNumberOfComponents"))
+    train.left("WaveType", f"phases and frequencies of {train.word('WaveType')}: they are drawn anew, by `seed`")
+    if train.number("WaveNumberOfSpectralDirections", 1.0) > 1.0:
+        train.left("WaveNumberOfSpectralDirections", "directional spreading: give `spreading: {s, directions}`")
+    return {kind: found}
+
+
+def _peak_period(train: Item, gamma: float) -> float | None:
+    """As it is given, or by the mean zero-crossing period of the whole spectrum [s]."""
+    for key in ("WaveTp", "WavePeakPeriod"):
+        if train.has(key):
+            return train.number(key)
+    return train.number("WaveTz") / mean_period(gamma) if train.has("WaveTz") else None

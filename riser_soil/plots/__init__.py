@@ -10,7 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from riser_soil.core.own_process import environment_alone
+from riser_soil.core.environment import environment_alone
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.whole_file import written_whole

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import base64
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from riser_soil.errors import ResultsError
@@ -14,7 +17,6 @@ from riser_soil.plots import film, histories, picture
 from riser_soil.plots.curves import save, sheet
 from riser_soil.plots.ranges import draw_range, names
 from riser_soil.plots.shape import snapshots
-from riser_soil.plots.trough import has_trough, trough
 from riser_soil.results import Run
 from riser_soil.results.stage_records import StageRecords, stage_records
 from riser_soil.results.whole_file import refuse_file, written_whole
@@ -22,6 +24,7 @@ from riser_soil.results.whole_file import refuse_file, written_whole
 FORMATS = ("png", "svg", "pdf")
 GROUPS = ("ranges", "histories", "shape", "soil", "energy", "solver", "touchdown", "film")
 _ALONE = {"touchdown": "touchdown.png", "film": "film.gif"}  # drawn by a process of their own, in one format
+_TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,3 +140,45 @@ def _drawn_alone(name: str, stage: StageRecords, file: Path, asked: bool) -> tup
         if asked:
             raise
         return None, f"no {name}: {err}"
+
+
+def embedded(figure: Figure) -> str:
+    """A sheet of curves as SVG, whose letters are drawn: no font is needed where it is looked at."""
+    return _drawn(".svg", lambda file: save(figure, file))
+
+
+def embedded_png(draw: Callable[[Path], object]) -> str:
+    """What `draw` writes to a PNG file."""
+    return _drawn(".png", draw)
+
+
+def _drawn(ending: str, draw: Callable[[Path], object]) -> str:
+    with tempfile.TemporaryDirectory() as place:
+        file = Path(place) / f"picture{ending}"
+        draw(file)
+        return f"data:{_TYPES[ending]};base64,{base64.b64encode(file.read_bytes()).decode()}"
+
+
+def trough(stage: StageRecords) -> Figure:
+    """Settlement of the soil's surface across the riser, as the stage begins and ends, and the deepest in between."""
+    settlement, offset = 1e3 * stage["settlement_across"], stage.run["offset"]
+    arc = stage["section_arc"][-1]
+    figure, panels = sheet(1, len(arc), width=max(6.0, 4.0 * len(arc)))
+    for n, axes in enumerate(panels):
+        if stage.moves:
+            axes.plot(offset, settlement[0, n], color="0.5", label="as the stage begins")
+        axes.plot(offset, settlement[-1, n], color="C0", label="at its end")
+        if stage.moves:
+            deepest = settlement[:, n].max(axis=0)
+            axes.plot(offset, deepest, color="C3", linestyle=":", label="deepest")
+        axes.invert_yaxis()
+        axes.set(title=f"section at arc {arc[n]:.4g} m", xlabel="offset to the left of the riser [m]")
+    panels[0].set_ylabel("settlement of the soil's\nsurface [mm], + down")
+    panels[0].legend(fontsize="small")
+    return figure
+
+
+def has_trough(stage: StageRecords) -> bool:
+    """Whether sections are recorded, and lie on the soil."""
+    there = "settlement_across" in stage.run.variables
+    return there and bool(np.isfinite(stage["settlement_across"][-1]).any())

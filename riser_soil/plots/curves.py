@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.outputs import ALONG_RISER
-from riser_soil.plots.units import axis_words
+from riser_soil.plots.scales import axis_words
 from riser_soil.results import Run
-from riser_soil.results.derived import along, reactions
+from riser_soil.results.stage_records import along, reactions
 
 # Along the arc: what the axis says, and the factor that makes it so; the text and unit of the table of outputs, where
 # it is not said better here.

@@ -21,13 +21,13 @@ def draw_damage(
     angles: Array,
     damage: Array,
     touchdown: tuple[float, float] | None,
-    told: Sequence[str],
+    reported: Sequence[str],
 ) -> Path:
     """damage (ns, np) a year at arc lengths (ns,) [m] and angles (np,) [deg]; touchdown: arc lengths between which the
-    touchdown point moved [m]; told: lines above.
+    touchdown point moved [m]; reported: lines above.
     """
     figure, (along, near, around) = sheet(3, 1, width=8.0, height=3.0)
-    figure.suptitle("\n".join(told), fontsize=9, x=0.02, ha="left")
+    figure.suptitle("\n".join(reported), fontsize=9, x=0.02, ha="left")
     section = int(damage.max(axis=1).argmax())
     _draw_along(along, arc, damage, touchdown)
     _draw_near(near, arc, angles, damage, touchdown, section)

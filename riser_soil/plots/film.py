@@ -27,7 +27,7 @@ from riser_soil.plots.moving_pictures import write_film
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
 from riser_soil.results.cycles import beginning, cycles, period_of, timed_stage
-from riser_soil.results.derived import along
+from riser_soil.results.stage_records import along
 
 _SIZE = (960, 540)
 _SLACK = 1e-6  # of the time filmed

@@ -9,8 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import TIME, sheet
-from riser_soil.results.derived import along
-from riser_soil.results.stage_records import StageRecords
+from riser_soil.results.stage_records import StageRecords, along
 
 _STILL = 1e-9  # of the riser's length: an end that moves less stays
 _ENERGIES = {

@@ -78,8 +78,8 @@ def _draw_band(axes: Axes, arc: Array, values: Array, time: Array) -> None:
 def _place(word: str, arc: Array, values: Array, at: Callable[[Array], Any]) -> str:
     """What is round-off beside the largest value is told as 0."""
     n = int(at(values))
-    told = values[n] if abs(values[n]) > _ROUND_OFF * np.nanmax(np.abs(values)) else 0.0
-    return f"{word} {told:.4g} at {arc[n]:.4g} m"
+    reported = values[n] if abs(values[n]) > _ROUND_OFF * np.nanmax(np.abs(values)) else 0.0
+    return f"{word} {reported:.4g} at {arc[n]:.4g} m"
 
 
 def _extremes(arc: Array, values: Array) -> str:

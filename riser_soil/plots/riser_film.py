@@ -14,12 +14,10 @@ from riser_soil.errors import ResultsError
 from riser_soil.plots.curves import sheet
 from riser_soil.plots.moving_pictures import write_film
 from riser_soil.plots.scales import colour_scale
-from riser_soil.plots.shape import filmed_records
+from riser_soil.plots.shape import filmed_records, seabed_under
 from riser_soil.results import Run
 from riser_soil.results.cycles import cycles, timed_stage
-from riser_soil.results.derived import along
-from riser_soil.results.seabed_line import seabed_under
-from riser_soil.results.stage_records import stage_records
+from riser_soil.results.stage_records import along, stage_records
 
 MOST_FRAMES = 120
 _INCHES, _DPI = (9.6, 5.4), 100

@@ -1,4 +1,4 @@
-"""Round numbers for colour bars and for the magnification of deformations; lengths in words and in sight."""
+"""Round numbers for colour bars and magnification, lengths in words and in sight, units as engineers read them."""
 
 from __future__ import annotations
 
@@ -13,6 +13,15 @@ _FACTORS = (5.0, 2.0, 1.0)
 _VISIBLE_SHARE = 0.1
 # Radius of a pipe over the width of the view from which it shows as a pipe: some 9 pixels of 1,200 across.
 _SEEN_SHARE = 0.004
+SHOWN: dict[str, tuple[str, float]] = {  # unit of SI as UDUNITS writes it -> unit shown, how many of it are one of SI
+    "N": ("kN", 1e-3),
+    "N m": ("kN m", 1e-3),
+    "N m-1": ("kN/m", 1e-3),
+    "m-1": ("1/m", 1.0),
+    "Pa": ("MPa", 1e-6),
+    "1": ("-", 1.0),
+    "degree": ("°", 1.0),
+}
 
 
 def colour_scale(values: Array) -> tuple[float, int]:
@@ -39,3 +48,14 @@ def metres(length: float) -> str:
 def drawn_radius(radius: float, across: float) -> float:
     """Radius [m] at which a pipe is drawn in a view `across` [m] wide: thick enough to be seen."""
     return max(radius, _SEEN_SHARE * across)
+
+
+def shown(units: str) -> tuple[str, float]:
+    """The unit shown for one of SI, and how many of it are one of SI."""
+    return SHOWN.get(units, (units, 1.0))
+
+
+def axis_words(text: str, units: str) -> tuple[str, float]:
+    """What an axis says of a quantity, and the factor that makes it so."""
+    unit, factor = shown(units)
+    return f"{text} [{unit}]", factor

@@ -10,13 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.errors import ResultsError
+from riser_soil.errors import ResultsError, RiserSoilError
 from riser_soil.plots.curves import sheet
 from riser_soil.results import Run
+from riser_soil.results import folder as run_folder
 from riser_soil.results.cycles import cycles, period_of
-from riser_soil.results.derived import along
-from riser_soil.results.seabed_line import seabed_under
-from riser_soil.results.stage_records import StageRecords
+from riser_soil.results.stage_records import StageRecords, along
+from riser_soil.scene.bathymetry import ground_height
+from riser_soil.scene.reader import read_scene
 
 SNAPSHOTS = 9
 _ASIDE = 0.002  # of the riser's length: what goes out of the plane less is not drawn from above
@@ -118,3 +119,16 @@ def _zone(axes: Axes, stage: StageRecords, position: Array, ahead: Array) -> Non
     axes.set_ylim(low - margin, high + margin)
     where = "touchdown zone" if not np.isnan(touchdown).all() else "lowest point"
     axes.set(title=f"{where}, heights drawn larger", xlabel=_AHEAD, ylabel=_UP)
+
+
+def seabed_under(run: Run, points: Array) -> Array | None:
+    """Height (n,) [m] of the undeformed seabed or soil under points (n, 3) [m]; None where there is none, or the scene
+    can't be read.
+    """
+    try:
+        scene = read_scene(str(run.folder / run_folder.SCENE))
+    except (RiserSoilError, OSError):
+        return None
+    if not scene.has_ground:
+        return None
+    return np.array([ground_height(scene, (float(x), float(y), float(z))) for x, y, z in points])

@@ -26,7 +26,7 @@ from riser_soil.plots.bodies import (
 )
 from riser_soil.plots.scales import colour_scale, drawn_radius, magnification, metres
 from riser_soil.results import Run, SoilFrame
-from riser_soil.results.derived import along
+from riser_soil.results.stage_records import along
 
 _SIZE = (1600, 900)
 _ABOVE = 0.045  # of what is shown across: the touchdown's label stands above the riser that rises behind it

@@ -1,4 +1,4 @@
-"""Work-precision plot: error against processor time, a line for each knob of a study, and the Pareto front."""
+"""Work-precision plot: error against processor time, a line for each setting of a study, and the Pareto front."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ MARKERS = "osD^v"
 
 
 @dataclass(frozen=True, eq=False)
-class KnobLine:
-    """One knob's ladder from coarse to fine: processor time (n,) [s], relative error (n,), whether timed alone (n,)."""
+class SettingLine:
+    """One setting's refinement series from coarse to fine: processor time (n,) [s], relative error (n,), whether timed
+    alone (n,).
+    """
 
     words: str
     order: str
@@ -33,7 +35,7 @@ class WorkPrecision:
     scene: the scene's own seconds and error. doubt: relative uncertainty of the reference. targets: relative errors.
     """
 
-    lines: Sequence[KnobLine]
+    lines: Sequence[SettingLine]
     other_seconds: Sequence[float]
     other_errors: Sequence[float]
     front_seconds: Sequence[float]
@@ -60,15 +62,15 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
     axes.set_ylabel("largest relative error of a headline quantity")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
-    told = "123456789" if _span(shown) < 6.0 else "25" if _span(shown) < 30.0 else ""
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda s, _: f"{s:g}" if f"{s:.0e}"[0] in told else ""))
+    reported = "123456789" if _span(shown) < 6.0 else "25" if _span(shown) < 30.0 else ""
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda s, _: f"{s:g}" if f"{s:.0e}"[0] in reported else ""))
     axes.legend(fontsize=9)
     text = io.StringIO()
     figure.savefig(text, format="svg")
     return text.getvalue()
 
 
-def _draw_line(axes: Axes, line: KnobLine, color: str, marker: str) -> None:
+def _draw_line(axes: Axes, line: SettingLine, color: str, marker: str) -> None:
     errors = _seen(line.errors)
     axes.plot(line.seconds, errors, "-", color=color, marker=marker, label=f"{line.words}: {line.order}")
     beside = [n for n, alone in enumerate(line.alone) if not alone]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.key_results import key_results
 from riser_soil.core import outputs
 from riser_soil.core.output import Figure, OutputQuantity, Row
-from riser_soil.plots.units import shown
+from riser_soil.plots.scales import shown
 from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
 
-READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}  # units of headline quantities, as they are read
+READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}  # units of key results, as they are read
 _AT_THE_END = ("quantity", "unit", "value", "at arc [m]", "±")
 _OVER_THE_STAGE = (
     *("quantity", "unit", "at the end", "min", "at t [s]", "at arc [m]", "±"),
@@ -25,28 +25,28 @@ _ROUND_OFF = 1e-9  # of the largest component, or of the largest bending moment
 
 def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> ReportTable:
     """The figures of a stage that an engineer reads first: those of the screen, with places and error bars."""
-    return _table(stage, headline=True, bars=error_bars(summary, stage["name"]))
+    return _table(stage, key_result=True, bars=error_bars(summary, stage["name"]))
 
 
 def ends_table(stage: Mapping[str, Any]) -> ReportTable:
     """Positions of the ends, forces and moments of their supports, by component."""
-    return _table(stage, headline=False, bars={})
+    return _table(stage, key_result=False, bars={})
 
 
 def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], float | None]:
     """Error bars of SI by figure and min or max; empty where none were asked for."""
-    known = headlines(summary)
-    told = found(summary, ("error_bars", "quantities")) or []
-    names = {f"{each['stage']}: {each['name']}": each["bar"] for each in told if each["stage"] == stage}
+    known = key_results(summary)
+    reported = found(summary, ("error_bars", "quantities")) or []
+    names = {f"{each['stage']}: {each['name']}": each["bar"] for each in reported if each["stage"] == stage}
     return {(known[key].figure, known[key].which): bar for key, bar in names.items() if key in known}
 
 
-def headlines_table(summary: Mapping[str, Any]) -> ReportTable:
-    """What is read first: headline quantities stage by stage, and their error bars if there are any."""
+def key_results_table(summary: Mapping[str, Any]) -> ReportTable:
+    """What is read first: key results stage by stage, and their error bars if there are any."""
     bars = {f"{each['stage']}: {each['name']}": each for each in found(summary, ("error_bars", "quantities")) or []}
     sources = list(dict.fromkeys(source for each in bars.values() for source in each["by_source"]))
     rows = []
-    for key, each in headlines(summary).items():
+    for key, each in key_results(summary).items():
         unit, scale = READ_IN.get(each.unit, (each.unit, 1.0))
         bar = bars.get(key, {})
         shares = (_bar(bar.get("by_source", {}).get(source), scale) for source in sources)
@@ -60,7 +60,7 @@ def _whole_bar(bar: Mapping[str, Any], scale: float) -> str:
     return "not known" if "reason" in bar else _bar(bar.get("bar"), scale)
 
 
-def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, str], float | None]) -> ReportTable:
+def _table(stage: Mapping[str, Any], key_result: bool, bars: Mapping[tuple[str, str], float | None]) -> ReportTable:
     head = _AT_THE_END if stage["kind"] == "static" else _OVER_THE_STAGE
     if stage["final"] is None:
         return ReportTable(head, [])
@@ -69,18 +69,18 @@ def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, st
     for output, figure in outputs.figures(()):
         final, extremes = found(stage["final"], figure.path), found(stage["extremes"], figure.path)
         row = outputs.row_of(figure, stage["final"])
-        if final is None or (row is not None) != headline:
+        if final is None or (row is not None) != key_result:
             continue
         words, unit, scale = _words(output, figure, row)
         bar = {which: bars.get((figure.name, which)) for which in ("min", "max")}
         if isinstance(final, list):
             final, extremes = _without_round_off(stage, output, final, extremes)
-        told_here = list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
-        rows += told_here
-        if output.sign and told_here:
+        reported_here = list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
+        rows += reported_here
+        if output.sign and reported_here:
             signs.setdefault(output.sign, []).append(words.removesuffix(_ALL))
-    told = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
-    return compact(ReportTable(head, rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
+    reported = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
+    return compact(ReportTable(head, rows, _NOTE + ("" if key_result else _LEFT_OUT) + " ".join(reported)))
 
 
 def _without_round_off(
@@ -96,8 +96,8 @@ def _without_round_off(
     def cleared(values: list[float]) -> list[float]:
         return [x if abs(x) > least else 0.0 for x in values]
 
-    told = {which: cleared(values) for which, values in sides.items() if values is not None}
-    return cleared(final), extremes if extremes is None else {**extremes, **told}
+    reported = {which: cleared(values) for which, values in sides.items() if values is not None}
+    return cleared(final), extremes if extremes is None else {**extremes, **reported}
 
 
 def _words(output: OutputQuantity[Any], figure: Figure, row: Row | None) -> tuple[str, str, float]:
@@ -130,11 +130,16 @@ def _rows(
     if kind == "static":
         yield [words, unit, _scaled(value, scale), number(arc), _bar(bars["max"] or bars["min"], scale)]
         return
-    told = extremes or {}
+    reported = extremes or {}
     sides = []
     for which in ("min", "max"):
-        place = number(told.get(f"arc_{which}"))
-        sides += [_scaled(told.get(which), scale), number(told.get(f"t_{which}"), 4), place, _bar(bars[which], scale)]
+        place = number(reported.get(f"arc_{which}"))
+        sides += [
+            _scaled(reported.get(which), scale),
+            number(reported.get(f"t_{which}"), 4),
+            place,
+            _bar(bars[which], scale),
+        ]
     yield [words, unit, _scaled(value, scale), *sides]
 
 

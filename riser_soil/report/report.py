@@ -11,18 +11,20 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from riser_soil import __version__
+from riser_soil.accuracy.key_results import key_results
 from riser_soil.errors import ResultsError
 from riser_soil.plots import picture
-from riser_soil.plots.album import GROUPS, pictures
-from riser_soil.plots.embedding import embedded, embedded_png
+from riser_soil.plots.album import GROUPS, embedded, embedded_png, pictures
 from riser_soil.plots.side_by_side import sheets
-from riser_soil.report import comparison, health, scene_words
-from riser_soil.report.extremes import ends_table, extremes_table, headlines_table
-from riser_soil.report.tables import ReportTable
+from riser_soil.report import health, scene_words
+from riser_soil.report.extremes import READ_IN, ends_table, extremes_table, key_results_table
+from riser_soil.report.tables import NOTHING, ReportTable, number
 from riser_soil.results import Run
 from riser_soil.results import folder as run_folder
 from riser_soil.results.stage_records import StageRecords, all_stages, stage_records
 from riser_soil.results.whole_file import written_whole
+
+_MISSING = object()
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ class RunPart:
     touchdown: Image | None
     no_touchdown: str
     stages: Sequence[StagePart]
-    headlines: ReportTable
+    key_results: ReportTable
     solver: ReportTable
     seconds: ReportTable
     versions: ReportTable
@@ -128,8 +130,8 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
         shape=shape,
         touchdown=touchdown,
         no_touchdown=why,
-        stages=[_stage_part(summary, told, drawn.get(n)) for n, told in enumerate(summary["stages"])],
-        headlines=headlines_table(summary),
+        stages=[_stage_part(summary, reported, drawn.get(n)) for n, reported in enumerate(summary["stages"])],
+        key_results=key_results_table(summary),
         solver=health.solver_table(summary),
         seconds=health.seconds_table(summary),
         versions=health.versions_table(summary),
@@ -167,18 +169,18 @@ def _drawn_stages(run: Run, stage: str | None) -> dict[int, StageRecords]:
     return {each.number: each for each in (timed or [chosen])}
 
 
-def _stage_part(summary: Mapping[str, Any], told: Mapping[str, Any], drawn: StageRecords | None) -> StagePart:
+def _stage_part(summary: Mapping[str, Any], reported: Mapping[str, Any], drawn: StageRecords | None) -> StagePart:
     groups: dict[str, list[Image]] = {group: [] for group in GROUPS}
     for each in pictures(drawn) if drawn is not None else ():
         groups[each.group].append(Image(embedded(each.draw()), each.caption))
     return StagePart(
-        name=told["name"],
-        kind=told["kind"],
-        extremes=extremes_table(summary, told),
-        ends=ends_table(told),
-        soil=health.soil_table(told),
-        energy=health.energy_table(told),
-        indicators=health.indicators_table(told),
+        name=reported["name"],
+        kind=reported["kind"],
+        extremes=extremes_table(summary, reported),
+        ends=ends_table(reported),
+        soil=health.soil_table(reported),
+        energy=health.energy_table(reported),
+        indicators=health.indicators_table(reported),
         pictures=groups,
     )
 
@@ -188,13 +190,66 @@ class Comparison:
     """Several runs side by side."""
 
     differences: ReportTable
-    headlines: ReportTable
+    key_results: ReportTable
     pictures: Sequence[Image]
 
 
 def _comparison(runs: Mapping[str, Run], stage: str | None) -> Comparison:
     return Comparison(
-        comparison.differences_table(runs),
-        comparison.headlines_table(runs),
+        differences_table(runs),
+        compared_key_results_table(runs),
         [Image(embedded(each.figure), each.caption) for each in sheets(runs, stage)],
     )
+
+
+def differences_table(runs: Mapping[str, Run]) -> ReportTable:
+    """Keys of the scenes that are not the same in all runs; runs by their labels."""
+    flat = {label: dict(_flattened(run.scene, "")) for label, run in runs.items()}
+    keys = dict.fromkeys(key for each in flat.values() for key in each)
+    rows = []
+    for key in keys:
+        values = [each.get(key, _MISSING) for each in flat.values()]
+        if any(value != values[0] for value in values):
+            rows.append([key, *(NOTHING if value is _MISSING else str(value) for value in values)])
+    return ReportTable(("key", *runs), rows)
+
+
+def compared_key_results_table(runs: Mapping[str, Run]) -> ReportTable:
+    """Key results, and by how much they differ from the first run's: relative to their scale."""
+    known = [key_results(run.summary) for run in runs.values()]
+    first, *others = known
+    rows = []
+    for key in dict.fromkeys(key for each in known for key in each):
+        one = next(each[key] for each in known if key in each)
+        unit, scale = READ_IN.get(one.unit, (one.unit, 1.0))
+        values = [number(each[key].value * scale) if key in each else NOTHING for each in known]
+        row = [key, unit, values[0]]
+        for value, each in zip(values[1:], others, strict=True):
+            row += [value, _difference(first, each, key)]
+        rows.append(row)
+    labels = [*runs]
+    heads = [head for label in labels[1:] for head in (label, f"differs from {labels[0]} by [%]")]
+    note = (
+        "Of static stages at their end, of others the extremes. A difference is relative to the first run's "
+        "size; of forces to a tenth of the stage's largest at least, of touchdown arcs to the distance of the ends."
+    )
+    return ReportTable(("quantity", "unit", labels[0], *heads), rows, note)
+
+
+def _difference(first: Mapping[str, Any], other: Mapping[str, Any], key: str) -> str:
+    if key not in first or key not in other:
+        return NOTHING
+    share = first[key].relative(other[key].value - first[key].value)
+    signed = share if other[key].value >= first[key].value else -share
+    return f"{100.0 * signed:+.3g}"
+
+
+def _flattened(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, dict) and value:
+        for key, inner in value.items():
+            yield from _flattened(inner, f"{path}.{key}" if path else str(key))
+    elif isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        for n, inner in enumerate(value):
+            yield from _flattened(inner, f"{path}.{n}")
+    else:
+        yield path, value

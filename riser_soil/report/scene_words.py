@@ -54,8 +54,8 @@ def read(run: Run) -> Scene | None:
 
 def prose(scene: Scene, run: Run) -> list[str]:
     """Sentences: the riser, its ends, the ground, the water, the stages."""
-    told = (_riser(scene, run), _hang_off(run), _ground(scene), _water(scene), _stages(scene))
-    return [sentence for sentence in told if sentence]
+    reported = (_riser(scene, run), _hang_off(run), _ground(scene), _water(scene), _stages(scene))
+    return [sentence for sentence in reported if sentence]
 
 
 def segments_table(scene: Scene) -> ReportTable:
@@ -159,12 +159,12 @@ def _riser(scene: Scene, run: Run) -> str:
 
 def _hang_off(run: Run) -> str:
     """The hang-off asked for, and what it was solved to."""
-    told = run.summary.get("hang_off")
-    if told is None:
+    reported = run.summary.get("hang_off")
+    if reported is None:
         return ""
-    angle, tension = (told["asked"].get(key) for key in ("angle_deg", "tension"))
+    angle, tension = (reported["asked"].get(key) for key in ("angle_deg", "tension"))
     asked = f"at {number(angle)}° from the vertical" if angle is not None else f"with {number(1e-3 * tension)} kN"
-    return f"Its {told['end']} hangs off {asked}, as asked, by a {told['by']} of {number(told['value'])} m."
+    return f"Its {reported['end']} hangs off {asked}, as asked, by a {reported['by']} of {number(reported['value'])} m."
 
 
 def _ground(scene: Scene) -> str:

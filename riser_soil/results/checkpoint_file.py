@@ -77,10 +77,11 @@ def is_checkpoint(path: Path) -> bool:
 
 
 def _about(array: AnyArray, path: Path) -> About:
-    told = unpacked(array)
-    if told["format"] != FORMAT:
+    reported = unpacked(array)
+    if reported["format"] != FORMAT:
         raise ResultsError(
-            f"{path}: was written by riser_soil {told['version']} in format {told['format']}, and this one reads "
+            f"{path}: was written by riser_soil {reported['version']} in format {reported['format']}, and this one "
+            "reads "
             f"{FORMAT}; begin anew by --force"
         )
-    return About(**told)
+    return About(**reported)

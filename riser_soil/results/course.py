@@ -1,4 +1,4 @@
-"""The course of figures from step to step, compiled: extremes, peaks, how sharply they turn; see `time_resolution`."""
+"""The course of figures from step to step, compiled: extremes, peaks, how sharply they turn."""
 
 from __future__ import annotations
 

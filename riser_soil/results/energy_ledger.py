@@ -44,10 +44,10 @@ class EnergyLedger:
     booked on or not.
     """
 
-    def __init__(self, begun: Energy, static: bool, dissipating: Sequence[str], working: Sequence[str]) -> None:
-        self._begun, self._static = begun.total, static
+    def __init__(self, start: Energy, static: bool, dissipating: Sequence[str], working: Sequence[str]) -> None:
+        self._start, self._static = start.total, static
         self.ledger = Ledger(
-            *(begun.kinetic, begun.strain, begun.potential),
+            *(start.kinetic, start.strain, start.potential),
             dissipated_by=dict.fromkeys(dissipating, 0.0),
             work_by=dict.fromkeys(working, 0.0),
         )
@@ -64,7 +64,7 @@ class EnergyLedger:
             dissipated=dissipated,
             numerical=numerical,
             work=work,
-            residual=np.nan if self._static else energy.total - self._begun + dissipated + numerical - work,
+            residual=np.nan if self._static else energy.total - self._start + dissipated + numerical - work,
             ahead=before.ahead + step.ahead,
             turned_over=max(before.turned_over, energy.kinetic, energy.strain, abs(dissipated), abs(work)),
             dissipated_by=dissipated_by,
@@ -73,10 +73,10 @@ class EnergyLedger:
         return self.ledger.residual - before.residual
 
     def state(self) -> Saved:
-        return {"begun": np.array(self._begun), "ledger": packed(asdict(self.ledger))}
+        return {"begun": np.array(self._start), "ledger": packed(asdict(self.ledger))}
 
     def restore(self, saved: Saved) -> None:
-        self._begun, self.ledger = float(saved["begun"]), Ledger(**unpacked(saved["ledger"]))
+        self._start, self.ledger = float(saved["begun"]), Ledger(**unpacked(saved["ledger"]))
 
 
 def _by_kind(turned: Mapping[str, Work]) -> list[tuple[str, Work]]:

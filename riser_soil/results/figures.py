@@ -14,7 +14,7 @@ from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import Figure
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.snapshot import Instant
+from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot
 
 _END = ("position", "force", "resultant_force", "moment", "effective_tension", "angle_deg")
 # In the order of the file; what the table of outputs has beyond them comes behind.
@@ -117,10 +117,10 @@ def final_state(seen: Instant) -> dict[str, Any]:
         found = _figure(figure, values[output.name])
         if figure.name in _SOMETIMES and not np.isfinite(found).all():
             continue
-        told: Any = [float(x) for x in found] if figure.size > 1 else float(found)
+        reported: Any = [float(x) for x in found] if figure.size > 1 else float(found)
         if figure.placed:
-            told = {"value": told, "arc": float(_arc(figure, values[output.name], seen.arc))}
-        _put(final, figure.path, told)
+            reported = {"value": reported, "arc": float(_arc(figure, values[output.name], seen.arc))}
+        _put(final, figure.path, reported)
     return final
 
 
@@ -184,3 +184,36 @@ def _get(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
     for key in path:
         value = value[key]
     return value
+
+
+def places(mesh: SoilMesh) -> dict[str, Array]:
+    """Where values sit, (n, 3) [m]: undeformed points and centres of cells."""
+    return {"soil points": mesh.points, "soil cells": mesh.points[mesh.cells].mean(axis=1)}
+
+
+def with_largest(largest: dict[str, Any], where: dict[str, Array], t: float, soil: SoilSnapshot) -> dict[str, Any]:
+    """The largest values so far and those of a snapshot: {value, position, time} by the names of the figures.
+
+    where: of `places`. t: s, in a static stage its load factor.
+    """
+    grown = dict(largest)
+    for output in outputs.OF_SOIL:
+        for figure in output.figures:
+            values = output.get(soil)
+            value = float(figure.of(values))
+            if figure.node is None or (figure.name in grown and not _exceeds(value, grown[figure.name]["value"])):
+                continue
+            position = _first(where[output.where][figure.node(values)])
+            grown[figure.name] = {"value": value, "position": [float(x) for x in position], "time": t}
+    return grown
+
+
+def _exceeds(value: float, before: float) -> bool:
+    """By more than the solver's tolerance may bring about."""
+    return value > before + 1e-6 * abs(before)
+
+
+def _first(positions: Array) -> Array:
+    """Of (n, 3) the one with the least x, then y, then z: the same however the mesh is shared out."""
+    x, y, z = np.round(positions, 6).T
+    return np.asarray(positions[np.lexsort((z, y, x))[0]])

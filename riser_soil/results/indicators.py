@@ -2,8 +2,7 @@
 
 Each is an estimate of size, calibrated in `tests/verification/test_indicators.py`; none is a bound.
 
-- time step: `time_resolution` and `doubtful_extremes`, in the extremes of some figures, and the largest local error of
-  a step;
+- time step: `doubtful_extremes`, in the extremes of some figures, and the largest local error of a step;
 - impact: what contact's force at the end of the step takes beyond what the ground does, as far as the motion loses it:
   nothing where supports or weight press slowly into the ground (`energy_ledger`). A share s of the energy of an
   impact, lost while the riser is brought to rest and thrown back, lowers the force of it by some 1 - (1 - s)^(1/4), as
@@ -23,8 +22,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, listed
 from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
-from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes
-from riser_soil.results.time_resolution import TimeResolution
+from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes, TimeResolution
 
 # Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.
 LARGE_LOCAL_ERROR = 2.0
@@ -126,10 +124,10 @@ class StageIndicators:
             self.impact.follow(t, step.health.time_step, self.contact_period, step.ledger)
 
     def as_dict(self, dynamic: bool) -> dict[str, Any]:
-        told: dict[str, Any] = {"bending": self.bending} if self.bending else {}
+        reported: dict[str, Any] = {"bending": self.bending} if self.bending else {}
         if dynamic:
-            told |= {"time_step": self._time_step(), "impact": self._impact()}
-        return told
+            reported |= {"time_step": self._time_step(), "impact": self._impact()}
+        return reported
 
     def _time_step(self) -> dict[str, Any]:
         errors = zip(JUDGED, self.resolution.of_least, self.resolution.of_most, strict=True)
@@ -181,13 +179,13 @@ class StageIndicators:
         )
 
     def state(self) -> Saved:
-        told = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
+        reported = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
         plain = {name: getattr(self, name) for name in ("diameter", "weight", "contact_period", "automatic")}
-        return gathered({"resolution": self.resolution}) | {"told": packed(told | plain), "largest": self.largest}
+        return gathered({"resolution": self.resolution}) | {"told": packed(reported | plain), "largest": self.largest}
 
     def restore(self, saved: Saved) -> None:
-        told: Mapping[str, Any] = unpacked(saved["told"])
-        vars(self).update(told)
+        reported: Mapping[str, Any] = unpacked(saved["told"])
+        vars(self).update(reported)
         self.largest = saved["largest"].copy()
-        self.step, self.impact = WorstStep(**told["step"]), ImpactLoss(**told["impact"])
+        self.step, self.impact = WorstStep(**reported["step"]), ImpactLoss(**reported["impact"])
         restore_all({"resolution": self.resolution}, saved)

@@ -6,23 +6,28 @@ steps together, as each of its operations takes an interpreter longer than the n
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
+from riser_soil.contact.touchdown import ContactInterval, PointsAlong, contact_intervals
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, SectionSnapshot, mapped
 from riser_soil.results.riser_snapshot import look_inside, snapshot_of
 from riser_soil.results.settlement_trough import sections_of
+from riser_soil.riser.hermite import axis_at
+from riser_soil.riser.line import Line
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.time_stepper import TimeStepper
 
 if TYPE_CHECKING:
-    from riser_soil.contact.contact_results import ContactResults
+    from riser_soil.contact.contact import ContactResults
+
+Touching = tuple[PointsAlong, Array, Array]
 
 
 class OnGround(NamedTuple):
@@ -78,7 +83,7 @@ class InstantReader:
             sections=self._sections.look(state) if self._sections is not None else None,
         )
 
-    def told(self, looks: Sequence[Look]) -> Instant:
+    def reported(self, looks: Sequence[Look]) -> Instant:
         """All that is recorded of looks, each told once, in their order."""
         inside = self._inside(np.stack([each.inside for each in looks]))
         found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
@@ -94,7 +99,7 @@ class InstantReader:
         """Of each contact."""
         if not numbers:
             return []
-        from riser_soil.contact.contact_results import ContactResults
+        from riser_soil.contact.contact import ContactResults
 
         nodes, contacts = self._assembly.line.nodes, self._assembly.contacts
         sizes = [contact.along.arc.size for contact in contacts]
@@ -119,7 +124,6 @@ class InstantReader:
         count, line = len(inside.position), self._assembly.line
         if not found:
             return np.full(count, np.nan), np.full((count, 3), np.nan), np.zeros(count, dtype=np.int64)
-        from riser_soil.results.touchdown_zone import touchdown_zone
 
         alongs = [contact.along for contact in self._assembly.contacts]
         zones = [
@@ -166,3 +170,45 @@ class InstantReader:
     @property
     def _owners(self) -> dict[str, Stateful]:
         return {} if self._sections is None else {"sections": self._sections}
+
+
+"""Of a contact: its points along the line; gaps and forces there, as in `ContactResults`."""
+
+
+class TouchdownZone(NamedTuple):
+    """Arc length and position (3,) of the touchdown point [m], nan without contact; number of places where the riser
+    comes down or leaves the ground.
+    """
+
+    arc: float
+    position: Array
+    points: int
+
+
+def touchdown_zone(line: Line, touching: Iterable[Touching], position: Array, tangent: Array) -> TouchdownZone:
+    """touching: of each contact; position (nn, 3), tangent (ne, 2, 3): see `SectionForces`."""
+    of_each = [interval for along, gap, force in touching for interval in contact_intervals(*along, gap, force)]
+    intervals = joined(of_each, float(line.length.max()))
+    arc = touchdown_arc(intervals, line)
+    ends = sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in intervals)
+    at = np.full(3, np.nan) if np.isnan(arc) else axis_at(line.arc, position, tangent, arc)[0]
+    return TouchdownZone(arc, at, ends)
+
+
+def joined(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
+    """The intervals in order of the arc length, merged where one ground ends and the next begins within `near` [m]."""
+    found: list[ContactInterval] = []
+    for this in sorted(intervals):
+        if found and this.start - found[-1].end <= near:
+            found[-1] = found[-1]._replace(end=max(found[-1].end, this.end))
+        else:
+            found.append(this)
+    return found
+
+
+def touchdown_arc(intervals: Sequence[ContactInterval], line: Line) -> float:
+    """Arc length of the touchdown point [m], as `contact.touchdown` gives it for one ground; nan without contact."""
+    if not intervals:
+        return float("nan")
+    last = intervals[-1]
+    return last.start if last.end >= line.arc[-1] and last.start > line.arc[0] else last.end

@@ -19,11 +19,11 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core import outputs
 from riser_soil.core.communicator import Communicator
+from riser_soil.core.environment import versions
 from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import Instant, RunFacts, SoilSnapshot, StepRecord, StepStatistics, instants_at
 from riser_soil.core.system import Timer
-from riser_soil.core.versions import versions
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
@@ -31,11 +31,10 @@ from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import Plausibility
-from riser_soil.results.progress import Progress
 from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.riser_snapshot import elastic_residual
 from riser_soil.results.schedule import DueOutputs, Schedule
-from riser_soil.results.screen import print_summary
+from riser_soil.results.screen import Progress, print_summary
 from riser_soil.results.settlement_trough import count_of, offsets_of
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.output import Checkpoint
@@ -126,12 +125,12 @@ class Observer:
             self._begin_at(stepper)
         self._show(stage)
 
-    def _enter(self, stage: Stage, begun: Energy) -> None:
+    def _enter(self, stage: Stage, start: Energy) -> None:
         """begun: energy stored as the stage begins."""
         scene, static = self._assembly.scene, not isinstance(stage, DynamicStage)
         self._stage = stage
         self._schedule.begin_stage(stage.kind)
-        self._balance = EnergyLedger(begun, static, dissipating(scene), working(scene))
+        self._balance = EnergyLedger(start, static, dissipating(scene), working(scene))
         self._relaxed = 0
         self._plausibility.begin_stage(stage)
 
@@ -142,7 +141,7 @@ class Observer:
         """Records the state before all stages, which no static stage has brought about."""
         soil = self._soil()
         if self._recorder is not None:
-            seen = self._instants.told([self._instants.look(stepper)])
+            seen = self._instants.reported([self._instants.look(stepper)])
             self._recorder.begin_at(seen, soil)
             if self._peaks is not None:
                 self._peaks.record([0.0], seen)
@@ -183,7 +182,7 @@ class Observer:
         seen, self._seen, recorder = self._seen, [], self._recorder
         if not seen or recorder is None or recorder.closed:
             return
-        records, instants = [each.record for each in seen], self._instants.told([each.look for each in seen])
+        records, instants = [each.record for each in seen], self._instants.reported([each.look for each in seen])
         recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil)
         if self._peaks is not None:
             self._peaks.record([record.t for record in records], instants)
@@ -285,10 +284,10 @@ class Observer:
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        told: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
-        told |= {} if self._peaks is None else {"peaks": self._peaks}
-        told |= {"schedule": self._schedule, "ledger": self._balance, "instants": self._instants}
-        return told | {"plausibility": self._plausibility}
+        reported: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
+        reported |= {} if self._peaks is None else {"peaks": self._peaks}
+        reported |= {"schedule": self._schedule, "ledger": self._balance, "instants": self._instants}
+        return reported | {"plausibility": self._plausibility}
 
 
 def _asked(assembly: Assembly) -> Checkpoint | None:

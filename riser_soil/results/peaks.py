@@ -18,8 +18,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot, instants_at
-from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places_of
-from riser_soil.results.soil_extremes import places, with_largest
+from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places, places_of, with_largest
 
 _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates of five steps, in the middle one
 # The middle one, and those after it, without what alternates, if that lasts; cubics stay as they are.
@@ -157,7 +156,7 @@ class StagePeaks:
             return np.empty(0)
         return np.asarray(self._windows[("min", "max").index(which), :, places_of(figure).start])
 
-    def told(self, which: str) -> dict[str, Any]:
+    def reported(self, which: str) -> dict[str, Any]:
         """As the summary tells the stage; which: sampled, of_nodes, peaks or smooth."""
         if self.final is None:
             return {"name": self.name, "kind": self.kind, "final": None}
@@ -171,16 +170,16 @@ class StagePeaks:
         }  # fmt: skip
 
     def state(self) -> Saved:
-        told: dict[str, Any] = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil}
-        told |= {"t": self._t, "duration": self._duration}
+        reported: dict[str, Any] = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil}
+        reported |= {"t": self._t, "duration": self._duration}
         vectors = {"latest": self._latest, "last": np.array(self._last), "windows": self._windows.copy()}
-        return gathered(self._extremes) | vectors | {"told": packed(told)}
+        return gathered(self._extremes) | vectors | {"told": packed(reported)}
 
     def restore(self, saved: Saved) -> None:
-        told = unpacked(saved["told"])
-        self.name, self.kind, self._final, self.soil = (told[name] for name in ("name", "kind", "final", "soil"))
-        self._t, self._last, self._latest = told["t"], list(saved["last"]), saved["latest"]
-        self._duration, self._windows = told["duration"], saved["windows"].copy()
+        reported = unpacked(saved["told"])
+        self.name, self.kind, self._final, self.soil = (reported[name] for name in ("name", "kind", "final", "soil"))
+        self._t, self._last, self._latest = reported["t"], list(saved["last"]), saved["latest"]
+        self._duration, self._windows = reported["duration"], saved["windows"].copy()
         restore_all(self._extremes, saved)
 
     @property
@@ -210,9 +209,9 @@ class RunPeaks:
         if soil is not None and self._places is not None:
             stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
 
-    def told(self, which: str) -> dict[str, Any]:
-        """The share of a summary that headline quantities are read from; which: sampled, of_nodes, peaks or smooth."""
-        return {"stages": [stage.told(which) for stage in self.stages]}
+    def reported(self, which: str) -> dict[str, Any]:
+        """The share of a summary that key results are read from; which: sampled, of_nodes, peaks or smooth."""
+        return {"stages": [stage.reported(which) for stage in self.stages]}
 
     def state(self) -> Saved:
         return gathered(self._numbered)

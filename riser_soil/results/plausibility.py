@@ -12,10 +12,10 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.checks.overload import over_a_length, surface_bearing
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot
-from riser_soil.results.strains import largest_strains
 from riser_soil.riser.resolution import misfit
 from riser_soil.riser.section_forces import at_most
 from riser_soil.scene.stages import Stage
@@ -150,10 +150,10 @@ class Plausibility:
         """With numbers and a remedy."""
         basis = (*self._largest_values, self._boundary, self._largest, self._lowest, self._touched)
         if self._warned is None or any(a is not b for a, b in zip(basis, self._warned[0], strict=True)):
-            self._warned = basis, tuple(self._told())
+            self._warned = basis, tuple(self._reported())
         return self._warned[1]
 
-    def _told(self) -> Iterator[str]:
+    def _reported(self) -> Iterator[str]:
         yield from self._strains()
         yield from self._blurred()
         yield from self._stretched()
@@ -261,3 +261,26 @@ class Plausibility:
         self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit = found
         self._stretch, self._beyond, self._load = of_soil
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]
+
+
+@njit
+def largest_strains(
+    tension: Array, EA: Array, curvature: Array, radius: Array, moment: Array
+) -> tuple[float, int, float, int, float]:
+    """Of the nodes at many instants (nt, nn): the largest size of tension over EA and its place, the largest curvature
+    times radius and its place, the largest moment; of equal ones the first. Places are counted along all instants; EA
+    and radius (nn,).
+    """
+    axial, bending, largest = -1.0, -1.0, 0.0
+    at = bent_at = 0
+    nodes = EA.size
+    for k in range(tension.shape[0]):
+        for n in range(nodes):
+            stretch, bend = abs(tension[k, n]) / EA[n], radius[n] * curvature[k, n]
+            if stretch > axial:
+                axial, at = stretch, k * nodes + n
+            if bend > bending:
+                bending, bent_at = bend, k * nodes + n
+            if moment[k, n] > largest:
+                largest = moment[k, n]
+    return axial, at, bending, bent_at, largest

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import h5py
+import numpy as np
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
@@ -59,7 +62,6 @@ class Run:
         """results.nc as it is now, in memory: axes `time` [s], `arc` [m], `component` (x, y, z), `step`, of which each
         variable has some; `stage_name` tells the stages, blanks as underscores; `attrs` have units and signs.
         """
-        from riser_soil.results.dataset import load
 
         path = self.folder / run_folder.SERIES
         try:
@@ -140,3 +142,26 @@ class Run:
             return reading(path)
         except OSError as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
+
+
+def load(path: Path) -> xr.Dataset:
+    """All that is in the file, which is free again then. Raises OSError or ValueError where it can't be read.
+
+    HDF5 does not open the file itself: whoever else has it open, with locks or without, is no hindrance. A run that
+    writes it sees the lock that is put on it meanwhile, and leaves this copy of the file as it is.
+    """
+    import xarray as xr
+
+    with path.open("rb") as file:
+        with suppress(OSError):  # a file system without locks
+            fcntl.flock(file, fcntl.LOCK_SH)
+        found = xr.load_dataset(file, engine="h5netcdf", decode_timedelta=False)
+    for coordinate, of in {"stage_name": "stage", "step_stage_name": "step_stage"}.items():
+        found = found.assign_coords({coordinate: (found[of].dims, _names(found[of]))})
+    return found.set_coords(["stage", "step_stage", "step_time"])
+
+
+def _names(stage: xr.DataArray) -> np.ndarray:
+    """Of the stages by their numbers, blanks as underscores."""
+    known = np.array(str(stage.attrs.get("flag_meanings", "")).split(), dtype=str)
+    return known[stage.values] if stage.size else np.empty(0, dtype=str)

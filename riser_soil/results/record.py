@@ -20,15 +20,13 @@ from riser_soil.core.snapshot import Instant, RunFacts, SoilMesh, SoilSnapshot, 
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
-from riser_soil.results.figures import pack
+from riser_soil.results.figures import pack, places, with_largest
 from riser_soil.results.folder import FolderLock
 from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.record_rows import series_rows, soil_frame, step_rows
-from riser_soil.results.schedule import DueOutputs
-from riser_soil.results.simulated_time import SimulatedTime
-from riser_soil.results.soil_extremes import places, with_largest
+from riser_soil.results.schedule import DueOutputs, SimulatedTime
 from riser_soil.results.summary import StageTally, Summary
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
@@ -120,7 +118,7 @@ class Recorder:
         keeping = keeping or Keeping()
         lock = prepare(folder, force, keeping.goes_on)
         try:
-            with _told_when_full(folder):
+            with _reported_when_full(folder):
                 run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
                 recorder = cls(lock, folder, facts, arc, soil_mesh, wanted, keeping)
                 if not keeping.goes_on:
@@ -250,15 +248,15 @@ class Recorder:
         """
         if self._untouched:
             return
-        begun = time.monotonic()
-        with self._told_when_full():
+        start = time.monotonic()
+        with self._reported_when_full():
             for frames in self._pictures:
                 frames.flush()
             self._series.flush(self.summary.finished)
             self.summary.write(self._folder / run_folder.SUMMARY, self._lasting)
         self._waiting = 0
         now, share = time.monotonic(), _LASTING_SHARE if self._lasting else _FLUSH_SHARE
-        self._next_flush = now + max(_FLUSH_EVERY, (now - begun) / share)
+        self._next_flush = now + max(_FLUSH_EVERY, (now - start) / share)
 
     def checkpoint(self, about: About, shares: Sequence[Saved]) -> None:
         """Keeps the run's state after the last accepted step. From the first one on, files outlast a power loss.
@@ -267,21 +265,21 @@ class Recorder:
         """
         self._outlast_power()
         self.flush()
-        with self._told_when_full():
+        with self._reported_when_full():
             write_checkpoint(self._folder / run_folder.CHECKPOINT, about, shares)
         self._resumable = True
 
     def _outlast_power(self) -> None:
         if not self._lasting:
             self._lasting = True
-            with self._told_when_full():
+            with self._reported_when_full():
                 for frames in self._pictures:
                     frames.outlast_power()
                 self._series.outlast_power()
                 run_folder.synchronise(self._folder / run_folder.SCENE)
 
-    def _told_when_full(self) -> AbstractContextManager[None]:
-        return _told_when_full(self._folder, self._let_go, self._way_on)
+    def _reported_when_full(self) -> AbstractContextManager[None]:
+        return _reported_when_full(self._folder, self._let_go, self._way_on)
 
     def finish(self) -> None:
         """Marks the run finished; nothing may be added afterwards."""
@@ -368,7 +366,7 @@ class Recorder:
         return gathered(self._owners) | latest | {"now": np.array(self.now)}
 
     def restore(self, saved: Saved) -> None:
-        with self._told_when_full():
+        with self._reported_when_full():
             restore_all(self._owners, saved)
         self.now, self._latest = float(saved["now"]), saved.get("latest")
         self._untouched = False
@@ -383,7 +381,7 @@ class Recorder:
 
 
 @contextmanager
-def _told_when_full(folder: Path, then: Callable[[], None] | None = None, way_on: str = "") -> Iterator[None]:
+def _reported_when_full(folder: Path, then: Callable[[], None] | None = None, way_on: str = "") -> Iterator[None]:
     """Raises WriteError for what the disk did not take, when `then` is done. way_on: told behind it."""
     try:
         yield

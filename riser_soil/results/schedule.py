@@ -1,4 +1,4 @@
-"""Output schedule: which accepted steps are written to which file, by their time alone."""
+"""Output schedule, which accepted steps are written to which file, and simulated time over all stages."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from riser_soil.core.saved_state import Saved, gathered, restore_all
 
 # Share of an interval by which a step may end early and still count: time is a sum of steps.
 _SLACK = 1e-6
+# Equilibria of static stages take no time; those that would share an instant are set this far apart [s],
+# because readers of time series want time to grow.
+TICK = 1e-6
 
 
 @dataclass(frozen=True)
@@ -85,3 +88,49 @@ class Schedule:
     def restore(self, saved: Saved) -> None:
         restore_all({"series": self._series, "pictures": self._pictures}, saved)
         self._static = bool(saved["static"])
+
+
+class SimulatedTime:
+    """Total simulated time: quasi-static and dynamic stages add up, static stages take none."""
+
+    def __init__(self) -> None:
+        self._start = 0.0
+        self._now = 0.0
+        self._last_record = -TICK
+        self._static = True
+
+    @property
+    def stage_time(self) -> float:
+        """s simulated in the current stage."""
+        return self._now - self._start
+
+    @property
+    def now(self) -> float:
+        return self._now
+
+    def of_stage(self, t: float) -> float:
+        """The time at t of the present stage [s]."""
+        return self._start + t
+
+    def begin_stage(self, kind: str) -> None:
+        self._static = kind == "static"
+        self._start = self._now
+
+    def advance(self, t: float) -> None:
+        """t: s since the stage began; in a static stage the load factor, which is no time."""
+        if not self._static:
+            self._now = self.of_stage(t)
+
+    def stamp(self) -> float:
+        """Time of a record made now [s], later than that of every record before."""
+        after = self._last_record + TICK
+        self._last_record = self._now if self._now > self._last_record else after
+        return self._last_record
+
+    def state(self) -> Saved:
+        times = {"begun": self._start, "now": self._now, "last_record": self._last_record, "static": self._static}
+        return {name: np.array(value) for name, value in times.items()}
+
+    def restore(self, saved: Saved) -> None:
+        self._start, self._now = float(saved["begun"]), float(saved["now"])
+        self._last_record, self._static = float(saved["last_record"]), bool(saved["static"])

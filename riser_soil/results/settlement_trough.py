@@ -12,8 +12,8 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.snapshot import SectionSnapshot
+from riser_soil.riser.hermite import axis_at
 from riser_soil.riser.line import Line
-from riser_soil.riser.place import axis_at
 
 if TYPE_CHECKING:
     from riser_soil.contact.soil_contact import SoilContact

@@ -18,11 +18,55 @@ from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, S
 from riser_soil.results.figures import Extremes, final_state
 from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
 from riser_soil.results.indicators import StageIndicators
-from riser_soil.results.utilisation import MostUsed, TightestBend
 
 _USED = ("tightest", "pulled", "stressed")
 _NOT_PLAIN = (*_USED, "seen", "extremes", "energy", "worst_residual", "implausible", "soil", "indicators")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
+
+
+@dataclass(frozen=True)
+class TightestBend:
+    """The tightest bend relative to the allowable radius: radius m, arc m, t s or load factor."""
+
+    utilisation: float = 0.0
+    radius: float = math.inf
+    arc: float = math.nan
+    t: float = math.nan
+
+    def warnings(self, unit: str) -> Iterator[str]:
+        if self.utilisation > 1.0:
+            yield (
+                f"the pipe is bent beyond its min_bend_radius: {self.utilisation:.4g} times what is allowed at arc "
+                f"{self.arc:.5g} m and {self.t:.5g} {unit}, where the bend radius is {self.radius:.4g} m"
+            )
+
+
+@dataclass(frozen=True)
+class MostUsed:
+    """The largest utilisation of a tension or stress allowed, what it was, arc m, t s or load factor."""
+
+    utilisation: float = 0.0
+    actual: float = math.nan
+    arc: float = math.nan
+    t: float = math.nan
+
+    def or_more(self, used: Array | None, actual: Array, arc: Array, times: Array) -> MostUsed:
+        """At times (nt,); used (nt, nn): utilisation at the nodes, nan where there is none; actual: tension [N] or
+        stress [Pa] there.
+        """
+        if used is None:
+            return self
+        k, n = np.unravel_index(np.nanargmax(used), used.shape)
+        if not used[k, n] > self.utilisation:
+            return self
+        return MostUsed(float(used[k, n]), float(actual[k, n]), float(arc[n]), float(times[k]))
+
+    def warnings(self, unit: str, what: str, actual: str) -> Iterator[str]:
+        if self.utilisation > 1.0:
+            yield (
+                f"{what}: {self.utilisation:.4g} times what is allowed at arc {self.arc:.5g} m and {self.t:.5g} "
+                f"{unit}, where {actual.format(self.actual)}"
+            )
 
 
 def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
@@ -81,7 +125,7 @@ class StageTally:
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
     indicators: StageIndicators = field(default_factory=StageIndicators)
-    soil: dict[str, Any] = field(default_factory=dict)  # largest values in the soil, see `soil_extremes`
+    soil: dict[str, Any] = field(default_factory=dict)  # largest values in the soil, see `figures`
 
     def balance(self, times: Sequence[float], ledgers: Sequence[Ledger]) -> None:
         """times: s, total simulated time, after steps in turn."""
@@ -129,16 +173,16 @@ class StageTally:
         self._finish()
         plain = {k: v for k, v in vars(self).items() if k not in _NOT_PLAIN}
         extremes = self.extremes.nested() if self.steps else None
-        told = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
-        told["indicators"] = self.indicators.as_dict(self.kind == "dynamic")
-        return plain | told | ({"soil": self.soil} if self.soil else {})
+        reported = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
+        reported["indicators"] = self.indicators.as_dict(self.kind == "dynamic")
+        return plain | reported | ({"soil": self.soil} if self.soil else {})
 
     @property
     def _energy(self) -> dict[str, Any]:
         worst, t = self.worst_residual
         worst_residual = {"value": worst if self.kind == "dynamic" else math.nan, "time": t}
-        told = {"made": self.energy.made, "relative_residual": self.energy.relative_residual}
-        return asdict(self.energy) | told | {"worst_residual": worst_residual}
+        reported = {"made": self.energy.made, "relative_residual": self.energy.relative_residual}
+        return asdict(self.energy) | reported | {"worst_residual": worst_residual}
 
     @property
     def warnings(self) -> list[str]:
@@ -161,8 +205,8 @@ class StageTally:
     def state(self) -> Saved:
         self._finish()
         plain = {name: value for name, value in vars(self).items() if name not in ("seen", "extremes", "indicators")}
-        told = plain | {name: asdict(vars(self)[name]) for name in _RECORDS}
-        return gathered(self._followers) | {"told": packed(told)}
+        reported = plain | {name: asdict(vars(self)[name]) for name in _RECORDS}
+        return gathered(self._followers) | {"told": packed(reported)}
 
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))

@@ -10,13 +10,13 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Traits
-from riser_soil.riser import beam2d, beam3d, increments, planar_load
+from riser_soil.riser import beam2d, beam3d, rotations, uniform_load
 from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
+from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.elastic import in_plane, in_space
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
-from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.vectors import vector
 
@@ -67,7 +67,7 @@ class Beam(CompiledPart):
             return PlanarBeam(*in_plane(line, line.frames, self._elements), line.length, load)
         return SpatialBeam(*in_space(line, line.frames, self._elements), line.length, load)
 
-    def renew_numbers(self, start: float, end: float) -> None:
+    def renew_kernel_data(self, start: float, end: float) -> None:
         if (factor := self.factor(end)) != self._factor_now:
             np.multiply(factor, self._load, out=self._numbers.load)
             self._factor_now = factor
@@ -85,7 +85,7 @@ def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -
     for e in range(part.length.size):
         seen = _corotated(at, e)
         beam2d.put_element_forces(e, seen, part.reference, part.section, f)
-        planar_load.add_element_forces(seen, part.length[e], part.load[e], f)
+        uniform_load.add_element_forces(seen, part.length[e], part.load[e], f)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
@@ -95,7 +95,7 @@ def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces
     f = np.empty(12)
     for e in range(part.length.size):
         beam3d.put_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, f)
-        increments.element_to_increments(e, f, at.H)
+        rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
 
@@ -106,7 +106,7 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
     for e in range(part.length.size):
         seen = _corotated(at, e)
         beam2d.put_element(e, seen, part.reference, part.section, f, own)
-        planar_load.add_element_tangent(seen, part.length[e], part.load[e], own)
+        uniform_load.add_element_tangent(seen, part.length[e], part.load[e], own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
@@ -114,10 +114,12 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
 
 @add_tangent.of(SpatialBeam)
 def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    f, own, room = np.empty(12), np.empty((12, 12)), beam3d.tangent_room()
+    f, own, workspace = np.empty(12), np.empty((12, 12)), beam3d.tangent_workspace()
     for e in range(part.length.size):
-        beam3d.put_element(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, room, f, own)
-        increments.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)
+        beam3d.put_element(
+            e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, workspace, f, own
+        )
+        rotations.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)
         for i in range(12):
             for j in range(12):
                 K[e, i, j] += weights.force * own[i, j]
@@ -129,7 +131,7 @@ def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> 
         seen, x = _corotated(at, e), at.x
         energy[1] += beam2d.element_energy(e, seen, part.reference, part.section)
         p, z = 0.5 * (x[e, 0] + x[e + 1, 0]), 0.5 * (x[e, 1] + x[e + 1, 1])
-        energy[2] += planar_load.element_potential(seen, part.length[e], part.load[e], p, z)
+        energy[2] += uniform_load.element_potential(seen, part.length[e], part.load[e], p, z)
 
 
 @add_energy.of(SpatialBeam)

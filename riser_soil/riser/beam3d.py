@@ -2,9 +2,9 @@
 
 An element sees its chord x2 - x1 (m) and the section frames T1, T2 at its ends (columns: tangent, second
 and third section axis). In the frame of `corotation` the chord's length and the rotations of the ends
-store the strain energy of `stress3d`. Forces (N) and moments (N m) are ordered force1, moment1, force2,
+store the strain energy of `strain3d`. Forces (N) and moments (N m) are ordered force1, moment1, force2,
 moment2, in global axes; they are internal and conjugate to displacements and spatial spins, by which the
-tangent differentiates them. `increments` turns both into those of rotation vectors, where the tangent is
+tangent differentiates them. `rotations` turns both into those of rotation vectors, where the tangent is
 the symmetric Hessian of the energy. Nodes may turn without limit; within one element the tangents of the
 ends must stay less than half a turn from its chord, and the twist less than half a turn.
 """
@@ -18,14 +18,18 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.corotation import (
     SpatialCorotated,
     SpatialNodalForces,
+    SwingTwist,
     corotate,
     frame_spin,
     lengthen,
+    moment,
+    moment_variation,
     nodal_forces,
     plus,
+    rate,
+    split,
     turn,
 )
-from riser_soil.riser.spatial_load import BowLoad, bow_load, bow_potential, chord_force, end_moment, turned
 from riser_soil.riser.strain3d import (
     Station,
     Stiffness,
@@ -34,12 +38,14 @@ from riser_soil.riser.strain3d import (
     conjugate,
     conjugate_change,
     difference,
+    energy,
     stations,
     strain,
     strain_change,
+    stress,
+    stress_change,
 )
-from riser_soil.riser.stress3d import energy, stress, stress_change
-from riser_soil.riser.swing_twist import SwingTwist, moment, moment_variation, rate, split
+from riser_soil.riser.uniform_load import BowLoad, bow_load, bow_potential, chord_force, end_moment, turned
 from riser_soil.riser.vectors import Mat, Vec, add, dot, matrix, scale, sub, vecmat, vector
 
 STILL = (0.0, 0.0, 0.0)
@@ -144,7 +150,7 @@ def element_energy(e: int, at: Shape, ref: SpatialReference, section: SpatialSec
 
 @njit
 def element_potential(at: Shape, L: float, w: Vec, middle: Vec) -> float:
-    """Potential [J] of a load w per length [N/m] on an element with this middle: `spatial_load`."""
+    """Potential [J] of a load w per length [N/m] on an element with this middle: `uniform_load`."""
     potential: float = bow_potential(bow_load(at.frame.axes, L, w), at.end1.angles, at.end2.angles)
     return potential - L * dot(w, middle)
 
@@ -256,15 +262,19 @@ def _vary(D: Stiffness, at: Shape, response: SpatialResponse, u: Vec, w1: Vec, w
 
 
 @njit
-def tangent_room() -> Array:
-    """Room (2, 9, 9) for moves of an element, zero but for the blocks on the diagonal, and for what they change."""
+def tangent_workspace() -> Array:
+    """Workspace (2, 9, 9) for moves of an element, zero but for the blocks on the diagonal, and for what they
+    change.
+    """
     return np.zeros((2, 9, 9))
 
 
 @njit
-def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, room: Array, K: Array) -> None:
-    """Write the element's tangent to K (12, 12): the changes, columns of room[1], by the moves, columns of room[0]."""
-    axes, moves, changes = at.frame.axes, room[0], room[1]
+def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, workspace: Array, K: Array) -> None:
+    """Write the element's tangent to K (12, 12): the changes, columns of workspace[1], by the moves, columns of
+    workspace[0].
+    """
+    axes, moves, changes = at.frame.axes, workspace[0], workspace[1]
     for i in range(3):
         for k in range(3):
             moves[i, k] = moves[3 + i, 3 + k] = moves[6 + i, 6 + k] = axes[i][k]
@@ -329,15 +339,15 @@ def put_element(
     ref: SpatialReference,
     section: SpatialSection,
     load: Array,
-    room: Array,
+    workspace: Array,
     f: Array,
     K: Array,
 ) -> None:
     """Write forces f (12,) of element e as `put_element_forces`, and their derivative K (12, 12) by displacements and
-    spatial spins; room: `tangent_room`.
+    spatial spins; workspace: `tangent_workspace`.
     """
     D, w = stiffness(ref, section, e), vector(load[e])
     at = element_shape(e, chord, frame1, frame2, ref)
     response = _respond(D, _unstressed(ref, e), at, w)
     _put_loaded_forces(D.L, at, response, w, f)
-    _tangent(D, at, response, room, K)
+    _tangent(D, at, response, workspace, K)

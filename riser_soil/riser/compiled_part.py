@@ -40,7 +40,7 @@ from riser_soil.riser.placed_line import LineBase, PlacedTrial
 
 
 class Turning(NamedTuple):
-    """A `TurningRoom`."""
+    """A `TurningWorkspace`."""
 
     conjugate: Array
     turning: Array
@@ -49,7 +49,7 @@ class Turning(NamedTuple):
 class LineTrials:
     """A line at a trial state, `now`, and where a step begins, `then`: what its parts share.
 
-    maps, weights: of the tangent asked for last; turning: room.
+    maps, weights: of the tangent asked for last; turning: workspace.
     """
 
     def __init__(self, line: Line) -> None:
@@ -106,13 +106,13 @@ class BoundPart:
     @cached_property
     def add_tangent(self) -> Bound:
         """Adds to K what the forces found last change by."""
-        trials, room, (conjugate, turning) = self._trials, Packed(self._trials.turning), self._trials.turning
+        trials, workspace, (conjugate, turning) = self._trials, Packed(self._trials.turning), self._trials.turning
         return in_turn(
             *self._find_water,
             bound(add_tangent, self._numbers, self._now, trials.maps, trials.weights, self.K),
-            Bound(weigh, self._forces, trials.weights, room),
+            Bound(weigh, self._forces, trials.weights, workspace),
             bound(put_turning, trials.now.at, Packed(conjugate), Packed(turning)),
-            Bound(turn, room, self.K),
+            Bound(turn, workspace, self.K),
         )
 
     @cached_property
@@ -139,13 +139,13 @@ class CompiledPart(LinePart, ABC):
 
     @abstractmethod
     def make_numbers(self) -> tuple[Any, ...]:
-        """The part in numbers, made once; what changes is an array that is written to, see `renew_numbers`."""
+        """The part in numbers, made once; what changes is an array that is written to, see `renew_kernel_data`."""
 
     @cached_property
     def _numbers(self) -> Any:
         return self.make_numbers()
 
-    def numbers(self) -> tuple[Any, ...]:
+    def kernel_data(self) -> tuple[Any, ...]:
         found: tuple[Any, ...] = self._numbers
         return found
 
@@ -155,13 +155,13 @@ class CompiledPart(LinePart, ABC):
 
     @cached_property
     def _bound(self) -> BoundPart:
-        return BoundPart(self.line, self.numbers(), self._trials)
+        return BoundPart(self.line, self.kernel_data(), self._trials)
 
     def _go_to(self, state: State) -> BoundPart:
         """Bring line and numbers to a trial state."""
         found = self._bound
         self._trials.now.move(state)
-        self.renew_numbers(*self._trials.step_to(state.t))
+        self.renew_kernel_data(*self._trials.step_to(state.t))
         return found
 
     def _find(self, state: State) -> BoundPart:
@@ -203,14 +203,14 @@ class CompiledPart(LinePart, ABC):
             return Work()
         trials.then.move(before)
         trials.now.move(after)
-        self.renew_numbers(*trials.step(before.t, after.t))
+        self.renew_kernel_data(*trials.step(before.t, after.t))
         found.turned_over[:] = 0.0
         found.add_work()
         return Work(*listed(found.turned_over))
 
     def commit(self, state: State) -> None:
         """Keep the history."""
-        if type(self.numbers()) in keep.kernels:
+        if type(self.kernel_data()) in keep.kernels:
             self._find(state).keep()
 
     def taken(self, before: State, after: State) -> float:

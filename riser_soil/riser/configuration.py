@@ -13,11 +13,11 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.riser import hermite, planar_directors, spatial_directors
+from riser_soil.riser import directors, hermite, spatial_directors
+from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.line import MOST_SWING, Line
 from riser_soil.riser.line_kernels import first_folded, first_swung
-from riser_soil.riser.planar_directors import PlanarFrames
 
 
 class PlanarBase(NamedTuple):
@@ -113,7 +113,7 @@ def base_of(line: Line) -> Base:
     return SpatialBase(line.x, line.chord, line.frames.R, line.frames.T0)
 
 
-def room_for(line: Line) -> Configuration:
+def workspace_for(line: Line) -> Configuration:
     """A configuration's arrays, to be written to."""
     nn, ne, d, r = line.nodes, line.length.size, line.dimension, line.frames.dofs
     shapes = {"x": (nn, d), "chord": (ne, d), "tangent": (ne, 2, d), "P": (ne, 2, d, r), "v": (nn, d + r)}
@@ -171,7 +171,7 @@ def put_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
 
 
 @bound_by_type
-def put_tangled(at: Configuration, base: Base, out: IntArray) -> None:
+def put_folded(at: Configuration, base: Base, out: IntArray) -> None:
     """Write the numbers (2,) of the first element that is folded or wound up, and of the first that swings too far from
     the accepted configuration, see `Line.inadmissible`; ne without any.
     """
@@ -183,7 +183,7 @@ def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Arra
     for n in range(u.shape[0]):
         at.angle[n] = base.angle[n] + u[n, 2]
     normal = at.P.reshape((at.P.shape[0], 2, 2))
-    planar_directors.put_ends(at.angle, base.alpha0, at.end_angle, at.tangent, normal)
+    directors.put_ends(at.angle, base.alpha0, at.end_angle, at.tangent, normal)
     hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
     put_rates(at, v, a)
 
@@ -216,7 +216,7 @@ def _move(at: Configuration, base: Base, u: Array) -> None:
 def _put_planar_rates(at: PlanarConfiguration, v: Array, a: Array) -> None:
     _keep(at, v, a)
     normal = at.P.reshape((at.P.shape[0], 2, 2))
-    planar_directors.put_motion(at.tangent, normal, v, a, at.rate, at.acceleration)
+    directors.put_motion(at.tangent, normal, v, a, at.rate, at.acceleration)
 
 
 @put_rates.of(SpatialConfiguration)
@@ -249,7 +249,7 @@ def _put_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
 @put_maps.of(PlanarConfiguration)
 def _put_maps_in_plane(at: PlanarConfiguration, maps: Maps) -> None:
     normal = at.P.reshape((at.P.shape[0], 2, 2))
-    planar_directors.put_maps(
+    directors.put_maps(
         at.tangent, normal, at.v[:, 2:], at.a[:, 2:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
     )
     _put_rows(at, maps)
@@ -272,7 +272,7 @@ def _put_rows(at: Configuration, maps: Maps) -> None:
 
 @put_turning.of(PlanarConfiguration)
 def _put_turning_in_plane(at: PlanarConfiguration, F: Array, G: Array) -> None:
-    planar_directors.put_geometric(at.tangent, F, G)
+    directors.put_geometric(at.tangent, F, G)
 
 
 @put_turning.of(SpatialConfiguration)
@@ -292,16 +292,16 @@ def _put_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array
     spatial_directors.put_moment_maps(at.Rn, at.Theta, maps)
 
 
-@put_tangled.of(PlanarConfiguration)
-def _put_tangled_in_plane(at: PlanarConfiguration, base: PlanarBase, out: IntArray) -> None:
+@put_folded.of(PlanarConfiguration)
+def _put_folded_in_plane(at: PlanarConfiguration, base: PlanarBase, out: IntArray) -> None:
     tangent, normal = np.empty(at.tangent.shape), np.empty(at.tangent.shape)
-    planar_directors.put_ends(base.angle, base.alpha0, np.empty(base.alpha0.shape), tangent, normal)
+    directors.put_ends(base.angle, base.alpha0, np.empty(base.alpha0.shape), tangent, normal)
     out[1] = first_swung(base.chord, tangent, at.chord, at.tangent, MOST_SWING)
-    out[0] = min(first_folded(at.chord, at.tangent), planar_directors.first_wound(at.end_angle))
+    out[0] = min(first_folded(at.chord, at.tangent), directors.first_wound(at.end_angle))
 
 
-@put_tangled.of(SpatialConfiguration)
-def _put_tangled_in_space(at: SpatialConfiguration, base: SpatialBase, out: IntArray) -> None:
+@put_folded.of(SpatialConfiguration)
+def _put_folded_in_space(at: SpatialConfiguration, base: SpatialBase, out: IntArray) -> None:
     tangent, first, second = np.empty(at.tangent.shape), np.empty(at.frame1.shape), np.empty(at.frame2.shape)
     spatial_directors.put_end_frames(base.R, base.T0, first, second, tangent)
     out[1] = first_swung(base.chord, tangent, at.chord, at.tangent, MOST_SWING)

@@ -17,6 +17,7 @@ from riser_soil.riser.beam2d import (
     PlanarReference,
     PlanarSection,
     Vec2,
+    bow_slopes,
     configuration_variation,
     corotate,
     element_at,
@@ -24,7 +25,6 @@ from riser_soil.riser.beam2d import (
     put_forces,
     stress_variation,
 )
-from riser_soil.riser.bending import bow_slopes
 
 STILL = (0.0, 0.0)
 

@@ -24,12 +24,10 @@ from riser_soil.riser.beam3d import (
     stiffness,
     strain_of,
 )
-from riser_soil.riser.corotation import SpatialNodalForces
-from riser_soil.riser.increments import rows_to_increments
-from riser_soil.riser.spatial_load import NO_LOAD
-from riser_soil.riser.strain3d import Stiffness, strain_change_variation, total
-from riser_soil.riser.stress3d import linear_stress
-from riser_soil.riser.swing_twist import rate, rate_variation
+from riser_soil.riser.corotation import SpatialNodalForces, rate, rate_variation
+from riser_soil.riser.rotations import rows_to_increments
+from riser_soil.riser.strain3d import Stiffness, linear_stress, strain_change_variation, total
+from riser_soil.riser.uniform_load import NO_LOAD
 from riser_soil.riser.vectors import (
     Vec,
     add,
@@ -54,7 +52,7 @@ class ElementVelocities(NamedTuple):
 
 
 class NodeRotations(NamedTuple):
-    """Orientation of the nodes, each (nn, 3, 3) or (nn, 3): see `increments`; R is the present frame."""
+    """Orientation of the nodes, each (nn, 3, 3) or (nn, 3): see `rotations`; R is the present frame."""
 
     R: Array
     H: Array

@@ -6,8 +6,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d, beam3d
+from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
-from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialFrames
 

@@ -10,6 +10,8 @@ load gives its residual F_q (ne, 4, d), conjugate to q. The kernels below carry 
 (ne, 2, d, r): positions pass, tangents turn with the r rotation dofs of their node.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -204,3 +206,14 @@ def add_geometric(out: Array, scale: float, G: Array, d: int) -> None:
             for i in range(r):
                 for j in range(r):
                     out[e, at + i, at + j] += scale * G[e, side, i, j]
+
+
+def axis_at(nodes: Array, position: Array, tangent: Array, arc: float) -> tuple[Array, Array]:
+    """Position of the axis (3,) [m] and its derivative by the arc length (3,), global axes, at an arc length [m].
+
+    Of the nodes arc lengths (nn,) and positions (nn, 3); tangent (ne, 2, 3): of the elements' ends.
+    """
+    e = min(max(int(np.searchsorted(nodes, arc)) - 1, 0), nodes.size - 2)
+    length = float(nodes[e + 1] - nodes[e])
+    xi, q = (arc - float(nodes[e])) / length, np.array([position[e], tangent[e, 0], position[e + 1], tangent[e, 1]])
+    return np.array(shape(xi, length)) @ q, np.array(slope(xi, length)) @ q

@@ -21,11 +21,10 @@ from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
-from riser_soil.riser.directors import Frames
+from riser_soil.riser.directors import Frames, PlanarFrames
 from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.free_turns import free_turns, unit_lengths
 from riser_soil.riser.line_kernels import after_increments, first_folded, first_swung, motion_in_axes, spread_motion
-from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
 
@@ -331,9 +330,9 @@ class Line:
         if before is not None:
             left = self.trial(before)
             swung = first_swung(left.chord, left.turn.tangent, trial.chord, trial.turn.tangent, MOST_SWING)
-        return self.tangled(folded, swung)
+        return self.folding(folded, swung)
 
-    def tangled(self, folded: int, swung: int) -> str:
+    def folding(self, folded: int, swung: int) -> str:
         """What to say of the first element that is folded or wound up, and of the first that swings too far in a step;
         nothing where there is none, the number of elements.
         """

@@ -24,14 +24,14 @@ class LinePart:
         """All dofs of each element."""
         return {self.line.name: self.line.element_block()}
 
-    def numbers(self) -> tuple[Any, ...] | None:
+    def kernel_data(self) -> tuple[Any, ...] | None:
         """The part in numbers, for the compiled loop over a riser alone, see `part_kernels`; None without.
 
-        Asked for once a stage, so that what changes is an array that is written to, see `renew_numbers`.
+        Asked for once a stage, so that what changes is an array that is written to, see `renew_kernel_data`.
         """
         return None
 
-    def renew_numbers(self, start: float, end: float) -> None:
+    def renew_kernel_data(self, start: float, end: float) -> None:
         """Write what depends on the time alone into the numbers that were asked for last, for a step between two times
         [s].
         """

@@ -99,7 +99,7 @@ class PointLoads(CompiledPart):
             return SpatialMoments(F, nodal, node, np.zeros((node.size, 3)))
         return GivenForces(F, nodal, potential=False)
 
-    def renew_numbers(self, start: float, end: float) -> None:
+    def renew_kernel_data(self, start: float, end: float) -> None:
         numbers = self._numbers
         for residual, shares in ((numbers.F, self._along), (numbers.nodal, self._nodal)):
             residual[:] = 0.0

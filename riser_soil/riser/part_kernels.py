@@ -1,7 +1,7 @@
 """What parts of a line say in compiled code, see `by_type`: forces, tangent, energy, work, history.
 
-A part has its `numbers`: a NamedTuple of arrays, and kernels for that type. The compiled loop over a riser alone calls
-them, and so does `CompiledPart`, by which a part has a system's methods.
+A part has its `kernel_data`: a NamedTuple of arrays, and kernels for that type. The compiled loop over a riser alone
+calls them, and so does `CompiledPart`, by which a part has a system's methods.
 """
 
 from __future__ import annotations
@@ -42,8 +42,10 @@ class LineWeights(NamedTuple):
     force: float
 
 
-class TurningRoom(Protocol):
-    """Room for what is conjugate to the tangents of the elements' ends (ne, 2, d), and its turning (ne, 2, r, r)."""
+class TurningWorkspace(Protocol):
+    """Workspace for what is conjugate to the tangents of the elements' ends (ne, 2, d), and its turning (ne, 2, r,
+    r).
+    """
 
     @property
     def conjugate(self) -> Array: ...
@@ -53,7 +55,7 @@ class TurningRoom(Protocol):
 
 
 def forces_of(line: Line) -> LineForces:
-    """Room for the residuals of a line."""
+    """Workspace for the residuals of a line."""
     ne = line.length.size
     conjugate = (np.zeros((ne, 4, line.dimension)) for _ in range(3))
     of_elements = (np.zeros((ne, 2 * line.ndof)) for _ in range(2))
@@ -119,17 +121,17 @@ def collect(at: Configuration, forces: LineForces) -> None:
 
 
 @njit
-def weigh(forces: LineForces, weights: LineWeights, room: TurningRoom) -> None:
+def weigh(forces: LineForces, weights: LineWeights, workspace: TurningWorkspace) -> None:
     """Write what is conjugate to the tangents of the elements' ends, groups weighted."""
-    for e in range(room.conjugate.shape[0]):
+    for e in range(workspace.conjugate.shape[0]):
         for side in range(2):
             k = 2 * side + 1
-            for i in range(room.conjugate.shape[2]):
+            for i in range(workspace.conjugate.shape[2]):
                 bulk = weights.inertia * forces.inertia_q[e, k, i] + weights.force * forces.force_q[e, k, i]
-                room.conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
+                workspace.conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
 
 
 @njit
-def turn(room: TurningRoom, K: Array) -> None:
+def turn(workspace: TurningWorkspace, K: Array) -> None:
     """Add what the turning of the tangents gives to the element matrices."""
-    add_geometric(K, 1.0, room.turning, room.conjugate.shape[2])
+    add_geometric(K, 1.0, workspace.turning, workspace.conjugate.shape[2])

@@ -7,33 +7,33 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State
-from riser_soil.riser.configuration import base_of, place, put_rates, room_for
+from riser_soil.riser.configuration import base_of, place, put_rates, workspace_for
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import bound
 
 
 class LineBase:
-    """The configuration that a line's trials follow from, where it was accepted when it was brought last."""
+    """The configuration that a line's trials follow from, where it was accepted when it was updated last."""
 
     def __init__(self, line: Line) -> None:
         base = base_of(line)
         self.packed = Packed(type(base)(*map(np.copy, base)))
         self._line = line
-        self._brought: Array | None = None  # the places of its nodes as they were then
+        self._updated: Array | None = None  # the places of its nodes as they were then
 
-    def bring(self) -> None:
+    def update(self) -> None:
         """Bring it to where the line is accepted now; a line that is accepted elsewhere has other arrays."""
-        if self._brought is not self._line.x:
+        if self._updated is not self._line.x:
             for kept, given in zip(self.packed.value, base_of(self._line), strict=True):
                 kept[...] = given
-            self._brought = self._line.x
+            self._updated = self._line.x
 
 
 class PlacedTrial:
     """A line at a trial state, placed once for all that ask in turn. count: of the states that it was placed at."""
 
     def __init__(self, line: Line, base: LineBase) -> None:
-        self._line, self._base, self.at, shape = line, base, room_for(line), (line.nodes, line.ndof)
+        self._line, self._base, self.at, shape = line, base, workspace_for(line), (line.nodes, line.ndof)
         values = [np.zeros(shape) for _ in range(3)]
         self._place = bound(place, self.at, base.packed, *map(Packed, values))
         self._u, self._v, self._a = (each.ravel() for each in values)
@@ -46,7 +46,7 @@ class PlacedTrial:
         line = self._line
         if state is self._state and line.x is self._from:
             return
-        self._base.bring()
+        self._base.update()
         self._u[:], self._v[:], self._a[:] = state.u[line.part], state.v[line.part], state.a[line.part]
         self._place()
         self._state, self._from = state, line.x
@@ -56,13 +56,13 @@ class PlacedTrial:
 class PlacedLine:
     """The accepted configuration `at` of a line, placed once for all that ask in turn, with rates as each asks for.
 
-    base: what it follows from, for trials too, as it was brought last.
+    base: what it follows from, for trials too, as it was updated last.
     """
 
     def __init__(self, line: Line) -> None:
-        self._line, self.at, shape = line, room_for(line), (line.nodes, line.ndof)
+        self._line, self.at, shape = line, workspace_for(line), (line.nodes, line.ndof)
         self._base = LineBase(line)
-        self.base, self.bring = self._base.packed, self._base.bring
+        self.base, self.update = self._base.packed, self._base.update
         self._rates, still = (np.zeros(shape), np.zeros(shape)), Packed(np.zeros(shape))
         self._place = bound(place, self.at, self.base, still, still, still)
         self._put = bound(put_rates, self.at, *map(Packed, self._rates))
@@ -90,6 +90,6 @@ class PlacedLine:
     def _renew(self) -> None:
         """Place it, unless it is where it was."""
         if self._at is not self._line.x:
-            self.bring()
+            self.update()
             self._place()
             self._at, self._with = self._line.x, (None, None)

@@ -11,9 +11,9 @@ from riser_soil.core.part import Traits
 from riser_soil.riser import rotary_moments
 from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
+from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
-from riser_soil.riser.planar_directors import PlanarFrames
 
 
 class SpatialRotaryMass(NamedTuple):

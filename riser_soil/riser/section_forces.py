@@ -38,13 +38,13 @@ def viscous_residual(line: Line, parts: Iterable[LinePart], state: State) -> Arr
 def nodal_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array | None:
     """Sum (nn, ndof) of what acts on nodes but isn't a support, if anything: contact with soil, point loads and masses.
     """
-    told = [forces for part in parts if (forces := part.nodal_forces(state)) is not None]
-    return _total(told, (line.nodes, line.ndof)) if told else None
+    reported = [forces for part in parts if (forces := part.nodal_forces(state)) is not None]
+    return _total(reported, (line.nodes, line.ndof)) if reported else None
 
 
-def _total(told: Iterable[Array | None], shape: tuple[int, int]) -> Array:
+def _total(reported: Iterable[Array | None], shape: tuple[int, int]) -> Array:
     total = np.zeros(shape)
-    for values in told:
+    for values in reported:
         if values is not None:
             total += values
     return total

@@ -61,7 +61,7 @@ class EndSpring(CompiledPart):
         supports = (np.array(self.line.support(self.node, 0.0)) for _ in range(2))
         return kind(self.node, self.stiffness, *supports)
 
-    def renew_numbers(self, start: float, end: float) -> None:
+    def renew_kernel_data(self, start: float, end: float) -> None:
         for kept, t in ((self._numbers.before, start), (self._numbers.support, end)):
             kept[:] = self.line.support(self.node, t)
 

@@ -173,8 +173,8 @@ def add_integrand_at(weighted: Array, p: int, f: tuple[float, ...], F: Array, e:
 
 
 @njit
-def element_room(n: int, D: Size) -> Array:
-    """Room for how what is conjugate to q of an element follows its n dofs (4, d, n)."""
+def element_workspace(n: int, D: Size) -> Array:
+    """Workspace for how what is conjugate to q of an element follows its n dofs (4, d, n)."""
     return np.empty((4, len(D), n))
 
 
@@ -189,11 +189,11 @@ def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Arr
 def _add_stiffness(
     out: Array, N: Array, weighted: Array, elements: IntArray, by_position: Array, P: Array, D: Size, R: Size
 ) -> None:
-    room, rows = element_room(out.shape[1], D), np.empty((len(D), out.shape[1]))
+    workspace, rows = element_workspace(out.shape[1], D), np.empty((len(D), out.shape[1]))
     for m in range(elements.size):
         e = elements[m]
         put_rows(P[e], 1.0, rows, D, R)
-        room[:] = 0.0
+        workspace[:] = 0.0
         for g in range(by_position.shape[1]):
-            add_weighed(room, weighted[e, g], ((N[e, g], by_position[m, g], rows),), D, R)
-        add_pulled_back(out[e], P[e], room, D, R)
+            add_weighed(workspace, weighted[e, g], ((N[e, g], by_position[m, g], rows),), D, R)
+        add_pulled_back(out[e], P[e], workspace, D, R)

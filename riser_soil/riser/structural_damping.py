@@ -9,19 +9,19 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits, Work
-from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
+from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, rotations
 from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
+from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.elastic import in_plane, in_space
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
-from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.vectors import matrix, matvec, vector
 
 
 class PlanarViscosity(NamedTuple):
-    """Viscous elements of a plane line; room for the rates of the chords (ne, 2)."""
+    """Viscous elements of a plane line; workspace for the rates of the chords (ne, 2)."""
 
     reference: beam2d.PlanarReference
     viscosity: beam2d.PlanarSection
@@ -29,7 +29,7 @@ class PlanarViscosity(NamedTuple):
 
 
 class SpatialViscosity(NamedTuple):
-    """Viscous elements of a line in space; room for the rates of the chords (ne, 3) and spatial spins (nn, 3)."""
+    """Viscous elements of a line in space; workspace for the rates of the chords (ne, 3) and spatial spins (nn, 3)."""
 
     reference: beam3d.SpatialReference
     viscosity: beam3d.SpatialSection
@@ -120,7 +120,7 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
         damping3d.put_element_forces(
             e, at.chord, at.frame1, at.frame2, part.reference, part.viscosity, part.chord_rate, part.spin, f
         )
-        increments.element_to_increments(e, f, at.H)
+        rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
 

@@ -1,4 +1,4 @@
-"""Stress in the wall of a round pipe from wall tension, bending, torsion and pressure.
+"""The pipe's wall: its sections, its tension from effective tension and pressures, and its stress.
 
 A point of the section lies at the radius r and the angle theta from the section's y axis towards its z axis:
 
@@ -10,15 +10,31 @@ A point of the section lies at the radius r and the angle theta from the section
 with the inner and outer radius a and b, A = pi (b^2 - a^2), I = pi/4 (b^4 - a^4). Stresses are positive in tension.
 Sources: Lame's tube by Timoshenko and Goodier, Theory of Elasticity, 3rd ed. (1970), article 28; wall tension by
 Sparks, see `wall_tension`; von Mises' stress as in API STD 2RD (2013) and DNV-ST-F201 (2018).
+
+Sections of the riser's wall: one at each node, two where unlike walls meet.
+
+At a joint both walls bear the same effective tension, moments and pressures on diameters of their own. In a bend
+stiffener the pipe bears the share of the moments that it has of the stiffness.
+
+Wall tension of the pipe from effective tension, internal and external pressure.
+
+    T_w = T + p_i A_i - p_o A_o,    p_i = p + rho_i g (z_p - z),    p_o = rho_o g (z_s - z), at least 0.
+
+The effective tension T is what carries, bends and stretches the line here: its elements strain by T/EA, to which
+neither the pressures' action on closed ends nor Poisson's ratio add. Gauge pressures of fluids at rest: what waves and
+the contents' acceleration add is left out. Source: Sparks, Journal of Energy Resources Technology 106 (1984).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.riser.sections import Elements
 
 
 class Wall(NamedTuple):
@@ -111,3 +127,116 @@ def largest_von_mises(loads: Loads, wall: Wall) -> Array:
         for diameter in wall
     ]
     return np.asarray(np.max(at, axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class WallSections:
+    """Sections (ns,) with their node, in the order of the nodes; nodes without a wall beside them have none.
+
+    pressed: diameters [m] on which the pressures act. allowable: stress [Pa], 0 where none is given.
+    borne: shares (ns, 2) of the bending moments about y and z that the pipe bears itself.
+    """
+
+    node: IntArray
+    wall: Wall
+    pressed: Wall
+    allowable: Array
+    borne: Array
+
+    def loads(
+        self, effective: Array, moment_y: Array, moment_z: Array, torque: Array, inside: Array, outside: Array
+    ) -> Loads:
+        """Loads (..., ns) from effective tension [N], moments [N m] and pressures [Pa] at nodes, each (..., nn)."""
+        T, My, Mz, Mx, p_i, p_o = (
+            values[..., self.node] for values in (effective, moment_y, moment_z, torque, inside, outside)
+        )
+        bore, outer = (0.25 * np.pi * d**2 for d in (self.pressed.inner_diameter, self.pressed.outer_diameter))
+        borne_y, borne_z = self.borne.T
+        return Loads(T + p_i * bore - p_o * outer, borne_y * My, borne_z * Mz, Mx, p_i, p_o)
+
+    def at_nodes(self, values: Array, governing: Array, nodes: int) -> Array:
+        """Values (..., ns) at the nodes (..., nn), of two sections that with more `governing` (..., ns), of equal ones
+        the second; nan without a wall.
+        """
+        found, (first, second) = np.full((*values.shape[:-1], nodes), np.nan), self._of_nodes
+        found[..., self.node] = values
+        more = governing[..., first] > governing[..., second]
+        found[..., self.node[first]] = np.where(more, values[..., first], values[..., second])
+        return found
+
+    @cached_property
+    def _of_nodes(self) -> tuple[IntArray, IntArray]:
+        """The sections of nodes that have two."""
+        first = np.flatnonzero(self.node[1:] == self.node[:-1])
+        return first, first + 1
+
+
+def walls_of(elements: Elements) -> WallSections:
+    """Sections of the elements' walls."""
+    wall = Wall(elements.wall_outer_diameter, elements.wall_inner_diameter)
+    pressed = Wall(elements.pipe_diameter, elements.inner_diameter)
+    return wall_sections(wall, pressed, elements.allowable_stress, elements.borne_by_pipe)
+
+
+def wall_sections(wall: Wall, pressed: Wall, allowable: Array, borne: Array) -> WallSections:
+    """Sections from what the elements have (ne,), borne (ne, 2); an outer diameter of 0 is no wall."""
+    numbers = np.column_stack([*wall, *pressed, allowable, borne])
+    nodes = len(numbers) + 1
+    before, after = np.insert(numbers, 0, 0.0, axis=0), np.append(numbers, np.zeros((1, numbers.shape[1])), axis=0)
+    unlike = (before != after).any(axis=1)
+    node = np.concatenate([np.arange(nodes)[unlike], np.arange(nodes)])
+    rows = np.concatenate([before[unlike], after])
+    walled = rows[:, 0] > 0.0
+    order = np.argsort(node[walled], kind="stable")
+    D, d, outside, bore, limit, *shares = rows[walled][order].T
+    return WallSections(node[walled][order], Wall(D, d), Wall(outside, bore), limit, np.column_stack(shares))
+
+
+@dataclass(frozen=True)
+class HydrostaticPressure:
+    """A fluid at rest: gauge pressure [Pa] at a level z [m], and its increase per depth [Pa/m]."""
+
+    level: float
+    per_depth: float
+    pressure: float = 0.0
+
+    def at(self, z: Array) -> Array:
+        """Pressure [Pa]."""
+        return self.pressure + self.per_depth * (self.level - z)
+
+
+@dataclass(frozen=True, eq=False)
+class Pressures:
+    """Fluids inside and outside a pipe, None where there is none.
+
+    inner_diameter, outer_diameter: (ne,) m, of the pipe without a bend stiffener. At a joint the areas are the means of
+    both sides, as section forces are.
+    """
+
+    inside: HydrostaticPressure | None
+    outside: HydrostaticPressure | None
+    inner_diameter: Array
+    outer_diameter: Array
+
+    def at(self, z: Array) -> tuple[Array, Array]:
+        """Pressure inside and outside [Pa] at heights [m]; 0 where there is no fluid."""
+        inside, outside = (np.zeros_like(z) if fluid is None else fluid.at(z) for fluid in (self.inside, self.outside))
+        return inside, np.maximum(outside, 0.0)
+
+    def wall_tension(self, effective: Array, z: Array) -> Array:
+        """N, positive in tension, from the effective tension [N] and the heights [m] of the nodes, each (..., nn)."""
+        wall, (bore, around) = effective, self._areas
+        if self.inside is not None:
+            wall = wall + self.inside.at(z) * bore
+        if self.outside is not None:
+            wall = wall - np.maximum(self.outside.at(z), 0.0) * around
+        return wall
+
+    @cached_property
+    def _areas(self) -> tuple[Array, Array]:
+        return _areas_at_nodes(self.inner_diameter), _areas_at_nodes(self.outer_diameter)
+
+
+def _areas_at_nodes(diameter: Array) -> Array:
+    area = 0.25 * np.pi * diameter**2
+    return np.asarray(0.5 * (np.append(area[0], area) + np.append(area, area[-1])))

@@ -12,7 +12,7 @@ from riser_soil.core.quantities import wrong
 
 FINEST, COARSEST = 1e-4, 0.2
 _PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
-_TOLD = "must be a percentage from 0.01 % to 20 %"
+_REPORTED = "must be a percentage from 0.01 % to 20 %"
 
 
 def _share(value: Any) -> float:
@@ -20,7 +20,7 @@ def _share(value: Any) -> float:
     found = _PERCENT.fullmatch(value) if isinstance(value, str) else None
     share = float(found[1]) / 100.0 if found else value
     if isinstance(share, bool) or not isinstance(share, float) or not FINEST <= share <= COARSEST:
-        raise wrong("", _TOLD, "write accuracy: 1 %")
+        raise wrong("", _REPORTED, "write accuracy: 1 %")
     return share
 
 

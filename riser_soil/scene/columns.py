@@ -18,6 +18,10 @@ from riser_soil.scene.files import wrong_file
 from riser_soil.scene.problem import hint, shown
 
 Units = Mapping[str, float]
+LEAST_ROWS = 4  # of a cubic spline without knots beside its ends
+COUNT = "-"  # the unit of a t that is no time
+
+
 """Accepted units of a column, each with its size in SI units."""
 
 TIME: Units = {"s": 1.0, "min": 60.0, "ms": 1e-3}
@@ -152,3 +156,16 @@ def _number(place: str, cell: str) -> float:
     if abs(value) > FARTHEST:
         raise wrong_file(f"{place}: {cell} is larger than {FARTHEST:g}; check unit and power of ten")
     return value
+
+
+def read_history(file: Path, known: Known, required: tuple[str, ...]) -> CsvColumns:
+    """Columns of a file by increasing times t, two at least; PydanticCustomError for what is wrong."""
+    rows = read_columns(file, {"t": {**TIME, COUNT: 1.0}, **known}, required=("t", *required))
+    if rows.rows < 2:
+        raise wrong_file(f"{file}: a table of {rows.rows} rows; a motion needs two at least, cubic splines in time 4")
+    for line, (a, b) in zip(rows.lines[1:], pairwise(rows.values["t"]), strict=True):
+        if b - a < NEAREST:
+            t = "" if rows.units["t"] == COUNT else " s"
+            how = f"times must increase, but {b:g}{t} follows {a:g}{t}"
+            raise wrong_file(f"{file}:{line}: {how}; sort the rows, {NEAREST:g}{t} apart or more")
+    return rows

@@ -4,10 +4,8 @@ import math
 from collections.abc import Callable, Iterator
 
 from riser_soil.core.quantities import Vector
-from riser_soil.scene.end_checks import end_conflicts
-from riser_soil.scene.feature_checks import feature_conflicts
-from riser_soil.scene.ground_checks import ground_conflicts
-from riser_soil.scene.hang_off_checks import hang_off_conflicts
+from riser_soil.scene.end_checks import end_conflicts, hang_off_conflicts
+from riser_soil.scene.ground_checks import feature_conflicts, ground_conflicts
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import SettlementSections
@@ -241,7 +239,7 @@ def _crosses(block: Block, a: Vector, b: Vector) -> bool:
 
 
 def _error_bars_from_the_beginning(scene: Scene) -> Iterator[Problem]:
-    """Companions have another mesh than the run that the scene begins with."""
+    """Comparison runs have another mesh than the run that the scene begins with."""
     for name, wanted in (("accuracy", scene.accuracy is not None), ("error_bars", scene.error_bars)):
         if wanted and scene.initial is not None:
             yield Problem((name,), "coarser meshes can't begin with another run's end", f"leave out {name} or initial")

@@ -1,6 +1,7 @@
-"""The resolved scene as YAML, all defaults filled in; reading it gives the same scene."""
+"""The resolved scene as YAML, all defaults filled in, and the JSON schema of the scene language."""
 
 import io
+import json
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -33,3 +34,9 @@ def _float(representer: SafeRepresenter, value: float) -> Node:
     if "e" in text and "." not in text:
         text = text.replace("e", ".0e")
     return representer.represent_scalar("tag:yaml.org,2002:float", text)
+
+
+def schema_text() -> str:
+    """The schema of a scene file; every key with its description, unit, bounds and default."""
+    dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return json.dumps(dialect | Scene.model_json_schema(by_alias=True), indent=2)

@@ -1,19 +1,23 @@
-"""Checks of seabed, soil and contact with them, and of ends that lie on the ground."""
+"""Checks of seabed, soil and contact with them, of ends on the ground, and of a trench or groove."""
 
 from collections.abc import Iterator
 
 from riser_soil.scene.bathymetry import ground_height
-from riser_soil.scene.plane import positions
-from riser_soil.scene.problem import Problem
+from riser_soil.scene.plane import positions, vertical_plane
+from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
+from riser_soil.scene.seabed_features import Trench
+from riser_soil.scene.soil import Block
 from riser_soil.seabed.bearing import Strength
 
 # Part of its radius by which a prescribed end may lie in a rigid seabed.
 _SUNK = 0.02
 # How far an end may lie below the seabed for the round-off of its height [m].
 _ROUND_OFF = 1e-9
+# Component of the riser's direction in plan across an axis that it may have to run along it.
+_ASKEW = 1e-6
 
 
 def ground_conflicts(scene: Scene) -> Iterator[Problem]:
@@ -77,7 +81,7 @@ def _ground_has_a_strength(scene: Scene) -> Iterator[Problem]:
     friction = scene.contact.friction if scene.contact is not None else None
     if friction is None or friction.adhesion is None:
         return
-    without = [told for told, strength in _strengths(scene) if strength is None]
+    without = [reported for reported, strength in _strengths(scene) if strength is None]
     path = ("contact", "friction", "adhesion")
     if without and len(without) == len([*_strengths(scene)]):
         text = f"is a share of the undrained shear strength su, and {' and '.join(without)} has none"
@@ -124,3 +128,41 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
         elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:
             allowed = f"would press the pipe {sunk + radius:.3g} m into the rigid seabed"
             yield Problem(("riser", key, "position"), allowed, f"raise it to z = {ground + radius:g} m")
+
+
+def feature_conflicts(scene: Scene) -> Iterator[Problem]:
+    """Conflicts of the block's trench or groove with the riser and the block."""
+    block = scene.soil.given_block if scene.soil else None
+    if block is None or block.feature is None:
+        return
+    direction = vertical_plane(scene).direction
+    axis = int(abs(direction[1]) > abs(direction[0]))
+    path: Path = ("soil", "block", "trench" if block.trench else "groove")
+    if abs(direction[1 - axis]) > _ASKEW:
+        allowed = "lies along x or y, and the riser, seen from above, runs askew to both"
+        yield Problem(path, allowed, "turn the scene so that the riser runs along x, or give a mesh file")
+    elif _half_width(scene, block) <= 0.0:
+        yield Problem(path, "needs the pipe's diameter", "give groove.diameter, or outer_diameter of the line types")
+    else:
+        yield from _within_the_block(scene, block, path, axis)
+
+
+def _half_width(scene: Scene, block: Block) -> float:
+    if block.trench is not None:
+        return block.trench.half_width
+    return 0.5 * ((block.groove.diameter if block.groove else None) or scene.largest_diameter)
+
+
+def _within_the_block(scene: Scene, block: Block, path: Path, axis: int) -> Iterator[Problem]:
+    """axis: x (0) or y (1), along which the riser runs."""
+    wide, line = _half_width(scene, block), vertical_plane(scene).origin[1 - axis]
+    low, high = (block.x, block.y)[1 - axis]
+    if not low < line - wide < line + wide < high:
+        name = "yx"[axis]
+        allowed = f"is {2.0 * wide:.4g} m wide at the seabed about {name} = {line:g} m and leaves the block's {name}"
+        yield Problem(path, allowed, "widen the block, or take less")
+    along = block.feature.along if isinstance(block.feature, Trench) else None
+    first, last = (block.x, block.y)[axis]
+    if along is not None and not (along[0] < last and along[1] > first):
+        allowed = f"lies beyond the block's {'xy'[axis]}, {first:g} to {last:g} m"
+        yield Problem((*path, "along"), allowed, "move either")

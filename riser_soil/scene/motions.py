@@ -18,12 +18,10 @@ from riser_soil.core.quantities import (
     Vector,
     wrong,
 )
-from riser_soil.scene.columns import ANGLE, LENGTH, CsvColumns
+from riser_soil.scene.columns import ANGLE, LENGTH, CsvColumns, read_history
 from riser_soil.scene.files import GivenByName, NamedFile, wrong_file
 from riser_soil.scene.netcdf_variables import is_netcdf
-from riser_soil.scene.rao import MODES, ROTATIONS, TRANSLATIONS, Rao, read_rao, vessel_axis
-from riser_soil.scene.rao_files import read_capytaine
-from riser_soil.scene.time_history import read_history
+from riser_soil.scene.rao import MODES, ROTATIONS, TRANSLATIONS, Rao, read_capytaine, read_rao, vessel_axis
 
 PLANES: dict[str, Vector] = {"xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0), "xy": (0.0, 0.0, 1.0)}
 """Axes about which an end turns from a plane's first axis towards its second."""

@@ -24,11 +24,11 @@ def _override(document: Document, assignment: str) -> None:
     put(document, dots.strip(), _value(text, assignment), f"--set {assignment}")
 
 
-def put(document: Document, dots: str, value: Any, told: str) -> None:
-    """Replace the value at a dotted path by plain data. told: the override, as messages name its place."""
-    path = _store(document, dots.split("."), value, told)
+def put(document: Document, dots: str, value: Any, reported: str) -> None:
+    """Replace the value at a dotted path by plain data. reported: the override, as messages name its place."""
+    path = _store(document, dots.split("."), value, reported)
     _forget_places_below(document, path)
-    document.overrides[path] = told
+    document.overrides[path] = reported
 
 
 def _value(text: str, assignment: str) -> Any:
@@ -40,29 +40,29 @@ def _value(text: str, assignment: str) -> Any:
         ) from err
 
 
-def _store(document: Document, words: list[str], value: Any, told: str) -> Path:
+def _store(document: Document, words: list[str], value: Any, reported: str) -> Path:
     """Put the value at its path, making the mappings that are not there yet; give the path."""
     data = document.data
     path: Path = ()
     for n, word in enumerate(words):
-        key = _key(data, word, path, told)
+        key = _key(data, word, path, reported)
         path = (*path, key)
         if n == len(words) - 1:
             data[key] = value
         elif isinstance(data, dict) and data.get(key) is None:
             data[key] = {}
-            document.overrides[path] = told
+            document.overrides[path] = reported
         data = data[key]
     return path
 
 
-def _key(data: Any, word: str, path: Path, told: str) -> str | int:
+def _key(data: Any, word: str, path: Path, reported: str) -> str | int:
     """The word as key of a mapping or as index of a list."""
     if isinstance(data, dict):
         return word
     if not isinstance(data, list):
         raise SceneError(
-            f"{told}: {dotted(path)}: value {shown(data)}: has no parts; shorten the path"
+            f"{reported}: {dotted(path)}: value {shown(data)}: has no parts; shorten the path"
         )
     if not word.isdecimal() or int(word) >= len(data):
         allowed = (
@@ -70,7 +70,7 @@ def _key(data: Any, word: str, path: Path, told: str) -> str | int:
             if data
             else "the list is empty"
         )
-        raise SceneError(f"{told}: {dotted(path)}: {allowed}; correct the path")
+        raise SceneError(f"{reported}: {dotted(path)}: {allowed}; correct the path")
     return int(word)
 
 

@@ -1,22 +1,37 @@
-"""Reader: from a scene file to a checked scene."""
+"""Reader: from a scene file to a checked scene.
 
+Keys and values of the scene language that are not supported yet.
+
+They are named as such instead of being called unknown. A value that switches the thing off is dropped.
+"""
+
+import copy
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from riser_soil.errors import SceneError
-from riser_soil.scene import not_yet
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.document import Document, parse, read_text
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.overrides import override
+from riser_soil.scene.problem import Path as KeyPath
 from riser_soil.scene.problem import Problem, message
 from riser_soil.scene.scene import Scene
 
 _MOST_LINES = 20
+# key -> values that mean "off"; the key itself is not part of the models. `*` stands for any name or number.
+KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
+    ("stages", "*", "initial_velocity"): (None,),
+}
+
+# key -> values of the language that can't be chosen yet; the key is part of the models.
+VALUES: dict[tuple[str, ...], tuple[Any, ...]] = {
+    ("soil", "inertia"): (True,),
+}
 
 
 def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
@@ -54,7 +69,7 @@ def with_place_in(document: Document, message: str) -> str:
 
 def checked(document: Document, folder: Path) -> Scene:
     """The scene of a document; files that it names are sought in the folder."""
-    data, unsupported = not_yet.taken_out(document.data)
+    data, unsupported = taken_out(document.data)
     try:
         scene = Scene.model_validate(data, context={"folder": folder})
     except ValidationError as err:
@@ -79,3 +94,42 @@ def error_of(problems: Sequence[Problem], document: Document) -> SceneError:
     return SceneError(
         "\n".join([*lines[:_MOST_LINES], *([f"... and {more} more problems"] if more > 0 else [])])
     )
+
+
+def taken_out(data: Any) -> tuple[Any, list[Problem]]:
+    """A copy of the data without the keys of KEYS, and problems for what this version does not support."""
+    rest = copy.deepcopy(data)
+    return rest, [*_keys(rest), *_values(rest)]
+
+
+def _keys(data: Any) -> Iterator[Problem]:
+    for pattern, off in KEYS.items():
+        for path, parent in _matches(data, pattern):
+            value = parent.pop(path[-1])
+            if not _among(value, off):
+                yield Problem(path, "not supported yet", "leave the key out")
+
+
+def _values(data: Any) -> Iterator[Problem]:
+    for pattern, refused in VALUES.items():
+        for path, parent in _matches(data, pattern):
+            if _among(parent[path[-1]], refused):
+                yield Problem(path, "not supported yet", "choose another value or leave the key out")
+
+
+def _among(value: Any, values: tuple[Any, ...]) -> bool:
+    """Membership that tells true from 1."""
+    return any(type(value) is type(other) and value == other for other in values)
+
+
+def _matches(data: Any, pattern: tuple[str, ...], path: KeyPath = ()) -> Iterator[tuple[KeyPath, dict[Any, Any]]]:
+    """Paths present in the data that fit a pattern, each with the mapping that holds its last key."""
+    word, rest = pattern[0], pattern[1:]
+    if not rest:
+        if isinstance(data, dict) and word in data:
+            yield (*path, word), data
+        return
+    entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, value in list(entries):
+        if word in ("*", key):
+            yield from _matches(value, rest, (*path, key))

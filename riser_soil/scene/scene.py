@@ -1,22 +1,81 @@
-"""Scene language: the whole scene."""
+"""Scene language: the whole scene, with the state that it begins with and the solver's settings."""
 
 import math
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, model_validator
 
-from riser_soil.core.quantities import FROZEN, Gravity, Text
+from riser_soil.core.quantities import FROZEN, AutoOrTime, Count, Gravity, Ratio, SolverTolerance, Text
 from riser_soil.scene.accuracy import Accuracy, with_placeholders
 from riser_soil.scene.contact import Contact
-from riser_soil.scene.initial import Initial
+from riser_soil.scene.files import NamedFolder
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
 from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.seabed import ContactAt, Seabed, profile_height
 from riser_soil.scene.soil import SoilScene
-from riser_soil.scene.solver import Solver
 from riser_soil.scene.stages import Stage
 from riser_soil.scene.water import Water
+
+
+class Solver(BaseModel):
+    """Newton's method and the cutting of its steps."""
+
+    model_config = FROZEN
+
+    tolerance: SolverTolerance = Field(
+        default=1.0e-7,
+        lt=1.0,
+        description="norm of the residual at convergence, relative to the largest of the norms of support "
+        "reactions, inertia and contact forces [-]",
+    )
+    max_iterations: Annotated[Count, Field(le=10_000)] = Field(
+        default=25,
+        description="Newton iterations before a step is cut; a static one goes on, up to four times as many, while "
+        "its residual halves in ten [-]",
+    )
+    load_steps: Count = Field(
+        default=1, description="equal load steps that a static stage is divided into; a step that fails is halved [-]"
+    )
+    min_load_step: Ratio = Field(
+        default=1.0e-4,
+        le=1.0,
+        description="smallest part of a static stage's load before the solve fails [-]",
+    )
+    min_time_step: AutoOrTime = Field(
+        default="auto",
+        description="smallest time step before the solve fails [s], or auto: 1e-4 of the stage's time step, with "
+        "automatic steps 1e-7 of its duration",
+    )
+    newton: Literal["snes", "compiled"] = Field(
+        default="compiled",
+        description="the code that solves the steps; compiled: a riser alone by loops of its own, that over time steps "
+        "compiled, and all else by PETSc's SNES; snes: SNES throughout, with the same results",
+    )
+    soil: Literal["auto", "condensed", "whole"] = Field(
+        default="auto",
+        description="how linear elastic soil is solved, with the same results; condensed: once, to the part of its "
+        "surface that the riser reaches; whole: all of it in each iteration; auto: condensed where that is cheaper",
+    )
+    linear: Literal["auto", "kept", "direct", "iterative"] = Field(
+        default="auto",
+        description="how the linear systems of riser and soil are solved, with the same results to the tolerance; "
+        "direct: each is factorised; kept: by iterations with the factors of an earlier one, made anew where that "
+        "is cheaper; iterative: by GMRES with multigrid on the soil, for soil that is too large to be factorised; "
+        "auto: kept from 4000 unknowns on, soil in sections one section after the other",
+    )
+
+
+class Initial(BaseModel):
+    """The end of a finished run, in the place of the riser's initial shape and its laying."""
+
+    model_config = FROZEN
+
+    from_run: NamedFolder = Field(
+        alias="from",
+        description="result folder of a finished run of the same riser, seabed and soil whose last stage is static and "
+        "whose output.checkpoint.keep is true; sought beside the scene file",
+    )
 
 
 class Scene(BaseModel):

@@ -1,4 +1,4 @@
-"""Scene language: unstressed and initial shape of the riser."""
+"""Scene language: unstressed and initial shape of the riser, and an end that hangs off at an angle or a tension."""
 
 import math
 from itertools import pairwise
@@ -6,7 +6,19 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.core.quantities import FLATTEST, FROZEN, SHORTEST, Angle, Axis, Position, by_key, word_or, wrong
+from riser_soil.core.quantities import (
+    FLATTEST,
+    FROZEN,
+    SHORTEST,
+    Angle,
+    Axis,
+    HangOffAngle,
+    Position,
+    PositiveForce,
+    by_key,
+    word_or,
+    wrong,
+)
 
 
 class PointsShape(BaseModel):
@@ -89,3 +101,41 @@ Initial = Annotated[
         custom_error_message="must be straight, catenary, unstressed or {points: [[x, y, z], ...]}",
     ),
 ]
+
+
+class HangOff(BaseModel):
+    """What an end's place, or a segment's length, is solved for, in the first static stage."""
+
+    model_config = FROZEN
+
+    angle: HangOffAngle | None = Field(
+        default=None, description="between the riser at this end and the vertical [deg], solved to 0.01 deg"
+    )
+    tension: PositiveForce | None = Field(
+        default=None, description="effective tension at this end [N], solved to 0.01 %; or give angle"
+    )
+    by: Literal["layback", "anchor", "length"] = Field(
+        default="layback",
+        description="what is solved for: layback (this end's horizontal distance from the other one, along the line "
+        "between them in plan), anchor (the same, but the other end moves) or length (of the segment at the other end)",
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        if (self.angle is None) == (self.tension is None):
+            reported = (
+                "neither angle nor tension is given" if self.angle is None else "angle and tension are both given"
+            )
+            raise wrong("angle", reported, "give one of them: angle [deg] or tension [N]")
+        return self
+
+    @property
+    def asked(self) -> float:
+        """The angle [deg] or tension [N]."""
+        value = self.angle if self.angle is not None else self.tension
+        assert value is not None  # the validator has seen to it
+        return value
+
+    @property
+    def unit(self) -> str:
+        return "deg" if self.angle is not None else "N"

@@ -6,7 +6,6 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.core.kinds import OneOf, registry
 from riser_soil.core.quantities import (
     FROZEN,
     NEAREST,
@@ -19,12 +18,14 @@ from riser_soil.core.quantities import (
     Length,
     Moment,
     NonNegative,
+    OneOf,
     Position,
     Ratio,
     Real,
     Text,
     Time,
     by_key,
+    registry,
     word_or_number,
     wrong,
 )

@@ -10,23 +10,23 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Traits
 from riser_soil.riser.compiled_part import CompiledPart
-from riser_soil.riser.stations import element_room
-from riser_soil.sea.buoyancy_kernels import DryPipeNumbers, DryStationNumbers
+from riser_soil.riser.stations import element_workspace
+from riser_soil.sea.buoyancy_kernels import DryPipeData, DryStationData
 from riser_soil.sea.moving_water import FlowAtStations
-from riser_soil.sea.stream_kernels import bring
+from riser_soil.sea.stream_kernels import update
 
-Dry = Callable[[FlowAtStations, bool], DryPipeNumbers | DryStationNumbers]
+Dry = Callable[[FlowAtStations, bool], DryPipeData | DryStationData]
 """Buoyancy lost where a body is dry in water with a surface, the weight of the displaced water times the dry share
 1 - S; flat: see `Buoyancy`.
 """
 
 
 def dry_stations(span: Array, displaced: Array) -> Dry:
-    """By the dry share at the stations of a pipe, see `DryStationNumbers`."""
+    """By the dry share at the stations of a pipe, see `DryStationData`."""
 
-    def numbers(water: FlowAtStations, flat: bool) -> DryStationNumbers:
+    def numbers(water: FlowAtStations, flat: bool) -> DryStationData:
         pipe, seen, d = water.pipe, water.in_loop, water.pipe.line.dimension
-        return DryStationNumbers(
+        return DryStationData(
             stream=seen.stream,
             seen=seen.seen,
             element=pipe.element,
@@ -37,7 +37,7 @@ def dry_stations(span: Array, displaced: Array) -> Dry:
             flat=flat,
             f=np.zeros(d),
             by_x=np.zeros((d, d)),
-            change=element_room(2 * pipe.line.ndof, fixed(d)),
+            change=element_workspace(2 * pipe.line.ndof, fixed(d)),
         )
 
     return numbers
@@ -57,8 +57,8 @@ class Buoyancy(CompiledPart):
         self._water, self._dry, self._flat = water, dry, flat
         self.traits = Traits("F", symmetric=flat)
 
-    def make_numbers(self) -> DryPipeNumbers | DryStationNumbers:
+    def make_numbers(self) -> DryPipeData | DryStationData:
         return self._dry(self._water, self._flat)
 
-    def renew_numbers(self, start: float, end: float) -> None:
-        bring(self._water.in_loop.seen, start, end)
+    def renew_kernel_data(self, start: float, end: float) -> None:
+        update(self._water.in_loop.seen, start, end)

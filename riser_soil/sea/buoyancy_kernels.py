@@ -19,15 +19,15 @@ from riser_soil.riser.part_kernels import (
     find_water,
 )
 from riser_soil.sea import waterline
+from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.stream_kernels import SeenWater, Stream, see_end, see_start
-from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
 
 
-class DryStationNumbers(NamedTuple):
+class DryStationData(NamedTuple):
     """Lost buoyancy by the dry share at the stations of a pipe; element (ne,): of the line, in which its own lie. span
     (ne, ng) [m]: widths of the sections; displaced (ne,): weight of the displaced water [N/m]; flat: see `Buoyancy`.
-    Room for one station and one element.
+    Workspace for one station and one element.
     """
 
     stream: Stream
@@ -43,9 +43,9 @@ class DryStationNumbers(NamedTuple):
     change: Array
 
 
-class DryPipeNumbers(NamedTuple):
+class DryPipeData(NamedTuple):
     """Lost buoyancy of the pipe, by its sections at many points of each element; displaced (ne,): weight of the water
-    in its place [N/m]. flat: see `Buoyancy`. Room for one element: its tangent, heights of its q (4,) and of its
+    in its place [N/m]. flat: see `Buoyancy`. Workspace for one element: its tangent, heights of its q (4,) and of its
     stations (ng,), dry lengths and those before the step (4,).
     """
 
@@ -57,29 +57,29 @@ class DryPipeNumbers(NamedTuple):
     width: Array
     displaced: Array
     flat: bool
-    room: waterline.TangentRoom
+    workspace: waterline.TangentWorkspace
     z: Array
     heights: Array
     dry: Array
     before: Array
 
 
-@find_water.of(DryStationNumbers)
-@find_water.of(DryPipeNumbers)
-def _find_water(part: DryStationNumbers | DryPipeNumbers, at: Configuration) -> None:
+@find_water.of(DryStationData)
+@find_water.of(DryPipeData)
+def _find_water(part: DryStationData | DryPipeData, at: Configuration) -> None:
     see_end(part.stream, at.q)
 
 
 @njit
-def _lost(part: DryStationNumbers, water: WaterMotion, m: int, g: int) -> float:
+def _lost(part: DryStationData, water: WaterMotion, m: int, g: int) -> float:
     """Force per length on a station, downwards."""
     h = water.immersion[m * part.share.shape[1] + g]
     lost: float = part.displaced[m] * (1.0 - wet_share(h, part.span[m, g]))
     return lost
 
 
-@add_forces.of(DryStationNumbers)
-def _station_forces(part: DryStationNumbers, at: Configuration, out: LineForces) -> None:
+@add_forces.of(DryStationData)
+def _station_forces(part: DryStationData, at: Configuration, out: LineForces) -> None:
     see_end(part.stream, at.q)
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
@@ -87,8 +87,8 @@ def _station_forces(part: DryStationNumbers, at: Configuration, out: LineForces)
             stations.add_integrand(part.at.weighted[m, g], part.f, out.force_q[part.element[m]], at.D)
 
 
-@add_tangent.of(DryStationNumbers)
-def _station_tangent(part: DryStationNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+@add_tangent.of(DryStationData)
+def _station_tangent(part: DryStationData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     water, up = part.seen.end, len(at.D) - 1
     for m in range(part.element.size):
         e = part.element[m]
@@ -103,8 +103,8 @@ def _station_tangent(part: DryStationNumbers, at: Configuration, maps: Maps, wei
         add_pulled_back(K[e], at.P[e], part.change, at.D, at.R)
 
 
-@add_energy.of(DryStationNumbers)
-def _station_energy(part: DryStationNumbers, at: Configuration, energy: Array) -> None:
+@add_energy.of(DryStationData)
+def _station_energy(part: DryStationData, at: Configuration, energy: Array) -> None:
     if not part.flat:
         return
     for m in range(part.element.size):
@@ -113,8 +113,8 @@ def _station_energy(part: DryStationNumbers, at: Configuration, energy: Array) -
             energy[2] += part.share[m, g] * part.displaced[m] * dry_height(h, part.span[m, g])
 
 
-@add_work.of(DryStationNumbers)
-def _station_work(part: DryStationNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+@add_work.of(DryStationData)
+def _station_work(part: DryStationData, first: Configuration, last: Configuration, work: Array) -> None:
     if part.flat:
         return
     see_start(part.stream, first.q)
@@ -129,8 +129,8 @@ def _station_work(part: DryStationNumbers, first: Configuration, last: Configura
 
 
 @njit
-def _element(part: DryPipeNumbers, at: Configuration, water: WaterMotion, e: int) -> waterline.WetElement:
-    """An element, its heights in the room."""
+def _element(part: DryPipeData, at: Configuration, water: WaterMotion, e: int) -> waterline.WetElement:
+    """An element, its heights in the workspace."""
     up, ng = len(at.D) - 1, part.heights.size
     for a in range(4):
         part.z[a] = at.q[e, a, up]
@@ -142,8 +142,8 @@ def _element(part: DryPipeNumbers, at: Configuration, water: WaterMotion, e: int
     return waterline.WetElement(part.z, h, part.heights, part.length[e], part.width[e])
 
 
-@add_forces.of(DryPipeNumbers)
-def _pipe_forces(part: DryPipeNumbers, at: Configuration, out: LineForces) -> None:
+@add_forces.of(DryPipeData)
+def _pipe_forces(part: DryPipeData, at: Configuration, out: LineForces) -> None:
     see_end(part.stream, at.q)
     up = len(at.D) - 1
     for e in range(part.length.size):
@@ -152,25 +152,25 @@ def _pipe_forces(part: DryPipeNumbers, at: Configuration, out: LineForces) -> No
             out.force_q[e, a, up] += part.displaced[e] * part.dry[a]
 
 
-@add_tangent.of(DryPipeNumbers)
-def _pipe_tangent(part: DryPipeNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+@add_tangent.of(DryPipeData)
+def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     ng = part.heights.size
     for e in range(part.length.size):
         weight, N = weights.force * part.displaced[e], part.at.N[e]
         gradient = part.seen.end.immersion_gradient[e * ng : (e + 1) * ng]
         wet = _element(part, at, part.seen.end, e)
-        waterline.add_element_tangent(K[e], part.points, wet, N, gradient, weight, at.P[e], part.room, at.D, at.R)
+        waterline.add_element_tangent(K[e], part.points, wet, N, gradient, weight, at.P[e], part.workspace, at.D, at.R)
 
 
-@add_energy.of(DryPipeNumbers)
-def _pipe_energy(part: DryPipeNumbers, at: Configuration, energy: Array) -> None:
+@add_energy.of(DryPipeData)
+def _pipe_energy(part: DryPipeData, at: Configuration, energy: Array) -> None:
     if part.flat:
         for e in range(part.length.size):
             energy[2] += part.displaced[e] * waterline.dry_potential(part.points, _element(part, at, part.seen.end, e))
 
 
-@add_work.of(DryPipeNumbers)
-def _pipe_work(part: DryPipeNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+@add_work.of(DryPipeData)
+def _pipe_work(part: DryPipeData, first: Configuration, last: Configuration, work: Array) -> None:
     if part.flat:
         return
     see_start(part.stream, first.q)

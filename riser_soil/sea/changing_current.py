@@ -15,11 +15,10 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.sea.current import at_heights
-from riser_soil.sea.flows import add_flow
-from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.flows import WaterMotion, add_flow
 
 
-class ChangingCurrentNumbers(NamedTuple):
+class ChangingCurrentData(NamedTuple):
     """A `ChangingCurrent`. rate (k, m, 2): of the spline at the given times [m/s2]."""
 
     level: Array
@@ -48,12 +47,12 @@ class ChangingCurrent:
     grows: bool = False
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, self.numbers, t, np.ascontiguousarray(x))
+        _add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))
 
     @cached_property
-    def numbers(self) -> ChangingCurrentNumbers:
+    def kernel_data(self) -> ChangingCurrentData:
         rate = spline_rates(self.time, self.velocity)
-        return ChangingCurrentNumbers(self.level, self.time, self.velocity, rate, self.clock, self.runs, self.grows)
+        return ChangingCurrentData(self.level, self.time, self.velocity, rate, self.clock, self.runs, self.grows)
 
 
 def spline_rates(time: Array, value: Array) -> Array:
@@ -73,7 +72,7 @@ def spline_rates(time: Array, value: Array) -> Array:
 
 
 @njit
-def _add_to(motion: WaterMotion, current: ChangingCurrentNumbers, t: float, x: Array) -> None:
+def _add_to(motion: WaterMotion, current: ChangingCurrentData, t: float, x: Array) -> None:
     velocity, rate = _at_time(current, current.clock + t if current.runs else current.clock)
     u, shear = at_heights(x[:, 2], current.level, velocity)
     du, shear_rate = at_heights(x[:, 2], current.level, rate)
@@ -87,7 +86,7 @@ def _add_to(motion: WaterMotion, current: ChangingCurrentNumbers, t: float, x: A
 
 
 @njit
-def _at_time(current: ChangingCurrentNumbers, t: float) -> tuple[Array, Array]:
+def _at_time(current: ChangingCurrentData, t: float) -> tuple[Array, Array]:
     """Velocity (m, 2) and its rate [m/s2] at the levels."""
     time = current.time
     b = min(max(int(np.searchsorted(time, t, side="right")), 1), time.size - 1)
@@ -104,6 +103,6 @@ def _at_time(current: ChangingCurrentNumbers, t: float) -> tuple[Array, Array]:
     return velocity, rate
 
 
-@add_flow.of(ChangingCurrentNumbers)
-def _add_changing(flow: ChangingCurrentNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(ChangingCurrentData)
+def _add_changing(flow: ChangingCurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
     _add_to(motion, flow, t[0], x)

@@ -9,8 +9,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.sea.flows import add_flow
-from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.flows import WaterMotion, add_flow
 
 
 @njit
@@ -31,7 +30,7 @@ def at_heights(z: Array, level: Array, velocity: Array) -> tuple[Array, Array]:
     return values, slopes
 
 
-class CurrentNumbers(NamedTuple):
+class CurrentData(NamedTuple):
     """A `SteadyCurrent`."""
 
     level: Array
@@ -52,15 +51,15 @@ class SteadyCurrent:
     grows: bool = False
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, self.numbers, t, x)
+        _add_to(motion, self.kernel_data, t, x)
 
     @property
-    def numbers(self) -> CurrentNumbers:
-        return CurrentNumbers(self.level, self.velocity, self.grows)
+    def kernel_data(self) -> CurrentData:
+        return CurrentData(self.level, self.velocity, self.grows)
 
 
 @njit
-def _add_to(motion: WaterMotion, current: CurrentNumbers, t: float, x: Array) -> None:
+def _add_to(motion: WaterMotion, current: CurrentData, t: float, x: Array) -> None:
     values, slopes = at_heights(x[:, 2], current.level, current.velocity)
     factor = t if current.grows else 1.0
     for p in range(x.shape[0]):
@@ -69,6 +68,6 @@ def _add_to(motion: WaterMotion, current: CurrentNumbers, t: float, x: Array) ->
             motion.velocity_gradient[p, i, 2] += factor * slopes[p, i]
 
 
-@add_flow.of(CurrentNumbers)
-def _add_current(flow: CurrentNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(CurrentData)
+def _add_current(flow: CurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
     _add_to(motion, flow, t[0], x)

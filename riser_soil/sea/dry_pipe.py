@@ -10,7 +10,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.sea import waterline
 from riser_soil.sea.buoyancy import Dry
-from riser_soil.sea.buoyancy_kernels import DryPipeNumbers
+from riser_soil.sea.buoyancy_kernels import DryPipeData
 from riser_soil.sea.moving_water import FlowAtStations
 
 # Fine points that a section's width holds at least, so that an upright pipe gets wet evenly; an element has no more
@@ -24,12 +24,12 @@ def dry_pipe(displaced: Array) -> Dry:
     displaced: weight of the water in the pipe's place [N/m] (ne,).
     """
 
-    def numbers(water: FlowAtStations, flat: bool) -> DryPipeNumbers:
+    def numbers(water: FlowAtStations, flat: bool) -> DryPipeData:
         pipe, seen, ng = water.pipe, water.in_loop, water.pipe.share.shape[1]
         L, D = pipe.line.length, pipe.line.outer_diameter
         apart = 0.5 * np.pi * L  # times n, at most, between neighbours of n Gauss-Legendre points
         n = min(MOST, max(4, math.ceil(WITHIN_WIDTH * float(np.max(apart / np.maximum(D, 1e-9 * apart))))))
-        return DryPipeNumbers(
+        return DryPipeData(
             stream=seen.stream,
             seen=seen.seen,
             points=waterline.fine_points(n),
@@ -38,7 +38,7 @@ def dry_pipe(displaced: Array) -> Dry:
             width=np.maximum(D, WITHIN_WIDTH * apart / n),
             displaced=displaced,
             flat=flat,
-            room=waterline.tangent_room(ng, 2 * pipe.line.ndof, fixed(pipe.line.dimension)),
+            workspace=waterline.tangent_workspace(ng, 2 * pipe.line.ndof, fixed(pipe.line.dimension)),
             z=np.zeros(4),
             heights=np.zeros(ng),
             dry=np.zeros(4),

@@ -1,9 +1,10 @@
-"""The sea's flows in compiled code: each adds its own to the water's motion, by the type of its numbers."""
+"""The water's motion at given points: the sea of a stage as a sum of flows, compiled by the type of their numbers."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -12,10 +13,30 @@ from riser_soil.core.bound import Bound
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.core.packed import Packed
-from riser_soil.sea.water import WaterMotion
 
 
-class SeaNumbers(NamedTuple):
+class WaterMotion(NamedTuple):
+    """The undisturbed water at points (n, 3), global axes.
+
+    velocity [m/s] and acceleration [m/s2]: (n, 3). velocity_gradient [1/s], acceleration_gradient [1/s2]: (n, 3, 3),
+    [i, j] being the derivative of component i by x_j; exact derivatives of what is returned.
+    immersion: (n,) height of the water's surface above the point [m], negative above the surface; inf where the water
+    has no surface. immersion_gradient: (n, 3).
+    """
+
+    velocity: Array
+    acceleration: Array
+    velocity_gradient: Array
+    acceleration_gradient: Array
+    immersion: Array
+    immersion_gradient: Array
+
+
+Water = Callable[[float, Array], WaterMotion]
+"""Seconds since the stage began (load factor in statics), points (n, 3) -> the water's motion there."""
+
+
+class SeaData(NamedTuple):
     """A `Sea`: z of its mean surface [m], inf without one, and the numbers of its flows."""
 
     level: float
@@ -27,15 +48,15 @@ def add_flow(flow: tuple, motion: WaterMotion, t: Array, x: Array) -> None:
     """Add a flow at time t (1,) to the motion of points x (n, 3)."""
 
 
-def motion_of(sea: SeaNumbers, motion: WaterMotion, t: Array, x: Array) -> list[Bound]:
+def motion_of(sea: SeaData, motion: WaterMotion, t: Array, x: Array) -> list[Bound]:
     """Kernels that write the water's motion at time t (1,) and points x (n, 3), as these then are."""
     out, when, places = Packed(motion), Packed(t), Packed(x)
     flows = (Bound(add_flow.kernels[type(flow)], Packed(flow), out, when, places) for flow in sea.flows)
     return [Bound(put_at_rest, out, Packed(sea.level), places), *flows]
 
 
-def motion_room(n: int, d: int) -> WaterMotion:
-    """Room for the motion of n points in d dimensions, zero."""
+def motion_workspace(n: int, d: int) -> WaterMotion:
+    """Workspace for the motion of n points in d dimensions, zero."""
     shapes = (d,), (d,), (d, d), (d, d), (), (d,)
     return WaterMotion(*(np.zeros((n, *shape)) for shape in shapes))
 
@@ -82,3 +103,38 @@ def _project_twice(G: Array, basis: Array, out: Array) -> None:
                 for j in range(3):
                     total += basis[i, a] * G[i, j] * basis[j, b]
             out[a, b] = total
+
+
+class FlowComponent(Protocol):
+    """A component of the flow: current or waves."""
+
+    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+        """Add the flow at time t to the motion of points x (n, 3), whose immersion so far is that under calm water."""
+        ...
+
+    @property
+    def kernel_data(self) -> tuple[Any, ...]:
+        """The flow in numbers, whose type has a kernel of `add_flow`."""
+        ...
+
+
+class Sea:
+    """A `Water`: the sum of its flows under a surface whose mean level is z = surface_level [m]; None: no surface.
+
+    Flows don't act on each other: waves run as in still water, and the current isn't stretched with the surface.
+    """
+
+    def __init__(self, surface_level: float | None, flows: Sequence[FlowComponent] = ()) -> None:
+        self._level, self._flows = math.inf if surface_level is None else surface_level, tuple(flows)
+
+    def __call__(self, t: float, x: Array) -> WaterMotion:
+        motion = motion_workspace(len(x), 3)
+        put_at_rest(motion, self._level, x)
+        for flow in self._flows:
+            flow.add(t, x, motion)
+        return motion
+
+    @property
+    def kernel_data(self) -> SeaData:
+        """The same for compiled code."""
+        return SeaData(self._level, tuple(flow.kernel_data for flow in self._flows))

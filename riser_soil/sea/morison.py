@@ -8,8 +8,8 @@ from typing import Any
 from riser_soil.core.part import Traits
 from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.sea.moving_water import WaterLoads
-from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
-from riser_soil.sea.stream_kernels import bring
+from riser_soil.sea.moving_water_kernels import MovingWaterData
+from riser_soil.sea.stream_kernels import update
 
 
 class Morison(CompiledPart):
@@ -27,20 +27,18 @@ class Morison(CompiledPart):
     name = "morison"
     traits = Traits("IF", symmetric=False, follows=True)
 
-    def __init__(
-        self, loads: WaterLoads, formed: Callable[[MovingWaterNumbers], tuple[Any, ...]] | None = None
-    ) -> None:
+    def __init__(self, loads: WaterLoads, formed: Callable[[MovingWaterData], tuple[Any, ...]] | None = None) -> None:
         super().__init__(loads.pipe.line)
         self._loads, self._formed = loads, formed
 
     def make_numbers(self) -> tuple[Any, ...]:
-        found = self._loads.numbers()
-        self._seen = found.seen if isinstance(found, MovingWaterNumbers) else None
+        found = self._loads.kernel_data()
+        self._seen = found.seen if isinstance(found, MovingWaterData) else None
         if self._formed is None:
             return found
-        assert isinstance(found, MovingWaterNumbers)
+        assert isinstance(found, MovingWaterData)
         return self._formed(found)
 
-    def renew_numbers(self, start: float, end: float) -> None:
+    def renew_kernel_data(self, start: float, end: float) -> None:
         if self._seen is not None:
-            bring(self._seen, start, end)
+            update(self._seen, start, end)

@@ -19,42 +19,44 @@ from riser_soil.sea.pipe import Pipe
 PAIR = fixed(2)
 NG = len(stations.THREE_POINTS.points)
 ELEMENTS = 8  # at once, so that numbers of their stations fill whole vectors
-LANES = ELEMENTS * NG  # stations at once
+BATCH = ELEMENTS * NG  # stations at once
 
 
-class StationRoom(NamedTuple):
-    """Room for the derivatives (NG, d, d) of the force at the stations of an element."""
+class StationWorkspace(NamedTuple):
+    """Workspace for the derivatives (NG, d, d) of the force at the stations of an element."""
 
     by_v: Array
     by_a: Array
     by_slope: Array
 
 
-def station_room(d: int) -> StationRoom:
-    """Room for a line of d dimensions."""
-    return StationRoom(*(np.empty((NG, d, d)) for _ in StationRoom._fields))
+def station_workspace(d: int) -> StationWorkspace:
+    """Workspace for a line of d dimensions."""
+    return StationWorkspace(*(np.empty((NG, d, d)) for _ in StationWorkspace._fields))
 
 
-class StillWaterNumbers(NamedTuple):
+class StillWaterData(NamedTuple):
     """Stations and their shares (ne, NG) of arc length [m], coefficients of drag and mass (ne, 2) as in `WaterLoads`,
-    and room for the stations of one element, NG, and for it.
+    and workspace for the stations of one element, NG, and for it.
     """
 
     at: stations.Stations
     share: Array
     drag: Array
     mass: Array
-    room: StationRoom
+    workspace: StationWorkspace
     element: Array
 
 
-def still_water(pipe: Pipe, drag: Array, mass: Array) -> StillWaterNumbers:
+def still_water(pipe: Pipe, drag: Array, mass: Array) -> StillWaterData:
     """Drag and added mass along a pipe in water that stands still, and covers all."""
     d, n = pipe.line.dimension, 2 * pipe.line.ndof
-    return StillWaterNumbers(pipe.at, pipe.share, drag, mass, station_room(d), stations.element_room(n, fixed(d)))
+    return StillWaterData(
+        pipe.at, pipe.share, drag, mass, station_workspace(d), stations.element_workspace(n, fixed(d))
+    )
 
 
-class Lanes(NamedTuple):
+class Batch(NamedTuple):
     """What the water's resistance depends on at LANES stations, a column each: velocity, acceleration and unit tangent
     (d, LANES), the stretch |x'| (LANES,), and coefficients of drag and mass (2, LANES).
     """
@@ -67,28 +69,28 @@ class Lanes(NamedTuple):
     mass: Array
 
 
-class StepLanes(NamedTuple):
+class StepBatch(NamedTuple):
     """The same where a step starts and where it ends; places there (d, LANES)."""
 
-    first: Lanes
-    last: Lanes
+    first: Batch
+    last: Batch
     began: Array
     ended: Array
 
 
 @njit
-def _lanes(rows: Array, D: Size) -> Lanes:
-    """The first 3 d + 5 rows of a room. It is to be allocated where loops over its lanes are: the compiler then knows
-    its size, and that what they write lies apart from what they read, as it must to do them on vectors.
+def _batch(rows: Array, D: Size) -> Batch:
+    """The first 3 d + 5 rows of a workspace. It is to be allocated where loops over its lanes are: the compiler then
+    knows its size, and that what they write lies apart from what they read, as it must to do them on vectors.
     """
     d = len(D)
     after = 3 * d + 1
     coefficients = rows[after : after + 2], rows[after + 2 : after + 4]
-    return Lanes(rows[:d], rows[d : 2 * d], rows[2 * d : 3 * d], rows[3 * d], *coefficients)
+    return Batch(rows[:d], rows[d : 2 * d], rows[2 * d : 3 * d], rows[3 * d], *coefficients)
 
 
 @njit
-def _see(part: StillWaterNumbers, at: Configuration, first: int, after: int, seen: Lanes) -> None:
+def _see(part: StillWaterData, at: Configuration, first: int, after: int, seen: Batch) -> None:
     """Write what there is at the stations of elements first to after, but for accelerations."""
     D = at.D
     for e in range(first, after):
@@ -103,7 +105,7 @@ def _see(part: StillWaterNumbers, at: Configuration, first: int, after: int, see
 
 
 @njit
-def _see_values(part: StillWaterNumbers, q: Array, first: int, after: int, out: Array, D: Size) -> None:
+def _see_values(part: StillWaterData, q: Array, first: int, after: int, out: Array, D: Size) -> None:
     """Write the values of q, q' or q'' (ne, 4, d) at those stations to columns of out (d, LANES)."""
     for e in range(first, after):
         for g in range(NG):
@@ -112,16 +114,16 @@ def _see_values(part: StillWaterNumbers, q: Array, first: int, after: int, out: 
                 out[i, (e - first) * NG + g] = value[i]
 
 
-@add_forces.of(StillWaterNumbers)
-def _still_forces(part: StillWaterNumbers, at: Configuration, out: LineForces) -> None:
+@add_forces.of(StillWaterData)
+def _still_forces(part: StillWaterData, at: Configuration, out: LineForces) -> None:
     ne, D, weighted = part.drag.shape[0], at.D, part.at.weighted
     d = len(D)
-    seen, inertia, force = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((d, LANES)), np.zeros((d, LANES))
+    seen, inertia, force = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((d, BATCH)), np.zeros((d, BATCH))
     for first in range(0, ne, ELEMENTS):
         after = min(first + ELEMENTS, ne)
         _see(part, at, first, after, seen)
         _see_values(part, at.acceleration, first, after, seen.a, D)
-        for k in range(LANES):
+        for k in range(BATCH):
             _put_forces(seen, inertia, force, k, D)
         for e in range(first, after):
             for g in range(NG):
@@ -131,15 +133,15 @@ def _still_forces(part: StillWaterNumbers, at: Configuration, out: LineForces) -
 
 
 @njit
-def _put_forces(seen: Lanes, inertia: Array, force: Array, k: int, D: Size) -> None:
+def _put_forces(seen: Batch, inertia: Array, force: Array, k: int, D: Size) -> None:
     """Write the resistance at one station, by groups."""
     tau = held(seen.tau[:, k], D)
     law.put_added(held(seen.a[:, k], D), tau, held(seen.mass[:, k], PAIR), inertia[:, k], D)
     law.put_drag(held(seen.v[:, k], D), tau, held(seen.drag[:, k], PAIR), force[:, k], D)
 
 
-@add_tangent.of(StillWaterNumbers)
-def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+@add_tangent.of(StillWaterData)
+def _still_tangent(part: StillWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     if weights.force == 0.0:
         _add_mass(part, at, maps, weights.inertia, K)
     else:
@@ -147,17 +149,17 @@ def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weigh
 
 
 @njit
-def _add_mass(part: StillWaterNumbers, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
+def _add_mass(part: StillWaterData, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
     """The tangent at rest but for drag: the mass alone."""
-    D, room, N, moved = at.D, part.room, part.at.N, maps.acceleration_rows
+    D, workspace, N, moved = at.D, part.workspace, part.at.N, maps.acceleration_rows
     for e in range(part.mass.shape[0]):
         for g in range(NG):
             tau, stretch = stations.unit_tangent_at(part.at.dN, e * NG + g, at.chord, at.tangent, e, D)
             at_rest = times(0.0, tau)
             law.put_added_derivatives(
-                at_rest, tau, stretch, part.mass[e], weight, room.by_a[g], room.by_slope[g], D
+                at_rest, tau, stretch, part.mass[e], weight, workspace.by_a[g], workspace.by_slope[g], D
             )
-        weighted, by = part.at.weighted[e], room.by_a
+        weighted, by = part.at.weighted[e], workspace.by_a
         first = weighted[0], ((N[e, 0], by[0], moved[e]),)
         second = weighted[1], ((N[e, 1], by[1], moved[e]),)
         third = weighted[2], ((N[e, 2], by[2], moved[e]),)
@@ -167,35 +169,35 @@ def _add_mass(part: StillWaterNumbers, at: Configuration, maps: Maps, weight: fl
 
 @njit
 def _add_whole_tangent(
-    part: StillWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+    part: StillWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array
 ) -> None:
-    ne, D, d, room = part.drag.shape[0], at.D, len(at.D), part.room
-    seen, by = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((3, d, d, LANES))
+    ne, D, d, workspace = part.drag.shape[0], at.D, len(at.D), part.workspace
+    seen, by = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
     for first in range(0, ne, ELEMENTS):
         after = min(first + ELEMENTS, ne)
         _see(part, at, first, after, seen)
         _see_values(part, at.acceleration, first, after, seen.a, D)
-        for k in range(LANES):
+        for k in range(BATCH):
             _put_derivatives(seen, by, k, weights, D)
         for e in range(first, after):
             for g in range(NG):
-                _take(by, (e - first) * NG + g, g, room, D)
+                _take(by, (e - first) * NG + g, g, workspace, D)
             each = _terms(part, maps, e, 0), _terms(part, maps, e, 1), _terms(part, maps, e, 2)
             put_weighed(part.element, each, D, at.R)
             add_pulled_back(K[e], at.P[e], part.element, D, at.R)
 
 
 @njit
-def _terms(part: StillWaterNumbers, maps: Maps, e: int, g: int) -> tuple[Array, tuple[Term, Term, Term]]:
+def _terms(part: StillWaterData, maps: Maps, e: int, g: int) -> tuple[Array, tuple[Term, Term, Term]]:
     """Weights of a station and what its force follows from, see `add_weighed`."""
-    N, room = part.at.N[e, g], part.room
-    slope = part.at.dN[e, g], room.by_slope[g], maps.place_rows[e]
-    moved = (N, room.by_v[g], maps.rate_rows[e]), (N, room.by_a[g], maps.acceleration_rows[e])
+    N, workspace = part.at.N[e, g], part.workspace
+    slope = part.at.dN[e, g], workspace.by_slope[g], maps.place_rows[e]
+    moved = (N, workspace.by_v[g], maps.rate_rows[e]), (N, workspace.by_a[g], maps.acceleration_rows[e])
     return part.at.weighted[e, g], (slope, *moved)
 
 
 @njit
-def _put_derivatives(seen: Lanes, by: Array, k: int, weights: LineWeights, D: Size) -> None:
+def _put_derivatives(seen: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
     """Write the weighted derivatives by velocity, acceleration and slope at one station."""
     tau, stretch, by_slope = held(seen.tau[:, k], D), seen.stretch[k], by[2, :, :, k]
     v, drag = held(seen.v[:, k], D), held(seen.drag[:, k], PAIR)
@@ -205,16 +207,16 @@ def _put_derivatives(seen: Lanes, by: Array, k: int, weights: LineWeights, D: Si
 
 
 @njit
-def _take(by: Array, k: int, g: int, room: StationRoom, D: Size) -> None:
+def _take(by: Array, k: int, g: int, workspace: StationWorkspace, D: Size) -> None:
     """Read the derivatives at one station of many."""
     for i in range(len(D)):
         for j in range(len(D)):
             of_v, of_a, of_slope = by[0, i, j, k], by[1, i, j, k], by[2, i, j, k]
-            room.by_v[g, i, j], room.by_a[g, i, j], room.by_slope[g, i, j] = of_v, of_a, of_slope
+            workspace.by_v[g, i, j], workspace.by_a[g, i, j], workspace.by_slope[g, i, j] = of_v, of_a, of_slope
 
 
-@add_energy.of(StillWaterNumbers)
-def _still_energy(part: StillWaterNumbers, at: Configuration, energy: Array) -> None:
+@add_energy.of(StillWaterData)
+def _still_energy(part: StillWaterData, at: Configuration, energy: Array) -> None:
     f, D = np.empty(len(at.D)), at.D
     for e in range(part.mass.shape[0]):
         for g in range(NG):
@@ -226,21 +228,21 @@ def _still_energy(part: StillWaterNumbers, at: Configuration, energy: Array) -> 
                 energy[0] += 0.5 * part.share[e, g] * v[i] * f[i]
 
 
-@add_work.of(StillWaterNumbers)
-def _still_work(part: StillWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+@add_work.of(StillWaterData)
+def _still_work(part: StillWaterData, first: Configuration, last: Configuration, work: Array) -> None:
     """Drag dissipates; a change of the added mass as it turns is external, see `Morison`."""
     ne, D = part.drag.shape[0], last.D
     d = len(D)
-    rows, room, done = np.zeros((8 * d + 10, LANES)), np.zeros((3, d, LANES)), np.zeros((2, LANES))
-    seen = StepLanes(_lanes(rows, D), _lanes(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
+    rows, workspace, done = np.zeros((8 * d + 10, BATCH)), np.zeros((3, d, BATCH)), np.zeros((2, BATCH))
+    seen = StepBatch(_batch(rows, D), _batch(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
     for begun in range(0, ne, ELEMENTS):
         after = min(begun + ELEMENTS, ne)
         _see(part, first, begun, after, seen.first)
         _see(part, last, begun, after, seen.last)
         _see_values(part, first.q, begun, after, seen.began, D)
         _see_values(part, last.q, begun, after, seen.ended, D)
-        for k in range(LANES):
-            _put_work(seen, room, done, k, D)
+        for k in range(BATCH):
+            _put_work(seen, workspace, done, k, D)
         for e in range(begun, after):
             for g in range(NG):
                 k, share = (e - begun) * NG + g, part.share[e, g]
@@ -250,11 +252,11 @@ def _still_work(part: StillWaterNumbers, first: Configuration, last: Configurati
 
 
 @njit
-def _put_work(seen: StepLanes, room: Array, done: Array, k: int, D: Size) -> None:
+def _put_work(seen: StepBatch, workspace: Array, done: Array, k: int, D: Size) -> None:
     """Write the work per length of the mean drag at one station, and half the change of the added mass along the mean
     velocity.
     """
-    before, after, mean, lost, changed = room[0, :, k], room[1, :, k], room[2, :, k], 0.0, 0.0
+    before, after, mean, lost, changed = workspace[0, :, k], workspace[1, :, k], workspace[2, :, k], 0.0, 0.0
     drag, mass = held(seen.last.drag[:, k], PAIR), held(seen.last.mass[:, k], PAIR)
     tau, turned = held(seen.first.tau[:, k], D), held(seen.last.tau[:, k], D)
     law.put_drag(held(seen.first.v[:, k], D), tau, drag, before, D)

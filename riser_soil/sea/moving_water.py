@@ -24,10 +24,10 @@ from functools import cached_property
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.sea.morison_kernels import StillWaterNumbers, still_water
-from riser_soil.sea.moving_water_kernels import MovingWaterNumbers, moving_water
+from riser_soil.sea.flows import Sea
+from riser_soil.sea.morison_kernels import StillWaterData, still_water
+from riser_soil.sea.moving_water_kernels import MovingWaterData, moving_water
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.sea import Sea
 from riser_soil.sea.stream_kernels import WaterInLoop, water_in_loop
 
 
@@ -40,7 +40,7 @@ class FlowAtStations:
     @cached_property
     def in_loop(self) -> WaterInLoop:
         """For kernels, which find it once for trials that differ in rates alone."""
-        return water_in_loop(self.pipe, self._sea.numbers)
+        return water_in_loop(self.pipe, self._sea.kernel_data)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +61,13 @@ class WaterLoads:
     span: Array | None = None
     dissipative: bool = True
 
-    def numbers(self) -> StillWaterNumbers | MovingWaterNumbers:
+    def kernel_data(self) -> StillWaterData | MovingWaterData:
         """See `LinePart.numbers`."""
         if self.water is None and not self.pipe.points_alone:
             return still_water(self.pipe, self.drag, self.mass)
         return self.seen_in(self.water or FlowAtStations(self.pipe, Sea(None)))
 
-    def seen_in(self, water: FlowAtStations) -> MovingWaterNumbers:
+    def seen_in(self, water: FlowAtStations) -> MovingWaterData:
         """In water that need not stand still nor cover all."""
         found = moving_water(water.in_loop, self.pipe, self.drag, self.mass)._replace(dissipative=self.dissipative)
         if self.pushed is not None:

@@ -22,13 +22,13 @@ from riser_soil.riser.part_kernels import (
     find_water,
 )
 from riser_soil.sea import morison_law as law
+from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import SeenWater, Stream, WaterInLoop, see_end, see_start
-from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import wet_share, wet_slope
 
 
-class FlowRoom(NamedTuple):
+class FlowWorkspace(NamedTuple):
     """What is found at one station, vectors (d,): the pipe's own velocity v, that through the water, and acceleration;
     tangent; resistance of both groups, wet share counted in, and of one term.
     """
@@ -54,7 +54,7 @@ class FlowDerivatives(NamedTuple):
     by_u: Array
 
 
-class MovingWaterNumbers(NamedTuple):
+class MovingWaterData(NamedTuple):
     """Loads of the water on what moves in it, see `WaterLoads`.
 
     element (ne,): of the line, in which those of the pipe lie. pushed (ne, 2): mass on which the water's acceleration
@@ -74,17 +74,17 @@ class MovingWaterNumbers(NamedTuple):
     partly: bool
     alike: bool
     dissipative: bool
-    room: FlowRoom
-    first: FlowRoom
+    workspace: FlowWorkspace
+    first: FlowWorkspace
     by: FlowDerivatives
     change: Array
 
 
-def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> MovingWaterNumbers:
+def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> MovingWaterData:
     """Drag and added mass in water that stands still, or on the motion through it."""
     d, n = pipe.line.dimension, 2 * pipe.line.ndof
-    room, first = (FlowRoom(*(np.zeros(d) for _ in FlowRoom._fields)) for _ in range(2))
-    return MovingWaterNumbers(
+    workspace, first = (FlowWorkspace(*(np.zeros(d) for _ in FlowWorkspace._fields)) for _ in range(2))
+    return MovingWaterData(
         stream=water.stream,
         seen=water.seen,
         element=pipe.element,
@@ -97,39 +97,39 @@ def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> Mo
         partly=False,
         alike=pipe.points_alone,
         dissipative=True,
-        room=room,
+        workspace=workspace,
         first=first,
         by=FlowDerivatives(*(np.zeros((d, d)) for _ in FlowDerivatives._fields)),
-        change=stations.element_room(n, fixed(d)),
+        change=stations.element_workspace(n, fixed(d)),
     )
 
 
 @njit
-def move(part: MovingWaterNumbers, at: Configuration, m: int, g: int, room: FlowRoom) -> float:
+def move(part: MovingWaterData, at: Configuration, m: int, g: int, workspace: FlowWorkspace) -> float:
     """Motion and tangent of the pipe at a station; the stretch |x'|."""
     e, p = part.element[m], m * part.share.shape[1] + g
     v, a = stations.value_at(part.at.N, p, at.rate, e, at.D), stations.value_at(part.at.N, p, at.acceleration, e, at.D)
     tau, stretch = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, at.D)
     for i in range(len(at.D)):
-        room.v[i], room.a[i], room.tau[i] = v[i], a[i], 0.0 if part.alike else tau[i]
+        workspace.v[i], workspace.a[i], workspace.tau[i] = v[i], a[i], 0.0 if part.alike else tau[i]
     return stretch
 
 
 @njit
-def _resist(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, room: FlowRoom, D: Size) -> None:
+def _resist(part: MovingWaterData, water: WaterMotion, m: int, g: int, workspace: FlowWorkspace, D: Size) -> None:
     """Resistance at a station in motion, as if it were wet."""
     p = m * part.share.shape[1] + g
     for i in range(len(D)):
-        room.through[i] = room.v[i] - water.velocity[p, i]
-    law.put_added(room.a, room.tau, part.mass[m], room.inertia, D)
-    law.put_drag(room.through, room.tau, part.drag[m], room.force, D)
-    law.put_added(water.acceleration[p], room.tau, part.pushed[m], room.f, D)
+        workspace.through[i] = workspace.v[i] - water.velocity[p, i]
+    law.put_added(workspace.a, workspace.tau, part.mass[m], workspace.inertia, D)
+    law.put_drag(workspace.through, workspace.tau, part.drag[m], workspace.force, D)
+    law.put_added(water.acceleration[p], workspace.tau, part.pushed[m], workspace.f, D)
     for i in range(len(D)):
-        room.force[i] -= room.f[i]
+        workspace.force[i] -= workspace.f[i]
 
 
 @njit
-def wet(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int) -> float:
+def wet(part: MovingWaterData, water: WaterMotion, m: int, g: int) -> float:
     """The wet share of a station."""
     if not part.partly:
         return 1.0
@@ -137,31 +137,31 @@ def wet(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int) -> float:
     return share
 
 
-@find_water.of(MovingWaterNumbers)
-def _find_water(part: MovingWaterNumbers, at: Configuration) -> None:
+@find_water.of(MovingWaterData)
+def _find_water(part: MovingWaterData, at: Configuration) -> None:
     see_end(part.stream, at.q)
 
 
-@add_forces.of(MovingWaterNumbers)
-def _forces(part: MovingWaterNumbers, at: Configuration, out: LineForces) -> None:
+@add_forces.of(MovingWaterData)
+def _forces(part: MovingWaterData, at: Configuration, out: LineForces) -> None:
     see_end(part.stream, at.q)
-    room, water = part.room, part.seen.end
+    workspace, water = part.workspace, part.seen.end
     for m in range(part.element.size):
         e = part.element[m]
         for g in range(part.share.shape[1]):
-            move(part, at, m, g, room)
-            _resist(part, water, m, g, room, at.D)
+            move(part, at, m, g, workspace)
+            _resist(part, water, m, g, workspace, at.D)
             share = wet(part, water, m, g)
             for i in range(len(at.D)):
-                room.inertia[i] *= share
-                room.force[i] *= share
+                workspace.inertia[i] *= share
+                workspace.force[i] *= share
             p = m * part.share.shape[1] + g
-            stations.add_integrand_at(part.at.weighted, p, held(room.inertia, at.D), out.inertia_q, e, at.D)
-            stations.add_integrand_at(part.at.weighted, p, held(room.force, at.D), out.force_q, e, at.D)
+            stations.add_integrand_at(part.at.weighted, p, held(workspace.inertia, at.D), out.inertia_q, e, at.D)
+            stations.add_integrand_at(part.at.weighted, p, held(workspace.force, at.D), out.force_q, e, at.D)
 
 
-@add_tangent.of(MovingWaterNumbers)
-def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+@add_tangent.of(MovingWaterData)
+def _tangent(part: MovingWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     if weights.force == 0.0:
         _add_mass(part, at, maps, weights.inertia, K)
     else:
@@ -169,16 +169,16 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
 
 
 @njit
-def _add_mass(part: MovingWaterNumbers, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
+def _add_mass(part: MovingWaterData, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
     """The tangent at rest but for drag and what the water's own motion brings: the mass alone."""
-    by, room, D = part.by, part.room, at.D
+    by, workspace, D = part.by, part.workspace, at.D
     for m in range(part.element.size):
         e = part.element[m]
         part.change[:] = 0.0
         for g in range(part.share.shape[1]):
-            stretch = move(part, at, m, g, room)
+            stretch = move(part, at, m, g, workspace)
             mass, share = part.mass[m], weight * wet(part, part.seen.end, m, g)
-            law.put_added_derivatives(room.a, room.tau, stretch, mass, share, by.by_a, by.by_slope, D)
+            law.put_added_derivatives(workspace.a, workspace.tau, stretch, mass, share, by.by_a, by.by_slope, D)
             moved = part.at.N[m, g], by.by_a, maps.acceleration_rows[e]
             add_weighed(part.change, part.at.weighted[m, g], (moved,), D, at.R)
         add_pulled_back(K[e], at.P[e], part.change, D, at.R)
@@ -186,15 +186,15 @@ def _add_mass(part: MovingWaterNumbers, at: Configuration, maps: Maps, weight: f
 
 @njit
 def _add_whole_tangent(
-    part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+    part: MovingWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array
 ) -> None:
     by = part.by
     for m in range(part.element.size):
         e = part.element[m]
         part.change[:] = 0.0
         for g in range(part.share.shape[1]):
-            stretch = move(part, at, m, g, part.room)
-            _resist(part, part.seen.end, m, g, part.room, at.D)
+            stretch = move(part, at, m, g, part.workspace)
+            _resist(part, part.seen.end, m, g, part.workspace, at.D)
             _differentiate(part, part.seen.end, m, g, stretch, weights, at.D)
             N, places = part.at.N[m, g], maps.place_rows[e]
             placed = (part.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
@@ -205,19 +205,19 @@ def _add_whole_tangent(
 
 @njit
 def _differentiate(
-    part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, stretch: float, weights: LineWeights, D: Size
+    part: MovingWaterData, water: WaterMotion, m: int, g: int, stretch: float, weights: LineWeights, D: Size
 ) -> None:
     """Write the weighted derivatives of the force at a station whose resistance is known."""
-    room, by, p = part.room, part.by, m * part.share.shape[1] + g
+    workspace, by, p = part.workspace, part.by, m * part.share.shape[1] + g
     share, steep = wet(part, water, m, g), 0.0
     if part.partly:
         steep = wet_slope(water.immersion[p], part.span[m, g])
-    axis, force = (room.tau, stretch), share * weights.force
-    law.put_drag_derivatives(room.through, *axis, part.drag[m], force, by.by_v, by.by_slope, D)
-    law.put_added_derivatives(room.a, *axis, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
+    axis, force = (workspace.tau, stretch), share * weights.force
+    law.put_drag_derivatives(workspace.through, *axis, part.drag[m], force, by.by_v, by.by_slope, D)
+    law.put_added_derivatives(workspace.a, *axis, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
     law.put_added_derivatives(water.acceleration[p], *axis, part.pushed[m], -force, by.by_u, by.by_slope, D)
     for i in range(len(D)):
-        whole = weights.inertia * room.inertia[i] + weights.force * room.force[i]
+        whole = weights.inertia * workspace.inertia[i] + weights.force * workspace.force[i]
         for j in range(len(D)):
             followed = 0.0
             for k in range(len(D)):
@@ -226,21 +226,21 @@ def _differentiate(
             by.by_x[i, j] = steep * whole * water.immersion_gradient[p, j] + followed
 
 
-@add_energy.of(MovingWaterNumbers)
-def _energy(part: MovingWaterNumbers, at: Configuration, energy: Array) -> None:
+@add_energy.of(MovingWaterData)
+def _energy(part: MovingWaterData, at: Configuration, energy: Array) -> None:
     """Kinetic energy of the added mass at the pipe's own velocity, wet as the forces have found it last."""
-    room = part.room
+    workspace = part.workspace
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
-            move(part, at, m, g, room)
-            law.put_added(room.v, room.tau, part.mass[m], room.f, at.D)
+            move(part, at, m, g, workspace)
+            law.put_added(workspace.v, workspace.tau, part.mass[m], workspace.f, at.D)
             share = part.share[m, g] * wet(part, part.seen.end, m, g)
             for i in range(len(at.D)):
-                energy[0] += 0.5 * share * room.v[i] * room.f[i]
+                energy[0] += 0.5 * share * workspace.v[i] * workspace.f[i]
 
 
-@add_work.of(MovingWaterNumbers)
-def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+@add_work.of(MovingWaterData)
+def _work(part: MovingWaterData, first: Configuration, last: Configuration, work: Array) -> None:
     """See `Morison`."""
     see_start(part.stream, first.q)
     resisted, changed, seen = 0.0, 0.0, part.seen
@@ -248,8 +248,8 @@ def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, w
         for g in range(part.share.shape[1]):
             move(part, first, m, g, part.first)
             _resist(part, seen.start, m, g, part.first, last.D)
-            move(part, last, m, g, part.room)
-            _resist(part, seen.end, m, g, part.room, last.D)
+            move(part, last, m, g, part.workspace)
+            _resist(part, seen.end, m, g, part.workspace, last.D)
             before, after = wet(part, seen.start, m, g), wet(part, seen.end, m, g)
             resisted += part.share[m, g] * resisted_at(part, first, last, m, g, before, after)
             changed += part.share[m, g] * _changed(part, m, before, after, last.D)
@@ -263,26 +263,26 @@ def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, w
 
 @njit
 def resisted_at(
-    part: MovingWaterNumbers, first: Configuration, last: Configuration, m: int, g: int, before: float, after: float
+    part: MovingWaterData, first: Configuration, last: Configuration, m: int, g: int, before: float, after: float
 ) -> float:
     """Work per length against the mean force of a step, at a station."""
     e, p, total = part.element[m], m * part.share.shape[1] + g, 0.0
     began = stations.value_at(part.at.N, p, first.q, e, last.D)
     ended = stations.value_at(part.at.N, p, last.q, e, last.D)
     for i in range(len(last.D)):
-        mean = 0.5 * (before * part.first.force[i] + after * part.room.force[i])
+        mean = 0.5 * (before * part.first.force[i] + after * part.workspace.force[i])
         total += mean * (ended[i] - began[i])
     return total
 
 
 @njit
-def _changed(part: MovingWaterNumbers, m: int, before: float, after: float, D: Size) -> float:
+def _changed(part: MovingWaterData, m: int, before: float, after: float, D: Size) -> float:
     """What the change of the added mass at a station does per length to the kinetic energy, see `Morison`."""
-    first, room, total = part.first, part.room, 0.0
+    first, workspace, total = part.first, part.workspace, 0.0
     for i in range(len(D)):
-        room.through[i] = 0.5 * (first.v[i] + room.v[i])
-    law.put_added(room.through, first.tau, part.mass[m], first.f, D)
-    law.put_added(room.through, room.tau, part.mass[m], room.f, D)
+        workspace.through[i] = 0.5 * (first.v[i] + workspace.v[i])
+    law.put_added(workspace.through, first.tau, part.mass[m], first.f, D)
+    law.put_added(workspace.through, workspace.tau, part.mass[m], workspace.f, D)
     for i in range(len(D)):
-        total += 0.5 * room.through[i] * (after * room.f[i] - before * first.f[i])
+        total += 0.5 * workspace.through[i] * (after * workspace.f[i] - before * first.f[i])
     return total

@@ -23,7 +23,7 @@ from riser_soil.sea import through_kernels
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import put_drag_derivatives
 from riser_soil.sea.moving_water import WaterLoads
-from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
+from riser_soil.sea.moving_water_kernels import MovingWaterData
 from riser_soil.sea.through_kernels import put_derivatives, put_resistance
 
 Rows = Sequence[tuple[float, float]]
@@ -47,14 +47,14 @@ def tables_of(rho: float, nu: float, diameter: Array, rows: Sequence[Rows]) -> R
     return ReynoldsTables(np.log(diameter / nu), np.log(filled[..., 0]), drag)
 
 
-class ReynoldsNumbers(NamedTuple):
-    """See `ThroughNumbers`."""
+class ReynoldsData(NamedTuple):
+    """See `ThroughData`."""
 
-    flow: MovingWaterNumbers
+    flow: MovingWaterData
     law: ReynoldsTables
 
 
-through_kernels.with_kernels(ReynoldsNumbers)
+through_kernels.with_kernels(ReynoldsData)
 
 
 @njit
@@ -122,4 +122,4 @@ def _put_derivatives(
 
 def reynolds_drag(loads: WaterLoads, tables: ReynoldsTables) -> Morison:
     """The part of this drag. loads: as of `through`."""
-    return Morison(loads, lambda flow: ReynoldsNumbers(flow, tables))
+    return Morison(loads, lambda flow: ReynoldsData(flow, tables))

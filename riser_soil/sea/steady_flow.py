@@ -15,14 +15,13 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.smooth_step import smooth_step
-from riser_soil.sea.flows import add_flow
+from riser_soil.sea.flows import WaterMotion, add_flow
 from riser_soil.sea.steady_wave import SteadyWave
-from riser_soil.sea.water import WaterMotion
 
 _ramped = njit(smooth_step)
 
 
-class SteadyFlowNumbers(NamedTuple):
+class SteadyFlowData(NamedTuple):
     """A wave of a stage. speed, rise (m,), k, w, depth: as of `SteadyWave`; toward: unit vector; phase [rad]; level: z
     of the mean surface [m]; ramp, clock, since: as of `WaveField`.
     """
@@ -48,19 +47,19 @@ class SteadyFlow:
     ) -> None:
         of_wave = wave.speed, wave.rise, wave.k, wave.w, wave.depth
         toward = math.cos(direction), math.sin(direction)
-        self.numbers = SteadyFlowNumbers(*of_wave, toward, phase, level, ramp, clock, since)
+        self.kernel_data = SteadyFlowData(*of_wave, toward, phase, level, ramp, clock, since)
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, self.numbers, t, np.ascontiguousarray(x))
+        _add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))
 
 
-@add_flow.of(SteadyFlowNumbers)
-def _add_steady(flow: SteadyFlowNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(SteadyFlowData)
+def _add_steady(flow: SteadyFlowData, motion: WaterMotion, t: Array, x: Array) -> None:
     _add_to(motion, flow, t[0], x)
 
 
 @njit
-def _add_to(motion: WaterMotion, wave: SteadyFlowNumbers, t: float, x: Array) -> None:
+def _add_to(motion: WaterMotion, wave: SteadyFlowData, t: float, x: Array) -> None:
     cx, cy = wave.toward
     factor, rate, _ = _ramped(wave.since + t, wave.ramp)
     turned = wave.phase - np.remainder(wave.w * (wave.clock + t), 2.0 * np.pi)
@@ -77,7 +76,7 @@ def _add_to(motion: WaterMotion, wave: SteadyFlowNumbers, t: float, x: Array) ->
 
 
 @njit
-def _surface(wave: SteadyFlowNumbers, around: complex) -> tuple[float, float]:
+def _surface(wave: SteadyFlowData, around: complex) -> tuple[float, float]:
     """Rise of the surface [m] and its slope where the wave has the phase around = exp(i theta)."""
     eta, slope, turn = 0.0, 0.0, complex(1.0, 0.0)
     for n in range(wave.rise.size):
@@ -98,7 +97,7 @@ def _height(z: float, rise: float, slope: float, h: float) -> tuple[float, float
 
 
 @njit
-def _potential(wave: SteadyFlowNumbers, around: complex, z: float) -> tuple[complex, complex, complex]:
+def _potential(wave: SteadyFlowData, around: complex, z: float) -> tuple[complex, complex, complex]:
     """f, f' and f'' at a height above the mean surface."""
     f, f1, f2 = complex(0.0, 0.0), complex(0.0, 0.0), complex(0.0, 0.0)
     falling = math.exp(wave.k * z) * around.conjugate()
@@ -117,7 +116,7 @@ def _potential(wave: SteadyFlowNumbers, around: complex, z: float) -> tuple[comp
 @njit
 def _add_water(
     motion: WaterMotion,
-    wave: SteadyFlowNumbers,
+    wave: SteadyFlowData,
     p: int,
     potential: tuple[complex, complex, complex],
     ramp: tuple[float, float],

@@ -24,7 +24,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import wave_number
 
 AIRY, STOKES, STREAM = "airy", "stokes", "stream-function"
 FIFTH = 5
@@ -125,8 +125,10 @@ class _NoWaveError(Exception):
 
 def _refuse_long(H: float, h: float) -> None:
     if (found := ursell(H, linear_length(h), h)) > LONGEST_STOKES:
-        told = f"Ursell's number H L^2/h^3 = {found:.3g} is above {LONGEST_STOKES:g}: the water is too shallow for it"
-        raise SceneError(f"theory: stokes: {told}; take stream-function or auto")
+        reported = (
+            f"Ursell's number H L^2/h^3 = {found:.3g} is above {LONGEST_STOKES:g}: the water is too shallow for it"
+        )
+        raise SceneError(f"theory: stokes: {reported}; take stream-function or auto")
 
 
 def _airy(H: float, h: float) -> tuple[float, Array, Array]:

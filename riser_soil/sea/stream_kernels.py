@@ -13,9 +13,8 @@ from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.packed import Packed
 from riser_soil.riser import stations
 from riser_soil.riser.hermite import Size
-from riser_soil.sea.flows import SeaNumbers, motion_of, motion_room, put_in_plane
+from riser_soil.sea.flows import SeaData, WaterMotion, motion_of, motion_workspace, put_in_plane
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.water import WaterMotion
 
 START, END = 0, 1
 NEAR = 1e-9  # m, within which places where a step starts are those where the last one ended, but for round-off
@@ -60,10 +59,10 @@ class WaterInLoop(NamedTuple):
     seen: SeenWater
 
 
-def water_in_loop(pipe: Pipe, sea: SeaNumbers) -> WaterInLoop:
+def water_in_loop(pipe: Pipe, sea: SeaData) -> WaterInLoop:
     """The sea around a pipe, its motion found nowhere yet."""
     line, n = pipe.line, pipe.share.size
-    motions = (motion_room(n, line.dimension) for _ in range(2))
+    motions = (motion_workspace(n, line.dimension) for _ in range(2))
     seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), np.zeros((2, n, 3)), *motions)
     basis, x = np.ascontiguousarray(line.basis), np.zeros((n, 3))
     find_start = calls(*_finding(sea, seen.start, seen.t[:1], x, basis))
@@ -72,15 +71,15 @@ def water_in_loop(pipe: Pipe, sea: SeaNumbers) -> WaterInLoop:
     return WaterInLoop(Stream(find_start, find_end, seen, *at, fixed(line.dimension)), seen)
 
 
-def _finding(sea: SeaNumbers, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
+def _finding(sea: SeaData, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
     """Kernels that write the motion (n, d) in the line's axes, basis (3, d), at time t (1,) and places x (n, 3)."""
     if basis.shape[1] == 3:
         return motion_of(sea, motion, t, x)
-    found = motion_room(len(x), 3)
+    found = motion_workspace(len(x), 3)
     return [*motion_of(sea, found, t, x), Bound(put_in_plane, *map(Packed, (found, basis, motion)))]
 
 
-def bring(seen: SeenWater, start: float, end: float) -> None:
+def update(seen: SeenWater, start: float, end: float) -> None:
     """Bring the water to the times of a step, which starts where the last one ended, or that which is tried anew."""
     if seen.found[END] == start and seen.found[START] != start:
         for at_start, at_end in zip(seen.start, seen.end, strict=True):

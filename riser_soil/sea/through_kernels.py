@@ -1,6 +1,6 @@
 """Kernels of loads that follow from the velocity through the water, as those of `part_kernels` but for history.
 
-A part of such loads has numbers of a type of its own, with the fields of `ThroughNumbers`: its law, whose type chooses
+A part of such loads has numbers of a type of its own, with the fields of `ThroughData`: its law, whose type chooses
 the formula, and the pipe in the water.
 """
 
@@ -24,18 +24,18 @@ from riser_soil.riser.part_kernels import (
     add_work,
     find_water,
 )
-from riser_soil.sea.moving_water_kernels import FlowRoom, MovingWaterNumbers, move, resisted_at, wet
+from riser_soil.sea.flows import WaterMotion
+from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData, move, resisted_at, wet
 from riser_soil.sea.stream_kernels import see_end, see_start
-from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import wet_slope
 
 START, END = 0, 1  # of a step
 
 
-class ThroughNumbers(NamedTuple):
+class ThroughData(NamedTuple):
     """flow: the pipe in the water, without other loads."""
 
-    flow: MovingWaterNumbers
+    flow: MovingWaterData
     law: Any
 
 
@@ -64,36 +64,36 @@ def put_derivatives(
 
 @njit
 def resist(
-    part: ThroughNumbers, at: Configuration, water: WaterMotion, side: int, m: int, g: int, room: FlowRoom
+    part: ThroughData, at: Configuration, water: WaterMotion, side: int, m: int, g: int, workspace: FlowWorkspace
 ) -> float:
     """Write motion and resistance at a station, as if it were wet; the stretch |x'|."""
-    stretch, p = move(part.flow, at, m, g, room), m * part.flow.share.shape[1] + g
+    stretch, p = move(part.flow, at, m, g, workspace), m * part.flow.share.shape[1] + g
     for i in range(len(at.D)):
-        room.through[i] = room.v[i] - water.velocity[p, i]
-    put_resistance(part.law, side, m, g, room.through, room.tau, room.force, at.D)
+        workspace.through[i] = workspace.v[i] - water.velocity[p, i]
+    put_resistance(part.law, side, m, g, workspace.through, workspace.tau, workspace.force, at.D)
     return stretch
 
 
-def _find_water(part: ThroughNumbers, at: Configuration) -> None:
+def _find_water(part: ThroughData, at: Configuration) -> None:
     see_end(part.flow.stream, at.q)
 
 
-def _forces(part: ThroughNumbers, at: Configuration, out: LineForces) -> None:
+def _forces(part: ThroughData, at: Configuration, out: LineForces) -> None:
     flow = part.flow
     see_end(flow.stream, at.q)
-    room, water = flow.room, flow.seen.end
+    workspace, water = flow.workspace, flow.seen.end
     for m in range(flow.element.size):
         e = flow.element[m]
         for g in range(flow.share.shape[1]):
-            resist(part, at, water, END, m, g, room)
+            resist(part, at, water, END, m, g, workspace)
             share = wet(flow, water, m, g)
             for i in range(len(at.D)):
-                room.force[i] *= share
+                workspace.force[i] *= share
             p = m * flow.share.shape[1] + g
-            stations.add_integrand_at(flow.at.weighted, p, held(room.force, at.D), out.force_q, e, at.D)
+            stations.add_integrand_at(flow.at.weighted, p, held(workspace.force, at.D), out.force_q, e, at.D)
 
 
-def _tangent(part: ThroughNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _tangent(part: ThroughData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     if weights.force == 0.0:
         return
     flow, by = part.flow, part.flow.by
@@ -101,7 +101,7 @@ def _tangent(part: ThroughNumbers, at: Configuration, maps: Maps, weights: LineW
         e = flow.element[m]
         flow.change[:] = 0.0
         for g in range(flow.share.shape[1]):
-            stretch = resist(part, at, flow.seen.end, END, m, g, flow.room)
+            stretch = resist(part, at, flow.seen.end, END, m, g, flow.workspace)
             _differentiate(part, flow.seen.end, m, g, stretch, weights.force, at.D)
             N, places = flow.at.N[m, g], maps.place_rows[e]
             placed = (flow.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
@@ -112,35 +112,35 @@ def _tangent(part: ThroughNumbers, at: Configuration, maps: Maps, weights: LineW
 
 @njit
 def _differentiate(
-    part: ThroughNumbers, water: WaterMotion, m: int, g: int, stretch: float, weight: float, D: Size
+    part: ThroughData, water: WaterMotion, m: int, g: int, stretch: float, weight: float, D: Size
 ) -> None:
     """Write the weighted derivatives of the force at a station whose resistance is known."""
     flow, p, steep = part.flow, m * part.flow.share.shape[1] + g, 0.0
-    room, by = flow.room, flow.by
+    workspace, by = flow.workspace, flow.by
     if flow.partly:
         steep = wet_slope(water.immersion[p], flow.span[m, g])
     share = weight * wet(flow, water, m, g)
-    put_derivatives(part.law, m, g, room.through, room.tau, stretch, share, by.by_v, by.by_slope, D)
+    put_derivatives(part.law, m, g, workspace.through, workspace.tau, stretch, share, by.by_v, by.by_slope, D)
     for i in range(len(D)):
         for j in range(len(D)):
-            followed = weight * steep * room.force[i] * water.immersion_gradient[p, j]
+            followed = weight * steep * workspace.force[i] * water.immersion_gradient[p, j]
             for n in range(len(D)):
                 followed -= by.by_v[i, n] * water.velocity_gradient[p, n, j]
             by.by_x[i, j] = followed
 
 
-def _energy(part: ThroughNumbers, at: Configuration, energy: Array) -> None:
+def _energy(part: ThroughData, at: Configuration, energy: Array) -> None:
     """None is stored."""
 
 
-def _work(part: ThroughNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+def _work(part: ThroughData, first: Configuration, last: Configuration, work: Array) -> None:
     """See `Morison`."""
     flow, seen, resisted = part.flow, part.flow.seen, 0.0
     see_start(flow.stream, first.q)
     for m in range(flow.element.size):
         for g in range(flow.share.shape[1]):
             resist(part, first, seen.start, START, m, g, flow.first)
-            resist(part, last, seen.end, END, m, g, flow.room)
+            resist(part, last, seen.end, END, m, g, flow.workspace)
             before, after = wet(flow, seen.start, m, g), wet(flow, seen.end, m, g)
             resisted += flow.share[m, g] * resisted_at(flow, first, last, m, g, before, after)
     if flow.dissipative:

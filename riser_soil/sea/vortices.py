@@ -23,9 +23,9 @@ from riser_soil.riser.stations import POINTS
 from riser_soil.sea import through_kernels
 from riser_soil.sea import vortex_law as law
 from riser_soil.sea.moving_water import WaterLoads
-from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
+from riser_soil.sea.moving_water_kernels import MovingWaterData
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.stream_kernels import bring, see_end
+from riser_soil.sea.stream_kernels import see_end, update
 from riser_soil.sea.through_kernels import END, put_derivatives, put_resistance, resist
 
 
@@ -36,10 +36,10 @@ class Push(NamedTuple):
     phases: Array
 
 
-class VortexNumbers(NamedTuple):
-    """Vortices behind a pipe in space, see `ThroughNumbers`."""
+class VortexData(NamedTuple):
+    """Vortices behind a pipe in space, see `ThroughData`."""
 
-    flow: MovingWaterNumbers
+    flow: MovingWaterData
     law: Push
     shed: law.Shedding
     wake: law.Wake
@@ -52,20 +52,20 @@ class Vortices(CompiledPart):
     """
 
     name = "vortices"
-    traits = Traits("F", symmetric=False, follows=True, keeps_way=True, roles=(Stateful, Starting))
+    traits = Traits("F", symmetric=False, follows=True, path_dependent=True, roles=(Stateful, Starting))
 
     def __init__(self, loads: WaterLoads, shed: law.Shedding) -> None:
         super().__init__(loads.pipe.line)
         self._loads, self._shed, self._wake = loads, shed, _new_wake(loads.pipe)
 
-    def make_numbers(self) -> VortexNumbers:
-        flow = self._loads.numbers()
-        assert isinstance(flow, MovingWaterNumbers)
-        return VortexNumbers(flow, Push(self._shed.lift, np.zeros((2, *flow.share.shape))), self._shed, self._wake)
+    def make_numbers(self) -> VortexData:
+        flow = self._loads.kernel_data()
+        assert isinstance(flow, MovingWaterData)
+        return VortexData(flow, Push(self._shed.lift, np.zeros((2, *flow.share.shape))), self._shed, self._wake)
 
-    def renew_numbers(self, start: float, end: float) -> None:
+    def renew_kernel_data(self, start: float, end: float) -> None:
         """Phases are known before a step, when the wake is kept where it starts."""
-        bring(self._numbers.flow.seen, start, end)
+        update(self._numbers.flow.seen, start, end)
         for phases, t in zip(self._numbers.law.phases, (start, end), strict=True):
             phases[:] = law.phases_at(self._wake, t)
 
@@ -94,7 +94,7 @@ def _new_wake(pipe: Pipe) -> law.Wake:
     return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
 
 
-through_kernels.with_kernels(VortexNumbers)
+through_kernels.with_kernels(VortexData)
 
 
 @put_resistance.of(Push)
@@ -120,27 +120,27 @@ def _put_derivatives(
 
 
 @njit
-def _shed(part: VortexNumbers, at: Configuration, moves: float) -> None:
+def _shed(part: VortexData, at: Configuration, moves: float) -> None:
     """Keep the wake behind a pipe of this share of its motion."""
     flow, wake, t = part.flow, part.wake, part.flow.seen.t[END]
     see_end(flow.stream, at.q)
     for m in range(flow.element.size):
         for g in range(flow.share.shape[1]):
-            resist(part, at, flow.seen.end, END, m, g, flow.room)
-            room, phase = flow.room, part.law.phases[END, m, g]
+            resist(part, at, flow.seen.end, END, m, g, flow.workspace)
+            workspace, phase = flow.workspace, part.law.phases[END, m, g]
             for i in range(len(at.D)):
-                room.v[i] *= moves
-                room.a[i] *= moves
-            law.advance(wake, part.shed, t, phase, m, g, room.through, room.v, room.a, room.tau)
+                workspace.v[i] *= moves
+                workspace.a[i] *= moves
+            law.advance(wake, part.shed, t, phase, m, g, workspace.through, workspace.v, workspace.a, workspace.tau)
     wake.time[0] = t
 
 
 @njit
-def shed_at_rest(part: VortexNumbers, at: Configuration) -> None:
+def shed_at_rest(part: VortexData, at: Configuration) -> None:
     """Keep the wake behind a pipe at rest."""
     _shed(part, at, 0.0)
 
 
-@keep.of(VortexNumbers)
-def _keep(part: VortexNumbers, at: Configuration) -> None:
+@keep.of(VortexData)
+def _keep(part: VortexData, at: Configuration) -> None:
     _shed(part, at, 1.0)

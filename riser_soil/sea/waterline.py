@@ -38,9 +38,9 @@ class WetElement(NamedTuple):
     b: float
 
 
-class TangentRoom(NamedTuple):
-    """Room for the tangent of one element: see `put_slopes`, `put_by_q` and `put_by_dofs`; S but for its last rows is
-    zero.
+class TangentWorkspace(NamedTuple):
+    """Workspace for the tangent of one element: see `put_slopes`, `put_by_q` and `put_by_dofs`; S but for its last rows
+    is zero.
     """
 
     by_height: Array
@@ -154,10 +154,10 @@ def put_by_dofs(by_q: Array, P: Array, scale: float, S: Array, D: Size, R: Size)
 
 
 @njit
-def tangent_room(ng: int, n: int, D: Size) -> TangentRoom:
-    """Room for an element of n dofs with ng stations."""
+def tangent_workspace(ng: int, n: int, D: Size) -> TangentWorkspace:
+    """Workspace for an element of n dofs with ng stations."""
     d = len(D)
-    return TangentRoom(np.zeros((4, 4)), np.zeros((4, ng)), np.zeros((4, 4, d)), np.zeros((4, d, n)))
+    return TangentWorkspace(np.zeros((4, 4)), np.zeros((4, ng)), np.zeros((4, 4, d)), np.zeros((4, d, n)))
 
 
 @njit
@@ -169,7 +169,7 @@ def add_element_tangent(
     gradient: Array,
     weight: float,
     P: Array,
-    room: TangentRoom,
+    workspace: TangentWorkspace,
     D: Size,
     R: Size,
 ) -> None:
@@ -178,7 +178,7 @@ def add_element_tangent(
     """
     if submerged(at):
         return
-    put_slopes(points, at, room.by_height, room.by_surface)
-    put_by_q(room.by_height, room.by_surface, N, gradient, room.by_q, D)
-    put_by_dofs(room.by_q, P, weight, room.S, D, R)
-    add_pulled_back(out, P, room.S, D, R)
+    put_slopes(points, at, workspace.by_height, workspace.by_surface)
+    put_by_q(workspace.by_height, workspace.by_surface, N, gradient, workspace.by_q, D)
+    put_by_dofs(workspace.by_q, P, weight, workspace.S, D, R)
+    add_pulled_back(out, P, workspace.S, D, R)

@@ -32,8 +32,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, ComplexArray, IntArray
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.rows import add_multiple, add_shares, two_polynomials
-from riser_soil.sea.places import Places, number, places
-from riser_soil.sea.wave_train import WaveTrain
+from riser_soil.sea.components import Components
 
 ORDER = 20
 RADIUS = 1.6
@@ -43,11 +42,13 @@ LEVELS = 64
 MOST, MEMORY = 8192, 1 << 25  # places kept at most, and bytes for the components' motion there
 HALF = ORDER // 2
 WHOLE, EVEN, FOUR = fixed(ORDER), fixed(HALF), fixed(4)
+_SPREAD = 0x1E3779B97F4A7C15  # a large odd number, by which neighbouring keys are scattered over the table
 
 
 class SeriesAt(NamedTuple):
-    """Series of one or several sums at places. motion: (room, sums, m, 2) the components but for exp(i theta), as real
-    and imaginary part; alive: (room, sums) how many of them count; c: times powers of `side`, see `WaveSeries`.
+    """Series of one or several sums at places. motion: (workspace, sums, m, 2) the components but for exp(i theta), as
+    real and imaginary part; alive: (workspace, sums) how many of them count; c: times powers of `side`, see
+    `WaveSeries`.
     """
 
     places: Places
@@ -60,8 +61,8 @@ class WaveSeries(NamedTuple):
     """Series of waves. side: of the squares at the surface [m]; powers: (m, ORDER) (k side)^n/n!; split: (m, 2, HALF)
     the even and the odd ones times i^n, without the i of the odd ones.
 
-    columns: of the surface, one for each strip of the sea, c (room, 2, HALF) even and odd. cells: of the flow; two
-    sums, V and M, c (room, 2, ORDER, 4) real and imaginary part of velocity and of acceleration.
+    columns: of the surface, one for each strip of the sea, c (workspace, 2, HALF) even and odd. cells: of the flow; two
+    sums, V and M, c (workspace, 2, ORDER, 4) real and imaginary part of velocity and of acceleration.
     """
 
     side: float
@@ -93,13 +94,13 @@ def wave_series(waves: WaveTrain) -> WaveSeries:
     steps = side * waves.k[:, None] / np.arange(1.0, ORDER)
     powers = np.concatenate([np.ones((m, 1)), np.cumprod(steps, axis=1)], axis=1)
     split = np.stack([powers[:, ::2], powers[:, 1::2]], axis=1) * (-1.0) ** np.arange(HALF)
-    return WaveSeries(side, powers, split, columns=_room(m, 1, (2, HALF)), cells=_room(m, 2, (2, ORDER, 4)))
+    return WaveSeries(side, powers, split, columns=_workspace(m, 1, (2, HALF)), cells=_workspace(m, 2, (2, ORDER, 4)))
 
 
-def _room(m: int, sums: int, series: tuple[int, ...]) -> SeriesAt:
-    room = min(MOST, MEMORY // (16 * m * sums) + 1)
-    alive = np.empty((room, sums), np.int64)
-    return SeriesAt(places(room), np.empty((room, sums, m, 2)), alive, np.empty((room, *series)))
+def _workspace(m: int, sums: int, series: tuple[int, ...]) -> SeriesAt:
+    capacity = min(MOST, MEMORY // (16 * m * sums) + 1)
+    alive = np.empty((capacity, sums), np.int64)
+    return SeriesAt(places(capacity), np.empty((capacity, sums, m, 2)), alive, np.empty((capacity, *series)))
 
 
 @njit
@@ -220,3 +221,74 @@ def _settle(at: SeriesAt, waves: WaveTrain, g: int, place: int, k: int, size: Ar
 def _now(motion: Array, place: int, k: int, j: int, turned: Array) -> complex:
     """A component of sum k at a place and the train's time."""
     return complex(motion[place, k, j, 0], motion[place, k, j, 1]) * complex(turned[j, 0], turned[j, 1])
+
+
+class Places(NamedTuple):
+    """Workspace for n places. key: (n,). time: (n,) a time for which something is known there [s]; nan where the place
+    is new. taken: (1,) how many there are. table: (a power of two, at least 2 n) their numbers where their keys lead
+    to, or -1.
+    """
+
+    key: IntArray
+    time: Array
+    taken: IntArray
+    table: IntArray
+
+
+def places(n: int) -> Places:
+    """Workspace for n places, none taken."""
+    size = 1 << (2 * n - 1).bit_length()
+    return Places(np.empty(n, np.int64), np.empty(n), np.zeros(1, np.int64), np.full(size, -1))
+
+
+@njit
+def number(at: Places, key: int) -> int:
+    """Number of the place of this key. Where there is no room for a new one, all others are forgotten."""
+    mask = at.table.size - 1
+    slot = ((key * _SPREAD) >> 24) & mask
+    while at.table[slot] >= 0:
+        if at.key[at.table[slot]] == key:
+            return at.table[slot]
+        slot = (slot + 1) & mask
+    if at.taken[0] == at.key.size:
+        at.taken[0] = 0
+        at.table[:] = -1
+    new = at.taken[0]
+    at.taken[0], at.table[slot], at.key[new], at.time[new] = new + 1, new, key, np.nan
+    return new
+
+
+class WaveTrain(NamedTuple):
+    """Components (m,) by direction, and by increasing wave number k [rad/m] within each of the g directions.
+
+    first: (g + 1,) the first component of each direction, and m. toward: (g, 2) unit vectors. amplitude [m], w [rad/s],
+    phase [rad]. speed: a w/(1 - exp(-2 k h)) [m/s]. turned: (m, 2) cosine and sine of phase - w t at the time that the
+    train has been brought to. depth: h [m], which may be inf.
+    """
+
+    first: IntArray
+    toward: Array
+    amplitude: Array
+    w: Array
+    k: Array
+    phase: Array
+    speed: Array
+    turned: Array
+    depth: float
+
+
+def train(waves: Components, h: float) -> WaveTrain:
+    """The components prepared for water of depth h [m]."""
+    a, w, k, d, phase = (part[np.lexsort((waves.wave_number, waves.direction))] for part in waves)
+    directions, first = np.unique(d, return_index=True)
+    toward = np.stack([np.cos(directions), np.sin(directions)], axis=-1)
+    speed = a * w / -np.expm1(-2.0 * k * h)
+    return WaveTrain(np.append(first, k.size), toward, a, w, k, phase, speed, np.full((k.size, 2), np.nan), h)
+
+
+@njit
+def turn(waves: WaveTrain, t: float) -> None:
+    """Bring the train to a time of its clock [s]."""
+    for j in range(waves.k.size):
+        angle = waves.phase[j] - np.remainder(waves.w[j] * t, 2.0 * np.pi)
+        waves.turned[j, 0], waves.turned[j, 1] = np.cos(angle), np.sin(angle)

@@ -14,7 +14,7 @@ Source: Airy (1845), as in Dean and Dalrymple, Water Wave Mechanics for Engineer
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -23,13 +23,12 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.smooth_step import smooth_step
 from riser_soil.sea import wave_series as series
 from riser_soil.sea.components import Components
-from riser_soil.sea.flows import add_flow
-from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wave_series import WaveSeries
-from riser_soil.sea.wave_train import WaveTrain, train, turn
+from riser_soil.sea.flows import WaterMotion, add_flow
+from riser_soil.sea.wave_series import WaveSeries, WaveTrain, train, turn
 
 Vector = tuple[float, float, float]
 _ramped = njit(smooth_step)
+Stretching = Literal["wheeler", "vertical"]
 
 
 class Heights(NamedTuple):
@@ -41,7 +40,7 @@ class Heights(NamedTuple):
     gradient: Array
 
 
-class WaveNumbers(NamedTuple):
+class WaveData(NamedTuple):
     """Waves of a stage, for compiled code. level: z of the mean surface [m]; wheeler: whether z is stretched Wheeler's
     way; ramp, clock, since: as in `WaveField`. now: (3,) time of the stage that they have been brought to [s], or nan,
     and the ramp's factor then with its rate [1/s].
@@ -59,16 +58,16 @@ class WaveNumbers(NamedTuple):
 
 def waves(
     components: Components, depth: float, level: float, wheeler: bool, ramp: float, clock: float, since: float
-) -> WaveNumbers:
+) -> WaveData:
     """Waves in water of a depth [m], brought to no time yet."""
     prepared, now = train(components, depth), np.full(3, np.nan)
-    return WaveNumbers(prepared, series.wave_series(prepared), level, wheeler, ramp, clock, since, now)
+    return WaveData(prepared, series.wave_series(prepared), level, wheeler, ramp, clock, since, now)
 
 
 @njit
-def add_to(motion: WaterMotion, sea: WaveNumbers, t: float, x: Array) -> None:
+def add_to(motion: WaterMotion, sea: WaveData, t: float, x: Array) -> None:
     """Add the waves at a time of the stage [s] and points x (n, 3) to the water's motion there."""
-    _bring(sea, t)
+    _update(sea, t)
     rise, slope = _surface(sea, x)
     z = x[:, 2] - sea.level
     at = wheeler(z, rise, slope, sea.train.depth) if sea.wheeler else vertical(z, sea.train.depth)
@@ -81,7 +80,7 @@ def add_to(motion: WaterMotion, sea: WaveNumbers, t: float, x: Array) -> None:
 
 
 @njit
-def _bring(sea: WaveNumbers, t: float) -> None:
+def _update(sea: WaveData, t: float) -> None:
     """Bring the waves to a time, unless they are there."""
     if sea.now[0] != t:
         turn(sea.train, sea.clock + t)
@@ -90,7 +89,7 @@ def _bring(sea: WaveNumbers, t: float) -> None:
 
 
 @njit
-def _surface(sea: WaveNumbers, x: Array) -> tuple[Array, Array]:
+def _surface(sea: WaveData, x: Array) -> tuple[Array, Array]:
     """Rise of the surface above its mean at points (n,), and its slope along x and y (n, 2)."""
     rise, slope = np.zeros(len(x)), np.zeros((len(x), 2))
     t, factor, _ = sea.now
@@ -137,7 +136,7 @@ def _place(at: Heights, p: int, z: float, gradient: Vector, h: float) -> None:
 
 
 @njit
-def _add_direction(motion: WaterMotion, sea: WaveNumbers, g: int, x: Array, at: Heights) -> None:
+def _add_direction(motion: WaterMotion, sea: WaveData, g: int, x: Array, at: Heights) -> None:
     """Add the flow of the waves of one direction."""
     t, factor, rate = sea.now
     cx, cy = sea.train.toward[g]
@@ -165,6 +164,32 @@ def _add(v: Array, dv: Array, p: int, value: complex, by_z: complex, cx: float, 
         dv[p, i, 2] += rows[i][2] * gradient[p, 2]
 
 
-@add_flow.of(WaveNumbers)
-def _add_waves(flow: WaveNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(WaveData)
+def _add_waves(flow: WaveData, motion: WaterMotion, t: Array, x: Array) -> None:
     add_to(motion, flow, t[0], x)
+
+
+class WaveField:
+    """Linear waves that grow smoothly, with surface, velocity and acceleration ramped alike.
+
+    The acceleration is the rate of the ramped velocity, the ramp's own share included. depth [m] may be inf.
+    surface_level: z of the mean surface [m]. clock: what the waves' clock, which their phases are counted on, shows
+    when the stage begins [s]. ramp [s] is counted from the waves' beginning; since: how long they have acted when the
+    stage begins [s], by default what the clock shows. numbers: the same for compiled code.
+    """
+
+    def __init__(
+        self,
+        components: Components,
+        depth: float,
+        surface_level: float,
+        stretching: Stretching = "wheeler",
+        ramp: float = 0.0,
+        clock: float = 0.0,
+        since: float | None = None,
+    ) -> None:
+        times = ramp, clock, clock if since is None else since
+        self.kernel_data = waves(components, depth, surface_level, stretching == "wheeler", *times)
+
+    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+        add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))

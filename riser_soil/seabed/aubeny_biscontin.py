@@ -55,10 +55,10 @@ class AubenyBiscontin(SeabedLaw):
         return Strength(self.su, self.su_gradient)
 
     def of_pipe(self, diameter: float) -> AubenyBiscontinFormula:
-        from riser_soil.seabed.aubeny_biscontin_formula import AubenyBiscontinFormula, AubenyBiscontinNumbers
+        from riser_soil.seabed.aubeny_biscontin_formula import AubenyBiscontinData, AubenyBiscontinFormula
         from riser_soil.seabed.pipe_bearing import PowerLaw
 
         power_law = PowerLaw(diameter, self.undrained_strength, self.a, self.b)
         return AubenyBiscontinFormula(
-            AubenyBiscontinNumbers(power_law, self.k_over_su, self.omega, self.phi, self.psi)
+            AubenyBiscontinData(power_law, self.k_over_su, self.omega, self.phi, self.psi)
         )

@@ -16,7 +16,7 @@ from riser_soil.seabed.pipe_bearing import PowerLaw, resistance, strength_at
 TINY = 1e-30
 
 
-class AubenyBiscontinNumbers(NamedTuple):
+class AubenyBiscontinData(NamedTuple):
     """Power law of the backbone, and the law's other constants."""
 
     power_law: PowerLaw
@@ -43,14 +43,14 @@ class AubenyBiscontinHistory(NamedTuple):
 class AubenyBiscontinFormula(CompiledLaw):
     """The seafloor under a pipe of one diameter."""
 
-    numbers: AubenyBiscontinNumbers
+    kernel_data: AubenyBiscontinData
     columns: ClassVar[tuple[str, ...]] = AubenyBiscontinHistory._fields
     gradual: ClassVar[bool] = True
 
     @property
     def capacity(self) -> float:
         """Resistance of the backbone [N/m] one diameter deep."""
-        return float(self.backbone(np.array(self.numbers.power_law.diameter))[0])
+        return float(self.backbone(np.array(self.kernel_data.power_law.diameter))[0])
 
     @property
     def start(self) -> float:
@@ -67,7 +67,7 @@ class AubenyBiscontinFormula(CompiledLaw):
 
     def backbone(self, z: Array) -> tuple[Array, Array]:
         """Resistance (1) to a first penetration, and its slope."""
-        value, slope = np.vectorize(lambda depth: backbone(self.numbers, depth))(z)
+        value, slope = np.vectorize(lambda depth: backbone(self.kernel_data, depth))(z)
         return value, slope
 
 
@@ -83,15 +83,13 @@ class BoundingLoop(NamedTuple):
     y3: float
 
 
-@may_act.of(AubenyBiscontinNumbers)
-def _may_act(law: AubenyBiscontinNumbers, penetration: float, history: Array) -> bool:
+@may_act.of(AubenyBiscontinData)
+def _may_act(law: AubenyBiscontinData, penetration: float, history: Array) -> bool:
     return penetration > 0.0
 
 
-@answer.of(AubenyBiscontinNumbers)
-def _answer(
-    law: AubenyBiscontinNumbers, penetration: float, history: Array, after: Array
-) -> tuple[float, float, float]:
+@answer.of(AubenyBiscontinData)
+def _answer(law: AubenyBiscontinData, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
     """Stored is what a rebound at the stiffness k would give back."""
     z = max(penetration, 0.0)
     now = _continued(z, history)
@@ -101,7 +99,7 @@ def _answer(
 
 
 @njit
-def backbone(law: AubenyBiscontinNumbers, z: float) -> tuple[float, float]:
+def backbone(law: AubenyBiscontinData, z: float) -> tuple[float, float]:
     """Resistance (1) to a first penetration, and its slope."""
     z = max(z, 0.0)
     P, slope = resistance(law.power_law, z)
@@ -112,12 +110,12 @@ def backbone(law: AubenyBiscontinNumbers, z: float) -> tuple[float, float]:
 
 
 @njit
-def _stiffness(law: AubenyBiscontinNumbers, z: float) -> float:
+def _stiffness(law: AubenyBiscontinData, z: float) -> float:
     return law.k_over_su * strength_at(law.power_law.strength, z)
 
 
 @njit
-def bounding_loop(law: AubenyBiscontinNumbers, y1: float) -> BoundingLoop:
+def bounding_loop(law: AubenyBiscontinData, y1: float) -> BoundingLoop:
     """That of ground whose deepest point so far is y1."""
     P1, _ = backbone(law, y1)
     k, firm = _stiffness(law, y1), 1.0 / (1.0 + law.omega)
@@ -129,7 +127,7 @@ def bounding_loop(law: AubenyBiscontinNumbers, y1: float) -> BoundingLoop:
 
 
 @njit
-def _part(law: AubenyBiscontinNumbers, room: float) -> float:
+def _part(law: AubenyBiscontinData, room: float) -> float:
     """Share 0 to 1 of phi, psi and 1/(1 + omega) at which the loop is as long as y1 = room P1/k, or shorter:
 
     (1 + part psi)(1 + part phi)/(1 - part (1 + part phi)/(1 + omega)) = room, a quadratic equation.
@@ -152,7 +150,7 @@ def _continued(z: float, history: Array) -> AubenyBiscontinHistory:
 
 
 @njit
-def _of_riser(law: AubenyBiscontinNumbers, z: float, past: AubenyBiscontinHistory) -> tuple[float, float]:
+def _of_riser(law: AubenyBiscontinData, z: float, past: AubenyBiscontinHistory) -> tuple[float, float]:
     """Resistance and its slope: the turn's hyperbola between the loop's edges, the backbone beyond the loop."""
     if z <= 0.0:
         return 0.0, 0.0
@@ -184,9 +182,7 @@ def _lower(z: float, loop: BoundingLoop) -> tuple[float, float]:
 
 
 @njit
-def _upper(
-    law: AubenyBiscontinNumbers, z: float, loop: BoundingLoop, lower: tuple[float, float]
-) -> tuple[float, float]:
+def _upper(law: AubenyBiscontinData, z: float, loop: BoundingLoop, lower: tuple[float, float]) -> tuple[float, float]:
     """Edge (4), then the backbone."""
     if z >= loop.y1:
         return backbone(law, z)

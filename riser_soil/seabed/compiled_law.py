@@ -32,19 +32,19 @@ def may_act(law: Any, penetration: float, history: Array) -> Any:
 class CompiledLaw:
     """Base of all `NormalLaw`s: what a law does is in the kernels for its numbers."""
 
-    numbers: Any
+    kernel_data: Any
     gradual: ClassVar[bool] = False
 
     def active(self, penetration: Array, history: Array) -> BoolArray:
         z, before = _points(penetration, history)
         out = np.empty(z.size, dtype=np.bool_)
-        _whether_each(self.numbers, z, before, out)
+        _whether_each(self.kernel_data, z, before, out)
         return out.reshape(penetration.shape)
 
     def update(self, penetration: Array, history: Array) -> SeabedResponse:
         z, before = _points(penetration, history)
         found, after = np.empty((3, z.size)), np.empty(before.shape)
-        _answer_each(self.numbers, z, before, found, after)
+        _answer_each(self.kernel_data, z, before, found, after)
         force, slope, stored = found.reshape(3, *penetration.shape)
         return SeabedResponse(force, slope, after.reshape(history.shape), stored)
 

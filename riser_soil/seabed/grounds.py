@@ -41,7 +41,7 @@ class Ground(ABC):
 
     @property
     @abstractmethod
-    def numbers(self) -> Any:
+    def kernel_data(self) -> Any:
         """Its shape as compiled code takes it: a NamedTuple, whose type chooses the kernel of `distance_at`."""
 
     @property
@@ -53,7 +53,7 @@ class Ground(ABC):
         """Distance of points x (n, 3) in global axes."""
         n = len(x)
         found = np.empty(n), np.empty((n, 3)), np.empty((0 if self.flat else n, 3, 3))
-        _distances(self.numbers, np.ascontiguousarray(x, dtype=float), *found)
+        _distances(self.kernel_data, np.ascontiguousarray(x, dtype=float), *found)
         return Distance(*found[:2], None if self.flat else found[2])
 
 
@@ -68,15 +68,15 @@ def _distances(ground: Any, x: Array, value: Array, gradient: Array, hessian: Ar
                 hessian[i, j, 0], hessian[i, j, 1], hessian[i, j, 2] = twice[j]
 
 
-class PlaneNumbers(NamedTuple):
+class PlaneData(NamedTuple):
     """As of `Plane`."""
 
     point: Vec
     normal: Vec
 
 
-@distance_at.of(PlaneNumbers)
-def _distance_at(ground: PlaneNumbers, x: Vec) -> tuple[float, Vec, Mat]:
+@distance_at.of(PlaneData)
+def _distance_at(ground: PlaneData, x: Vec) -> tuple[float, Vec, Mat]:
     p, n, zero = ground.point, ground.normal, (0.0, 0.0, 0.0)
     return (x[0] - p[0]) * n[0] + (x[1] - p[1]) * n[1] + (x[2] - p[2]) * n[2], n, (zero, zero, zero)
 
@@ -100,9 +100,9 @@ class Plane(Ground):
         return cls(point, np.cos(slope) * np.array([0.0, 0.0, 1.0]) - np.sin(slope) * uphill)
 
     @cached_property
-    def numbers(self) -> PlaneNumbers:
+    def kernel_data(self) -> PlaneData:
         (x, y, z), (a, b, c) = map(float, self.point), map(float, self.normal)
-        return PlaneNumbers((x, y, z), (a, b, c))
+        return PlaneData((x, y, z), (a, b, c))
 
     @property
     def highest(self) -> float:

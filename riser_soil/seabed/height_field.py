@@ -1,4 +1,4 @@
-"""Heights of the seabed over a grid of x and y, by a bicubic spline."""
+"""Heights of the seabed: along a line by a cubic spline, over a grid of x and y by a bicubic one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from riser_soil.seabed.grounds import Ground, Mat, Vec, distance_at
 Weights = tuple[float, float, float, float]
 
 
-class HeightFieldNumbers(NamedTuple):
+class HeightFieldData(NamedTuple):
     """As of `HeightField`; nodal (nx, ny, 2, 2): the spline's derivatives at the points, [i, j, 0, 1] that by y.
 
     along: direction of the section that counts, (0, 0) where the whole surface does.
@@ -28,8 +28,8 @@ class HeightFieldNumbers(NamedTuple):
     along: tuple[float, float]
 
 
-@distance_at.of(HeightFieldNumbers)
-def _distance_at(ground: HeightFieldNumbers, x: Vec) -> tuple[float, Vec, Mat]:
+@distance_at.of(HeightFieldData)
+def _distance_at(ground: HeightFieldData, x: Vec) -> tuple[float, Vec, Mat]:
     """With g the slope of the height h, c = (1 + g.g)^(-1/2) and G_i = g_k h_ki:
     d = (z - h) c, c_i = -c^3 G_i, c_ij = 3 c^5 G_i G_j - c^3 (h_ki h_kj + g_k h_kij).
     """
@@ -49,7 +49,7 @@ def _distance_at(ground: HeightFieldNumbers, x: Vec) -> tuple[float, Vec, Mat]:
 
 @njit
 def _heights(
-    ground: HeightFieldNumbers, x: float, y: float
+    ground: HeightFieldData, x: float, y: float
 ) -> tuple[float, tuple[float, float], tuple[float, float, float], Weights]:
     """Height and its first, second and third derivatives by x and y; those along the section alone, if one counts."""
     i, u = _weights(ground.x, x)
@@ -121,11 +121,11 @@ class HeightField(Ground):
     flat: ClassVar[bool] = False
 
     @cached_property
-    def numbers(self) -> HeightFieldNumbers:
+    def kernel_data(self) -> HeightFieldData:
         a, b = (0.0, 0.0) if self.along is None else map(float, self.along)
         by_x, by_y = _slopes(self.x, self.z), _slopes(self.y, self.z.T).T
         nodal = np.stack([self.z, by_y, by_x, _slopes(self.x, by_y)], axis=-1).reshape(*self.z.shape, 2, 2)
-        return HeightFieldNumbers(np.array(self.x, dtype=float), np.array(self.y, dtype=float), nodal, (a, b))
+        return HeightFieldData(np.array(self.x, dtype=float), np.array(self.y, dtype=float), nodal, (a, b))
 
     @property
     def highest(self) -> float:
@@ -137,3 +137,67 @@ def _slopes(at: Array, values: Array) -> Array:
     from scipy.interpolate import CubicSpline  # not to read what was compiled for this ground
 
     return np.asarray(CubicSpline(at, values, bc_type="natural")(at, 1))
+
+
+class ProfileData(NamedTuple):
+    """As of `Profile`; spline (4, n - 1): of the powers 3 to 0 of the distance from each point but the last."""
+
+    origin: tuple[float, float]
+    direction: tuple[float, float]
+    s: Array
+    spline: Array
+
+
+@distance_at.of(ProfileData)
+def _distance_at_profile(ground: ProfileData, x: Vec) -> tuple[float, Vec, Mat]:
+    """With c = 1/sqrt(1 + h'^2), c' = -h' h'' c^3: d = (z - h) c."""
+    (ox, oy), (a, b) = ground.origin, ground.direction
+    h, h1, h2, h3 = _heights_along(ground, (x[0] - ox) * a + (x[1] - oy) * b)
+    over = x[2] - h
+    c = 1.0 / math.sqrt(1.0 + h1**2)
+    c1 = -h1 * h2 * c**3
+    c2 = -(h2**2 + h1 * h3) * c**3 - 3.0 * h1 * h2 * c**2 * c1
+    along = over * c1 - h1 * c
+    twice = over * c2 - 2.0 * h1 * c1 - h2 * c
+    level = ((a * a * twice, a * b * twice), (a * b * twice, b * b * twice))
+    return over * c, (along * a, along * b, c), ((*level[0], c1 * a), (*level[1], c1 * b), (c1 * a, c1 * b, 0.0))
+
+
+@njit
+def _heights_along(ground: ProfileData, s: float) -> tuple[float, float, float, float]:
+    """Height and its first three derivatives by s."""
+    first, last = ground.s[0], ground.s[-1]
+    within = min(max(s, first), last)
+    i = min(max(np.searchsorted(ground.s, within, side="right") - 1, 0), ground.s.size - 2)
+    d, k3, k2, k1 = within - ground.s[i], ground.spline[0, i], ground.spline[1, i], ground.spline[2, i]
+    h, h1 = ((k3 * d + k2) * d + k1) * d + ground.spline[3, i], (3.0 * k3 * d + 2.0 * k2) * d + k1
+    if within != s:
+        return h + h1 * (s - within), h1, 0.0, 0.0
+    return h, h1, 6.0 * k3 * d + 2.0 * k2, 6.0 * k3
+
+
+@dataclass(frozen=True, eq=False)
+class Profile(Ground):
+    """Heights [m] given along a horizontal line, constant across it: a cubic spline, straight beyond the last points.
+
+    origin (2,): where s = 0 [m]; direction (2,): unit vector along which s grows. s, z (n,): points of the profile, at
+    least two. The distance is the height over the ground times the cosine of the ground's slope below.
+    """
+
+    origin: Array
+    direction: Array
+    s: Array
+    z: Array
+    flat: ClassVar[bool] = False
+
+    @cached_property
+    def kernel_data(self) -> ProfileData:
+        from scipy.interpolate import CubicSpline  # not to read what was compiled for this ground
+
+        (x, y), (a, b) = map(float, self.origin), map(float, self.direction)
+        spline = CubicSpline(self.s, self.z, bc_type="natural").c
+        return ProfileData((x, y), (a, b), np.array(self.s, dtype=float), np.array(spline, order="C"))
+
+    @property
+    def highest(self) -> float:
+        return np.inf

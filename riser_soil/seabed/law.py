@@ -41,7 +41,7 @@ class NormalLaw(Protocol):
     def columns(self) -> tuple[str, ...]: ...
 
     @property
-    def numbers(self) -> Any:
+    def kernel_data(self) -> Any:
         """Its constants as compiled code takes them: a NamedTuple, whose type chooses the law's kernels."""
         ...
 

@@ -63,10 +63,10 @@ class RandolphQuiggin(SeabedLaw):
 
     def of_pipe(self, diameter: float) -> RandolphQuigginFormula:
         from riser_soil.seabed.pipe_bearing import PowerLaw
-        from riser_soil.seabed.randolph_quiggin_formula import RandolphQuigginFormula, RandolphQuigginNumbers
+        from riser_soil.seabed.randolph_quiggin_formula import RandolphQuigginData, RandolphQuigginFormula
 
         ultimate = PowerLaw(diameter, self.undrained_strength, self.a, self.b, SHALLOW)
         per_metre, weight = self.K_max / diameter, self.f_b * self.unit_weight
         return RandolphQuigginFormula(
-            RandolphQuigginNumbers(ultimate, per_metre, self.f_suc, self.lambda_suc, self.lambda_rep, weight)
+            RandolphQuigginData(ultimate, per_metre, self.f_suc, self.lambda_suc, self.lambda_rep, weight)
         )

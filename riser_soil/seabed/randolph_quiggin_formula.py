@@ -17,7 +17,7 @@ TINY = 1e-30
 Curve = tuple[float, float]  # value at z, and its slope
 
 
-class RandolphQuigginNumbers(NamedTuple):
+class RandolphQuigginData(NamedTuple):
     """Ultimate resistance; x over |z - z0| [1/m]; the law's other constants; weight of the displaced soil [N/m3]."""
 
     ultimate: PowerLaw
@@ -47,14 +47,14 @@ class RandolphQuigginHistory(NamedTuple):
 class RandolphQuigginFormula(CompiledLaw):
     """The clay under a pipe of one diameter."""
 
-    numbers: RandolphQuigginNumbers
+    kernel_data: RandolphQuigginData
     columns: ClassVar[tuple[str, ...]] = RandolphQuigginHistory._fields
     gradual: ClassVar[bool] = True
 
     @property
     def capacity(self) -> float:
         """Ultimate resistance [N/m] one diameter deep."""
-        ultimate = self.numbers.ultimate
+        ultimate = self.kernel_data.ultimate
         return float(ultimate.resistance(np.array(ultimate.diameter))[0])
 
     @property
@@ -71,15 +71,13 @@ class RandolphQuigginFormula(CompiledLaw):
         return np.tile(untouched, (*shape, 1))
 
 
-@may_act.of(RandolphQuigginNumbers)
-def _may_act(law: RandolphQuigginNumbers, penetration: float, history: Array) -> bool:
+@may_act.of(RandolphQuigginData)
+def _may_act(law: RandolphQuigginData, penetration: float, history: Array) -> bool:
     return penetration > 0.0
 
 
-@answer.of(RandolphQuigginNumbers)
-def _answer(
-    law: RandolphQuigginNumbers, penetration: float, history: Array, after: Array
-) -> tuple[float, float, float]:
+@answer.of(RandolphQuigginData)
+def _answer(law: RandolphQuigginData, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
     """Stored is what a rebound at the greatest stiffness would give back, and the potential of buoyancy."""
     z = max(penetration, 0.0)
     now = _continued(law, z, history)
@@ -106,7 +104,7 @@ def leave(zm: float, after: Array) -> None:
 
 
 @njit
-def _first(law: RandolphQuigginNumbers, z: float, ultimate: Curve) -> Curve:
+def _first(law: RandolphQuigginData, z: float, ultimate: Curve) -> Curve:
     """Resistance (2) to a first penetration, and its slope."""
     Pu, dPu = ultimate
     x = law.per_metre * z
@@ -115,7 +113,7 @@ def _first(law: RandolphQuigginNumbers, z: float, ultimate: Curve) -> Curve:
 
 
 @njit
-def _continued(law: RandolphQuigginNumbers, z: float, history: Array) -> RandolphQuigginHistory:
+def _continued(law: RandolphQuigginData, z: float, history: Array) -> RandolphQuigginHistory:
     """The history of a step that goes to z, as far as it is known before its end."""
     h = history
     past = RandolphQuigginHistory(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7])
@@ -127,13 +125,13 @@ def _continued(law: RandolphQuigginNumbers, z: float, history: Array) -> Randolp
 
 
 @njit
-def _after_uplift(law: RandolphQuigginNumbers, past: RandolphQuigginHistory) -> RandolphQuigginHistory:
+def _after_uplift(law: RandolphQuigginData, past: RandolphQuigginHistory) -> RandolphQuigginHistory:
     d = math.exp(-max(past.z0 - past.z, 0.0) / _decay_length(law, past))
     return RandolphQuigginHistory(1.0, past.z, past.P, past.z, past.P, past.zm, past.s * d, past.c * d)
 
 
 @njit
-def _after_sinking(law: RandolphQuigginNumbers, past: RandolphQuigginHistory) -> RandolphQuigginHistory:
+def _after_sinking(law: RandolphQuigginData, past: RandolphQuigginHistory) -> RandolphQuigginHistory:
     beyond = max(past.z - past.zm, 0.0) / max(law.lambda_rep * past.zm, TINY)
     pressed = past.P / max(_first(law, past.z, resistance(law.ultimate, past.z))[0], TINY)
     s, c = min(max(pressed, past.s), 1.0), min(past.c + beyond, 1.0)
@@ -141,12 +139,12 @@ def _after_sinking(law: RandolphQuigginNumbers, past: RandolphQuigginHistory) ->
 
 
 @njit
-def _decay_length(law: RandolphQuigginNumbers, past: RandolphQuigginHistory) -> float:
+def _decay_length(law: RandolphQuigginData, past: RandolphQuigginHistory) -> float:
     return max(law.lambda_suc * past.zm, TINY)
 
 
 @njit
-def _of_clay(law: RandolphQuigginNumbers, z: float, ultimate: Curve, past: RandolphQuigginHistory) -> Curve:
+def _of_clay(law: RandolphQuigginData, z: float, ultimate: Curve, past: RandolphQuigginHistory) -> Curve:
     """Resistance without buoyancy, and its slope."""
     if past.down > 0.0:
         decay = (1.0, 0.0)
@@ -161,9 +159,7 @@ def _of_clay(law: RandolphQuigginNumbers, z: float, ultimate: Curve, past: Rando
 
 
 @njit
-def _uplift(
-    law: RandolphQuigginNumbers, z: float, ultimate: Curve, past: RandolphQuigginHistory, decay: Curve
-) -> Curve:
+def _uplift(law: RandolphQuigginData, z: float, ultimate: Curve, past: RandolphQuigginHistory, decay: Curve) -> Curve:
     """(3) with (6)."""
     (Pu, dPu), (d, dd) = ultimate, decay
     suction, dsuction = -law.f_suc * past.s * d * Pu, -law.f_suc * past.s * (d * dPu + dd * Pu)
@@ -175,7 +171,7 @@ def _uplift(
 
 
 @njit
-def _repenetration(law: RandolphQuigginNumbers, z: float, ultimate: Curve, past: RandolphQuigginHistory) -> Curve:
+def _repenetration(law: RandolphQuigginData, z: float, ultimate: Curve, past: RandolphQuigginHistory) -> Curve:
     """(4)."""
     Pu, dPu = ultimate
     T, x = Pu - past.P0, law.per_metre * max(z - past.z0, 0.0)
@@ -184,7 +180,7 @@ def _repenetration(law: RandolphQuigginNumbers, z: float, ultimate: Curve, past:
 
 
 @njit
-def _bound(law: RandolphQuigginNumbers, z: float, ultimate: Curve, past: RandolphQuigginHistory, decay: Curve) -> Curve:
+def _bound(law: RandolphQuigginData, z: float, ultimate: Curve, past: RandolphQuigginHistory, decay: Curve) -> Curve:
     """Resistance (5) of clay as whole as it is, and its slope."""
     (first, slope), (d, dd) = _first(law, z, ultimate), decay
     zm = max(past.zm, TINY)

@@ -21,7 +21,7 @@ from mpi4py import MPI
 from riser_soil.core import compiled
 from riser_soil.core.arrays import Array, IntArray
 
-ROOM = 1 << 22  # bytes that the code of one element needs, and more
+WORKSPACE = 1 << 22  # bytes that the code of one element needs, and more
 STALE_AFTER = 120.0  # s; the code compiled for one element takes a few seconds
 
 
@@ -114,7 +114,7 @@ def writable_cache(comm: MPI.Intracomm) -> Path:
     cache = jit_cache()
     if comm.rank == 0:
         try:
-            compiled.require_room(cache, ROOM)
+            compiled.require_room(cache, WORKSPACE)
         except OSError as err:
             cache = compiled.FOLDER / "fenics"
             compiled.tell(f"the cache of compiled elements can't be written ({err}); {cache} is used")

@@ -1,4 +1,4 @@
-"""Element integration in batches: strain, internal force and stiffness from gradients (see element.py).
+"""Element integration in batches: strain, internal force and stiffness from gradients (see families.py).
 
 Stress and strain in the components of mandel.py: xx, yy, zz, √2 xy, √2 xz, √2 yz.
 nc cells, nq quadrature points, nn nodes a cell; `full` (nc, nq, nn, 3), `volume` (nc, 1 or nq, nn, 3).

@@ -1,6 +1,6 @@
 """Registry of the constitutive laws of the soil: one entry each."""
 
-from riser_soil.core.kinds import registry
+from riser_soil.core.quantities import registry
 from riser_soil.soil.drucker_prager import DruckerPrager
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening

@@ -17,7 +17,7 @@ from riser_soil.core.snapshot import SoilMesh
 from riser_soil.errors import MeshError
 from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.families import QUAD4
-from riser_soil.soil.gathered import GatheredMesh, views
+from riser_soil.soil.field import GatheredMesh, views
 from riser_soil.soil.grading import BlockSpec
 from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.mirror import mirror_of

@@ -17,15 +17,13 @@ from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
-from riser_soil.soil.element import Gradients, cell_gradients, skewness
-from riser_soil.soil.field import SoilField, components
-from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows, top_of
+from riser_soil.soil.families import Gradients, cell_gradients, skewness
+from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
-from riser_soil.soil.large_strain import moved_on
+from riser_soil.soil.large_strain import carried_rows, moved_on, nearest_rows
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
 from riser_soil.soil.slices import slabs, top_of_slices
-from riser_soil.soil.transfer import carried_rows, nearest_rows
 
 FOLDS = 0.1  # skewness of a cell
 SLOPE = ("slope_x", "slope_y", "slope_z")

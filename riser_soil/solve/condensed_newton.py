@@ -24,8 +24,7 @@ from riser_soil.soil.condensed import CondensedSoil
 from riser_soil.solve import riser_loop
 from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.numbered_parts import NumberedParts
-from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
@@ -33,22 +32,22 @@ from riser_soil.solve.solution import NewtonSettings, Solution, Step
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
 
-MOST_BEGUN = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
+MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
 
 
 def condensed_newton(system: System, settings: NewtonSettings) -> CondensedNewton | None:
     """The compiled loop over a riser on condensed soil, where all other parts have kernels and contact no history."""
     contact = next((part for part in system.model.parts if isinstance(part, SurfaceContact)), None)
     soil = next((part for part in system.model.parts if isinstance(part, CondensedSoil)), None)
-    if contact is None or soil is None or (touch := contact.touch_numbers()) is None:
+    if contact is None or soil is None or (touch := contact.touch_data()) is None:
         return None
     rest = [part for part in system.model.parts if part is not contact and part is not soil]
-    asked = [(part, part.numbers()) for part in rest if isinstance(part, LinePart)]
+    asked = [(part, part.kernel_data()) for part in rest if isinstance(part, LinePart)]
     numbered = [(part, numbers) for part, numbers in asked if numbers is not None]
     if len(numbered) < len(rest):
         return None
     border = SoilBorder(contact.line, contact, soil, touch)
-    return CondensedNewton(system, settings, NumberedParts(numbered), contact, soil, border)
+    return CondensedNewton(system, settings, KernelParts(numbered), contact, soil, border)
 
 
 class CondensedNewton:
@@ -58,7 +57,7 @@ class CondensedNewton:
         self,
         system: System,
         settings: NewtonSettings,
-        parts: NumberedParts,
+        parts: KernelParts,
         contact: SurfaceContact,
         soil: CondensedSoil,
         border: SoilBorder,
@@ -81,7 +80,7 @@ class CondensedNewton:
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
-        self._parts.bring(step.before.t, step.t)
+        self._parts.update(step.before.t, step.t)
         still = step.scheme.trial(step.before, step.t, step.dt, self._nothing)
         norms = self._norms(step, still)
         self.system.clock.add("riser and soil", since)
@@ -98,13 +97,13 @@ class CondensedNewton:
         self._line.prescribe(step.t, guess.u, guess.v, guess.a)
         guessed = bool(step.guess[~self.system.prescribed].any())
         limits = self._limits._replace(answers_load=self.rests or guessed)  # as in `Newton`
-        for _ in range(MOST_BEGUN):
+        for _ in range(MOST_STARTS):
             self._border.begin(step.before, step.guess)
             self._prescribe_anew()
             self._riser.begin(guess, None if past is None else past[at], scheme.weights(step.dt), limits)
             outcome, taken = self._riser.solve()
             self.iterations += taken
-            if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.tangled(*self._riser.tangled):
+            if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.folding(*self._riser.folding):
                 return listed(self._riser.progress.norms[: taken + 1])
             if outcome != riser_loop.OUTGROWN:
                 return None

@@ -21,9 +21,9 @@ from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
-from riser_soil.solve.buckling import buckling_mode, stabilising_drag
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
+from riser_soil.solve.stability import buckling_mode, stabilising_drag
 from riser_soil.solve.time_scheme import Static
 
 FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
@@ -178,7 +178,7 @@ def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: floa
 
 def _pass_through(system: System, state: State) -> None:
     """Commit a state that is none of the stage's, so that its forces leave no trace."""
-    keeping = [part for part in with_role(system.model.parts, Stateful) if part.traits.keeps_way]
+    keeping = [part for part in with_role(system.model.parts, Stateful) if part.traits.path_dependent]
     kept = [part.state() for part in keeping]
     system.commit(state)
     for part, saved in zip(keeping, kept, strict=True):

@@ -19,8 +19,8 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Field, local
 from riser_soil.core.system import System
+from riser_soil.solve.banded_solvers import PythonContext
 from riser_soil.solve.linear_solver import PREFIX, LinearSystems, defaults
-from riser_soil.solve.python_context import PythonContext
 
 TOLERANCE, MOST_ITERATIONS, RESTART = 1e-4, 500, 100  # share of the residual that may be left
 MULTIGRID = {  # read when it is made and, of its levels, when it is set up

@@ -19,10 +19,10 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from riser_soil.core.factor_memory import Room
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.saved_state import Saved
+from riser_soil.solve.banded_solvers import PythonContext
 from riser_soil.solve.linear_solver import LinearSystems, use_mumps
-from riser_soil.solve.python_context import PythonContext
 
 FEWEST = 10  # iterations that a solve may take in any case
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
@@ -34,15 +34,15 @@ BROKEN = PETSc.KSP.ConvergedReason.DIVERGED_BREAKDOWN
 class KeptFactors(PythonContext, LinearSystems):
     """Linear solver of a system's tangents, one after the other; collective.
 
-    symmetric: whether the tangents are. room: for fill-in; it grows where it was too little. factorisations,
+    symmetric: whether the tangents are. workspace: for fill-in; it grows where it was too little. factorisations,
     iterations: how many there were, the latter of the Krylov method. worth: iterations that cost as much as a
     factorisation.
     """
 
     to_tolerance: ClassVar[bool] = True
 
-    def __init__(self, comm: MPI.Intracomm, symmetric: bool, room: Room) -> None:
-        self._comm, self._symmetric, self._room = comm, symmetric, room
+    def __init__(self, comm: MPI.Intracomm, symmetric: bool, workspace: Workspace) -> None:
+        self._comm, self._symmetric, self._workspace = comm, symmetric, workspace
         self.factorisations = self.iterations = 0
         self.worth = 0.0
         self._whole = False  # whether the factors are LU of all the tangent, as those of its upper triangle did not do
@@ -99,7 +99,7 @@ class KeptFactors(PythonContext, LinearSystems):
             matrix.copy(self._factored, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         assert self._factors is not None
         self._factors.setUp()
-        while self._room.grows_after(self._factors):
+        while self._workspace.grows_after(self._factors):
             self.forget()
             self._keep(matrix.copy())
             self._factors.setUp()
@@ -111,7 +111,7 @@ class KeptFactors(PythonContext, LinearSystems):
         self._factored, self._outgrown = factored, False
         self._factors = PETSc.PC().create(self._comm)
         self._factors.setOperators(factored)
-        use_mumps(self._factors, "lu" if self._whole else "cholesky", self._room.controls)
+        use_mumps(self._factors, "lu" if self._whole else "cholesky", self._workspace.controls)
 
     def _weigh(self) -> None:
         assert self._factors is not None

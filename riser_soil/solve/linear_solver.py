@@ -1,6 +1,6 @@
 """Linear solver of PETSc: its banded LU where a serial system is a chain, MUMPS otherwise.
 
-The one of `bordered_band` solves a chain on few other dofs that all couple.
+The one of `banded_solvers` solves a chain on few other dofs that all couple.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import destroyed_together
-from riser_soil.core.factor_memory import Room
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.petsc_matrix import declare
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.bordered_band import WIDEST, BorderedBand, bandwidth
+from riser_soil.solve.banded_solvers import WIDEST, BorderedBand, bandwidth
 from riser_soil.solve.chain import SingularError, is_chain
 
 PREFIX = "riser_soil_"
@@ -84,14 +84,14 @@ def keeps_factors(system: System, asked: str) -> bool:
     return asked == "kept" or system.numbering.free >= LARGE
 
 
-def factorise_directly(pc: PETSc.PC, system: System, room: Room) -> None:
+def factorise_directly(pc: PETSc.PC, system: System, workspace: Workspace) -> None:
     """Make a preconditioner an exact solver, symmetric where MUMPS is it and the system is."""
     if (chain := _bordered_chain(system)) is not None:
         pc.setOperators(system.matrix.mat)
         BorderedBand(system.matrix.mat, chain).work_for(pc)
         return
     mumps = not is_chain(system)
-    _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", room.controls)
+    _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", workspace.controls)
 
 
 def complaint(err: PETSc.Error | SingularError) -> str:
@@ -113,7 +113,7 @@ def complaint(err: PETSc.Error | SingularError) -> str:
 def exact_solver(system: System) -> Iterator[Callable[[Array], Array]]:
     """What the matrix makes of loads (owned,), factorised at once, as long as the block lasts; collective."""
     solver = PETSc.PC().create(system.comm)
-    factorise_directly(solver, system, Room())
+    factorise_directly(solver, system, Workspace())
     solver.setUp()
 
     def solve(load: Array) -> Array:
@@ -150,14 +150,14 @@ def negative_pivots_behind(system: System, rows: int) -> int:
 
 def _counted(mat: PETSc.Mat) -> int:
     """Negative pivots of a symmetric matrix, which is no chain's."""
-    room = Room()
+    workspace = Workspace()
     while True:
         pc = PETSc.PC().create(mat.comm)
         try:
             pc.setOperators(mat)
-            use_mumps(pc, "cholesky", room.controls | COUNTING)
+            use_mumps(pc, "cholesky", workspace.controls | COUNTING)
             pc.setUp()
-            if not room.grows_after(pc):
+            if not workspace.grows_after(pc):
                 return int(pc.getFactorMatrix().getInertia()[0])
         finally:
             pc.destroy()

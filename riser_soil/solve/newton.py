@@ -1,4 +1,4 @@
-"""Newton's method for one step: its residual, tangent and tests. What iterates is a loop of `loops`."""
+"""Newton's method for one step: its residual, tangent and tests. What iterates is a loop of `chain`."""
 
 from __future__ import annotations
 
@@ -20,10 +20,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, nodal_residual, section_vector, viscous_residual
 from riser_soil.riser.sections import Elements
-from riser_soil.solve.chain import is_chain
-from riser_soil.solve.failed_step import place_of_largest
-from riser_soil.solve.line_search import step_length
-from riser_soil.solve.loops import (
+from riser_soil.solve.chain import (
     CONVERGED,
     DIVERGED,
     ITERATING,
@@ -33,10 +30,19 @@ from riser_soil.solve.loops import (
     TOO_MANY,
     ChainLoop,
     Loop,
+    is_chain,
 )
+from riser_soil.solve.newton_progress import ROUND_OFF, stays, step_length
 from riser_soil.solve.riser_mass import RiserMass
-from riser_soil.solve.round_off import ROUND_OFF, stays
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
+from riser_soil.solve.solution import (
+    NewtonSettings,
+    NotConvergedError,
+    Solution,
+    Step,
+    UnstableError,
+    place_of_largest,
+    reported,
+)
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Static
 
@@ -443,7 +449,7 @@ class Newton:
     def _reason(self, why: str) -> str:
         """Why the step did not converge, with where it is out of balance."""
         place = place_of_largest(self.system, self._weighed(), self.system.numbering.first)
-        return told(why, self._norms, place)
+        return reported(why, self._norms, place)
 
     def _weighed(self) -> Array:
         """This rank's residual [N], moments over the lever."""

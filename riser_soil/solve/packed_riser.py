@@ -1,8 +1,10 @@
-"""A riser alone in numbers, packed for the compiled loop: parts bound to their kernels, and room for what is solved."""
+"""A riser alone as kernel data, packed for the compiled loop: parts bound to kernels, workspace for what is solved."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,17 +12,19 @@ from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, listed
 from riser_soil.core.bound import Bound, calls, in_turn
 from riser_soil.core.packed import Packed
-from riser_soil.core.part import State, Weights
+from riser_soil.core.part import State, Weights, Work
+from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import (
     maps_for,
     place,
+    put_folded,
     put_magnitudes,
     put_maps,
-    put_tangled,
     put_turning,
-    room_for,
+    workspace_for,
 )
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import (
     LineWeights,
     add_energy,
@@ -37,13 +41,14 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.loop_border import LoopBorder
-from riser_soil.solve.numbered_parts import NumberedParts, Numbers
-from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData, StopLimits
+
+KernelData = tuple[Any, ...]
 
 
 class PackedRiser:
-    """A line and its parts, whose arrays it shares; at, step, forces, dofs, room, progress: what the loop writes to.
+    """A line and its parts, whose arrays it shares; at, step, forces, dofs, workspace, progress: what the loop writes
+    to.
 
     placed: the line where it is accepted; parts: that act on it; prescribed, levers (size,): of the line's dofs; most:
     iterations of a step; border: what stands beside them.
@@ -53,31 +58,31 @@ class PackedRiser:
         self,
         line: Line,
         placed: PlacedLine,
-        parts: NumberedParts,
+        parts: KernelParts,
         prescribed: BoolArray,
         levers: Array,
         most: int,
         border: LoopBorder | None = None,
     ) -> None:
         self._line, self._placed, shape = line, placed, (line.nodes, line.ndof)
-        self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), matrix_room(line)
-        self._begun = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
+        self.step, self.forces, self.workspace = StepData(*_zeros(6, shape)), forces_of(line), matrix_workspace(line)
+        self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(most + 1), np.zeros(2, dtype=np.int64))
         self._maps, self._weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
         self._weighed = Weights(0.0, 0.0, 0.0, 0.0)  # as in both
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
         self._border = LoopBorder() if border is None else border
-        self._bind(parts.numbers, parts.in_groups("E"))
-        self._bind_account(parts.numbers)
+        self._bind(parts.kernel_data, parts.in_groups("E"))
+        self._bind_account(parts.kernel_data)
 
-    def _bind(self, numbers: Sequence[Numbers], touching: Sequence[Numbers]) -> None:
+    def _bind(self, numbers: Sequence[KernelData], touching: Sequence[KernelData]) -> None:
         """Bind the kernels of the loop to where they read and write. touching: whose tangent may jump."""
-        at, border = room_for(self._line), self._border
+        at, border = workspace_for(self._line), self._border
         self.at = at
-        written = self.step, self.forces, self.dofs, self.room, self.progress
-        now, step, forces, dofs, room, progress = map(Packed, (at, *written))
-        maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
+        written = self.step, self.forces, self.dofs, self.workspace, self.progress
+        now, step, forces, dofs, workspace, progress = map(Packed, (at, *written))
+        maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.workspace.K)
         evaluate = [
             Bound(loop.follow, step, maps, dofs),
             bound(place, at, self._placed.base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
@@ -91,16 +96,16 @@ class PackedRiser:
 
         others = [each for each in numbers if all(each is not one for one in touching)]
         contact = len(touching) > 0 or not border.smooth
-        bulk = Packed(np.empty_like(self.room.K)) if contact else K
+        bulk = Packed(np.empty_like(self.workspace.K)) if contact else K
 
         def bulk_tangent(maps: Packed) -> list[Bound]:
             return [
                 bound(put_maps, at, maps),
                 Bound(loop.clear_tangent, bulk),
                 *(bound(add_tangent, each, now, maps, weights, bulk) for each in others),
-                Bound(weigh, forces, weights, room),
-                bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
-                Bound(turn, room, bulk),
+                Bound(weigh, forces, weights, workspace),
+                bound(put_turning, at, Packed(self.workspace.conjugate), Packed(self.workspace.turning)),
+                Bound(turn, workspace, bulk),
             ]
 
         def contact_tangent(maps: Packed) -> list[Bound]:
@@ -109,21 +114,21 @@ class PackedRiser:
 
         held = Packed(maps.value)  # without shifts
         put_sizes = bound(put_magnitudes, at, Packed(self.dofs.sizes))
-        judged = Bound(loop.judge_round_off, room, dofs, progress)
+        judged = Bound(loop.judge_round_off, workspace, dofs, progress)
         probe = [*bulk_tangent(held), *contact_tangent(held), put_sizes, judged]
-        factors = [Bound(loop.fill, room, dofs), border.factorise(room, dofs, progress)]
+        factors = [Bound(loop.fill, workspace, dofs), border.factorise(workspace, dofs, progress)]
         renew = [*bulk_tangent(maps), *contact_tangent(maps), *factors]
         touch = [*contact_tangent(maps), *factors] if contact else []
-        each = evaluate, probe if border.knows_round_off else [], renew, touch, [border.improve(room, step, dofs)]
+        each = evaluate, probe if border.knows_round_off else [], renew, touch, [border.improve(workspace, step, dofs)]
         tables = (Packed(calls(*kernels)) for kernels in each)
-        self._tangled = np.zeros(2, dtype=np.int64)
+        self._folded = np.zeros(2, dtype=np.int64)
         solve = Bound(loop.solve_step, *tables, limits, progress)
-        self._solve = in_turn(solve, bound(put_tangled, at, self._placed.base, Packed(self._tangled)))
+        self._solve = in_turn(solve, bound(put_folded, at, self._placed.base, Packed(self._folded)))
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*renew[:-1], put_sizes)
         self.renew_contact = in_turn(*touch)
         self.keep = in_turn(*(bound(keep, each, now) for each in numbers if type(each) in keep.kernels))
 
-    def _bind_account(self, numbers: Sequence[Numbers]) -> None:
+    def _bind_account(self, numbers: Sequence[KernelData]) -> None:
         """Bind the kernels of energy and work."""
         turning = [each for each in numbers if type(each) in add_work.kernels]
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
@@ -141,8 +146,8 @@ class PackedRiser:
 
         state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`.
         """
-        self._placed.bring()
-        u, v, a, earlier = self._begun
+        self._placed.update()
+        u, v, a, earlier = self._start
         u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, 0.0 if past is None else past
         if weights != self._weighed:
             self._weigh(weights)
@@ -155,9 +160,9 @@ class PackedRiser:
         self._weights.renew(LineWeights(weights.inertia, weights.force))
 
     @property
-    def tangled(self) -> tuple[int, int]:
-        """First elements that are folded, and that swing too far, in the last trial: `Line.tangled`."""
-        folded, swung = listed(self._tangled)
+    def folding(self) -> tuple[int, int]:
+        """First elements that are folded, and that swing too far, in the last trial: `Line.folding`."""
+        folded, swung = listed(self._folded)
         return folded, swung
 
     def solve(self) -> tuple[int, int]:
@@ -181,11 +186,11 @@ def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
     return [np.zeros(shape) for _ in range(n)]
 
 
-def matrix_room(line: Line) -> MatrixRoom:
-    """Room for the tangent of a line."""
+def matrix_workspace(line: Line) -> MatrixWorkspace:
+    """Workspace for the tangent of a line."""
     ne, d, r, n = line.length.size, line.dimension, line.frames.dofs, line.ndof
-    matrix, band = banded.room(line.size, 2 * n - 1)
-    return MatrixRoom(
+    matrix, band = banded.workspace(line.size, 2 * n - 1)
+    return MatrixWorkspace(
         np.empty((ne, 2 * n, 2 * n)),
         np.empty((ne, 2, d)),
         np.empty((ne, 2, r, r)),
@@ -193,3 +198,77 @@ def matrix_room(line: Line) -> MatrixRoom:
         np.empty(line.size, dtype=np.int64),
         band,
     )
+
+
+class KernelParts:
+    """Parts with their numbers; t: the time [s] that what depends on it was written for last; committed: parts whose
+    history no kernel keeps.
+    """
+
+    def __init__(self, numbered: Sequence[tuple[Any, KernelData]]) -> None:
+        self.numbered, self.t = numbered, math.nan
+        self.parts: list[LinePart] = [part for part, _ in numbered]
+        self.kernel_data = [held for _, held in numbered]
+        self._renewed = [part for part in self.parts if overrides(part, "renew_kernel_data")]
+        kernels = [(part, type(held) in add_work.kernels) for part, held in numbered]
+        self.committed = [part for part, held in numbered if type(held) not in keep.kernels]
+        self._turning = [(part, kernel) for part, kernel in kernels if kernel or _by_method(part)]
+
+    def update(self, start: float, end: float) -> None:
+        """Write what depends on the time into the numbers, for a step between two times."""
+        for part in self._renewed:
+            part.renew_kernel_data(start, end)
+        self.t = end
+
+    def update_to(self, t: float) -> None:
+        if self.t != t:
+            self.update(t, t)
+
+    def in_groups(self, groups: str) -> list[KernelData]:
+        """Numbers of the parts with forces in some of the groups."""
+        return [held for part, held in self.numbered if set(part.traits.groups) & set(groups)]
+
+    def add_work(self, before: State, after: State, rows: list[list[float]], work: dict[str, Work]) -> None:
+        """Add what the parts turn over in a step, by name; rows: of those that have kernels for it."""
+        compiled = iter(rows)
+        for part, kernel in self._turning:
+            work[part.name] += Work(*next(compiled)) if kernel else part.work(before, after)
+
+
+def _by_method(part: LinePart) -> bool:
+    """Whether a part without a kernel for it says what it turns over."""
+    return overrides(part, "work") and type(part).work is not CompiledPart.work
+
+
+class LoopBorder:
+    """Nothing beside the line. One with unknowns of its own overrides all of this; kernels are bound to what they take.
+
+    knows_round_off: whether a residual can be told from its round-off by `riser_loop.judge_round_off`; smooth: whether
+    nothing touches it.
+    """
+
+    knows_round_off = smooth = True
+
+    def forces(self, at: Packed, forces: Packed) -> list[Bound]:
+        """Kernels that add to the line's residual, and write that of the border."""
+        return []
+
+    def judge(self, forces: Packed, dofs: Packed, limits: Packed, progress: Packed) -> Bound:
+        """The kernel that tells whether all of the residual is small enough."""
+        return Bound(loop.judge, forces, dofs, limits, progress)
+
+    def tangent(self, at: Packed, K: Packed) -> list[Bound]:
+        """Kernels that add to the line's tangent, and write that of the border."""
+        return []
+
+    def factorise(self, workspace: Packed, dofs: Packed, progress: Packed) -> Bound:
+        """The kernel that factorises the line's band and the border."""
+        return Bound(loop.factorise, workspace, progress)
+
+    def improve(self, workspace: Packed, step: Packed, dofs: Packed) -> Bound:
+        """The kernel that takes the factors' answer off all increments."""
+        return Bound(loop.improve, workspace, step, dofs)
+
+    def account(self, then: Packed, now: Packed) -> list[Bound]:
+        """Kernels that account for a step."""
+        return []

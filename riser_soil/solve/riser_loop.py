@@ -18,14 +18,14 @@ from riser_soil.core.rows import add_multiple
 from riser_soil.riser.configuration import Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights
-from riser_soil.solve.round_off import ROUND_OFF, STALLED
+from riser_soil.solve.newton_progress import ROUND_OFF, STALLED
 
 GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY, OUTGROWN = range(7)
 DIVERGES = 1e6  # times the first norm
 ONE = fixed(1)
 
 
-class StepNumbers(NamedTuple):
+class StepData(NamedTuple):
     """A step to solve; arrays (nn, ndof). u: the first guess, then the solution, and v and a its rates. These follow u
     from v0 and a0 by the shifts, but for what is fixed, whose rates are in v0 and a0. past: see `time_scheme`.
     """
@@ -50,8 +50,8 @@ class Dofs(NamedTuple):
     terms: Array
 
 
-class MatrixRoom(NamedTuple):
-    """Room for the tangent: element matrices K (ne, n, n); what is conjugate to the tangents (ne, 2, d), and its
+class MatrixWorkspace(NamedTuple):
+    """Workspace for the tangent: element matrices K (ne, n, n); what is conjugate to the tangents (ne, 2, d), and its
     turning (ne, 2, r, r); the matrix as in `banded`, its pivots and its band.
     """
 
@@ -68,7 +68,7 @@ class StopLimits(NamedTuple):
 
     reuse: an iteration that leaves less than this share of the residual leaves its tangent to the next, but contact's
     share, which is found anew, as contact has corners. Where the residual does not even fall to STALLED, so that it may
-    be probed, in the tangent's room, all is.
+    be probed, in the tangent's workspace, all is.
     """
 
     tolerance: float
@@ -121,7 +121,7 @@ def solve_step(
 
 @njit
 def _stays(norms: Array, taken: int) -> bool:
-    """See `round_off.stays`."""
+    """See `newton_progress.stays`."""
     if taken < 2:
         return False
     return norms[taken] > STALLED * norms[taken - 1] and norms[taken - 1] > STALLED * norms[taken - 2]
@@ -148,7 +148,7 @@ def _given_up(norms: Array, taken: int, limits: StopLimits) -> int:
 
 
 @njit
-def follow(step: StepNumbers, maps: Maps, dofs: Dofs) -> None:
+def follow(step: StepData, maps: Maps, dofs: Dofs) -> None:
     """Write the rates that follow the increments, but for those of fixed dofs."""
     for n in range(step.u.shape[0]):
         for i in range(step.u.shape[1]):
@@ -158,7 +158,7 @@ def follow(step: StepNumbers, maps: Maps, dofs: Dofs) -> None:
 
 
 @njit
-def combine(forces: LineForces, step: StepNumbers, weights: LineWeights, dofs: Dofs) -> None:
+def combine(forces: LineForces, step: StepData, weights: LineWeights, dofs: Dofs) -> None:
     """Write the residual of the weighted groups."""
     for n in range(dofs.residual.shape[0]):
         for i in range(dofs.residual.shape[1]):
@@ -231,9 +231,9 @@ def begin_with(bulk: Array, K: Array) -> None:
 
 
 @njit
-def judge_round_off(room: MatrixRoom, dofs: Dofs, progress: NewtonProgress) -> None:
-    """Whether nothing in the residual can be told from its round-off, see `round_off`; K: at held rates."""
-    K, sizes, terms = room.K, dofs.sizes, dofs.terms
+def judge_round_off(workspace: MatrixWorkspace, dofs: Dofs, progress: NewtonProgress) -> None:
+    """Whether nothing in the residual can be told from its round-off, see `newton_progress`; K: at held rates."""
+    K, sizes, terms = workspace.K, dofs.sizes, dofs.terms
     ndof = sizes.shape[1]
     terms[:] = 0.0
     for e in range(K.shape[0]):
@@ -248,14 +248,14 @@ def judge_round_off(room: MatrixRoom, dofs: Dofs, progress: NewtonProgress) -> N
 
 
 @njit
-def fill(room: MatrixRoom, dofs: Dofs) -> None:
+def fill(workspace: MatrixWorkspace, dofs: Dofs) -> None:
     """Sum element matrices into the banded one, with ones on the diagonal for what is fixed."""
-    K, ab, fixed = room.K, room.ab, dofs.fixed
-    b, n, ndof, width = len(room.band), len(room.band) + 1, fixed.shape[1], ab.shape[1]
+    K, ab, fixed = workspace.K, workspace.ab, dofs.fixed
+    b, n, ndof, width = len(workspace.band), len(workspace.band) + 1, fixed.shape[1], ab.shape[1]
     ab[:] = 0.0
     for e in range(K.shape[0]):
-        for i in range(len(room.band) + 1):
-            add_multiple(ab, (e * ndof + i) * width + b - i, 1.0, K, (e * n + i) * n, room.band + ONE)
+        for i in range(len(workspace.band) + 1):
+            add_multiple(ab, (e * ndof + i) * width + b - i, 1.0, K, (e * n + i) * n, workspace.band + ONE)
     for k, held in enumerate(fixed.ravel()):
         if held:
             ab[k] = 0.0
@@ -265,20 +265,20 @@ def fill(room: MatrixRoom, dofs: Dofs) -> None:
 
 
 @njit
-def factorise(room: MatrixRoom, progress: NewtonProgress) -> None:
+def factorise(workspace: MatrixWorkspace, progress: NewtonProgress) -> None:
     """Factorise the matrix."""
-    if not banded.factorise(room.ab, room.pivots, room.band):
+    if not banded.factorise(workspace.ab, workspace.pivots, workspace.band):
         progress.ending[0] = SINGULAR
 
 
 @njit
-def improve(room: MatrixRoom, step: StepNumbers, dofs: Dofs) -> None:
+def improve(workspace: MatrixWorkspace, step: StepData, dofs: Dofs) -> None:
     """Take what the factorised tangent answers to the residual off the increments."""
     size = dofs.residual.size
     fixed, change, u = dofs.fixed.reshape(size), dofs.residual.reshape(size), step.u.reshape(size)
     for k in range(size):
         change[k] = 0.0 if fixed[k] else change[k]
-    banded.solve(room.ab, room.pivots, change, room.band)
+    banded.solve(workspace.ab, workspace.pivots, change, workspace.band)
     for k in range(size):
         u[k] -= 0.0 if fixed[k] else change[k]
 

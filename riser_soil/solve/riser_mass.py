@@ -1,19 +1,23 @@
-"""Mass matrix of the riser, banded and factorised: accelerations caused by a given force.
+"""Inverse of the lines' mass, and what it answers at the end of a dynamic step: accelerations and momentum.
 
 Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.banded import solve_symmetric
-from riser_soil.core.part import LineField, Part, State, Weights, local
+from riser_soil.core.part import Forces, LineField, Part, State, Weights, local
+from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.system import System
+from riser_soil.core.system import System, total
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 MASSLESS = 1e-12  # of a node's largest mass
@@ -144,3 +148,46 @@ def _add_nodal(ab: Array, nodal: Array) -> None:
     for i in range(dofs):
         for j in range(i, dofs):
             ab[2 * dofs - 1 + i - j, j::dofs] += nodal[:, i, j]
+
+
+@dataclass(eq=False)
+class CommittedStep:
+    """A step just committed, and what its scheme needs from the system there; collective.
+
+    mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s].
+    """
+
+    system: System
+    mass: InverseMass | None
+    correcting: Sequence[MomentumCorrecting]
+    solved: State
+    forces: Forces
+    dt: float
+
+    @cached_property
+    def state(self) -> State:
+        """Increments zero, rates as solved."""
+        solved = self.solved
+        return State(solved.t, np.zeros(solved.u.size), solved.v, solved.a)
+
+    @cached_property
+    def contact(self) -> Array | None:
+        """Accelerations that contact causes [m/s2]; None where no forces may jump."""
+        return None if self.system.smooth else self._accelerations(-self.forces.end)
+
+    def with_momentum(self, state: State) -> State:
+        """The state with the rates that have the momentum of the step's end."""
+        missing = np.zeros_like(state.v)
+        for part in self.correcting:
+            part.add_momentum_correction(state, missing)
+        return State(state.t, state.u, state.v + self._accelerations(missing), state.a)
+
+    def in_balance(self, state: State) -> State:
+        """The state with the accelerations that its forces cause."""
+        prescribed = np.where(self.system.prescribed, state.a, 0.0)
+        forces = self.system.forces(State(state.t, state.u, state.v, prescribed))
+        return State(state.t, state.u, state.v, prescribed + self._accelerations(-total(forces)))
+
+    def _accelerations(self, force: Array) -> Array:
+        assert self.mass is not None
+        return self.mass.accelerations(self.solved.t, force)

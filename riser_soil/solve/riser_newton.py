@@ -21,10 +21,8 @@ from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import nodal_residual
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop
-from riser_soil.solve.compiled_mass import CompiledMass, mass_of
-from riser_soil.solve.element_forces import AcceptedForces, ElementForces
-from riser_soil.solve.numbered_parts import NumberedParts
-from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.compiled_mass import AcceptedForces, CompiledMass, ElementForces, mass_of
+from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.solution import (
     BESIDE_CLAY,
     NewtonSettings,
@@ -32,7 +30,7 @@ from riser_soil.solve.solution import (
     Solution,
     Step,
     largest_at,
-    told,
+    reported,
 )
 
 if TYPE_CHECKING:
@@ -50,7 +48,7 @@ Numbered = Sequence[tuple[Any, tuple[Any, ...]]]  # parts of a line
 
 def riser_newton(system: System, settings: NewtonSettings) -> RiserNewton | None:
     """The compiled loop over a riser alone, where all of its parts have kernels."""
-    asked = [(part, part.numbers()) for part in system.model.parts if isinstance(part, LinePart)]
+    asked = [(part, part.kernel_data()) for part in system.model.parts if isinstance(part, LinePart)]
     numbered = [(part, numbers) for part, numbers in asked if numbers is not None]
     return RiserNewton(system, settings, numbered) if len(numbered) == len(system.model.parts) else None
 
@@ -64,7 +62,7 @@ class RiserNewton:
         (line,) = system.model.lines
         assert isinstance(line, Line)
         self._line, most = line, settings.max_iterations
-        self._placed, self._parts = PlacedLine(line), NumberedParts(parts)
+        self._placed, self._parts = PlacedLine(line), KernelParts(parts)
         self._riser = PackedRiser(line, self._placed, self._parts, system.prescribed, system.levers, most)
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._committed: Array | None = None  # the line's places, where its last step was solved here
@@ -79,7 +77,7 @@ class RiserNewton:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
         self._solved = self._committed = self._looked_at = None
-        self._parts.bring(step.before.t, step.t)
+        self._parts.update(step.before.t, step.t)
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
         outcome, taken = self._riser.solve()
@@ -89,7 +87,7 @@ class RiserNewton:
         self.system.clock.add("riser alone", since)
         if outcome != riser_loop.CONVERGED:
             raise NotConvergedError(self._reason(outcome, norms))
-        if reason := self._line.tangled(*self._riser.tangled):
+        if reason := self._line.folding(*self._riser.folding):
             raise NotConvergedError(reason)
         state = self._riser.solved(step.t, step.dt)
         self._solved = state if self.system.smooth else None
@@ -134,7 +132,7 @@ class RiserNewton:
 
     def _bound_results(self, contact: RiserContact) -> tuple[Bound, Array]:
         """A contact's results where the loop has left the line: what writes them, and where to."""
-        from riser_soil.contact.contact_results import ContactResults, put_results, size_of
+        from riser_soil.contact.contact import ContactResults, put_results, size_of
 
         numbers = next(numbers for part, numbers in self._parts.numbered if part is contact)
         sizes = self._line.nodes, contact.along.arc.size
@@ -151,7 +149,7 @@ class RiserNewton:
             return self._accepted.forces
         self._looked_at = state
         if self._parts.t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
-            self._parts.bring(state.t, state.t)
+            self._parts.update(state.t, state.t)
         return self._accepted.found(state)
 
     @cached_property
@@ -194,7 +192,7 @@ class RiserNewton:
 
     def _reason(self, outcome: int, norms: list[float]) -> str:
         residual = np.where(self.system.prescribed, 0.0, self._riser.dofs.residual.ravel()) / self.system.levers
-        return told(WHY[outcome], norms, self._place(residual))
+        return reported(WHY[outcome], norms, self._place(residual))
 
     def _place(self, residual: Array) -> str:
         """The largest residual, in words."""

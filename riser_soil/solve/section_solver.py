@@ -18,12 +18,12 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.communicator import Communicator, all_of, largest_of
-from riser_soil.core.factor_memory import Room
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.part import Field, local
 from riser_soil.core.system import System
+from riser_soil.solve.banded_solvers import PythonContext
 from riser_soil.solve.chain import SingularError
 from riser_soil.solve.linear_solver import LinearSystems, factorise_directly
-from riser_soil.solve.python_context import PythonContext
 from riser_soil.solve.section_factors import Csr, SectionFactors, coupled_apart
 
 THRESHOLD = 0.1  # of the largest entry of its column, that a pivot on the diagonal may have
@@ -45,8 +45,8 @@ def sections_of(system: System) -> InSections | None:
 class SectionSolver(PythonContext, LinearSystems):
     """Linear solver of a system with soil in sections, and the context of its preconditioner; collective."""
 
-    def __init__(self, system: System, soil: InSections, room: Room) -> None:
-        self._system, self._soil, self._room = system, soil, room
+    def __init__(self, system: System, soil: InSections, workspace: Workspace) -> None:
+        self._system, self._soil, self._workspace = system, soil, workspace
         self._by_rows_exchanged = False
         self._section: IntArray | None = None  # of each row of the system, on all ranks or none
         self._sections: list[SectionFactors] = []
@@ -55,7 +55,7 @@ class SectionSolver(PythonContext, LinearSystems):
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         if self._by_rows_exchanged:
-            factorise_directly(ksp.getPC(), self._system, self._room)
+            factorise_directly(ksp.getPC(), self._system, self._workspace)
         else:
             self.work_for(ksp.getPC())
 
@@ -90,7 +90,7 @@ class SectionSolver(PythonContext, LinearSystems):
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
         """A solver that exchanges rows tries next, as long as the pattern stays."""
-        again = not self._by_rows_exchanged or self._room.grows_after(ksp.getPC())
+        again = not self._by_rows_exchanged or self._workspace.grows_after(ksp.getPC())
         self._by_rows_exchanged = True
         return "", again
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.bordered_band import SingularError
-from riser_soil.solve.linear_solver import PREFIX, complaint, defaults
-from riser_soil.solve.linear_systems import linear_systems
-from riser_soil.solve.loops import (
+from riser_soil.solve.banded_solvers import RiserAboveSoil, SingularError
+from riser_soil.solve.chain import (
     CONVERGED,
     DIVERGED,
     ITERATING,
@@ -23,7 +23,10 @@ from riser_soil.solve.loops import (
     OUTGROWN,
     Balance,
 )
-from riser_soil.solve.riser_above_soil import RiserAboveSoil
+from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
+from riser_soil.solve.kept_factors import KeptFactors
+from riser_soil.solve.linear_solver import PREFIX, LinearSystems, complaint, defaults, factorise_directly, keeps_factors
+from riser_soil.solve.section_solver import SectionSolver, sections_of
 from riser_soil.solve.solution import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
@@ -175,7 +178,38 @@ class SnesLoop:
 
 
 def _ending(reason: int) -> str:
-    """How SNES has ended, in the words of `loops`; failures by PETSc's name."""
+    """How SNES has ended, in the words of `chain`; failures by PETSc's name."""
     known = {number: name for name, number in REASONS.items()}
     names = (name for name, value in vars(REASON).items() if value == reason and name.startswith("DIV"))
     return known.get(reason) or next(names, str(reason)).lower()
+
+
+def linear_systems(system: System, asked: str) -> LinearSystems:
+    """As asked: "direct", "kept", "iterative", or "auto", which takes sections by themselves; what there is nothing for
+    is solved directly.
+    """
+    comm: Any = system.comm
+    solid = solid_of(system) if asked == "iterative" else None
+    if solid is not None:
+        return IterativeSolver(system, solid)
+    sections = sections_of(system) if asked == "auto" else None
+    if sections is not None:
+        return SectionSolver(system, sections, Workspace())
+    if keeps_factors(system, asked):
+        return KeptFactors(comm, system.symmetric, Workspace())
+    return DirectSolver(system, Workspace())
+
+
+class DirectSolver(LinearSystems):
+    """Each system is factorised."""
+
+    def __init__(self, system: System, workspace: Workspace) -> None:
+        self._system, self._workspace = system, workspace
+
+    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        factorise_directly(ksp.getPC(), self._system, self._workspace)
+
+    def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
+        """Where factors found too little workspace, the next get more."""
+        return "", self._workspace.grows_after(ksp.getPC())

@@ -2,51 +2,178 @@
 
 Which pairs of an element and a facet may touch is found for boxes around the elements, and holds as long as these stay
 within; which dofs are reached, see `soil.condensed`. Where either doesn't do, the loop says so, and begins anew.
+
+What the compiled loop over a riser does besides where other unknowns stand beside it, which all couple: its border.
+
+    [B  U ] [x]   [f]
+    [U' D ] [y] = [g]
+
+B is the riser's band, U the coupling, whose rows are zero but at few nodes, and D dense, as in `banded_solvers`.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.near_points import FEW, PairsByFacet, points_room
+from riser_soil.contact.near_points import FEW, PairsByFacet, points_workspace
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.contact.surface_loop import (
     BEYOND,
     HELD,
+    LEFT,
     POINTS,
     Border,
     TopMotion,
-    TouchNumbers,
-    TouchRoom,
+    TouchData,
+    TouchWorkspace,
     Watched,
     add_touch,
     add_touch_tangent,
     move_top,
     put_touch_work,
 )
+from riser_soil.core import banded, dense
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound
+from riser_soil.core.compiled import njit
 from riser_soil.core.dense import PIVOT
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
+from riser_soil.riser.part_kernels import LineForces
 from riser_soil.soil.condensed import CondensedSoil, Reached
-from riser_soil.solve.bordered_loop import (
-    Factors,
-    SoilNumbers,
-    begin_border,
-    clear_border,
-    factorise_with_border,
-    improve_with_border,
-    judge_with_border,
+from riser_soil.solve.packed_riser import LoopBorder
+from riser_soil.solve.riser_loop import (
+    GOING_ON,
+    OUTGROWN,
+    SINGULAR,
+    Dofs,
+    MatrixWorkspace,
+    NewtonProgress,
+    StepData,
+    StopLimits,
+    decide,
+    line_norms,
 )
-from riser_soil.solve.loop_border import LoopBorder
 
 SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
 NONE: IntArray = np.empty(0, dtype=np.int64)
+
+
+class SoilData(NamedTuple):
+    """Of condensed soil: stiffness (nb, nb) [N/m] of its reached dofs, and the forces (nb,) that hold them as they were
+    accepted [N].
+    """
+
+    stiffness: Array
+    holding: Array
+
+
+class Factors(NamedTuple):
+    """Workspace for the factors of the border: the Schur complement (nb, nb) and its pivots; rows (n,) of the line that
+    are coupled, as many as `filled` (1,) says.
+    """
+
+    schur: Array
+    pivots: IntArray
+    rows: IntArray
+    filled: IntArray
+
+
+@njit
+def begin_border(soil: SoilData, border: Border) -> None:
+    """Write what the soil's own forces leave out of balance."""
+    found = np.dot(soil.stiffness, border.u)
+    for i in range(found.size):
+        border.residual[i] = soil.holding[i] + found[i]
+
+
+@njit
+def judge_with_border(
+    forces: LineForces,
+    dofs: Dofs,
+    limits: StopLimits,
+    progress: NewtonProgress,
+    border: Border,
+    workspace: TouchWorkspace,
+) -> None:
+    """As `riser_loop.judge`, of all unknowns; OUTGROWN where something touches what is not watched or not reached."""
+    if progress.ending[0] != GOING_ON:
+        return
+    norm, apart = line_norms(forces, dofs)
+    square = norm**2
+    for residual in border.residual:
+        square += residual * residual
+    decide(math.sqrt(square), apart, forces, dofs, limits, progress)
+    if workspace.found[LEFT] or workspace.met.any():
+        progress.ending[0] = OUTGROWN
+
+
+@njit
+def clear_border(soil: SoilData, border: Border) -> None:
+    """Write the soil's own tangent."""
+    border.corner[...] = soil.stiffness
+    ndof = border.right.shape[0] // border.coupled.size
+    for n in range(border.coupled.size):
+        if border.coupled[n]:
+            border.right[n * ndof : (n + 1) * ndof] = 0.0
+            border.coupled[n] = False
+
+
+@njit
+def factorise_with_border(
+    workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, progress: NewtonProgress
+) -> None:
+    """Factorise band and border."""
+    fixed, count, ndof = dofs.fixed, 0, dofs.fixed.shape[1]
+    for n in range(fixed.shape[0]):
+        for i in range(ndof):
+            if border.coupled[n] and not fixed[n, i]:
+                factors.rows[count] = n * ndof + i
+                count += 1
+    factors.filled[0] = count
+    rows, schur = factors.rows[:count], factors.schur
+    schur[...] = border.corner
+    if not banded.factorise(workspace.ab, workspace.pivots, workspace.band):
+        progress.ending[0] = SINGULAR
+        return
+    if count > 0:
+        right, inner = border.right[rows], banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band)
+        schur -= np.dot(np.ascontiguousarray(right.T), np.dot(inner, right))
+    if not dense.factorise(schur, factors.pivots):
+        progress.ending[0] = SINGULAR
+
+
+@njit
+def improve_with_border(
+    workspace: MatrixWorkspace, step: StepData, dofs: Dofs, border: Border, factors: Factors
+) -> None:
+    """Take what the factorised tangent answers to the residual off the increments."""
+    residual, fixed = dofs.residual.reshape(dofs.residual.size), dofs.fixed.reshape(dofs.fixed.size)
+    for k in range(fixed.size):
+        if fixed[k]:
+            residual[k] = 0.0
+    rows, answer = factors.rows[: factors.filled[0]], border.residual
+    inner = residual.copy()
+    banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
+    for k in rows:
+        for j in range(answer.size):
+            answer[j] -= border.right[k, j] * inner[k]
+    dense.solve(factors.schur, factors.pivots, answer)
+    for k in rows:
+        residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
+    banded.solve(workspace.ab, workspace.pivots, residual, workspace.band)
+    u = step.u.reshape(step.u.size)
+    for k in range(fixed.size):
+        if not fixed[k]:
+            u[k] -= residual[k]
+    for j in range(answer.size):
+        border.u[j] -= answer[j]
 
 
 class SoilBorder(LoopBorder):
@@ -58,26 +185,26 @@ class SoilBorder(LoopBorder):
 
     knows_round_off = smooth = False
 
-    def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchNumbers) -> None:
+    def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchData) -> None:
         self._line, self._contact, self._soil, self._top = line, contact, soil, soil.top
         points, ne = len(soil.top.points), line.length.size
-        self._touch, self._found = touch, _room(FEW, points)
+        self._touch, self._found = touch, _workspace(FEW, points)
         pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
-        self._room, self._numbers = Packed(self._found), Packed(touch)
+        self._workspace, self._numbers = Packed(self._found), Packed(touch)
         self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
         self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
         self._taken: Array = np.zeros(1)
         self._seen: Array = np.empty((0, 3))
         self._reached: Reached | None = None  # as it was taken last
 
-    def _empty(self, nb: int) -> tuple[Border, SoilNumbers, Factors]:
-        """Room for so many dofs."""
+    def _empty(self, nb: int) -> tuple[Border, SoilData, Factors]:
+        """Workspace for so many dofs."""
         n, nodes = self._line.size, self._line.nodes
         matrices = np.zeros((nb, nb)), np.zeros((n, nb)), np.zeros(nodes, dtype=np.bool_)
         border = Border(np.zeros(nb), np.zeros(nb), *matrices)
         factors = Factors(np.zeros((nb, nb)), np.zeros(nb, PIVOT), np.zeros(n, np.int64), np.zeros(1, np.int64))
-        return border, SoilNumbers(np.zeros((nb, nb)), np.zeros(nb)), factors
+        return border, SoilData(np.zeros((nb, nb)), np.zeros(nb)), factors
 
     def _motion_of(self, by: Array, nodes: IntArray) -> TopMotion:
         rows = np.full(self._top.size, HELD, dtype=np.int64)
@@ -89,26 +216,26 @@ class SoilBorder(LoopBorder):
         """Kernels that add the border's residual, and contact's."""
         moved = Bound(move_top, self._numbers, self._motion, self._border)
         begun = Bound(begin_border, self._held, self._border)
-        given = self._numbers, self._watched, self._motion, at, forces, self._border, self._room
+        given = self._numbers, self._watched, self._motion, at, forces, self._border, self._workspace
         return [moved, begun, Bound(add_touch, *given)]
 
     def judge(self, forces: Packed, dofs: Packed, limits: Packed, progress: Packed) -> Bound:
-        return Bound(judge_with_border, forces, dofs, limits, progress, self._border, self._room)
+        return Bound(judge_with_border, forces, dofs, limits, progress, self._border, self._workspace)
 
     def tangent(self, at: Packed, K: Packed) -> list[Bound]:
         """Kernels that write the border's tangent, and add contact's."""
-        given = self._numbers, self._motion, at, K, self._border, self._room
+        given = self._numbers, self._motion, at, K, self._border, self._workspace
         return [Bound(clear_border, self._held, self._border), Bound(add_touch_tangent, *given)]
 
-    def factorise(self, room: Packed, dofs: Packed, progress: Packed) -> Bound:
-        return Bound(factorise_with_border, room, dofs, self._border, self._factors, progress)
+    def factorise(self, workspace: Packed, dofs: Packed, progress: Packed) -> Bound:
+        return Bound(factorise_with_border, workspace, dofs, self._border, self._factors, progress)
 
-    def improve(self, room: Packed, step: Packed, dofs: Packed) -> Bound:
-        return Bound(improve_with_border, room, step, dofs, self._border, self._factors)
+    def improve(self, workspace: Packed, step: Packed, dofs: Packed) -> Bound:
+        return Bound(improve_with_border, workspace, step, dofs, self._border, self._factors)
 
     def account(self, then: Packed, now: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
-        return [Bound(put_touch_work, self._numbers, self._motion, then, now, self._room, Packed(self._taken))]
+        return [Bound(put_touch_work, self._numbers, self._motion, then, now, self._workspace, Packed(self._taken))]
 
     def begin(self, before: State, guess: Array) -> None:
         """Begin a step with a first guess (size,) of all local increments."""
@@ -139,8 +266,8 @@ class SoilBorder(LoopBorder):
             self._soil.meet(np.flatnonzero(found.met))
             self._soil.rebuild(State.at_rest(0.0, self._top.offset + self._top.size))
         if found.found[POINTS] == len(found.force):
-            self._found = _room(2 * len(found.force), len(found.met))
-            self._room.renew(self._found)
+            self._found = _workspace(2 * len(found.force), len(found.met))
+            self._workspace.renew(self._found)
         self._look([self._touch.axis._replace(q=self._touch.axis.q.copy())])
 
     def _look(self, tried: Sequence[Axis]) -> None:
@@ -194,7 +321,7 @@ class SoilBorder(LoopBorder):
         return float(self._taken[0])
 
 
-def _room(count: int, nodes: int) -> TouchRoom:
-    """Room for so many points that touch, on a top of so many nodes."""
+def _workspace(count: int, nodes: int) -> TouchWorkspace:
+    """Workspace for so many points that touch, on a top of so many nodes."""
     found, met = np.zeros(2, dtype=np.int64), np.zeros(nodes, dtype=np.bool_)
-    return TouchRoom(points_room(count), np.zeros(count), np.zeros(count), found, met, np.zeros(1))
+    return TouchWorkspace(points_workspace(count), np.zeros(count), np.zeros(count), found, met, np.zeros(1))

@@ -1,16 +1,20 @@
-"""A step for Newton's method and its solution, the method's settings, and how it fails."""
+"""A step for Newton's method and its solution, the method's settings, and how it fails, in words."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
+
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import all_of
 from riser_soil.core.part import Forces, State
+from riser_soil.core.system import System
 from riser_soil.solve.time_scheme import Scheme
 
 REUSE = 0.1
-BESIDE_CLAY = 0.03  # the same of the tangent of all else beside clay, whose curves take most of the iterations
+BESIDE_CLAY = 0.01  # the same of the tangent of all else beside clay, whose curves take most of the iterations
 
 
 class NotConvergedError(Exception):
@@ -25,7 +29,7 @@ class UnstableError(NotConvergedError):
         self.solution = solution
 
 
-def told(why: str, norms: list[float], place: str) -> str:
+def reported(why: str, norms: list[float], place: str) -> str:
     """Why a step failed, the last of its residual's norms [N], and where the residual sits."""
     last = ", ".join(f"{norm:.3g}" for norm in norms[-3:])
     return f"{why} after {max(len(norms) - 1, 0)} iterations (last residual norms {last} N); {place}"
@@ -87,3 +91,17 @@ class Solution:
     @property
     def iterations(self) -> int:
         return len(self.norms) - 1
+
+
+def place_of_largest(system: System, residual: Array, first: int) -> str:
+    """The row with the largest residual, in words; collective.
+
+    residual: this rank's [N], moments over the lever; its rows begin with `first`.
+    """
+    values = np.abs(residual)
+    if not all_of(system.comm, bool(np.isfinite(values).all())):
+        return "the residual is not finite"
+    k = int(np.argmax(values)) if len(values) else -1
+    mine = (float(values[k]), first + k) if k >= 0 else (-1.0, -1)
+    worst, row = max(system.comm.allgather(mine))
+    return largest_at(worst, system.describe(row))

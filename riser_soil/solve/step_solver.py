@@ -1,22 +1,28 @@
-"""The solver of a stage's steps: Newton's method over its parts, or in time steps of a riser a compiled loop."""
+"""The solver of a stage's steps: Newton's method, or a compiled loop, and the balance of soil under lines held."""
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State, Work
-from riser_soil.core.system import System
+from riser_soil.core.communicator import Communicator, destroyed_together
+from riser_soil.core.part import Energy, Forces, Model, State, Work
+from riser_soil.core.system import System, Timer
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_mass import InverseMass
-from riser_soil.solve.solution import NewtonSettings, Solution, Step
-from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme, Static
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
+
+INSTANT = Static(seconds=0.0)  # what flows under rate keeps its stress
 
 
 class StepSolver(Protocol):
@@ -89,3 +95,26 @@ def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepS
 
         return condensed_newton(system, settings) or Newton(system, settings)
     return Newton(system, settings)
+
+
+def balance_held(comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer) -> None:
+    """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it. Where that fails
+    it is left to the next step. Collective.
+    """
+    parts = [part for part in model.parts if part.traits.groups == "E"]
+    with ExitStack() as stack:
+        for line in model.lines:
+            stack.enter_context(line.held())
+        system = System(comm, Model(model.lines, parts, model.others), clock)
+        newton = Newton(system, settings)
+        with destroyed_together(comm, newton, system):
+            size = system.numbering.size
+            try:
+                found = newton.solve(Step(INSTANT, State.at_rest(t, size), t, 0.0, None, np.zeros(size))).state
+            except NotConvergedError:
+                return
+            for part in parts:
+                if part.active:
+                    part.commit(found)
+            for field in model.others:
+                field.commit(found)

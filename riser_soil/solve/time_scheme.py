@@ -23,7 +23,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces, State, Weights
-from riser_soil.solve.step_end import CommittedStep
+from riser_soil.solve.riser_mass import CommittedStep
 
 
 class Scheme(Protocol):

@@ -15,14 +15,20 @@ from riser_soil.core.roles import MomentumCorrecting, Predictor, Renewing, Start
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
-from riser_soil.solve.energy_gain import LARGEST, EnergyGain
-from riser_soil.solve.held_balance import balance_held
-from riser_soil.solve.local_error import LocalError, committed_error
-from riser_soil.solve.predictor import GRADUAL, ROUGH, SMOOTH, Extrapolation
+from riser_soil.solve.local_error import (
+    GRADUAL,
+    LARGEST,
+    ROUGH,
+    SMOOTH,
+    EnergyGain,
+    Extrapolation,
+    LocalError,
+    committed_error,
+)
+from riser_soil.solve.riser_mass import CommittedStep
 from riser_soil.solve.solution import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
-from riser_soil.solve.step_end import CommittedStep
-from riser_soil.solve.step_solver import StepSolver
+from riser_soil.solve.step_solver import StepSolver, balance_held
 from riser_soil.solve.time_scheme import Scheme
 
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
@@ -69,7 +75,7 @@ class TimeStepper:
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
     local_error: largest of a place in the last step [m], see `local_error`; 0 in statics.
-    largest_gain: share of the energy in motion that a step may create, see `energy_gain`.
+    largest_gain: share of the energy in motion that a step may create, see `local_error`.
     first_guess (size,): beyond the guess of the steps until one is accepted, where it is known how they end.
     """
 
@@ -236,10 +242,12 @@ class TimeStepper:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
         self.newton.commit(state)
-        start, begun = self._start(step.dt), (self.before, self.now)
+        start, states_before = self._start(step.dt), (self.before, self.now)
         self.before, self.now = self._rates_after(step)
         if self.scheme.dynamic:
-            self.local_error = committed_error(self.system, self.scheme, begun, (self.before, self.now), step.dt)
+            self.local_error = committed_error(
+                self.system, self.scheme, states_before, (self.before, self.now), step.dt
+            )
         if self._error is not None:
             self._error.accept(start, self.before, step.dt)
         self._begin_step()

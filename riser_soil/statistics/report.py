@@ -1,4 +1,9 @@
-"""What `riser-soil statistics` tells and leaves: tables on the screen, CSV or JSON."""
+"""What `riser-soil statistics` tells and leaves: tables on the screen, CSV or JSON.
+
+Histories of outputs as CSV: time in the first column, names without blanks or commas in the first row.
+
+So qats reads them (github.com/dnvgl/qats, time series of .csv files), and pandas with its defaults.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +11,7 @@ import csv
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 
@@ -46,8 +51,10 @@ def table(places: Sequence[Place], wanted: Wanted) -> list[str]:
     for place in places:
         x = place.found
         numbers = (x.mean, x.deviation, x.least, x.largest, x.period, x.rayleigh)
-        told = [f"{_told(value):>10}" for value in numbers] + [f"{_within(fit):>32}" for fit in (x.weibull, x.gumbel)]
-        lines.append(f"{place.words:{wide}} {place.records.units:>5} " + " ".join(told))
+        reported = [f"{_reported(value):>10}" for value in numbers] + [
+            f"{_within(fit):>32}" for fit in (x.weibull, x.gumbel)
+        ]
+        lines.append(f"{place.words:{wide}} {place.records.units:>5} " + " ".join(reported))
     return lines + list(_warnings(places))
 
 
@@ -64,7 +71,9 @@ def exceedance_table(places: Sequence[Place], levels: Sequence[float], wanted: W
     for place in places:
         for level in levels:
             found = (level, *place.found.exceeded(level).values())
-            lines.append(f"{place.words:{wide}} {place.records.units:>5} " + " ".join(f"{_told(x):>12}" for x in found))
+            lines.append(
+                f"{place.words:{wide}} {place.records.units:>5} " + " ".join(f"{_reported(x):>12}" for x in found)
+            )
     return lines
 
 
@@ -147,7 +156,7 @@ def _cell(value: Any) -> Any:
     return (f"{value:.8g}" if np.isfinite(value) else "") if isinstance(value, float) else value
 
 
-def _told(value: float) -> str:
+def _reported(value: float) -> str:
     return f"{value:.5g}" if np.isfinite(value) else "-"
 
 
@@ -165,3 +174,20 @@ def _warnings(places: Sequence[Place]) -> Iterator[str]:
         )
     if all(len(place.found.maxima) < 3 for place in places):
         yield "Gumbel's distribution needs three maxima or more: give more runs (seeds), or --block SECONDS"
+
+
+def write_histories(histories: Sequence[Records], file: TextIO) -> None:
+    """Of one run and stage, which time counts from."""
+    first = histories[0]
+    time = first.begin + first.step * np.arange(len(first.values[0]))
+    table = np.column_stack([time, *(each.values[0] for each in histories)])
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(["time_s", *(name for each in histories for name in _names(each))])
+    writer.writerows([repr(float(value)) for value in row] for row in table)
+
+
+def _names(history: Records) -> list[str]:
+    """Of an output at its places, with its unit: effective_tension_at_150m_N."""
+    places = ["" if np.isnan(arc) else f"_at_{arc:.10g}m" for arc in history.arc]
+    unit = "_" + history.units.replace(" ", "") if history.units not in ("", "1") else ""
+    return [f"{history.name}{place}{unit}" for place in places]

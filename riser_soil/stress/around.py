@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from riser_soil.accuracy.headlines import Headline, headlines
+from riser_soil.accuracy.key_results import KeyResult, key_results
+from riser_soil.errors import RiserSoilError
 from riser_soil.results.folder import write_atomically
 from riser_soil.results.read import Run
 from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from riser_soil.stress.answers import Answer, between
-from riser_soil.stress.bounds import bounds
+from riser_soil.stress.bounds import Answer, between, bounds
 from riser_soil.stress.extremes import ExtremeScene, extremes, is_at_rest
-from riser_soil.stress.limited_process import Ending, Limits, ended, import_all
-from riser_soil.stress.outcome import PASSED, TOLD, StressOutcome, outcome
-from riser_soil.stress.stressed_run import running
-from riser_soil.stress.table import as_json, markdown, told
+from riser_soil.stress.limited_process import Ending, Job, Limits, ended, import_all
+from riser_soil.stress.outcome import PASSED, REPORTED, StressOutcome, as_json, markdown, outcome, reported
+from riser_soil.whole_run import run
 
-AT_REST = 1e-3  # of a headline: what time steps without motion may change
+AT_REST = 1e-3  # of a key_result: what time steps without motion may change
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ def stress(
         done = list(pool.map(lambda item: _run(item[0], item[1], limits), places))
     rows = [_judged(each, done) for each in done]
     for row in rows:
-        says(told(row))
+        says(reported(row))
     write_atomically(folder / "stress.json", as_json(rows, command))
     write_atomically(folder / "stress.md", markdown(rows) + "\n")
     return rows
@@ -66,7 +67,7 @@ def _judged(stressed: StressedScene, done: list[StressedScene]) -> StressOutcome
     runs = [] if run is None else [run]
     answers = list(_answers(stressed, done)) if run is not None and stressed.ending.finished else []
     row = outcome(name, "", stressed.ending, runs, answers, may_tell=_own_warnings(stressed, done[0]))
-    return replace(row, as_hoped=row.verdict in (PASSED, TOLD))
+    return replace(row, as_hoped=row.verdict in (PASSED, REPORTED))
 
 
 def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Answer]:
@@ -79,8 +80,8 @@ def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Ans
     other = next((each for each in done if each.extreme.name == extreme.against), None)
     if other is None or other.run is None or not other.ending.finished or extreme.apart is None:
         return
-    theirs = headlines(other.run.summary)
-    for key, mine in headlines(run.summary).items():
+    theirs = key_results(other.run.summary)
+    for key, mine in key_results(run.summary).items():
         if key in theirs and mine.unit == "N":
             apart = theirs[key].relative(mine.value - theirs[key].value)
             yield between(f"{key}, apart from that {other.extreme.name} [-]", apart, 0.0, extreme.apart)
@@ -88,7 +89,7 @@ def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Ans
 
 def _at_rest(run: Run) -> Iterator[Answer]:
     """Dynamic stages without motion: their extremes are the static stage's values."""
-    found = headlines(run.summary)
+    found = key_results(run.summary)
     static = next(stage["name"] for stage in run.summary["stages"] if stage["kind"] == "static")
     for stage in (each["name"] for each in run.summary["stages"] if each["kind"] != "static"):
         for name in ("top tension", "force at end", "force at start"):
@@ -97,7 +98,7 @@ def _at_rest(run: Run) -> Iterator[Answer]:
                 yield between(f"{now.key}, apart from rest [-]", _apart(now, before), 0.0, AT_REST)
 
 
-def _apart(now: Headline, before: Headline) -> float:
+def _apart(now: KeyResult, before: KeyResult) -> float:
     return before.relative(now.value - before.value)
 
 
@@ -115,3 +116,18 @@ def _warnings(ending: Ending) -> list[str]:
 def _begin(line: str) -> str:
     """A warning without its numbers."""
     return re.sub(r"[-+\d.e]+", "#", line)[:60]
+
+
+def running(names: Sequence[str]) -> Job:
+    """Run NAME.yaml in turn, results to folders NAME, up to the first that fails; its exit status."""
+
+    def job() -> int:
+        for name in names:
+            try:
+                run(read_scene(f"{name}.yaml"), Path(name), force=True)
+            except RiserSoilError as err:
+                print(err, file=sys.stderr)
+                return err.exit_status
+        return 0
+
+    return job

@@ -1,8 +1,10 @@
-"""Bounds that every finished run keeps, whatever its scene: finite numbers, forces in equilibrium, energy balance."""
+"""Answers that a stressed run is judged by: exact ones with what may be missed, bounds that every run keeps."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +15,6 @@ from riser_soil.results.summary import DOUBTFUL
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, loads_in
-from riser_soil.stress.answers import Answer, between
 
 BALANCE = 1e-3  # of the largest force: what an equilibrium may miss
 ENERGY = "energy residual"  # in the name of that bound, of which runs have a warning of their own
@@ -25,11 +26,11 @@ def bounds(run: Run) -> Iterator[Answer]:
     wrong = sum(int((~np.isfinite(run[name])).sum()) for name in _ALONG_RISER if name in _recorded(run))
     yield between("numbers that are none", wrong, 0, 0)
     scene = read_scene(run.folder / "scene.yaml")
-    for stage, told in zip(scene.stages, run.summary["stages"], strict=True):
+    for stage, reported in zip(scene.stages, run.summary["stages"], strict=True):
         if isinstance(stage, DynamicStage):
-            yield from _energy(told)
+            yield from _energy(reported)
         else:
-            yield from _balance(scene, stage, told)
+            yield from _balance(scene, stage, reported)
 
 
 def _recorded(run: Run) -> tuple[str, ...]:
@@ -47,11 +48,11 @@ def _energy(stage: dict[str, Any]) -> Iterator[Answer]:
     yield between(f"{stage['name']}: {ENERGY} [-]", worst_residual(stage), 0.0, DOUBTFUL)
 
 
-def _balance(scene: Scene, stage: Stage, told: dict[str, Any]) -> Iterator[Answer]:
+def _balance(scene: Scene, stage: Stage, reported: dict[str, Any]) -> Iterator[Answer]:
     """Vertical forces at the stage's end: reactions, contact, loads and weight; and no tension beyond their sum."""
     if not _still_and_submerged(scene):
         return
-    final, weight, load = told["final"], _weight(scene), _loads(scene, stage)
+    final, weight, load = reported["final"], _weight(scene), _loads(scene, stage)
     up = [final["start"]["force"][2], final["end"]["force"][2], final["contact_force"], float(load[2]), -weight]
     forces = [*final["start"]["force"], *final["end"]["force"], *up]
     bending = final["max_bending_moment"]["value"] / scene.riser.length
@@ -87,3 +88,57 @@ def _loads(scene: Scene, stage: Stage) -> np.ndarray:
         total += factor * np.asarray(load.force or (0.0, 0.0, 0.0))
         total += factor * scene.riser.length * np.asarray(load.distributed or (0.0, 0.0, 0.0))
     return total
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A quantity with its unit, what a run found for it, and what it may be. exact: None where there are bounds
+    only.
+    """
+
+    what: str
+    found: float
+    low: float
+    high: float
+    exact: float | None = None
+
+    @property
+    def holds(self) -> bool:
+        return self.low <= self.found <= self.high
+
+    @property
+    def error(self) -> float:
+        """Relative to the exact answer, or how far beyond the bounds relative to them; inf for what is no number."""
+        if not math.isfinite(self.found):
+            return math.inf
+        if self.exact is not None:
+            return abs(self.found - self.exact) / (abs(self.exact) or max(self.high - self.low, math.ulp(0.0)))
+        beyond = max(self.low - self.found, self.found - self.high, 0.0)
+        return beyond / max(*(abs(x) for x in (self.low, self.high) if math.isfinite(x)), math.ulp(1.0))
+
+    @property
+    def severity(self) -> tuple[bool, bool, float]:
+        """By which the worst of several answers is found: one that does not hold, else an exact one, else a bound."""
+        if not math.isfinite(self.found):
+            return True, True, math.inf
+        if self.exact is not None:
+            room = self.high - self.low
+            return not self.holds, True, abs(self.found - self.exact) / max(room, math.ulp(0.0))
+        bound = self.high if 0.0 < self.high < math.inf else math.inf
+        return not self.holds, False, self.error if self.error else self.found / bound
+
+    def __str__(self) -> str:
+        if self.exact is not None:
+            return f"{self.what}: {self.found:.6g}, exactly {self.exact:.6g}"
+        return f"{self.what}: {self.found:.6g}, within {self.low:.6g} and {self.high:.6g}"
+
+
+def near(what: str, found: float, exact: float, *, rel: float = 0.0, within: float = 0.0) -> Answer:
+    """An exact answer, missed by at most a share `rel` of it and `within`, in its unit."""
+    missed = rel * abs(exact) + within
+    return Answer(what, float(found), float(exact - missed), float(exact + missed), float(exact))
+
+
+def between(what: str, found: float, low: float = -math.inf, high: float = math.inf) -> Answer:
+    """An answer known by its bounds."""
+    return Answer(what, float(found), float(low), float(high))

@@ -8,12 +8,12 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from riser_soil.accuracy.knobs import KNOBS, varied
+from riser_soil.accuracy.settings import SETTINGS, varied
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage
 
 BASE = "as it is"
-CLOSE, NEAR, SAME = 0.02, 0.1, 1e-4  # what headline quantities may differ by, of their scales
+CLOSE, NEAR, SAME = 0.02, 0.1, 1e-4  # what key results may differ by, of their scales
 FACTORS = {
     "elements": ((0.25, NEAR), (2.0, NEAR)),
     "time_step": ((0.1, NEAR), (1.0 / 3.0, NEAR)),
@@ -26,7 +26,7 @@ FACTORS = {
 class ExtremeScene:
     """A scene with something of it changed.
 
-    against, apart: the name of the extreme, or of the scene as it is, whose headline quantities those of this one are
+    against, apart: the name of the extreme, or of the scene as it is, whose key results those of this one are
     to be, and by what they may differ, relative; None where its bounds alone are known.
     """
 
@@ -39,10 +39,12 @@ class ExtremeScene:
 def extremes(scene: Scene) -> Iterator[ExtremeScene]:
     """The scene as it is, then those that make sense for it."""
     yield ExtremeScene(BASE, scene)
-    for knob in KNOBS:
-        for factor, apart in FACTORS[knob.name] if knob.there(scene) else ():
+    for setting in SETTINGS:
+        for factor, apart in FACTORS[setting.name] if setting.there(scene) else ():
             against = BASE if apart else None
-            yield ExtremeScene(f"{knob.words}, {factor:.3g} times as fine", varied(scene, knob, factor), against, apart)
+            yield ExtremeScene(
+                f"{setting.words}, {factor:.3g} times as fine", varied(scene, setting, factor), against, apart
+            )
     yield from _materials(scene)
     if any(not isinstance(stage, StaticStage) and stage.motion for stage in scene.stages):
         yield from _motions(scene)
@@ -54,8 +56,8 @@ def extremes(scene: Scene) -> Iterator[ExtremeScene]:
 
 
 def _materials(scene: Scene) -> Iterator[ExtremeScene]:
-    """A line without bending stiffness, or without stretch, has a limit: what comes after a ladder's first is near
-    it.
+    """A line without bending stiffness, or without stretch, has a limit: what comes after a refinement series's first
+    is near it.
     """
     for key, factors in (("EI", (1e-3, 1e-6)), ("EA", (1e3, 1e6))):
         first = f"{key} times {factors[0]:g}"

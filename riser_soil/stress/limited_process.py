@@ -33,13 +33,13 @@ Job = Callable[[], int]
 class Limits:
     """Of one process. cpu, wall: s; wall is for one that waits for ever. memory: bytes of address space.
 
-    told_long: CPU time [s] of one whose computation is long, as the program itself says; None: as for all others.
+    reported_long: CPU time [s] of one whose computation is long, as the program itself says; None: as for all others.
     """
 
     cpu: int = 60
     wall: float = 900.0
     memory: int = 6 * 2**30
-    told_long: int | None = None
+    reported_long: int | None = None
 
 
 @dataclass(frozen=True)
@@ -105,15 +105,15 @@ def _limit(limits: Limits) -> None:
 
 def _waited(process: int, output: Path, limits: Limits) -> tuple[int, float, bool]:
     """Wait status, CPU seconds, and whether the process was told to be long and so got less time."""
-    long, begun = False, time.monotonic()
+    long, start = False, time.monotonic()
     while True:
         done, status, usage = os.wait4(process, os.WNOHANG)
         if done:
             return status, usage.ru_utime + usage.ru_stime, long
-        if limits.told_long and not long and output.exists() and LONG in output.read_text(errors="replace"):
+        if limits.reported_long and not long and output.exists() and LONG in output.read_text(errors="replace"):
             long = True
-            resource.prlimit(process, resource.RLIMIT_CPU, (limits.told_long, limits.told_long + 5))
-        if time.monotonic() - begun > limits.wall:
+            resource.prlimit(process, resource.RLIMIT_CPU, (limits.reported_long, limits.reported_long + 5))
+        if time.monotonic() - start > limits.wall:
             os.kill(process, signal.SIGKILL)
         time.sleep(0.02)
 

@@ -1,20 +1,26 @@
-"""Outcome of a stressed scene: its verdict, errors against its answers, and what it cost."""
+"""Outcome of a stressed scene: its verdict, errors against its answers, what it cost; and tables of many."""
 
 from __future__ import annotations
 
+import json
+import os
+import platform
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from datetime import date
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import riser_soil
 from riser_soil.results.read import Run
 from riser_soil.results.summary import plain_json
-from riser_soil.stress.answers import Answer
-from riser_soil.stress.bounds import ENERGY, worst_residual
+from riser_soil.stress.bounds import ENERGY, Answer, worst_residual
 from riser_soil.stress.limited_process import Ending
 
-PASSED, TOLD, WRONG, BROKEN, LONG = "passed", "told plainly", "QUIETLY WRONG", "broken", "out of time"
+PASSED, REPORTED, WRONG, BROKEN, LONG = "passed", "told plainly", "QUIETLY WRONG", "broken", "out of time"
+HEAD = ("case", "worst of its answers", "error", "energy residual", "Newton iterations", "cuts", "CPU s", "verdict")
 
 
 @dataclass(frozen=True)
@@ -62,7 +68,7 @@ def outcome(
     found = list(answers) if ending.finished else []
     worst = max(found, key=lambda answer: answer.severity, default=None)
     verdict = _verdict(ending, found, may_tell)
-    hoped = verdict == PASSED or (verdict == TOLD and may_tell is not None and _says(ending, may_tell))
+    hoped = verdict == PASSED or (verdict == REPORTED and may_tell is not None and _says(ending, may_tell))
     stages = [stage for run in runs for stage in run.summary["stages"]]
     residuals = [worst_residual(stage) for stage in stages if stage["kind"] == "dynamic"]
     return StressOutcome(
@@ -84,13 +90,13 @@ def _verdict(ending: Ending, answers: Sequence[Answer], may_tell: str | None) ->
     if not ending.well:
         return LONG if ending.word == "hang" else BROKEN
     if not ending.finished:
-        return TOLD
+        return REPORTED
     wrong = [answer for answer in answers if not answer.holds]
     if not wrong:
         return PASSED
     if all(ENERGY in answer.what for answer in wrong) and _says(ending, "the energy balance is"):
-        return TOLD
-    return TOLD if may_tell is not None and _says(ending, may_tell) else WRONG
+        return REPORTED
+    return REPORTED if may_tell is not None and _says(ending, may_tell) else WRONG
 
 
 def _says(ending: Ending, pattern: str) -> bool:
@@ -111,3 +117,51 @@ def _message(ending: Ending, pattern: str | None) -> str:
 def runs_in(place: Path, names: Iterable[str]) -> list[Run]:
     """The runs in a folder, finished or not, that have a summary."""
     return [Run(place / name) for name in names if (place / name / "summary.json").is_file()]
+
+
+def reported(row: StressOutcome) -> str:
+    """One row on the screen, and what was told beneath it."""
+    figures = f"{_number(row.error)} | {_number(row.residual)} | {row.iterations} | {row.cuts} | {row.seconds:.1f} s"
+    mark = "" if row.as_hoped else " (!)"
+    below = "".join(f"\n    {text}" for text in (row.answer, row.message) if text)
+    return f"{row.verdict}{mark}: {row.name} | {figures}{below}"
+
+
+def markdown(rows: Iterable[StressOutcome]) -> str:
+    """The table, the first two columns to the left."""
+    rule = ["---", "---", *["---:"] * (len(HEAD) - 3), "---"]
+    lines = [HEAD, rule, *(_cells(row) for row in rows)]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+
+
+def _cells(row: StressOutcome) -> Sequence[str]:
+    verdict = row.verdict if row.as_hoped else f"**{row.verdict}**"
+    costs = (_number(row.error), _number(row.residual), str(row.iterations), str(row.cuts), f"{row.seconds:.1f}")
+    return row.name, row.answer.replace("|", "/"), *costs, verdict
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.1e}"
+
+
+def circumstances(command: str) -> dict[str, Any]:
+    """When, with what and where a table was made."""
+    packages = ("numpy", "scipy", "numba")
+    return {
+        "date": date.today().isoformat(),
+        "command": command,
+        "riser_soil": riser_soil.__version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in packages},
+        "machine": f"{platform.machine()}, {os.cpu_count()} cores, {_memory():.0f} GB",
+    }
+
+
+def _memory() -> float:
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9
+
+
+def as_json(rows: Iterable[StressOutcome], command: str) -> str:
+    """Circumstances and all rows."""
+    reported = {"made": circumstances(command), "cases": [row.as_json() for row in rows]}
+    return json.dumps(reported, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

@@ -25,10 +25,10 @@ Place = tuple[Any, Any]
 
 @dataclass(frozen=True)
 class Case:
-    """Files of one mutated scene, by name; the scene itself is SCENE. told: what was done to it."""
+    """Files of one mutated scene, by name; the scene itself is SCENE. reported: what was done to it."""
 
     files: dict[str, bytes]
-    told: str
+    reported: str
 
 
 def cases(count: int, seed: int) -> Iterator[Case]:
@@ -39,16 +39,16 @@ def cases(count: int, seed: int) -> Iterator[Case]:
 
 def _case(rng: random.Random) -> Case:
     base = rng.choice(bases())
-    data, told = deepcopy(base.data), [str(base.data["title"])]
+    data, reported = deepcopy(base.data), [str(base.data["title"])]
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        told.append(rng.choices(*zip(*IN_DATA, strict=True))[0](data, rng))
+        reported.append(rng.choices(*zip(*IN_DATA, strict=True))[0](data, rng))
     files = {**base.files, SCENE: _written(data).encode("utf-8", "surrogatepass")}
     if rng.random() < 0.2:
         name = rng.choice(sorted(files))
         how = rng.choice(IN_TEXT)
         files[name] = how(files[name], rng)
-        told.append(f"{name}: {how.__name__.strip('_')}")
-    return Case(files, "; ".join(told))
+        reported.append(f"{name}: {how.__name__.strip('_')}")
+    return Case(files, "; ".join(reported))
 
 
 def _places(data: Any, numbers: bool = False) -> list[Place]:

@@ -22,7 +22,7 @@ from pathlib import Path
 from riser_soil.stress.limited_process import Ending, Limits, ended, import_all
 from tests.fuzz.mutations import SCENE, Case, cases
 
-LIMITS = Limits(told_long=5)
+LIMITS = Limits(reported_long=5)
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class FuzzedScene:
     """One scene, by its number and what was done to it, and how it ended."""
 
     number: int
-    told: str
+    reported: str
     ending: Ending
 
 
@@ -46,7 +46,7 @@ def _ending(number: int, case: Case, folder: Path) -> FuzzedScene:
     place.mkdir()
     for name, content in case.files.items():
         (place / name).write_bytes(content)
-    return FuzzedScene(number, case.told, ended(_run, place, LIMITS))
+    return FuzzedScene(number, case.reported, ended(_run, place, LIMITS))
 
 
 def _run() -> int:
@@ -65,7 +65,7 @@ def report(found: Iterable[FuzzedScene]) -> bool:
         seconds, longest, well = seconds + ending.seconds, max(longest, ending.seconds), well and ending.well
         if not ending.well:
             last = " | ".join(ending.output.strip().splitlines()[-3:])
-            print(f"{scene.number:04d} {ending.word}: {scene.told}\n     {last}", flush=True)
+            print(f"{scene.number:04d} {ending.word}: {scene.reported}\n     {last}", flush=True)
     print(", ".join(f"{number} {word}" for word, number in sorted(counts.items())))
     print(f"{sum(counts.values())} scenes, {seconds:.0f} s of CPU in all, {longest:.1f} s at most")
     return well

@@ -66,7 +66,7 @@ def test_the_good_scene_is_good(tmp_path: Path) -> None:
     assert read_scene(write(tmp_path, GOOD)).title == "base"
 
 
-def test_every_wrong_key_is_told_in_the_order_of_the_file(tmp_path: Path) -> None:
+def test_every_wrong_key_is_reported_in_the_order_of_the_file(tmp_path: Path) -> None:
     text = (
         GOOD.replace("gravity", "gravitiy")
         .replace("period", "perod")

@@ -148,7 +148,7 @@ CASES: list[tuple[Changes, str, str]] = [
 
 
 @pytest.mark.parametrize(("changes", "place", "says"), CASES, ids=lambda x: x if isinstance(x, str) else "")
-def test_combination_is_told(changes: Changes, place: str, says: str, tmp_path: Path) -> None:
+def test_combination_is_reported(changes: Changes, place: str, says: str, tmp_path: Path) -> None:
     text = GOOD
     for old, new in changes:
         assert old in text

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.stress.answers import Answer, near
+from riser_soil.stress.bounds import Answer, near
 from tests.stress.case import Trial, one, stress_case
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from riser_soil.results import Run
-from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
 from tests.support.buckling_scenes import EULER, blade, column, frame
 from tests.support.coupled_scenes import Mapping

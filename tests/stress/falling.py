@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Trial, one, stress_case
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import AVERAGE, dynamic, riser_scene
@@ -65,9 +65,9 @@ def first_contact_in_mid_step() -> Trial:
     """
 
     def answers(run: Run) -> Iterator[Answer]:
-        told = run.summary["stages"][0]
+        reported = run.summary["stages"][0]
         most = 40.0 * (W + np.sqrt(W * W + 2.0 * 1e5 * W * 1.0))
-        yield between("largest contact force [N]", told["extremes"]["contact_force"]["max"], 0.0, 1.001 * most)
+        yield between("largest contact force [N]", reported["extremes"]["contact_force"]["max"], 0.0, 1.001 * most)
         yield between("greatest height [m]", float(run["position"][:, :, 2].max()), -1.1, 1e-9)
         last = run.time > 15.0
         yield near("mean contact force at rest [N]", run["contact_force_sum"][last][:, 2].mean(), 40.0 * W, rel=1e-2)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from riser_soil.results import Run
-from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
 from tests.support.coupled_scenes import Mapping, lying_pipe
 from tests.support.pushed_pipe import INDENTATION, D, E, slice_of_soil
@@ -65,16 +65,16 @@ def penalty_on_soil_over_six_decades() -> Trial:
     """Contact stiffness of 1e5, 1e7, 1e9 and 1e11 N/m2 on elastic soil: the resistance grows with it, below that of a
     pipe which can't sink into the soil's surface; the last two differ by a hundredth at most.
     """
-    ladder = {f"k{n}": pushed(stiffness=10.0**n) for n in (5, 7, 9, 11)}
+    refinement = {f"k{n}": pushed(stiffness=10.0**n) for n in (5, 7, 9, 11)}
 
     def answers(runs: Runs) -> Iterator[Answer]:
-        found = [resistance(runs[name]) for name in ladder]
+        found = [resistance(runs[name]) for name in refinement]
         yield between("least growth along the ladder [N/m]", float(np.diff(found).min()), 0.0)
         yield between("the softest over Hertz's [-]", found[0] / hertz(0.49), 0.0, 1.0)
         yield near("resistance at 1e11 N/m2 [N/m]", found[-1], hertz(0.49), rel=0.15)
         yield near("that at 1e9 over 1e11 N/m2 [-]", found[-2] / found[-1], 1.0, rel=0.01)
 
-    return Trial(ladder, answers)
+    return Trial(refinement, answers)
 
 
 def resting(su: float) -> Mapping:

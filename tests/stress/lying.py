@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Trial, one, stress_case
 from tests.stress.closed_forms import landed
 from tests.support.coupled_scenes import Mapping

@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 from scipy.special import j1, jn_zeros
 
 from riser_soil.results import Run
-from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
 from tests.support.coupled_scenes import Mapping
 from tests.support.end_around_circle import LARGEST, end_led_around, way_around

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from demos.page import table
-from riser_soil.stress.outcome import PASSED, StressOutcome
-from riser_soil.stress.table import as_json, circumstances
+from riser_soil.stress.outcome import PASSED, StressOutcome, as_json, circumstances
 
 DOCS = Path(__file__).parents[2] / "docs"
 COMMAND = "make stress"
@@ -39,13 +38,13 @@ in `tests/stress/`.
 def page(rows: Sequence[StressOutcome], made: Mapping[str, Any]) -> str:
     """The whole page in Markdown."""
     counts = Counter(row.verdict for row in rows)
-    told = ", ".join(f"{number} {verdict}" for verdict, number in sorted(counts.items()))
+    reported = ", ".join(f"{number} {verdict}" for verdict, number in sorted(counts.items()))
     seconds = sum(row.seconds for row in rows)
-    summary = f"{len(rows)} cases in {seconds:.0f} s of processor time, compilation included: {told}."
+    summary = f"{len(rows)} cases in {seconds:.0f} s of processor time, compilation included: {reported}."
     circumstances = ", ".join(f"{name} {value}" for name, value in made.items())
     others = [row for row in rows if row.verdict != PASSED]
     parts = [INTRODUCTION, summary, "", f"Made: {circumstances}.", "", "## Passed", "", passed(rows), ""]
-    return "\n".join([*parts, "## Others", "", *map(_told, others)]).rstrip() + "\n"
+    return "\n".join([*parts, "## Others", "", *map(_reported, others)]).rstrip() + "\n"
 
 
 def passed(rows: Sequence[StressOutcome]) -> str:
@@ -58,7 +57,7 @@ def _error(row: StressOutcome) -> str:
     return "" if row.error is None else f"{row.error:.1e}"
 
 
-def _told(row: StressOutcome) -> str:
+def _reported(row: StressOutcome) -> str:
     """Bold where it is not as it is to end."""
     verdict = row.verdict if row.as_hoped else f"**{row.verdict}**"
     return f"- {row.name}, {verdict}: {'; '.join(text for text in (row.answer, row.message) if text)}"

@@ -18,12 +18,10 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
 
-from riser_soil.stress.answers import Answer
-from riser_soil.stress.bounds import bounds
+from riser_soil.stress.around import running
+from riser_soil.stress.bounds import Answer, bounds
 from riser_soil.stress.limited_process import FORKING, Limits, ended, import_all
-from riser_soil.stress.outcome import StressOutcome, outcome, runs_in
-from riser_soil.stress.stressed_run import running
-from riser_soil.stress.table import told
+from riser_soil.stress.outcome import StressOutcome, outcome, reported, runs_in
 from tests.stress.case import CASES, StressCase, Trial
 from tests.stress.page import publish
 
@@ -85,7 +83,7 @@ def main(arguments: list[str] | None = None) -> int:
         found = []
         for row in outcomes(chosen(asked.names, asked.quick), asked.keep or Path(folder), asked.workers):
             found.append(row)
-            print(told(row), flush=True)
+            print(reported(row), flush=True)
     if asked.page:
         publish(found)
     missed = [row.name for row in found if not row.as_hoped]

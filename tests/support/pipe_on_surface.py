@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.law import Penalty
+from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.soil_contact import CandidateRange
-from riser_soil.contact.suction import SuctionLaw
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Weights

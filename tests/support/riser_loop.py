@@ -11,7 +11,7 @@ import pytest
 from mpi4py import MPI
 
 from benchmarks.stage import TimedStage, last_stage
-from riser_soil.contact.contact_results import ContactResults
+from riser_soil.contact.contact import ContactResults
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, Model, State
@@ -22,8 +22,7 @@ from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.numbered_parts import NumberedParts
-from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.riser_loop import CONVERGED, StopLimits
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.riser_newton import RiserNewton, riser_newton
@@ -58,10 +57,10 @@ class Compiled:
 
     def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
-        numbers, free = NumberedParts([(part, part.numbers()) for part in parts]), np.zeros(line.size, dtype=bool)
+        numbers, free = KernelParts([(part, part.kernel_data()) for part in parts]), np.zeros(line.size, dtype=bool)
         self.riser = PackedRiser(line, PlacedLine(line), numbers, free, np.ones(line.size), most=1)
         for part in parts:
-            part.renew_numbers(before.t, state.t)
+            part.renew_kernel_data(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
         self.riser.begin(State(state.t, state.u, v, a), None, WEIGHTS, StopLimits(0.0, 0.0, 0.0, 1, 0, False))
         self.riser.evaluate()
@@ -69,12 +68,12 @@ class Compiled:
 
     def dense(self) -> Array:
         """The matrix (n, n) that was written to the band."""
-        room = self.riser.room
-        n, b = room.pivots.size, len(room.band)
+        workspace = self.riser.workspace
+        n, b = workspace.pivots.size, len(workspace.band)
         K = np.zeros((n, n))
         for i in range(n):
             for j in range(max(0, i - b), min(n, i + b + 1)):
-                K[i, j] = room.ab[i, j - i + b]
+                K[i, j] = workspace.ab[i, j - i + b]
         return K
 
 
@@ -119,7 +118,7 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
     np.testing.assert_allclose(compiled.riser.dofs.sizes.ravel(), at.line.magnitudes(state), rtol=1e-15)
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
     for part in parts:
-        part.renew_numbers(begun.t, state.t)
+        part.renew_kernel_data(begun.t, state.t)
     joules, rows = compiled.riser.account(begun)
     energy = Energy(*joules)
     stored: Energy = sum((part.energy(state) for part in parts), Energy())
@@ -159,17 +158,17 @@ def require_tangles(dimension: int) -> None:
     whole turns.
     """
     at, anything = sample(dimension, shaken=False), StopLimits(0.0, np.inf, 0.0, 1, 0, True)
-    line, parts, told = at.line, [at.beam()], []
+    line, parts, reported = at.line, [at.beam()], []
     for node, turn in ((0, 0.0), (1, 0.1), (1, 0.3), (1, 2.0), (line.nodes - 1, 2.0), (line.nodes - 1, -3.5)):
         state = at.state(1, size=0.0)
         line.nodal(state.u)[node, -1] = turn
         compiled = Compiled(at, parts, state, state)
         compiled.riser.begin(state, None, WEIGHTS, anything)
         assert compiled.riser.solve()[0] == CONVERGED
-        told.append(line.tangled(*compiled.riser.tangled))
-        assert told[-1] == line.inadmissible(state, at.state(1, size=0.0))
-    assert told[0] == told[1] == ""
-    assert len(set(told)) == {2: 4, 3: 5}[dimension]
+        reported.append(line.folding(*compiled.riser.folding))
+        assert reported[-1] == line.inadmissible(state, at.state(1, size=0.0))
+    assert reported[0] == reported[1] == ""
+    assert len(set(reported)) == {2: 4, 3: 5}[dimension]
 
 
 def require_element_residual(newton: RiserNewton, line: Line, parts: list[Any], accepted: State) -> None:
@@ -184,13 +183,13 @@ def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     line, elements, newton = compiled.assembly.line, compiled.assembly.elements, compiled.newton
     assert isinstance(newton, RiserNewton)
     state, other = compiled.stepper.now, snes.stepper.now
-    told = SectionForces.within(newton.section_forces(line, elements, state), line.nodes)
+    reported = SectionForces.within(newton.section_forces(line, elements, state), line.nodes)
     parts = acting_on(line, compiled.system.model.parts)
     acting = element_residual(line, parts, state), viscous_residual(line, parts, state)
     own = section_forces(line, elements, state, *acting)
     vector = snes.newton.section_forces(snes.assembly.line, snes.assembly.elements, other)
     by_snes = SectionForces.within(vector, line.nodes)
-    for name, values in told._asdict().items():
+    for name, values in reported._asdict().items():
         scale = np.abs(values).max()
         np.testing.assert_allclose(values, getattr(own, name), rtol=0.0, atol=1e-10 * scale, err_msg=name)
         np.testing.assert_allclose(values, getattr(by_snes, name), rtol=0.0, atol=1e-5 * scale, err_msg=name)
@@ -253,7 +252,7 @@ def require_kept_history(case: str) -> None:
     by_methods = seabed.state() | friction.state()
     seabed.restore(before[0])
     friction.restore(before[1])
-    newton._parts.bring(solved.t, solved.t)
+    newton._parts.update(solved.t, solved.t)
     newton._riser.keep()
     for name, found in (seabed.state() | friction.state()).items():
         scale = np.abs(by_methods[name]).max()

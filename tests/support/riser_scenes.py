@@ -96,7 +96,7 @@ class StageHistory:
 def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
     """Take all stages of a scene without files."""
     assembly = build(scene if isinstance(scene, Scene) else scene_from_mapping(scene), MPI.COMM_SELF)
-    before, told = State.at_rest(0.0, assembly.size), list[StageHistory]()
+    before, reported = State.at_rest(0.0, assembly.size), list[StageHistory]()
     for stage in assembly.scene.stages:
         now = StageHistory()
 
@@ -110,8 +110,8 @@ def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
             now.last = riser_snapshot(assembly, stepper)
 
         before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
-        told.append(now)
-    return told
+        reported.append(now)
+    return reported
 
 
 def distance(a: Array, b: Array) -> float:

@@ -34,8 +34,8 @@ def main(folder: Path) -> None:
     outputs.ALONG_RISER = (*outputs.ALONG_RISER, HEIGHT)
     outputs.OF_SOIL = (*outputs.OF_SOIL, SETTLEMENT)
     step_outputs.OF_STEP = (*step_outputs.OF_STEP, WHOLE_ENERGY)
+    from riser_soil.scene.dump import schema_text
     from riser_soil.scene.reader import scene_from_mapping
-    from riser_soil.scene.schema import schema_text
     from riser_soil.whole_run import run
     from tests.support.coupled_scenes import LAY, touchdown
     from tests.support.recorded_run import block, record

@@ -13,14 +13,12 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.attachments import PointAttachment
 from riser_soil.sea.buoyancy import Buoyancy, dry_stations
 from riser_soil.sea.dry_pipe import dry_pipe
-from riser_soil.sea.flows import add_flow
+from riser_soil.sea.flows import Sea, WaterMotion, add_flow
 from riser_soil.sea.modules import alike, diameters, pipe_at
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.moving_water import FlowAtStations, WaterLoads, pushed_masses
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.sea import Sea
-from riser_soil.sea.water import WaterMotion
 from tests.support.sample_line import DIRECTION, RHO, UP, Sample
 
 LEVEL = 5.2
@@ -42,7 +40,7 @@ ACCELERATION = Uneven(np.array([1.7, -2.3]), np.array([[-0.2, 0.3, 0.4], [0.5, 0
 SURFACE = np.array([0.35, -0.25])  # wave numbers along x and y
 
 
-class GeneralNumbers(NamedTuple):
+class GeneralData(NamedTuple):
     """A `General` flow."""
 
     velocity: Uneven
@@ -56,14 +54,14 @@ class General:
     """
 
     def __init__(self, ship: Array | None = None) -> None:
-        self.numbers = GeneralNumbers(VELOCITY, ACCELERATION, np.zeros(3) if ship is None else ship)
+        self.kernel_data = GeneralData(VELOCITY, ACCELERATION, np.zeros(3) if ship is None else ship)
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        add_to(motion, self.numbers, t, np.ascontiguousarray(x))
+        add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))
 
 
 @njit
-def add_to(motion: WaterMotion, flow: GeneralNumbers, t: float, x: Array) -> None:
+def add_to(motion: WaterMotion, flow: GeneralData, t: float, x: Array) -> None:
     at = np.empty(3)
     for p in range(x.shape[0]):
         for i in range(3):
@@ -89,8 +87,8 @@ def _add_uneven(field: Uneven, t: float, x: Array, value: Array, gradient: Array
                 gradient[i, j] += field.amplitude[n] * math.cos(phase) * SECTION[n, i] * field.wave_number[n, j]
 
 
-@add_flow.of(GeneralNumbers)
-def _add_general(flow: GeneralNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(GeneralData)
+def _add_general(flow: GeneralData, motion: WaterMotion, t: Array, x: Array) -> None:
     add_to(motion, flow, t[0], x)
 
 

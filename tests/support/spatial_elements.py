@@ -6,7 +6,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser import beam3d, increments
+from riser_soil.riser import beam3d, rotations
 from riser_soil.riser.vectors import vector
 
 
@@ -25,7 +25,7 @@ def strain_energy(
 def load_potential(
     chord: Array, frame1: Array, frame2: Array, middle: Array, ref: beam3d.SpatialReference, load: Array
 ) -> Array:
-    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3): `spatial_load`."""
+    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3): `uniform_load`."""
     V = np.empty(len(chord))
     for e in range(len(chord)):
         at, w = beam3d.element_shape(e, chord, frame1, frame2, ref), vector(load[e])
@@ -61,9 +61,9 @@ def forces_and_tangent(
     load: Array,
 ) -> tuple[Array, Array]:
     """Forces f (ne, 12) as in `forces`, and their derivative K (ne, 12, 12) by displacements and spatial spins."""
-    f, K, room = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12)), beam3d.tangent_room()
+    f, K, workspace = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12)), beam3d.tangent_workspace()
     for e in range(len(chord)):
-        beam3d.put_element(e, chord, frame1, frame2, ref, section, load, room, f[e], K[e])
+        beam3d.put_element(e, chord, frame1, frame2, ref, section, load, workspace, f[e], K[e])
     return f, K
 
 
@@ -71,7 +71,7 @@ def forces_and_tangent(
 def forces_to_increments(f: Array, H: Array) -> None:
     """Turn the moments in f (ne, 12), conjugate to spins, into those of rotation vectors; H is (nn, 3, 3)."""
     for e in range(len(f)):
-        increments.element_to_increments(e, f[e], H)
+        rotations.element_to_increments(e, f[e], H)
 
 
 @njit
@@ -81,5 +81,5 @@ def to_increments(f: Array, K: Array, H: Array, Rn: Array, Theta: Array) -> None
     H, Rn (nn, 3, 3) and Theta (nn, 3) belong to the nodes. K becomes the Hessian of the strain energy.
     """
     for e in range(len(f)):
-        increments.tangent_to_increments(e, f[e], K[e], H, Rn, Theta)
+        rotations.tangent_to_increments(e, f[e], K[e], H, Rn, Theta)
     forces_to_increments(f, H)

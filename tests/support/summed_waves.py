@@ -13,10 +13,10 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.smooth_step import smooth_step
 from riser_soil.sea import waves
 from riser_soil.sea.components import Components
-from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wave_field import Stretching
+from riser_soil.sea.flows import WaterMotion
+from riser_soil.sea.waves import Stretching
 
-Numbers = tuple[float, ...]
+KernelData = tuple[float, ...]
 
 
 class SummedWaves:
@@ -39,7 +39,7 @@ class SummedWaves:
         self._stretching, self._ramp, self._clock, self._since = stretching, ramp, clock, since
 
     @property
-    def numbers(self) -> tuple[Any, ...]:
+    def kernel_data(self) -> tuple[Any, ...]:
         raise NotImplementedError("plain sums are not compiled")
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
@@ -114,7 +114,7 @@ def _sum(
 
 
 @njit
-def _write(v: Array, dv: Array, p: int, value: Numbers, by: Numbers, gradient: Array) -> None:
+def _write(v: Array, dv: Array, p: int, value: KernelData, by: KernelData, gradient: Array) -> None:
     """A field without divergence and curl in (x, y, z'), whose z' has a gradient in (x, y, z)."""
     xx, xy, yy, xz, yz = by
     rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, -xx - yy))

@@ -12,8 +12,7 @@ import numpy as np
 from pydantic import BaseModel, Field
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.kinds import registry
-from riser_soil.core.quantities import BedStiffness, PoissonRatio, PositiveWeightPerLength, Stress
+from riser_soil.core.quantities import BedStiffness, PoissonRatio, PositiveWeightPerLength, Stress, registry
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed
 from riser_soil.scene.soil import SoilScene
@@ -133,14 +132,14 @@ class PlasticBed(CompiledLaw):
     reach: ClassVar[float] = 0.0
 
     @property
-    def numbers(self) -> PlasticNumbers:
-        return PlasticNumbers(self.given.k, self.given.limit, self.given.h)
+    def kernel_data(self) -> PlasticData:
+        return PlasticData(self.given.k, self.given.limit, self.given.h)
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.zeros((*shape, 1))
 
 
-class PlasticNumbers(NamedTuple):
+class PlasticData(NamedTuple):
     """As of `PlasticSpring`."""
 
     k: float
@@ -148,13 +147,13 @@ class PlasticNumbers(NamedTuple):
     h: float
 
 
-@may_act.of(PlasticNumbers)
-def _may_act(law: PlasticNumbers, penetration: float, history: Array) -> bool:
+@may_act.of(PlasticData)
+def _may_act(law: PlasticData, penetration: float, history: Array) -> bool:
     return penetration > history[0] or history[0] > 0.0
 
 
-@answer.of(PlasticNumbers)
-def _answer(law: PlasticNumbers, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
+@answer.of(PlasticData)
+def _answer(law: PlasticData, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
     k, h, before = law.k, law.h, history[0]
     slip = max(k * (penetration - before) - law.limit - h * before, 0.0) / (k + h)
     plastic = after[0] = before + slip

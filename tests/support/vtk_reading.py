@@ -100,10 +100,10 @@ def look(path: str, number: int) -> Frame:
     grid = pv.wrap(reader.GetOutputDataObject(0))
     sizes = grid.compute_cell_sizes(length=False, area=False)
     assert grid.n_points > 0
-    return dict(told(grid, sizes))
+    return dict(reported(grid, sizes))
 
 
-def told(grid: Any, sizes: Any) -> Iterator[tuple[str, Any]]:
+def reported(grid: Any, sizes: Any) -> Iterator[tuple[str, Any]]:
     yield "points", grid.points
     yield "cell_types", np.array([int(grid.GetCellType(cell)) for cell in range(grid.n_cells)])
     yield "volumes", sizes.cell_data["Volume"]

@@ -14,15 +14,14 @@ from benchmarks.asked_accuracy.asked import asking as without_settings
 from benchmarks.error_bars import references
 from benchmarks.error_bars.scenes import SCENES
 from riser_soil.accuracy import target_run
-from riser_soil.accuracy.first_setting import first_setting
-from riser_soil.accuracy.headlines import headlines
-from riser_soil.accuracy.search import trial
+from riser_soil.accuracy.key_results import key_results
+from riser_soil.accuracy.search import first_setting, trial
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.commands.app import app
 from riser_soil.errors import AccuracyError, Interruption, SceneError, SolveError
+from riser_soil.scene.dump import schema_text
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.schema import schema_text
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.whole_run import run
 from tests.support.on_ranks import mpirun
@@ -38,9 +37,9 @@ def summary(folder: Path) -> Any:
 
 
 def worst(folder: Path, name: str) -> float:
-    """The largest true error of a run's headline quantities."""
-    told, known = headlines(summary(folder)), references.read()[name]
-    return max(each.relative(each.value - known[key][0]) for key, each in told.items() if key in known)
+    """The largest true error of a run's key results."""
+    reported, known = key_results(summary(folder)), references.read()[name]
+    return max(each.relative(each.value - known[key][0]) for key, each in reported.items() if key in known)
 
 
 @pytest.mark.parametrize(("given", "share"), [("1 %", 0.01), ("0.5%", 0.005), (" 20 % ", 0.2), (0.02, 0.02)])
@@ -79,7 +78,7 @@ def test_what_it_stands_for_is_not_given_too(name: str, key: str) -> None:
     assert len(str(caught.value).splitlines()) == 1
 
 
-def test_other_mistakes_are_told_beside_it() -> None:
+def test_other_mistakes_are_reported_beside_it() -> None:
     with pytest.raises(SceneError, match=r"riser\.segments: "):
         scene_from_mapping(asking("catenary, 35 elements") | {"riser": {"segments": "none"}})
 
@@ -107,8 +106,8 @@ def test_nodes_are_where_something_acts(tmp_path: Path) -> None:
     arcs = read_scene(tmp_path / "run" / "scene.yaml").riser.node_arcs
     for place in (4.3, 7.1):
         assert min(abs(arc - place) for arc in arcs) < 1e-9
-    told = headlines(summary(tmp_path / "run"))
-    assert told["load: largest bending moment"].value == pytest.approx(2.0e3 + 30.0 * 9.81 * 7.1, rel=2e-3)
+    reported = key_results(summary(tmp_path / "run"))
+    assert reported["load: largest bending moment"].value == pytest.approx(2.0e3 + 30.0 * 9.81 * 7.1, rel=2e-3)
     assert summary(tmp_path / "run")["accuracy"]["reached"]
 
 
@@ -120,11 +119,11 @@ def test_nothing_else_runs_before_the_setting_is_chosen(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["beam under tension, unresolved", "on springs, coarse", "hose on a rigid floor"])
 def test_statics_reach_it(name: str, tmp_path: Path) -> None:
     run_to_accuracy(scene_from_mapping(asking(name)), tmp_path / "run")
-    told = summary(tmp_path / "run")
-    assert told["accuracy"]["reached"]
-    assert told["accuracy"]["largest_error"] <= 0.01
+    reported = summary(tmp_path / "run")
+    assert reported["accuracy"]["reached"]
+    assert reported["accuracy"]["largest_error"] <= 0.01
     assert worst(tmp_path / "run", name) <= 0.01
-    assert told["finished"]
+    assert reported["finished"]
 
 
 def test_elements_are_short_where_curvature_asks_for_it() -> None:
@@ -142,11 +141,11 @@ def test_motion_reaches_it_and_its_scene_is_kept(tmp_path: Path) -> None:
     chosen = read_scene(tmp_path / "run" / "scene.yaml")
     assert chosen.accuracy is None
     run(chosen, tmp_path / "again")
-    told, again = (headlines(summary(tmp_path / folder)) for folder in ("run", "again"))
-    assert {key: each.value for key, each in told.items()} == {key: each.value for key, each in again.items()}
+    reported, again = (key_results(summary(tmp_path / folder)) for folder in ("run", "again"))
+    assert {key: each.value for key, each in reported.items()} == {key: each.value for key, each in again.items()}
 
 
-def test_accuracy_that_is_not_reached_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_accuracy_that_is_not_reached_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The finest run is kept with its error bars; the command fails as a solve does."""
     monkeypatch.setattr(target_run, "RUNS", 1)
     file, folder = tmp_path / "scene.yaml", tmp_path / "run"
@@ -154,11 +153,11 @@ def test_accuracy_that_is_not_reached_is_told(tmp_path: Path, monkeypatch: pytes
     done = CliRunner().invoke(app, ["run", str(file), "-o", str(folder)])
     assert done.exit_code == SolveError.exit_status
     assert "accuracy: 20.00% was not reached: with" in done.output
-    told = summary(folder)
-    assert told["accuracy"]["reached"] is False
-    assert told["accuracy"]["largest_error"] > 0.2
-    assert max(bar["bar"] / abs(bar["value"]) for bar in told["error_bars"]["quantities"] if bar["bar"]) > 0.2
-    assert told["finished"]
+    reported = summary(folder)
+    assert reported["accuracy"]["reached"] is False
+    assert reported["accuracy"]["largest_error"] > 0.2
+    assert max(bar["bar"] / abs(bar["value"]) for bar in reported["error_bars"]["quantities"] if bar["bar"]) > 0.2
+    assert reported["finished"]
 
 
 def test_an_impact_that_hardly_converges_ends_the_search_early(
@@ -169,9 +168,9 @@ def test_an_impact_that_hardly_converges_ends_the_search_early(
     scene = scene_from_mapping(asking("cantilever under a sudden load", "1 %"))
     with pytest.raises(AccuracyError, match=r"; to reach it would take at least \d+ times as long, .*run has that"):
         run_to_accuracy(scene, tmp_path / "run")
-    told, elements = summary(tmp_path / "run"), read_scene(tmp_path / "run" / "scene.yaml").riser.segments
-    assert told["accuracy"]["reached"] is False
-    assert told["finished"]
+    reported, elements = summary(tmp_path / "run"), read_scene(tmp_path / "run" / "scene.yaml").riser.segments
+    assert reported["accuracy"]["reached"] is False
+    assert reported["finished"]
     assert sum(part.elements or 0 for part in elements) < 200  # a second run has some 400
 
 
@@ -227,16 +226,16 @@ def test_ranks_choose_alike(tmp_path: Path) -> None:
     assert one["accuracy"]["largest_error"] == pytest.approx(two["accuracy"]["largest_error"], rel=1e-3)
 
 
-def test_error_is_of_the_run_that_is_told(tmp_path: Path) -> None:
+def test_error_is_of_the_run_that_is_reported(tmp_path: Path) -> None:
     """Bars of the summary are the accuracy's: the largest over its scale is what is told."""
     run_to_accuracy(scene_from_mapping(asking("cantilever, tip load")), tmp_path / "run")
-    told = summary(tmp_path / "run")
-    scales = {key: each.scale for key, each in headlines(told).items()}
-    bars = told["error_bars"]["quantities"]
+    reported = summary(tmp_path / "run")
+    scales = {key: each.scale for key, each in key_results(reported).items()}
+    bars = reported["error_bars"]["quantities"]
     shares = {f"{bar['stage']}: {bar['name']}": bar["bar"] for bar in bars}
-    assert max(bar / scales[key] for key, bar in shares.items()) == pytest.approx(told["accuracy"]["largest_error"])
+    assert max(bar / scales[key] for key, bar in shares.items()) == pytest.approx(reported["accuracy"]["largest_error"])
 
 
 def test_editors_know_both_ways_of_writing_it() -> None:
-    told = json.loads(schema_text())["properties"]["accuracy"]
-    assert {each["type"] for each in told["anyOf"]} == {"string", "number", "null"}
+    reported = json.loads(schema_text())["properties"]["accuracy"]
+    assert {each["type"] for each in reported["anyOf"]} == {"string", "number", "null"}

@@ -19,12 +19,10 @@ from riser_soil.plots.album import album, pictures
 from riser_soil.plots.curves import envelope, sheet
 from riser_soil.plots.histories import energy
 from riser_soil.plots.ranges import draw_range, mean_in_time, names
-from riser_soil.plots.scales import drawn_radius, metres
-from riser_soil.plots.shape import filmed_records
+from riser_soil.plots.scales import axis_words, drawn_radius, metres
+from riser_soil.plots.shape import filmed_records, seabed_under
 from riser_soil.plots.side_by_side import sheets
-from riser_soil.plots.units import axis_words
 from riser_soil.results import Run
-from riser_soil.results.seabed_line import seabed_under
 from riser_soil.results.stage_records import stage_records
 from tests.support.on_ranks import ROOT
 from tests.support.recorded_run import record
@@ -93,7 +91,7 @@ def test_what_acts_near_touchdown_is_shown_from_close_by(run: Run) -> None:
     assert whole.get_xlim()[1] == pytest.approx(run.arc[-1])
 
 
-def test_a_file_in_the_place_of_the_folder_is_told(run: Run, tmp_path: Path) -> None:
+def test_a_file_in_the_place_of_the_folder_is_reported(run: Run, tmp_path: Path) -> None:
     (tmp_path / "there").write_text("mine", encoding="utf-8")
     done = CliRunner().invoke(app, ["plot", str(run.folder), "--what", "energy", "-o", str(tmp_path / "there")])
     assert done.exit_code == 2

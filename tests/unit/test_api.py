@@ -72,7 +72,7 @@ def test_a_changed_scene_is_another_one() -> None:
     assert (scene.name, scene.changed({"output.directory": "there"}).name) == ("first_scene", "there")
 
 
-def test_mistakes_are_told_with_their_place() -> None:
+def test_mistakes_are_reported_with_their_place() -> None:
     scene = Scene.from_file(FIRST)
     with pytest.raises(SceneError, match=r"^gravity = -1\.0: gravity: value -1\.0: must be"):
         scene.changed({"gravity": -1.0})
@@ -130,7 +130,7 @@ def test_others_may_have_the_file_open(hung: Run) -> None:
     run(small(), hung.folder, force=True, quiet=True)
 
 
-def test_a_broken_file_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_broken_file_is_reported_in_one_line(tmp_path: Path) -> None:
     (tmp_path / run_folder.SERIES).write_bytes(b"no HDF5")
     with pytest.raises(ResultsError, match=r"results\.nc: cannot be read"):
         _ = Run(tmp_path).dataset
@@ -142,7 +142,7 @@ def test_twenty_seeds_take_ten_lines_at_most(
     """The example of docs/python.md with its computation replaced."""
     seeds, done = [], SimpleNamespace(dataset=hung.dataset)
 
-    def told(scene: Scene, folder: str, quiet: bool) -> SimpleNamespace:
+    def reported(scene: Scene, folder: str, quiet: bool) -> SimpleNamespace:
         assert scene.model.water is not None
         assert scene.model.water.waves is not None
         assert scene.model.water.waves.jonswap is not None
@@ -152,7 +152,7 @@ def test_twenty_seeds_take_ten_lines_at_most(
 
     assert len(TWENTY_SEEDS.strip().splitlines()) <= 10
     monkeypatch.chdir(ROOT)
-    monkeypatch.setitem(sys.modules, "riser_soil", SimpleNamespace(Scene=Scene, run=told, Run=Run))
+    monkeypatch.setitem(sys.modules, "riser_soil", SimpleNamespace(Scene=Scene, run=reported, Run=Run))
     exec(TWENTY_SEEDS, {})
     assert seeds == list(range(1, 21))
     assert capsys.readouterr().out.startswith("largest top tension: 8")

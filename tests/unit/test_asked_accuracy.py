@@ -40,7 +40,7 @@ def made_up() -> list[AskedScene]:
 
 def test_outcomes_and_shares() -> None:
     scenes = made_up()
-    assert [each.outcome for each in scenes] == [Outcome.REACHED, Outcome.MISSED, Outcome.TOLD, Outcome.REACHED]
+    assert [each.outcome for each in scenes] == [Outcome.REACHED, Outcome.MISSED, Outcome.REPORTED, Outcome.REACHED]
     assert share_of_claims(scenes) == pytest.approx(2.0 / 3.0)
     assert share_of_all(scenes) == pytest.approx(0.5)
     assert median_error(scenes) == pytest.approx(0.4)
@@ -71,9 +71,9 @@ def test_page_of_a_random_scene() -> None:
     known = references.read(FILE)[name]
     found = asked(name, OTHERS[name], known)
     bars = [judge(name, OTHERS[name], known)]
-    told = page(made_up(), [found], bars, made_up())
+    reported = page(made_up(), [found], bars, made_up())
     assert found.outcome is Outcome.REACHED
-    assert "| scenes that truly reach what they ask, of those that claim it | 66.7% |" in block(told, FIGURES)
+    assert "| scenes that truly reach what they ask, of those that claim it | 66.7% |" in block(reported, FIGURES)
     missed = not_reached(made_up())
     assert "\nb,\"missed, 3.00% in hang: top tension\"" in missed
     assert "\nc,accuracy: it was not reached" in missed

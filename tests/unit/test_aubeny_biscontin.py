@@ -63,7 +63,7 @@ def test_turn_within_the_loop_starts_with_the_stiffness_and_meets_the_edges() ->
 
 @pytest.mark.parametrize("deepest", [2e-4, 2e-3, 0.02, 0.045, 0.09])
 def test_the_loop_ends_at_the_surface_or_below(deepest: float) -> None:
-    loop = bounding_loop(LAW.numbers, deepest)
+    loop = bounding_loop(LAW.kernel_data, deepest)
     assert loop.y3 >= -1e-12
     assert loop.y3 == pytest.approx(0.0, abs=1e-12) or loop.tension == pytest.approx(0.203 * loop.P1)
 

@@ -14,12 +14,9 @@ from riser_soil.riser import (
     beam2d,
     beam3d,
     corotation,
-    increments,
     rotations,
-    spatial_load,
     strain3d,
-    stress3d,
-    swing_twist,
+    uniform_load,
 )
 from riser_soil.riser.vectors import isotropic, matrix, vector
 from tests.support import planar_elements, spatial_elements
@@ -199,7 +196,7 @@ def test_strains_do_not_depend_on_the_frame_about_the_chord(seed: int, turn: flo
     about_chord, ends = exp(np.array([turn, 0.0, 0.0])), turns(rng, 0.8, 2)
     strains = []
     for frames in (ends, about_chord @ ends):
-        a, b = (swing_twist.split(matrix(A)).angles for A in frames)
+        a, b = (corotation.split(matrix(A)).angles for A in frames)
         found = strain3d.strain(1.0, 0.97, a, b, strain3d.stations(1.0, a, b))
         strains.append([found.axial, found.twist, *found.first, *found.second])
     assert np.abs(np.array(strains[0]) - strains[1]).max() < 1e-12
@@ -305,8 +302,8 @@ LEFT_OUT = {
     "longer chord": (beam3d, "lengthen", lambda *_: beam3d.STILL),
     "swing and twist": (beam3d, "moment_variation", lambda *_: beam3d.STILL),
     "gradients of the strains": (beam3d, "conjugate_change", lambda *_: (beam3d.STILL, beam3d.STILL)),
-    "torque rate": (beam3d, "stress_change", lambda D, _, __, change: stress3d.linear_stress(D, change)),
-    "turn under the load": (beam3d, "turned", lambda *_: spatial_load.NO_LOAD),
+    "torque rate": (beam3d, "stress_change", lambda D, _, __, change: strain3d.linear_stress(D, change)),
+    "turn under the load": (beam3d, "turned", lambda *_: uniform_load.NO_LOAD),
     "load along the chord": (beam3d, "chord_force", lambda *_: beam3d.STILL),
 }
 
@@ -336,8 +333,8 @@ def test_geometric_term_of_rotation_vectors_matters(monkeypatch: pytest.MonkeyPa
     f_incomplete, incomplete = f.copy(), K.copy()
     spatial_elements.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
     for name in ("tangent_to_increments", "_end_to_increments", "rows_to_increments"):
-        monkeypatch.setattr(increments, name, getattr(increments, name).py_func)
-    monkeypatch.setattr(increments, "_moment_tangent", lambda *_: isotropic(0.0))
+        monkeypatch.setattr(rotations, name, getattr(rotations, name).py_func)
+    monkeypatch.setattr(rotations, "_moment_tangent", lambda *_: isotropic(0.0))
     spatial_elements.to_increments.py_func(f_incomplete, incomplete, nodes.H, nodes.Rn, nodes.Theta)
     assert difference(incomplete, K) > 1e4 * TOLERANCE
 
@@ -368,5 +365,5 @@ def test_torque_that_varies_along_an_element_twists_it_within() -> None:
     least = -0.5 * (weight @ phi * P) ** 2 / stiffness
     bent = 0.5 * L * EI @ (k - k0) ** 2
     total, elastic = (strain3d.Strain(0.0, 0.0, tuple(each), tuple(each)) for each in (k, k - k0))
-    assert stress3d.energy(D, total, elastic) == pytest.approx(bent + least, rel=1e-12)
+    assert strain3d.energy(D, total, elastic) == pytest.approx(bent + least, rel=1e-12)
     assert least < -1e-4 * bent

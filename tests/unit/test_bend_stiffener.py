@@ -78,7 +78,7 @@ def test_it_weighs_its_volume_less_the_water() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ({"base_diameter": 0.2}, "is less than tip_diameter"),
         ({"tip_diameter": 0.1}, r"tip_diameter.*is less than the pipe's \(0.2 m\)"),
@@ -86,8 +86,8 @@ def test_it_weighs_its_volume_less_the_water() -> None:
         ({"length": 0.5}, "has elements of 0.25 m on its 0.5 m: at least 4 are needed"),
     ],
 )
-def test_stiffeners_that_do_not_fit(change: Mapping, told: str) -> None:
-    with pytest.raises(SceneError, match=told):
+def test_stiffeners_that_do_not_fit(change: Mapping, reported: str) -> None:
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(scene(taper=TAPER | change))
 
 

@@ -10,7 +10,7 @@ import pytest
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.solve.bordered_band import BorderedBand, SingularError, bandwidth
+from riser_soil.solve.banded_solvers import BorderedBand, SingularError, bandwidth
 from riser_soil.solve.linear_solver import complaint
 
 
@@ -65,7 +65,7 @@ def test_it_solves(chain: int, border: int, band: int, touched: slice) -> None:
 
 
 @pytest.mark.parametrize("row", [4, 33])
-def test_a_singular_matrix_is_told(row: int) -> None:
+def test_a_singular_matrix_is_reported(row: int) -> None:
     """In the band, and in the border."""
     entries = matrix(30, 7, 3, slice(10, 15))
     entries[row] = 0.0
@@ -76,7 +76,7 @@ def test_a_singular_matrix_is_told(row: int) -> None:
     mat.destroy()
 
 
-def test_a_singular_matrix_is_told_where_petsc_makes_an_error_of_its_own() -> None:
+def test_a_singular_matrix_is_reported_where_petsc_makes_an_error_of_its_own() -> None:
     err = PETSc.Error(-1)
     err.__cause__ = SingularError()
     assert complaint(err) == "the linear solver failed (the matrix is singular)"
@@ -86,7 +86,7 @@ def test_a_singular_matrix_is_told_where_petsc_makes_an_error_of_its_own() -> No
 LEFT_OVER = """
 import numpy as np
 from petsc4py import PETSc
-from riser_soil.solve.bordered_band import BorderedBand
+from riser_soil.solve.banded_solvers import BorderedBand
 
 class Solver:
     def __init__(self):

@@ -63,6 +63,6 @@ def test_kernels_are_called_in_turn() -> None:
     np.testing.assert_allclose(out, 3 * 2.0 * (3 + 7 + 11))
 
 
-def test_what_cannot_be_packed_is_told() -> None:
+def test_what_cannot_be_packed_is_reported() -> None:
     with pytest.raises(TypeError, match="str can't be packed"):
         Packed(Inner(True, False, "steel"))

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from riser_soil.calibration.calibrate import calibrate
-from riser_soil.calibration.data import read_resistance
 from riser_soil.calibration.least_squares import FitParameter, deviations, fit
-from riser_soil.calibration.path import path_through, steps, turns
+from riser_soil.calibration.path import path_through, read_resistance, steps, turns
 from riser_soil.calibration.segment import TABLE, PipeSegment, first_penetration, write_table
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
@@ -51,11 +50,11 @@ def test_data_are_read_in_their_units(tmp_path: Path) -> None:
     ],
 )
 def test_bad_data_are_refused_in_one_line(tmp_path: Path, text: str, said: str) -> None:
-    with pytest.raises(SceneError) as told:
+    with pytest.raises(SceneError) as reported:
         read_resistance(written(tmp_path, text))
-    assert said in str(told.value)
-    assert "data.csv" in str(told.value)
-    assert "\n" not in str(told.value)
+    assert said in str(reported.value)
+    assert "data.csv" in str(reported.value)
+    assert "\n" not in str(reported.value)
 
 
 @pytest.mark.parametrize(
@@ -163,7 +162,7 @@ def test_what_the_data_do_not_tell_is_said() -> None:
     assert np.isinf(deviations(np.ones((2, 2)), np.ones(2))).all()
 
 
-def test_a_bound_is_told() -> None:
+def test_a_bound_is_reported() -> None:
     ratio = np.linspace(0.01, 0.5, 40)
     found = fit(lambda g: g["a"] * ratio, 30.0 * ratio, (A,))
     assert found.parameters[0].at_bound

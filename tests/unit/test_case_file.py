@@ -106,8 +106,8 @@ def test_a_case_is_another_one_where_the_run_that_it_begins_with_has_changed(tmp
 def test_the_example_of_the_page_is_that_of_the_waves() -> None:
     example = ROOT / "demos/waves/cases.yaml"
     assert blocks(ROOT / "docs/cases.md", "yml") == [example.read_text(encoding="utf-8")]
-    told, found = read_cases(example)
-    assert (len(found), told.statistics.since) == (36, 52.0)
+    reported, found = read_cases(example)
+    assert (len(found), reported.statistics.since) == (36, 52.0)
     assert found[-1].name == "storm-direction_deg=195-seed=3-far"
 
 
@@ -135,7 +135,7 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize(("text", "says"), MISTAKES, ids=[says[:40] for _, says in MISTAKES])
-def test_a_mistake_is_told_in_one_line_before_anything_is_run(text: str, says: str, tmp_path: Path) -> None:
+def test_a_mistake_is_reported_in_one_line_before_anything_is_run(text: str, says: str, tmp_path: Path) -> None:
     file = case_file(tmp_path, text)
     with pytest.raises(SceneError) as refused:
         read_cases(file)
@@ -144,7 +144,7 @@ def test_a_mistake_is_told_in_one_line_before_anything_is_run(text: str, says: s
     assert says in line
 
 
-def test_a_mistake_of_the_base_is_told_once_whatever_the_number_of_cases(tmp_path: Path) -> None:
+def test_a_mistake_of_the_base_is_reported_once_whatever_the_number_of_cases(tmp_path: Path) -> None:
     file = case_file(tmp_path, "product: {gravity: [9.7, 9.8, 9.9]}")
     (tmp_path / "small.yaml").write_text(SMALL.replace("mass: 20.0", "mass: -20.0"), encoding="utf-8")
     with pytest.raises(SceneError, match=r"\A.*small.yaml:2: line_types.pipe.mass: value -20.0: [^\n]*\Z"):
@@ -168,7 +168,7 @@ def test_mistakes_of_many_cases_are_cut_off(tmp_path: Path) -> None:
         ("name, gravity\na, {9.8\n", "table.csv:2:1: not valid YAML"),
     ],
 )
-def test_a_wrong_csv_file_is_told_with_its_line(table: str, says: str, tmp_path: Path) -> None:
+def test_a_wrong_csv_file_is_reported_with_its_line(table: str, says: str, tmp_path: Path) -> None:
     (tmp_path / "table.csv").write_text(table, encoding="utf-8")
     with pytest.raises(SceneError) as refused:
         cases(tmp_path, "table: table.csv")

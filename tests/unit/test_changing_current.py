@@ -17,8 +17,8 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.sea.changing_current import ChangingCurrent, spline_rates
+from riser_soil.sea.flows import Sea
 from riser_soil.sea.morison import Morison
-from riser_soil.sea.sea import Sea
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
@@ -105,7 +105,7 @@ def test_a_floating_pipe_goes_with_the_water(coefficients: bool) -> None:
     """As heavy as the water that it displaces, it is accelerated by m + m_a as the water pushes by rho A + m_a."""
     history = [{"time": 1.0, "profile": [[0.0, 0.0, 0.0]]}, {"time": 5.0, "profile": [[0.0, 2.0, 0.0]]}]
     pipe = PIPE if coefficients else {key: PIPE[key] for key in ("outer_diameter", "mass", "EA", "EI")}
-    (told,) = stage_histories(
+    (reported,) = stage_histories(
         riser_scene(
             dynamic(4.0, 0.1, scheme={"newmark": {"beta": 0.25, "gamma": 0.5}}),
             pipe=pipe,
@@ -117,10 +117,10 @@ def test_a_floating_pipe_goes_with_the_water(coefficients: bool) -> None:
             water={"current": {"history": history}},
         )
     )
-    gone = np.array([position[:, 0].mean() for position in told.position])
-    s = np.clip((np.array(told.t) - 1.0) / 4.0, 0.0, 1.0)
+    gone = np.array([position[:, 0].mean() for position in reported.position])
+    s = np.clip((np.array(reported.t) - 1.0) / 4.0, 0.0, 1.0)
     assert gone == pytest.approx(8.0 * (s**3 - 0.5 * s**4), abs=1e-3)
-    assert np.ptp(told.position[-1][:, 0]) < 1e-9
+    assert np.ptp(reported.position[-1][:, 0]) < 1e-9
 
 
 HISTORY = [
@@ -145,7 +145,7 @@ def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
 
 
 @pytest.mark.parametrize(
-    ("current", "told"),
+    ("current", "reported"),
     [
         ({}, "water.current.profile: missing: profile is missing; give profile"),
         ({"profile": [[0.0, 1.0, 0.0]], "history": HISTORY}, "profile and history are both given"),
@@ -154,8 +154,8 @@ def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
         ({"history": [HISTORY[0], HISTORY[1] | {"profile": []}]}, "water.current.history.1.profile: .* at least 1"),
     ],
 )
-def test_bad_input_is_told_in_a_line(current: dict[str, Any], told: str) -> None:
-    with pytest.raises(SceneError, match=told) as raised:
+def test_bad_input_is_reported_in_a_line(current: dict[str, Any], reported: str) -> None:
+    with pytest.raises(SceneError, match=reported) as raised:
         scene_in({"current": current})
     assert "\n" not in str(raised.value)
 

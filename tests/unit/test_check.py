@@ -26,8 +26,8 @@ def report(mapping: Mapping) -> str:
 
 def warnings(mapping: Mapping) -> list[str]:
     """But for those that these scenes have."""
-    told = [line for line in report(mapping).splitlines() if line.startswith("warning: ")]
-    return [line for line in told if not any(known in line for known in KNOWN)]
+    reported = [line for line in report(mapping).splitlines() if line.startswith("warning: ")]
+    return [line for line in reported if not any(known in line for known in KNOWN)]
 
 
 def without_soil(*stages: Mapping) -> Mapping:
@@ -58,7 +58,7 @@ def test_a_whole_scene() -> None:
     assert "touches the soil at its nodes only, 0.5 m apart, on cells of 0.5 m" in at_nodes[-3]
 
 
-def test_strain_of_the_soil_is_told_with_its_reason() -> None:
+def test_strain_of_the_soil_is_reported_with_its_reason() -> None:
     clay = {**touchdown(), "contact": {"method": "surface"}}
     assert "soil: at large strain, as it yields under contact" in report(clay)
     assert "soil: at small strain: soil.strain: small" in report(with_value(clay, "soil", "strain", value="small"))
@@ -104,23 +104,23 @@ def test_a_smooth_riser_has_no_hydrodynamics() -> None:
 def test_vortices_are_shed_in_motion_and_make_the_scene_spatial() -> None:
     shed = with_value(without_soil(heave(1.0)), "line_types", "flexible", "vortex_force", value={})
     assert "left out: vortices: no line type has a vortex_force" in report(without_soil(heave(1.0))).splitlines()
-    told = report(with_value(shed, "dimension", value="auto"))
-    assert ", morison, vortices, " in told
-    assert "riser in 3 dimensions" in told
+    reported = report(with_value(shed, "dimension", value="auto"))
+    assert ", morison, vortices, " in reported
+    assert "riser in 3 dimensions" in reported
     at_rest = with_value(shed, "stages", value=[LAY])
     assert "left out: vortices: no stage is dynamic" in report(at_rest).splitlines()
 
 
 @pytest.mark.parametrize(
-    ("water", "told"),
+    ("water", "reported"),
     [
         ({}, "left out: buoyancy: the water has no surface: all is submerged"),
         ({"surface_level": 50.0}, "built: riser, buoyancy, seabed, contact"),
         ({"current": {"profile": [[0.0, 1.0, 0.0]]}}, "built: riser, morison, seabed, contact"),
     ],
 )
-def test_statics_have_what_their_water_does(water: Mapping, told: str) -> None:
-    assert told in report(with_value(without_soil(), "water", value=water)).splitlines()
+def test_statics_have_what_their_water_does(water: Mapping, reported: str) -> None:
+    assert reported in report(with_value(without_soil(), "water", value=water)).splitlines()
 
 
 def test_springs_and_loads_are_built_when_asked_for() -> None:
@@ -139,12 +139,12 @@ def test_attachments_are_counted_and_weighed() -> None:
 def test_memory_grows_with_the_soil() -> None:
     fine = {"kind": "hex", "size_at_riser": 0.2, "size_far": 0.5}
     scenes = without_soil(), touchdown(), with_value(touchdown(), "soil", "mesh", value=fine)
-    told = [re.findall(r"estimated memory: (\d+) MB on 1 rank", report(scene)) for scene in scenes]
-    bare, small, large = (float(number) for (number,) in told)
+    reported = [re.findall(r"estimated memory: (\d+) MB on 1 rank", report(scene)) for scene in scenes]
+    bare, small, large = (float(number) for (number,) in reported)
     assert 50.0 < bare < small < large
 
 
-def test_long_elements_at_touchdown_are_told_with_the_boundary_layer() -> None:
+def test_long_elements_at_touchdown_are_reported_with_the_boundary_layer() -> None:
     segments = [{"line_type": "flexible", "length": 30.0, "elements": 6}]
     coarse = with_value(without_soil(), "riser", "segments", value=segments)
     (found,) = warnings(coarse)
@@ -155,13 +155,13 @@ def test_long_elements_at_touchdown_are_told_with_the_boundary_layer() -> None:
     assert most == pytest.approx(0.5 * layer, rel=1e-2)
 
 
-def test_long_elements_at_a_clamped_end_are_told() -> None:
+def test_long_elements_at_a_clamped_end_are_reported() -> None:
     clamped = with_value(without_soil(), "riser", "end", "rotation", value="fixed")
     clamped["line_types"]["flexible"]["EI"] = 500.0
     assert [w for w in warnings(clamped) if "elements at the end are 1.5 m long" in w]
 
 
-def test_elements_of_very_different_lengths_are_told_where_waves_meet_them() -> None:
+def test_elements_of_very_different_lengths_are_reported_where_waves_meet_them() -> None:
     segments: list[Mapping] = [{"line_type": "flexible", "length": 15.0, "elements": n} for n in (50, 10)]
     uneven = with_value(without_soil(heave(1.0)), "riser", "segments", value=segments)
     (found,) = [w for w in warnings(uneven) if "meet at arc 15 m" in w]
@@ -174,7 +174,7 @@ def test_elements_of_very_different_lengths_are_told_where_waves_meet_them() -> 
     assert not [w for w in warnings(graded) if "meet at arc" in w]
 
 
-def test_a_floating_pipe_is_told_with_its_weight() -> None:
+def test_a_floating_pipe_is_reported_with_its_weight() -> None:
     floating = without_soil()
     floating["line_types"]["flexible"]["submerged_weight"] = -30.0
     floating["riser"]["initial"] = "straight"
@@ -189,17 +189,17 @@ def test_a_floating_pipe_is_told_with_its_weight() -> None:
         (1.0e10, "contact.stiffness 1e+10 N/m2 is 5.6e+04 times the soil's Young's modulus"),
     ],
 )
-def test_penalty_far_from_the_soil_is_told(stiffness: float, says: str) -> None:
+def test_penalty_far_from_the_soil_is_reported(stiffness: float, says: str) -> None:
     (found,) = warnings({**touchdown(), "contact": {"stiffness": stiffness, "smoothing": 0.0}})
     assert says in found
 
 
-def test_a_stiff_penalty_rounded_over_a_long_way_is_told() -> None:
+def test_a_stiff_penalty_rounded_over_a_long_way_is_reported() -> None:
     (found,) = warnings({**touchdown(), "contact": {"stiffness": 1.0e8, "smoothing": 1.0e-3}})
     assert "pushes 2.5e+04 N/m at the moment of touching" in found
 
 
-def test_a_riser_that_lies_beyond_the_soil_is_told() -> None:
+def test_a_riser_that_lies_beyond_the_soil_is_reported() -> None:
     alone = touchdown()
     del alone["seabed"]
     (found,) = warnings(alone)
@@ -225,7 +225,7 @@ def long_riser(elements: int) -> Mapping:
     )
 
 
-def test_long_elements_in_a_bend_are_told_with_the_error_of_the_moment() -> None:
+def test_long_elements_in_a_bend_are_reported_with_the_error_of_the_moment() -> None:
     (found,) = warnings(long_riser(40))
     assert "elements of 250 m at arc 875 m are too long for the riser's bend" in found
     numbers = r"= ([\d.]+) N\.m, ([\d.]+)% of the largest, ([\d.]+) N\.m: take at most ([\d.]+)"
@@ -237,7 +237,7 @@ def test_long_elements_in_a_bend_are_told_with_the_error_of_the_moment() -> None
 
 
 @pytest.mark.parametrize(("key", "given"), [("friction", {"axial": 0.3}), ("suction", {"cap": 50.0, "reach": 0.1})])
-def test_nodes_without_friction_or_suction_on_soil_are_told(key: str, given: Mapping) -> None:
+def test_nodes_without_friction_or_suction_on_soil_are_reported(key: str, given: Mapping) -> None:
     rough = {**touchdown(), "contact": {"method": "node", key: given}}
     found, strains = warnings(rough)
     assert f"contact.{key} acts on the seabed only: on the soil, x from 2 to 9 m and y from -1 to 1 m" in found
@@ -248,53 +248,53 @@ def test_nodes_without_friction_or_suction_on_soil_are_told(key: str, given: Map
     assert not warnings(rough)
 
 
-def test_soil_that_the_riser_does_not_reach_is_told() -> None:
+def test_soil_that_the_riser_does_not_reach_is_reported() -> None:
     aside = with_value(touchdown(), "soil", "block", "x", value=[18.0, 21.0])
     (found,) = warnings(aside)
     gap = float(re.findall(r"hangs ([\d.]+) m above it", found)[0])
     assert 6.0 < gap < 8.0
     assert "its ends move by no more than 0 m" in found
-    for stages, told in (([LAY, heave(3.0)], 1), ([LAY, heave(3.0, amplitude=2.0)], 0)):
-        assert len([w for w in warnings(aside | {"stages": stages}) if "does not reach" in w]) == told
+    for stages, reported in (([LAY, heave(3.0)], 1), ([LAY, heave(3.0, amplitude=2.0)], 0)):
+        assert len([w for w in warnings(aside | {"stages": stages}) if "does not reach" in w]) == reported
     pushed = {"name": "push", "kind": "static", "loads": [{"distributed": [0.0, 0.0, -1.0e3]}]}
     assert len([w for w in warnings(aside | {"stages": [pushed]}) if "does not reach" in w]) == 1
     gentle = with_value(touchdown(pushed), "soil", "block", "x", value=[10.0, 13.0])
     assert not warnings(gentle)
 
 
-def test_soil_beside_the_riser_is_told() -> None:
+def test_soil_beside_the_riser_is_reported() -> None:
     beside = with_value(touchdown(), "soil", "block", "y", value=[3.0, 5.0])
     beside["riser"] |= {"initial": {"points": [[0.0, 0.0, 0.15], [10.0, 0.0, 0.15], [22.5, 0.0, 15.0]]}}
     (found,) = [w for w in warnings(beside) if "does not reach the soil" in w]
     assert "y from 3 to 5 m: in its first shape it is not above it" in found
 
 
-@pytest.mark.parametrize(("level", "told"), [(0.0, 0), (0.3, 1)])
-def test_a_mesh_whose_top_is_off_the_seabed_is_told(level: float, told: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("level", "reported"), [(0.0, 0), (0.3, 1)])
+def test_a_mesh_whose_top_is_off_the_seabed_is_reported(level: float, reported: int, tmp_path: Path) -> None:
     box = ["--x", "2", "9", "--y", "-1", "1", "--depth", "1", "--size", "0.5", "--size-far", "1"]
     mesh([str(tmp_path / "soil.msh"), *box, "--level", str(level)])
     scene = with_value(touchdown(), "soil", "mesh", value={"file": str(tmp_path / "soil.msh")})
     del scene["soil"]["block"]
     found = [w for w in warnings(scene) if "nowhere at the seabed" in w]
-    assert len(found) == told
+    assert len(found) == reported
     assert all("the soil's top lies 0.3 to 0.3 m high and nowhere at the seabed, z = 0 m" in w for w in found)
 
 
-def test_static_loads_that_end_with_their_stage_are_told() -> None:
+def test_static_loads_that_end_with_their_stage_are_reported() -> None:
     lift: Mapping = {"at": 20.0, "force": [0.0, 0.0, 1.0e3]}
     lifted = {"name": "lift", "kind": "static", "loads": [lift]}
 
-    def told(*stages: Mapping) -> list[str]:
+    def reported(*stages: Mapping) -> list[str]:
         return [w for w in warnings(without_soil(*stages)) if "ends with its stage" in w]
 
-    (found,) = told(LAY, lifted, heave(1.0))
+    (found,) = reported(LAY, lifted, heave(1.0))
     assert found == (
         "warning: stages.1.loads.0: force [0.0, 0.0, 1000.0] N at 20.0 ends with its stage; heave is without it, and "
         "the riser springs back at once: give it keep: true if it stays"
     )
-    assert "lay is without it, and the riser comes back" in told(lifted, LAY)[0]
-    assert not told(LAY, lifted)
-    assert not told(lifted, heave(1.0) | {"loads": [lift | {"history": [[0.0, 1.0], [1.0, 0.5]]}]})
-    assert told(lifted, heave(1.0) | {"loads": [lift | {"at": 10.0}]})
+    assert "lay is without it, and the riser comes back" in reported(lifted, LAY)[0]
+    assert not reported(LAY, lifted)
+    assert not reported(lifted, heave(1.0) | {"loads": [lift | {"history": [[0.0, 1.0], [1.0, 0.5]]}]})
+    assert reported(lifted, heave(1.0) | {"loads": [lift | {"at": 10.0}]})
     let_go = lifted | {"loads": [lift | {"history": [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]}]}
-    assert not told(let_go, heave(1.0))
+    assert not reported(let_go, heave(1.0))

@@ -111,7 +111,7 @@ def test_exit_status_tells_the_kind_of_failure(invoke: Invoke, failure: RiserSoi
 
 
 @pytest.mark.parametrize(
-    ("message", "options", "told"),
+    ("message", "options", "reported"),
     [
         ("riser.initial: catenary: too short", (), f"{SCENE}:21: riser.initial: catenary: too short"),
         ("riser: too long", (), f"{SCENE}:15: riser: too long"),
@@ -120,10 +120,10 @@ def test_exit_status_tells_the_kind_of_failure(invoke: Invoke, failure: RiserSoi
     ],
 )
 def test_problems_found_by_the_parts_get_their_place(
-    invoke: Invoke, message: str, options: tuple[str, ...], told: str
+    invoke: Invoke, message: str, options: tuple[str, ...], reported: str
 ) -> None:
     result, _ = invoke("run", str(SCENE), *options, failure=SceneError(message))
-    assert result.stderr == f"{told}\n"
+    assert result.stderr == f"{reported}\n"
 
 
 def test_unexpected_errors_keep_their_traceback(invoke: Invoke) -> None:
@@ -155,7 +155,7 @@ def test_check_prints_what_would_be_built(invoke: Invoke) -> None:
 
 @pytest.mark.parametrize("target", ["/dev/full", "a closed pipe"])
 @pytest.mark.parametrize("arguments", [["schema"], ["check", str(SCENE)]])
-def test_standard_output_that_takes_no_more_is_told_in_one_line(arguments: list[str], target: str) -> None:
+def test_standard_output_that_takes_no_more_is_reported_in_one_line(arguments: list[str], target: str) -> None:
     why = "No space left on device" if target == "/dev/full" else "Broken pipe"
     if target == "/dev/full":
         output = os.open(target, os.O_WRONLY)
@@ -168,7 +168,7 @@ def test_standard_output_that_takes_no_more_is_told_in_one_line(arguments: list[
     assert (done.returncode, done.stderr) == (4, f"standard output: cannot be written: {why}\n")
 
 
-def test_a_disk_that_is_full_elsewhere_is_told_in_one_line(invoke: Invoke) -> None:
+def test_a_disk_that_is_full_elsewhere_is_reported_in_one_line(invoke: Invoke) -> None:
     result, _ = invoke("run", str(SCENE), failure=OSError(errno.ENOSPC, "No space left on device", "a/cache"))
     assert (result.exit_code, result.stderr) == (4, "a/cache: cannot be written: No space left on device\n")
 
@@ -188,7 +188,7 @@ def test_names_too_long_are_bad_input(invoke: Invoke, arguments: list[str]) -> N
     assert calls.folders == []
 
 
-def test_a_tmpdir_that_is_none_is_replaced_and_told(tmp_path: Path) -> None:
+def test_a_tmpdir_that_is_none_is_replaced_and_reported(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     given = os.environ | {"TMPDIR": str(tmp_path / "file")}
     call = [sys.executable, "-m", "riser_soil", "check", str(SCENE)]

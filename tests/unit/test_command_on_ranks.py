@@ -36,7 +36,7 @@ main()
 """
 
 
-def test_wrong_scene_is_told_once(tmp_path: Path) -> None:
+def test_wrong_scene_is_reported_once(tmp_path: Path) -> None:
     (tmp_path / "case.yaml").write_text("title: [\n", encoding="utf-8")
     done = mpirun(2, "-m", "riser_soil", "run", "case.yaml", folder=tmp_path)
     assert done.returncode == 2
@@ -45,7 +45,7 @@ def test_wrong_scene_is_told_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("failing", ["(0, 1)", "(0,)", "(1,)"])
-def test_failed_solve_ends_all_ranks_and_is_told_once(failing: str, tmp_path: Path) -> None:
+def test_failed_solve_ends_all_ranks_and_is_reported_once(failing: str, tmp_path: Path) -> None:
     script = DRIVER.replace("FAILING", failing).replace("FAILURE", "SolveError('no convergence at arc 24 m')")
     done = mpirun(2, "-c", script, folder=tmp_path)
     assert done.returncode == 3

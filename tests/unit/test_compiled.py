@@ -53,7 +53,7 @@ def test_versions_of_numba_have_their_own_caches(package: Path, monkeypatch: pyt
 
 def test_the_package_depends_on_all_its_kernels() -> None:
     names = compiled._sources(compiled.PACKAGE).keys()
-    assert {"riser/beam3d.py", "riser/bending.py", "sea/morison_law.py", "core/matrix.py"} <= names
+    assert {"riser/beam3d.py", "riser/beam2d.py", "sea/morison_law.py", "core/matrix.py"} <= names
     assert not {"whole_run.py", "__main__.py", "results/observer.py"} & names
 
 
@@ -76,9 +76,9 @@ def test_what_cant_be_written_is_replaced_by_a_private_folder(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
     folder = compiled.choose_folder("0" * 16)
     assert folder == tmp_path / "tmp" / f"riser_soil-{os.getuid()}" / ("0" * 16)
-    (told,) = capfd.readouterr().err.splitlines()
-    assert str(tmp_path / "file") in told
-    assert told.endswith(f"{folder} is used")
+    (reported,) = capfd.readouterr().err.splitlines()
+    assert str(tmp_path / "file") in reported
+    assert reported.endswith(f"{folder} is used")
     folder.parent.chmod(0o777)
     other = compiled.choose_folder("0" * 16)
     assert other.is_dir()
@@ -125,18 +125,18 @@ vector(np.ones(3))
 
 
 def test_compiling_is_announced_once_by_the_first_rank(tmp_path: Path) -> None:
-    def told(rank: str) -> str:
+    def reported(rank: str) -> str:
         environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "OMPI_COMM_WORLD_RANK": rank}
         environment.pop("NUMBA_CACHE_DIR", None)
         return subprocess.run([sys.executable, "-c", KERNEL], env=environment, capture_output=True, text=True).stderr
 
-    assert told("1") == ""
+    assert reported("1") == ""
     assert not list(tmp_path.rglob("announced"))
     for path in tmp_path.rglob("*.nbi"):
         path.unlink()
-    assert told("0") == compiled.ANNOUNCEMENT + "\n"
+    assert reported("0") == compiled.ANNOUNCEMENT + "\n"
     assert list(tmp_path.rglob("*.nbc"))
-    assert told("0") == ""
+    assert reported("0") == ""
 
 
 def test_processes_may_start_at_once(tmp_path: Path) -> None:

@@ -43,7 +43,7 @@ def scene(case: str, newton: str) -> Mapping:
 
 def taken(case: str, newton: str) -> list[dict[str, Array]]:
     """What each accepted step of the dynamic stage tells."""
-    assembly, told = built(scene(case, newton)), list[dict[str, Array]]()
+    assembly, reported = built(scene(case, newton)), list[dict[str, Array]]()
     contact, line, condensed = assembly.soil_contact, assembly.line, assembly.condensed
     assert contact is not None
     assert condensed is not None
@@ -51,7 +51,7 @@ def taken(case: str, newton: str) -> list[dict[str, Array]]:
     def tell(system: System, step: AcceptedStep) -> None:
         state = step.solution.state
         works = [vars(work)[name] for work in step.turned.values() for name in ("dissipated", "external", "by_scheme")]
-        told.append(
+        reported.append(
             {
                 "positions": line.positions3(state),
                 "rates": np.concatenate([state.v, state.a * step.dt]),
@@ -67,7 +67,7 @@ def taken(case: str, newton: str) -> list[dict[str, Array]]:
     before = run_stage(assembly, lay, before, Watcher(), Timer.new())
     with before_commit(tell):
         run_stage(assembly, move, before, Watcher(), Timer.new())
-    return told
+    return reported
 
 
 @cache
@@ -80,8 +80,8 @@ def assert_same(found: list[dict[str, Array]], wanted: list[dict[str, Array]]) -
     for name in wanted[0]:
         size = max(float(np.abs(each[name]).max()) for each in wanted)
         assert size > 0.0
-        for got, told in zip(found, wanted, strict=True):
-            assert np.abs(got[name] - told[name]).max() < SAME * size, name
+        for got, reported in zip(found, wanted, strict=True):
+            assert np.abs(got[name] - reported[name]).max() < SAME * size, name
 
 
 def forbid(patch: pytest.MonkeyPatch) -> None:
@@ -172,10 +172,10 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     free = np.append(~dofs.fixed.ravel(), np.ones(len(border.u), dtype=bool))
     residual(x0)
     riser.put_tangent()
-    room, matrix = riser.room, np.zeros((len(x0), len(x0)))
+    workspace, matrix = riser.workspace, np.zeros((len(x0), len(x0)))
     for i in range(n):
-        for j in range(max(0, i - len(room.band)), min(n, i + len(room.band) + 1)):
-            matrix[i, j] = room.ab[i, j - i + len(room.band)]
+        for j in range(max(0, i - len(workspace.band)), min(n, i + len(workspace.band) + 1)):
+            matrix[i, j] = workspace.ab[i, j - i + len(workspace.band)]
     matrix[:n, n:], matrix[n:, :n], matrix[n:, n:] = border.right, border.right.T, border.corner
     assert np.abs(border.right[free[:n]]).max() > 0.0
     assert np.abs(border.corner - newton._border._held.value.stiffness).max() > 0.0

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.condensation import why_whole
+from riser_soil.assembly.soil_block import why_whole
 from riser_soil.checks.check import describe
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
@@ -54,7 +54,7 @@ class Taken:
 
     def __init__(self, mapping: Mapping) -> None:
         self.assembly = built(mapping)
-        self.told = list[dict[str, Array]]()
+        self.reported = list[dict[str, Array]]()
         self.touched = list[int]()
         before = State.at_rest(0.0, self.assembly.size)
         with before_commit(self._tell):
@@ -63,12 +63,12 @@ class Taken:
         soil = self.assembly.recovered_soil()
         assert soil is not None
         fields = soil.output_fields()
-        self.told.append({"displacement": fields.displacement, "von Mises": fields.von_mises})
+        self.reported.append({"displacement": fields.displacement, "von Mises": fields.von_mises})
 
     def _tell(self, system: System, step: AcceptedStep) -> None:
         state, contact, line = step.solution.state, self.assembly.soil_contact, self.assembly.line
         assert contact is not None
-        self.told.append(
+        self.reported.append(
             {
                 "positions": line.positions3(state),
                 "force on the riser": contact.force_on_riser(state),
@@ -101,9 +101,11 @@ def test_the_answer_is_that_of_the_whole_soil(contact: str, kind: str, dimension
     whole, condensed = (taken(contact, kind, dimension, soil) for soil in ("whole", "condensed"))
     assert whole.assembly.condensed is None
     assert condensed.assembly.condensed is not None
-    assert len(whole.told) == len(condensed.told)
-    sizes = {key: max(float(np.abs(told[key]).max()) for told in whole.told if key in told) for key in SIZED}
-    for wanted, got in zip(whole.told, condensed.told, strict=True):
+    assert len(whole.reported) == len(condensed.reported)
+    sizes = {
+        key: max(float(np.abs(reported[key]).max()) for reported in whole.reported if key in reported) for key in SIZED
+    }
+    for wanted, got in zip(whole.reported, condensed.reported, strict=True):
         for key, value in wanted.items():
             size = sizes[SIZED_AS.get(key, key)]
             assert np.abs(got[key] - value).max() < SAME * size, key
@@ -240,7 +242,7 @@ def test_check_tells_how_the_soil_is_solved_for() -> None:
 
 
 def test_it_is_not_condensed_where_that_costs_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("riser_soil.assembly.condensation.MOST", 0.05)
+    monkeypatch.setattr("riser_soil.assembly.soil_block.MOST", 0.05)
     assert "unknowns of its surface lie under the riser" in reason(scene("node", "hex", 2, "auto"))
     assert reason(scene("node", "hex", 2, "condensed")) == ""
 

@@ -264,7 +264,7 @@ def test_weightless_groups_and_inactive_ranks() -> None:
 def assert_touches_nothing(contact: RiserContact) -> None:
     state = State.at_rest(0.0, 4 * 6)
     along = contact.force_per_length, contact.penetration, contact.depth
-    assert all(np.array_equal(told(state), np.zeros(4)) for told in along)
+    assert all(np.array_equal(reported(state), np.zeros(4)) for reported in along)
     np.testing.assert_array_equal(contact.force_on_riser(state), np.zeros(3))
     assert contact.max_penetration(state) == 0.0
     assert np.isnan(contact.touchdown_arc(state))

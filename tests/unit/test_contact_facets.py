@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.contact.facets import inside, second_derivatives, shape
-from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
+from riser_soil.contact.facets import gap_forms, heights, inside, penalty_hessian, second_derivatives, shape
 from riser_soil.contact.pairing import FacetSearch, facet_below, invert
 from riser_soil.core.arrays import Array, IntArray
 

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.contact.law import Penalty
-from riser_soil.contact.suction import SuctionLaw
+from riser_soil.contact.law import Penalty, SuctionLaw
 from tests.support.soil_loops import after, at, forces, through, work
 
 K, CAP, REACH = 1.0e5, 500.0, 0.02

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.contact.cushion import Cushion
+from riser_soil.contact.seabed_contact import Cushion
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes

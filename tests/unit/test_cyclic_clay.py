@@ -243,7 +243,7 @@ def test_closed_loops_of_kinematic_hardening_are_stable() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "told"),
+    ("key", "value", "reported"),
     [
         ("curve", [[1e-3, 0.5], [2e-3, 0.8]], "ever less steeply"),
         ("curve", [[1e-3, 0.5], [4e-3, 0.1]], "must rise"),
@@ -252,10 +252,10 @@ def test_closed_loops_of_kinematic_hardening_are_stable() -> None:
         ("elastic_share", 1.0, "no such key"),
     ],
 )
-def test_wrong_constants_are_told(key: str, value: object, told: str) -> None:
+def test_wrong_constants_are_reported(key: str, value: object, reported: str) -> None:
     scene = touchdown()
     scene["soil"]["law"] = {"kind": "iwan", "su": 600.0, "E_over_su": 300.0, key: value}
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(scene)
 
 

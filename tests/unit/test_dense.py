@@ -21,7 +21,7 @@ def test_it_solves(n: int) -> None:
 
 
 @pytest.mark.parametrize("value", [0.0, np.nan, np.inf])
-def test_a_matrix_without_an_inverse_is_told(value: float) -> None:
+def test_a_matrix_without_an_inverse_is_reported(value: float) -> None:
     a = np.eye(4)
     a[2, 2] = value
     assert not dense.factorise(a, np.zeros(4, dtype=dense.PIVOT))

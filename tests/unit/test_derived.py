@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.results.derived import along, peak, reactions
+from riser_soil.results.stage_records import along, peak, reactions
 from tests.support.recorded_run import WEIGHT, Catenary, record
 
 

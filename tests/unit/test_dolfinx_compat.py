@@ -72,7 +72,7 @@ def test_stale_locks_are_removed_and_fresh_ones_kept(tmp_path: Path) -> None:
     assert [f.exists() for f in (old, done, fresh)] == [False, True, True]
 
 
-def test_a_cache_that_cannot_be_written_is_replaced_and_told(
+def test_a_cache_that_cannot_be_written_is_replaced_and_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("in the way")
@@ -80,9 +80,9 @@ def test_a_cache_that_cannot_be_written_is_replaced_and_told(
     monkeypatch.setattr(compiled, "FOLDER", tmp_path / "kernels")
     assert nodes_of("hex", 1).owned == 5 * 3 * 3
     assert bool(list((tmp_path / "kernels" / "fenics").glob("libffcx_*.so"))) == COMPILES
-    (told,) = capfd.readouterr().err.splitlines()
-    assert str(tmp_path / "file") in told
-    assert told.endswith(f"{tmp_path / 'kernels' / 'fenics'} is used")
+    (reported,) = capfd.readouterr().err.splitlines()
+    assert str(tmp_path / "file") in reported
+    assert reported.endswith(f"{tmp_path / 'kernels' / 'fenics'} is used")
 
 
 def test_first_compilation_is_silent(tmp_path: Path) -> None:

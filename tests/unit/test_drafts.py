@@ -11,11 +11,9 @@ from typer.testing import CliRunner, Result
 from riser_soil.assembly import build
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.commands.app import app
-from riser_soil.drafts.draft import checked_draft
 from riser_soil.drafts.pipes import buoyant, chain, flexible, steel
-from riser_soil.drafts.questions import ask
-from riser_soil.drafts.text import number
-from riser_soil.drafts.wishes import Wishes
+from riser_soil.drafts.text import checked_draft, number
+from riser_soil.drafts.wishes import Wishes, ask
 from riser_soil.scene.document import parse
 from riser_soil.scene.reader import checked
 from riser_soil.scene.scene import Scene
@@ -99,10 +97,10 @@ def test_what_is_not_asked_for_is_left_out() -> None:
 
 @pytest.mark.parametrize("value", [0.0, 0.1365, 50.0, 1025.0, 28208.4, 5.0e4, 99999.6, 3.7023e9, 1e-5, 123456.0])
 def test_numbers_are_floats_to_every_reader(value: float) -> None:
-    told = number(value)
-    assert float(told) == pytest.approx(value, rel=5e-4)
-    assert "." in told
-    assert "e" not in told or told.partition("e")[2][0] in "+-"
+    reported = number(value)
+    assert float(reported) == pytest.approx(value, rel=5e-4)
+    assert "." in reported
+    assert "e" not in reported or reported.partition("e")[2][0] in "+-"
 
 
 REFUSED = {
@@ -125,14 +123,14 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("told", REFUSED)
-def test_bad_input_is_told_in_a_line_and_leaves_no_file(
-    told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("reported", REFUSED)
+def test_bad_input_is_reported_in_a_line_and_leaves_no_file(
+    reported: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = called(*REFUSED[told])
+    done = called(*REFUSED[reported])
     assert done.exit_code == 2
-    assert told in done.output
+    assert reported in done.output
     assert len(done.output.strip().splitlines()) == 1
     assert not list(tmp_path.iterdir())
 

@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from mpi4py import MPI
 
-from riser_soil.accuracy.companions import peaks_of
-from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.chain import peaks_of
+from riser_soil.accuracy.key_results import key_results
 from riser_soil.assembly import build
+from riser_soil.checks.bending_plausibility import asked_lengths, proposal, segments_for
 from riser_soil.checks.check import describe
-from riser_soil.checks.element_proposal import asked_lengths, proposal, segments_for
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
@@ -75,10 +75,12 @@ def test_a_third_of_the_elements_of_the_first_scene_keep_its_figures_to_one_per_
     segments = of(scene)
     assert segments is not None
     finer = tuple(s.model_copy(update={"element_length": tuple(x / 3 for x in ends(s))}) for s in segments)
-    rough, fine = (headlines(peaks_of(cut(scene, each), MPI.COMM_SELF).told("peaks")) for each in (segments, finer))
+    rough, fine = (
+        key_results(peaks_of(cut(scene, each), MPI.COMM_SELF).reported("peaks")) for each in (segments, finer)
+    )
     assert 3 * sum(each.element_count for each in segments) < scene.riser.element_count
-    for key, headline in fine.items():
-        assert rough[key].value == pytest.approx(headline.value, rel=0.01), key
+    for key, key_result in fine.items():
+        assert rough[key].value == pytest.approx(key_result.value, rel=0.01), key
 
 
 def ends(segment: Segment) -> tuple[float, float]:
@@ -89,8 +91,8 @@ def test_elements_as_proposed_need_no_word() -> None:
     scene = read_scene(FIRST)
     segments = of(scene)
     assert segments is not None
-    told = proposal(build(scene, MPI.COMM_SELF))
-    assert told.startswith("elements graded as the riser's bend asks for, for 1% of the largest moment")
+    reported = proposal(build(scene, MPI.COMM_SELF))
+    assert reported.startswith("elements graded as the riser's bend asks for, for 1% of the largest moment")
     assert not proposal(build(cut(scene, segments), MPI.COMM_SELF))
 
 
@@ -98,11 +100,11 @@ def test_the_words_are_segments_of_a_scene() -> None:
     from ruamel.yaml import YAML
 
     scene = read_scene(FIRST)
-    told = proposal(build(scene, MPI.COMM_SELF)).split("\n", 1)[1]
-    segments = tuple(Segment(**each) for each in YAML(typ="safe").load(told))
+    reported = proposal(build(scene, MPI.COMM_SELF)).split("\n", 1)[1]
+    segments = tuple(Segment(**each) for each in YAML(typ="safe").load(reported))
     assert sum(each.length for each in segments) == pytest.approx(scene.riser.length, rel=1e-5)
     assert not proposal(build(cut(scene, segments), MPI.COMM_SELF))
-    assert told in describe(scene)
+    assert reported in describe(scene)
 
 
 def test_clamped_ends_are_boundary_layers() -> None:

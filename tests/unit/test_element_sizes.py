@@ -64,7 +64,7 @@ def test_tension_of_round_off_asks_for_nothing() -> None:
 
 
 def test_tension_asks_by_its_scale() -> None:
-    """A tenth of the largest tension, as headline quantities have it."""
+    """A tenth of the largest tension, as key results have it."""
     tension = 4e4 + 4.0 * (ARC - 50.0) ** 2
     middle = asked(envelope(seen(0.0 * BULGE, tension)), 50.0)
     assert middle**2 * 8.0 / 8.0 == pytest.approx(0.5 * SHARE * 0.1 * tension.max(), rel=1e-6)

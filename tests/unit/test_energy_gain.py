@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from riser_soil.core.part import Energy
-from riser_soil.solve.energy_gain import EnergyGain
+from riser_soil.solve.local_error import EnergyGain
 
 STILL = Energy(kinetic=100.0, strain=0.0, potential=0.0)
 
@@ -26,7 +26,7 @@ def test_a_step_that_makes_much_is_rejected() -> None:
 
 
 @pytest.mark.parametrize(
-    ("was", "now", "dissipated", "work", "told"),
+    ("was", "now", "dissipated", "work", "reported"),
     [
         (Energy(kinetic=100.0), Energy(kinetic=125.0), 0.0, 0.0, "25 J out of nothing, beside 100 J"),
         (Energy(strain=100.0), Energy(kinetic=125.0), 0.0, 0.0, "25 J out of nothing, beside 100 J"),
@@ -36,9 +36,9 @@ def test_a_step_that_makes_much_is_rejected() -> None:
     ],
 )
 def test_in_motion_is_what_moves_is_strained_falls_or_goes_through_supports(
-    was: Energy, now: Energy, dissipated: float, work: float, told: str
+    was: Energy, now: Energy, dissipated: float, work: float, reported: str
 ) -> None:
-    assert told in EnergyGain(STILL).rejection(was, now, dissipated, work, 0.0)
+    assert reported in EnergyGain(STILL).rejection(was, now, dissipated, work, 0.0)
 
 
 def test_steps_that_make_a_little_each_are_rejected_once_their_sum_is_too_much() -> None:

@@ -1,4 +1,6 @@
-"""Error bars: of made-up companions with known errors, of small runs with their files, and of companions that fail."""
+"""Error bars: of made-up comparison runs with known errors, of small runs with their files, and of comparison runs that
+fail.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +18,21 @@ from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge, share_inside
 from benchmarks.error_bars.page import page
 from benchmarks.error_bars.scenes import CLAY, SCENES
-from riser_soil.accuracy import chain, knobs
+from riser_soil.accuracy import chain, settings
 from riser_soil.accuracy.barred_run import run_with_error_bars
-from riser_soil.accuracy.error_bars import Companion, ErrorBar, RunValues, divisor, error_bars, orders
-from riser_soil.accuracy.extremes import Extreme, alone, apart
-from riser_soil.accuracy.headlines import Headline
-from riser_soil.accuracy.knobs import KNOBS, settings_told
+from riser_soil.accuracy.error_bars import (
+    ComparisonRun,
+    ErrorBar,
+    Extreme,
+    RunValues,
+    alone,
+    apart,
+    divisor,
+    error_bars,
+    orders,
+)
+from riser_soil.accuracy.key_results import KeyResult
+from riser_soil.accuracy.settings import SETTINGS, settings_reported
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
@@ -34,24 +45,24 @@ KEY = "hang: top tension"
 SAFETY, ON_PATH = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}, 1.4
 ORDER, SMALLEST = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}, 5e-5
 SOIL = [name for name, scene in SCENES.items() if "soil" in scene]
-SOIL_MESH = next(knob for knob in KNOBS if knob.name == "soil_mesh")
+SOIL_MESH = next(setting for setting in SETTINGS if setting.name == "soil_mesh")
 QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 140 steps", "hose on a rigid floor")
 
 
-def bar_of(told: float, peak: float, *companions: Companion, path_dependent: bool = False) -> ErrorBar:
-    headline = Headline("hang", "top tension", "N", told, 1000.0)
-    values = RunValues({KEY: headline}, {KEY: peak}, {KEY: alone(peak)}, {KEY: peak})
-    (bar,) = error_bars(values, companions, rigid=False, path_dependent=path_dependent)
+def bar_of(reported: float, peak: float, *comparison_runs: ComparisonRun, path_dependent: bool = False) -> ErrorBar:
+    key_result = KeyResult("hang", "top tension", "N", reported, 1000.0)
+    values = RunValues({KEY: key_result}, {KEY: peak}, {KEY: alone(peak)}, {KEY: peak})
+    (bar,) = error_bars(values, comparison_runs, rigid=False, path_dependent=path_dependent)
     return bar
 
 
-def of_order(order: float, finer: float, error: float, source: str, before: float = 1000.0) -> Companion:
-    """A companion that is finer by a factor, after a run with an error above `before` which falls by an order."""
-    return companion(source, finer, before + error * (finer**-order - 1.0))
+def of_order(order: float, finer: float, error: float, source: str, before: float = 1000.0) -> ComparisonRun:
+    """A comparison run that is finer by a factor, after a run with an error above `before` which falls by an order."""
+    return comparison_run(source, finer, before + error * (finer**-order - 1.0))
 
 
-def companion(source: str, finer: float, value: float) -> Companion:
-    return Companion(source, finer, {KEY: alone(value)})
+def comparison_run(source: str, finer: float, value: float) -> ComparisonRun:
+    return ComparisonRun(source, finer, {KEY: alone(value)})
 
 
 @pytest.mark.parametrize(("source", "finer", "order"), [("mesh", 2.0, 2.0), ("time", 0.2, 2.0), ("soil", 0.5, 1.0)])
@@ -77,11 +88,11 @@ def test_contact_force_on_a_rigid_floor_falls_by_its_own_orders() -> None:
 
 def test_large_differences_of_longer_steps_are_hardly_divided() -> None:
     """Half way to the divisor 1 where they are 5 % of the scale; those of finer runs have no such limit."""
-    longer = Companion("time", 0.2, {})
+    longer = ComparisonRun("time", 0.2, {})
     assert divisor(longer, 2.0, 0.0) == pytest.approx(24.0)
     assert divisor(longer, 2.0, 0.05) == pytest.approx(12.5)
     assert divisor(longer, 2.0, 10.0) == pytest.approx(1.0, abs=0.2)
-    assert divisor(Companion("mesh", 2.0, {}), 2.0, 10.0) == pytest.approx(0.75)
+    assert divisor(ComparisonRun("mesh", 2.0, {}), 2.0, 10.0) == pytest.approx(0.75)
 
 
 def test_sources_follow_one_another_and_add_up_as_squares_do() -> None:
@@ -98,7 +109,7 @@ def test_of_two_companions_in_one_source_the_larger_share_counts() -> None:
     """Of first order the two differences are 0.41 and 1.41 times the error; either may be small by chance."""
     near, far = 2.0**0.5, 2.0 * 2.0**0.5
     for first, second in ((near - 1.0, far - 1.0), (near - 1.0, near - 1.0), (0.0, far - near)):
-        chain = companion("soil", 1.0 / near, 1000.0 + first), companion("soil", 0.5, 1000.0 + second)
+        chain = comparison_run("soil", 1.0 / near, 1000.0 + first), comparison_run("soil", 0.5, 1000.0 + second)
         assert bar_of(1000.0, 1000.0, *chain).by_source["soil"] == pytest.approx(SAFETY["soil"])
 
 
@@ -137,22 +148,22 @@ def test_soil_that_depends_on_its_path_takes_a_larger_factor() -> None:
 
 
 def test_what_falls_between_nodes_is_the_meshs() -> None:
-    bar = bar_of(1000.0, 1010.0, companion("mesh", 2.0, 1010.0))
+    bar = bar_of(1000.0, 1010.0, comparison_run("mesh", 2.0, 1010.0))
     assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
 
 
 def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
-    headline = Headline("heave", "top tension", "N", 1000.0, 1000.0)
-    key = headline.key
+    key_result = KeyResult("heave", "top tension", "N", 1000.0, 1000.0)
+    key = key_result.key
     nodes, steps, smooth = {key: 1000.0}, {key: alone(1004.0)}, {key: 997.0}
-    (bar,) = error_bars(RunValues({key: headline}, nodes, steps, smooth), [], rigid=False, path_dependent=False)
+    (bar,) = error_bars(RunValues({key: key_result}, nodes, steps, smooth), [], rigid=False, path_dependent=False)
     assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * (4.0 + 3.0))
 
 
 def test_no_bar_without_a_companion() -> None:
     """What is known is told by source; what stands behind one that failed is not compared with what stands before."""
-    failed = Companion("time", 0.2, None, "its companion failed: it did")
-    bar = bar_of(1000.0, 1000.0, failed, companion("mesh", 2.0, 1001.0))
+    failed = ComparisonRun("time", 0.2, None, "its companion failed: it did")
+    bar = bar_of(1000.0, 1000.0, failed, comparison_run("mesh", 2.0, 1001.0))
     assert bar.bar is None
     assert "its companion failed: it did" in bar.reason
     assert bar.by_source["mesh"] == 0.0
@@ -165,7 +176,7 @@ def test_true_errors_of_a_few_scenes_are_inside() -> None:
     assert share_inside(judged) > 0.9
 
 
-def run_told(tmp_path: Path, name: str, **more: Any) -> Any:
+def run_reported(tmp_path: Path, name: str, **more: Any) -> Any:
     run_with_error_bars(scene_from_mapping(SCENES[name] | more), tmp_path / "run")
     return json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
 
@@ -173,42 +184,42 @@ def run_told(tmp_path: Path, name: str, **more: Any) -> Any:
 def test_bars_of_a_run_are_on_the_screen_and_in_its_summary(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    told = run_told(tmp_path, "cantilever let go", output={"fields": []})
+    reported = run_reported(tmp_path, "cantilever let go", output={"fields": []})
     screen = capsys.readouterr().out
     assert "motion: error bars" in screen
     assert "force at start, N" in screen
-    quantities = {(bar["stage"], bar["name"]): bar for bar in told["error_bars"]["quantities"]}
+    quantities = {(bar["stage"], bar["name"]): bar for bar in reported["error_bars"]["quantities"]}
     bar = quantities["motion", "largest bending moment"]
     assert set(bar["by_source"]) == {"mesh", "time"}
     assert 0.0 < bar["bar"] < 0.2 * bar["value"]
-    assert told["finished"]
+    assert reported["finished"]
     assert not (tmp_path / "run" / ".riser_soil").exists()
 
 
-def test_companion_that_fails_is_told_and_its_run_stays(
+def test_companion_that_fails_is_reported_and_its_run_stays(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fails(scene: Scene, comm: object) -> None:
         raise SolveError("no convergence at 3 s\nmore of it")
 
     monkeypatch.setattr(chain, "peaks_of", fails)
-    told = run_told(tmp_path, "cantilever let go")
-    assert told["finished"]
-    assert {bar["bar"] for bar in told["error_bars"]["quantities"]} == {None}
+    reported = run_reported(tmp_path, "cantilever let go")
+    assert reported["finished"]
+    assert {bar["bar"] for bar in reported["error_bars"]["quantities"]} == {None}
     assert "its companion failed: no convergence at 3 s" in capsys.readouterr().out
 
 
 def test_error_that_one_rank_may_have_met_alone_is_no_failed_companion(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The others are within the companion still, and would not hear of the next one."""
+    """The others are within the comparison run still, and would not hear of the next one."""
 
     def fails(scene: Scene, comm: object) -> None:
         raise ValueError("math domain error")
 
     monkeypatch.setattr(chain, "peaks_of", fails)
     scene = scene_from_mapping(SCENES["hose swings on a rigid floor"])
-    assert [each.extremes for each in chain.companions(scene, Alone())] == [None, None]
+    assert [each.extremes for each in chain.comparison_runs(scene, Alone())] == [None, None]
     with pytest.raises(ValueError, match="math domain error"):
-        chain.companions(scene, SimpleNamespace(rank=0, size=2))
+        chain.comparison_runs(scene, SimpleNamespace(rank=0, size=2))
 
 
 def test_companions_go_on_from_one_to_the_next(looked_at: list[Scene]) -> None:
@@ -216,7 +227,7 @@ def test_companions_go_on_from_one_to_the_next(looked_at: list[Scene]) -> None:
     times as stiff, so that a riser sinks in over half the length.
     """
     scene = scene_from_mapping(SCENES["hose swings on a rigid floor"] | {"output": {"interval": 0.1}})
-    found = chain.companions(scene, None)
+    found = chain.comparison_runs(scene, None)
     assert [each.source for each in found] == ["time", "mesh"]
     assert [each.finer for each in found] == pytest.approx([0.25, 2.0])  # four times as long at most
     assert [each.riser.element_count for each in looked_at] == [80, 160]
@@ -226,21 +237,21 @@ def test_companions_go_on_from_one_to_the_next(looked_at: list[Scene]) -> None:
 
 @pytest.mark.parametrize(("name", "longer"), [("surge, 40 steps", 2.0), ("surge across", 3.0), ("fast surge", 3.0)])
 def test_longer_steps_are_left_to_the_shortest_period(name: str, longer: float, looked_at: list[Scene]) -> None:
-    (time, mesh) = chain.companions(scene_from_mapping(SCENES[name]), None)
+    (time, mesh) = chain.comparison_runs(scene_from_mapping(SCENES[name]), None)
     assert (1.0 / time.finer, mesh.finer) == pytest.approx((longer, 2.0))
 
 
 def test_soil_is_coarsened_twice(looked_at: list[Scene]) -> None:
-    found = chain.companions(scene_from_mapping(SCENES["pipe pressed on clay"]), None)
+    found = chain.comparison_runs(scene_from_mapping(SCENES["pipe pressed on clay"]), None)
     assert [each.source for each in found] == ["soil", "soil", "mesh", "penalty"]
     assert [each.finer for each in found] == pytest.approx([0.5**0.5, 0.5, 0.5, 0.25])
     near, far = (f"soil cells of {0.025 * n**0.5:.4g} m across the riser" for n in (2.0, 8.0))
-    assert [settings_told(each, [SOIL_MESH]) for each in looked_at] == [near, far, far, far]
+    assert [settings_reported(each, [SOIL_MESH]) for each in looked_at] == [near, far, far, far]
 
 
 @pytest.fixture
 def looked_at(monkeypatch: pytest.MonkeyPatch) -> list[Scene]:
-    """Companions, which are not computed."""
+    """Comparison runs, which are not computed."""
     seen: list[Scene] = []
 
     def looks(scene: Scene, comm: object) -> RunPeaks:
@@ -255,14 +266,14 @@ def test_a_scene_may_ask_for_bars(tmp_path: Path) -> None:
     file, folder = tmp_path / "scene.yaml", tmp_path / "run"
     file.write_text(json.dumps(SCENES["cantilever, tip load"] | {"error_bars": True}), encoding="utf-8")
     assert CliRunner().invoke(app, ["run", str(file), "-o", str(folder)]).exit_code == 0
-    told = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert {bar["bar"] is None for bar in told["error_bars"]["quantities"]} == {False}
+    reported = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert {bar["bar"] is None for bar in reported["error_bars"]["quantities"]} == {False}
 
 
 def test_what_cannot_be_varied_has_no_bar(monkeypatch: pytest.MonkeyPatch) -> None:
     """It must not look exact."""
-    monkeypatch.setattr(knobs, "MOST_ELEMENTS", 7)
-    (found,) = chain.companions(scene_from_mapping(SCENES["cantilever, tip load"]), None)
+    monkeypatch.setattr(settings, "MOST_ELEMENTS", 7)
+    (found,) = chain.comparison_runs(scene_from_mapping(SCENES["cantilever, tip load"]), None)
     assert found.extremes is None
     assert "more than 7 elements" in found.reason
 
@@ -270,9 +281,9 @@ def test_what_cannot_be_varied_has_no_bar(monkeypatch: pytest.MonkeyPatch) -> No
 def test_the_page_has_each_kind_in_and_out_of_sample() -> None:
     name = "catenary, 20 elements"
     found = [judge(name, SCENES[name], references.read()[name])]
-    told = page(found, found).splitlines()
+    reported = page(found, found).splitlines()
     for kind in ("top tension", "no ground", "static"):
-        (row,) = (line for line in told if line.startswith(f"| {kind} |"))
+        (row,) = (line for line in reported if line.startswith(f"| {kind} |"))
         judged = [cell.strip() for cell in row.split("|")[2:-1]]
         assert int(judged[0]) > 0
         assert judged[:3] == judged[3:]

@@ -14,12 +14,12 @@ from riser_soil.__main__ import app
 from riser_soil.assembly import build
 from riser_soil.core import factor_memory
 from riser_soil.core.arrays import Array
-from riser_soil.core.factor_memory import Room
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve import linear_solver, linear_systems
+from riser_soil.solve import linear_solver, snes
 from riser_soil.stages import LayingCounter, run_stage
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
 
@@ -40,35 +40,35 @@ def laid() -> Array:
     return assembly.soil.field.total.copy()
 
 
-@pytest.mark.parametrize("place", [linear_systems, linear_solver])
-def test_too_little_room_grows_and_the_step_is_the_same(place: object, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("place", [snes, linear_solver])
+def test_too_little_workspace_grows_and_the_step_is_the_same(place: object, monkeypatch: pytest.MonkeyPatch) -> None:
     """Room below nothing is less than what MUMPS has foretold."""
     expected, rooms = laid(), []
 
-    def tight() -> Room:
-        rooms.append(Room(-90))
+    def tight() -> Workspace:
+        rooms.append(Workspace(-90))
         return rooms[-1]
 
-    monkeypatch.setattr(place, "Room", tight)
+    monkeypatch.setattr(place, "Workspace", tight)
     np.testing.assert_allclose(laid(), expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
-    assert 60 <= max(room.percent for room in rooms) < 960
+    assert 60 <= max(workspace.percent for workspace in rooms) < 960
 
 
-def test_room_doubles_up_to_ten_times_what_is_foretold(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workspace_doubles_up_to_ten_times_what_is_foretold(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(factor_memory, "_said", lambda pc: (-9, 1))  # too little room
-    monkeypatch.setattr(factor_memory, "_too_little", lambda *told: "none left")
-    room = Room()
-    assert [room.percent for _ in range(4) if room.grows_after(None)] == [120, 240, 480, 960]
+    monkeypatch.setattr(factor_memory, "_too_little", lambda *reported: "none left")
+    workspace = Workspace()
+    assert [workspace.percent for _ in range(4) if workspace.grows_after(None)] == [120, 240, 480, 960]
     with pytest.raises(MemoryShortageError, match="none left"):
-        room.grows_after(None)
+        workspace.grows_after(None)
 
 
 def test_a_run_without_memory_ends_in_plain_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """MUMPS is forbidden more than a megabyte (control 23)."""
-    monkeypatch.setattr(Room, "controls", property(lambda room: {23: 1}))
+    monkeypatch.setattr(Workspace, "controls", property(lambda workspace: {23: 1}))
     (tmp_path / "scene.yaml").write_text(json.dumps(on_fine_soil()), encoding="utf-8")
     done = CliRunner().invoke(app, ["run", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out")])
     assert done.exit_code == 3
-    (told,) = done.stderr.strip().splitlines()
-    assert " unknowns ran out of memory: a rank wanted " in told
-    assert "INFOG(1) = -19); take larger cells or a smaller block" in told
+    (reported,) = done.stderr.strip().splitlines()
+    assert " unknowns ran out of memory: a rank wanted " in reported
+    assert "INFOG(1) = -19); take larger cells or a smaller block" in reported

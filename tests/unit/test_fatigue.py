@@ -10,14 +10,26 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.fatigue.assessment import CaseDamage, YearlyDamage
-from riser_soil.fatigue.damage import StressRanges, damage_rates, records_per_period, standard_error
-from riser_soil.fatigue.dnv_curves import CLASSES, ENVIRONMENTS, CurveClass, Environment, dnv_curve
+from riser_soil.fatigue.damage import (
+    StressRanges,
+    damage_rates,
+    mean_period,
+    rainflow_ranges,
+    records_per_period,
+    standard_error,
+)
 from riser_soil.fatigue.fatigue_file import Fatigue
-from riser_soil.fatigue.rainflow import mean_period, rainflow_ranges
-from riser_soil.fatigue.sn_curve import SNCurve, curve_through
+from riser_soil.fatigue.sn_curve import (
+    CLASSES,
+    ENVIRONMENTS,
+    CurveClass,
+    Environment,
+    SNCurve,
+    curve_through,
+    dnv_curve,
+)
 from riser_soil.fatigue.stress_history import StressHistory
-from riser_soil.riser.wall_sections import wall_sections
-from riser_soil.riser.wall_stress import Wall
+from riser_soil.riser.wall_stress import Wall, wall_sections
 
 # Fatigue limit at 1e7 cycles [MPa] as printed in the tables, in the order of the classes.
 LIMITS = (106.97, 93.59, 73.10, 65.50, 58.48, 52.63, 46.78, 41.52, 36.84, 32.75, 29.24, 26.32, 23.39, 21.05)
@@ -170,7 +182,7 @@ def test_a_moment_that_turns_damages_all_around_alike() -> None:
     assert rates[0] == pytest.approx(expected, rel=0.005, abs=1e-12)
 
 
-def test_records_too_far_apart_and_few_waves_are_told() -> None:
+def test_records_too_far_apart_and_few_waves_are_reported() -> None:
     """6.25 records in each period of 5 s, and amplitudes that grow; 5 % of a sine's turn is what ten records miss."""
     t = np.arange(0.0, 80.0, 0.8)
     history = of_one_pipe(t, t * np.sin(2.0 * np.pi * t / 5.0), 0.0 * t)

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sparse
 from petsc4py import PETSc
 
-from riser_soil.checks.fill import entries, factor_memory
+from riser_soil.checks.estimate import entries, factor_memory
 
 
 @pytest.mark.parametrize(

@@ -12,20 +12,18 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.sea.buoyancy import Buoyancy
 from riser_soil.sea.dry_pipe import dry_pipe
-from riser_soil.sea.flows import add_flow
+from riser_soil.sea.flows import Sea, WaterMotion, add_flow
 from riser_soil.sea.morison import Morison
-from riser_soil.sea.sea import Sea
-from riser_soil.sea.water import WaterMotion
 from tests.support import sample_water
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS
 from tests.support.sample_line import Sample, sample
 
 
-class CountedNumbers(NamedTuple):
+class CountedData(NamedTuple):
     """A flow, the times (n,) at which it was asked for, and how often that was (1,)."""
 
-    flow: sample_water.GeneralNumbers
+    flow: sample_water.GeneralData
     times: Array
     asked: IntArray
 
@@ -34,18 +32,18 @@ class Counted:
     """Uneven water that counts how often it is asked; a `FlowComponent`."""
 
     def __init__(self) -> None:
-        self.numbers = CountedNumbers(sample_water.General().numbers, np.zeros(20), np.zeros(1, dtype=np.int64))
+        self.kernel_data = CountedData(sample_water.General().kernel_data, np.zeros(20), np.zeros(1, dtype=np.int64))
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
         raise AssertionError("not asked for")
 
     @property
     def times(self) -> list[float]:
-        return list(self.numbers.times[: self.numbers.asked[0]])
+        return list(self.kernel_data.times[: self.kernel_data.asked[0]])
 
 
-@add_flow.of(CountedNumbers)
-def _add_counted(counted: CountedNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(CountedData)
+def _add_counted(counted: CountedData, motion: WaterMotion, t: Array, x: Array) -> None:
     counted.times[counted.asked[0]] = t[0]
     counted.asked[0] += 1
     sample_water.add_to(motion, counted.flow, t[0], x)

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.contact.adhesion import Adhesion, adhesions
-from riser_soil.contact.coulomb import traction
+from riser_soil.contact.coulomb import Adhesion, adhesions, traction
 from riser_soil.contact.friction import CoulombFriction, directions, mobilised_within
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
@@ -21,7 +20,7 @@ from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
 from riser_soil.seabed.bearing import Strength
 from riser_soil.seabed.grounds import Ground, Plane
-from riser_soil.seabed.profile import Profile
+from riser_soil.seabed.height_field import Profile
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.riser_loop import require_kernels

@@ -87,13 +87,13 @@ def test_a_cable_is_where_it_begins() -> None:
     assert catenary(by_cable(wanted, 20.0))[0] == pytest.approx(20.0, abs=1e-4)
 
 
-def test_what_no_layback_gives_is_told() -> None:
+def test_what_no_layback_gives_is_reported() -> None:
     with pytest.raises(SceneError, match=r"^riser.end.hang_off: a hang-off angle of 85 deg is out of reach"):
         solved(hanging(angle=85.0))
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ({"riser": {"end": {"hang_off": {"angle": 10.0, "tension": 1.0}}}}, "angle and tension are both given"),
         ({"riser": {"end": {"hang_off": {}}}}, "neither angle nor tension is given"),
@@ -105,7 +105,7 @@ def test_what_no_layback_gives_is_told() -> None:
         ({"stages": [static(move={"end": [30.0, 0.0, 41.0]})]}, "moves an end"),
     ],
 )
-def test_what_a_hang_off_needs(change: Mapping, told: str) -> None:
+def test_what_a_hang_off_needs(change: Mapping, reported: str) -> None:
     scene = hanging(angle=20.0)
     for key, value in change.items():
         if key == "riser":
@@ -113,7 +113,7 @@ def test_what_a_hang_off_needs(change: Mapping, told: str) -> None:
                 scene["riser"][name] = {**scene["riser"][name], **inner} if isinstance(inner, dict) else inner
         else:
             scene[key] = value
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(scene)
 
 
@@ -124,10 +124,10 @@ def test_commands_tell_what_was_found(tmp_path: Path) -> None:
     assert guessed.output.startswith("a hang-off angle of 20 deg: a layback of ")
     assert CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "run")]).exit_code == 0
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
-    told, final = summary["hang_off"], summary["stages"][0]["final"]
-    assert told["asked"] == {"angle_deg": 20.0}
-    assert final["end"]["angle_deg"] == pytest.approx(90.0 - told["reached"], abs=1e-6)
-    assert final["end"]["position"][0] == pytest.approx(told["value"], rel=1e-12)
+    reported, final = summary["hang_off"], summary["stages"][0]["final"]
+    assert reported["asked"] == {"angle_deg": 20.0}
+    assert final["end"]["angle_deg"] == pytest.approx(90.0 - reported["reached"], abs=1e-6)
+    assert final["end"]["position"][0] == pytest.approx(reported["value"], rel=1e-12)
 
 
 def guessed(scene: Mapping, value: float, folder: Path = Path()) -> Scene:
@@ -189,7 +189,7 @@ def test_the_anchor_stays_on_its_ground(end: str, ground: float, after: float, b
     assert not conflicts(found)
 
 
-def test_a_scene_that_cannot_be_with_what_was_found_is_told(tmp_path: Path) -> None:
+def test_a_scene_that_cannot_be_with_what_was_found_is_reported(tmp_path: Path) -> None:
     (tmp_path / "seabed.csv").write_text("x [m], y [m], z [m]\n-5, -5, 0\n-5, 5, 0\n30, -5, 0\n30, 5, 0\n")
     scene = hanging(angle=20.0) | {"seabed": {"kind": "rigid", "contact_at": "axis", "grid": "seabed.csv"}}
     wanted = hung_end(scene_from_mapping(scene | {"dimension": 2}, tmp_path))

@@ -1,4 +1,4 @@
-"""Headline quantities of a summary: their values by the stage's kind, and the scales of their errors."""
+"""Key results of a summary: their values by the stage's kind, and the scales of their errors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.accuracy.headlines import Headline, headlines
+from riser_soil.accuracy.key_results import KeyResult, key_results
 from riser_soil.core.snapshot import Instant, RunFacts
 from riser_soil.results.figures import final_state, pack
 from riser_soil.results.summary import StageTally, Summary, plain_json
@@ -31,7 +31,7 @@ def summary(kind: str, *parameters: float, facts: RunFacts = FACTS, **soil: Any)
 
 
 def test_of_a_static_stage_the_end_counts() -> None:
-    found = headlines(summary("static", 20.0, 32.0))
+    found = key_results(summary("static", 20.0, 32.0))
     top = WEIGHT * math.hypot(32.0, 120.0)
     values = {each.name: (each.value, each.unit) for each in found.values()}
     assert values == {
@@ -48,7 +48,7 @@ def test_of_a_static_stage_the_end_counts() -> None:
 
 
 def test_of_a_dynamic_stage_its_extremes_count() -> None:
-    found = headlines(summary("dynamic", 32.0, 25.0, 30.0))
+    found = key_results(summary("dynamic", 32.0, 25.0, 30.0))
     assert found["lay: largest bending moment"].value == pytest.approx(EI / 25.0)
     assert found["lay: top tension"].value == pytest.approx(WEIGHT * math.hypot(32.0, 120.0))
     assert found["lay: force at start"].value == pytest.approx(WEIGHT * 32.0)
@@ -59,32 +59,32 @@ def test_of_a_dynamic_stage_its_extremes_count() -> None:
 
 
 def test_the_upper_end_is_the_top() -> None:
-    told = summary("static", 32.0)
-    final = told["stages"][0]["final"]
+    reported = summary("static", 32.0)
+    final = reported["stages"][0]["final"]
     final["start"], final["end"] = final["end"], final["start"]
-    assert headlines(told)["lay: top tension"].value == pytest.approx(WEIGHT * math.hypot(32.0, 120.0))
+    assert key_results(reported)["lay: top tension"].value == pytest.approx(WEIGHT * math.hypot(32.0, 120.0))
 
 
 def test_settlement_where_there_is_soil() -> None:
     largest = {"value": 0.02, "position": [0.0, 0.0, 0.0], "time": 1.0}
-    assert headlines(summary("static", 32.0, max_settlement=largest))["lay: soil settlement"].value == 0.02
-    assert "lay: soil settlement" not in headlines(summary("static", 32.0))
+    assert key_results(summary("static", 32.0, max_settlement=largest))["lay: soil settlement"].value == 0.02
+    assert "lay: soil settlement" not in key_results(summary("static", 32.0))
 
 
 def test_what_a_stage_lacks_is_left_out() -> None:
-    told = summary("static", 32.0)
-    told["stages"][0]["final"] |= {"touchdown_arc": None, "contact_force": 0.0}
-    told["stages"].append(told["stages"][0] | {"name": "failed", "final": None})
-    assert {each.name for each in headlines(told).values()}.isdisjoint({"touchdown arc", "largest contact force"})
-    assert {each.stage for each in headlines(told).values()} == {"lay"}
+    reported = summary("static", 32.0)
+    reported["stages"][0]["final"] |= {"touchdown_arc": None, "contact_force": 0.0}
+    reported["stages"].append(reported["stages"][0] | {"name": "failed", "final": None})
+    assert {each.name for each in key_results(reported).values()}.isdisjoint({"touchdown arc", "largest contact force"})
+    assert {each.stage for each in key_results(reported).values()} == {"lay"}
 
 
 def test_scales_have_floors() -> None:
     """A least tension near zero is judged by the stage's forces, the touchdown arc by the distance of the ends."""
-    told = summary("static", 32.0)
-    told["stages"][0]["final"]["min_effective_tension"]["value"] = -1.0
-    told["stages"][0]["final"]["max_bending_moment"]["value"] = 1e-9
-    found = headlines(told)
+    reported = summary("static", 32.0)
+    reported["stages"][0]["final"]["min_effective_tension"]["value"] = -1.0
+    reported["stages"][0]["final"]["max_bending_moment"]["value"] = 1e-9
+    found = key_results(reported)
     top = found["lay: top tension"].value
     assert found["lay: top tension"].scale == top
     assert found["lay: least effective tension"].scale == pytest.approx(0.1 * top)
@@ -94,5 +94,5 @@ def test_scales_have_floors() -> None:
 
 
 def test_without_a_scale_only_no_difference_is_small() -> None:
-    nothing = Headline("lay", "top tension", "N", 0.0, 0.0)
+    nothing = KeyResult("lay", "top tension", "N", 0.0, 0.0)
     assert (nothing.relative(0.0), nothing.relative(1e-300)) == (0.0, math.inf)

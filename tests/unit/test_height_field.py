@@ -19,8 +19,7 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.seabed.grounds import Plane
-from riser_soil.seabed.height_field import HeightField
-from riser_soil.seabed.profile import Profile
+from riser_soil.seabed.height_field import HeightField, Profile
 from tests.support.riser_scenes import prescribed, riser_scene, static
 
 X = np.random.default_rng(7).uniform(-3.0, 12.0, size=(60, 3))
@@ -122,13 +121,13 @@ def test_a_scene_reads_its_grid(tmp_path: Path) -> None:
     assert read_scene(folder / "scene.yaml") == found
 
 
-@pytest.mark.parametrize(("reach", "told"), [("31", 0), ("25", 1)])
-def test_a_free_end_beyond_the_grid_is_told(reach: str, told: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("reach", "reported"), [("31", 0), ("25", 1)])
+def test_a_free_end_beyond_the_grid_is_reported(reach: str, reported: int, tmp_path: Path) -> None:
     """30 m along x in three elements."""
     ends = {"start": prescribed(0.0, 0.0, 5.0, rotation="fixed"), "end": "free"}
     found = scene(tmp_path, HEADER + ROWS.replace("30", reach), ends=ends)
     warnings = [warning for warning in ground_warnings(build(found, MPI.COMM_SELF)) if "seabed.grid" in warning]
-    assert len(warnings) == told
+    assert len(warnings) == reported
     assert all("1 nodes of the riser's first shape, from arc 30 to 30 m" in warning for warning in warnings)
 
 

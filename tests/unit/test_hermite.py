@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.riser import hermite, stations
-from riser_soil.riser.angle_over_sine import angle_over_sine
+from riser_soil.riser.corotation import angle_over_sine
 
 L = np.array([0.5, 2.0, 7.0])
 XI = np.linspace(0.0, 1.0, 2001)

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
-from riser_soil.results.doubtful_extremes import AT, JUDGED
+from riser_soil.results.doubtful_extremes import AT, JUDGED, TimeResolution
 from riser_soil.results.figures import places_of
 from riser_soil.results.indicators import ImpactLoss, StageIndicators
-from riser_soil.results.time_resolution import TimeResolution
 
 SHARE = 0.3  # of the second difference around an extreme: how far it may be off, as calibrated
 SIZE = int(AT.max()) + 1
@@ -81,7 +80,7 @@ def test_a_sharp_peak_nearly_as_large_as_the_extreme_is_a_rival(
     assert mirrored.of_least[0] == pytest.approx(found.of_most[0])
 
 
-def test_steps_that_are_told_are_those_around_the_rival() -> None:
+def test_steps_that_are_reported_are_those_around_the_rival() -> None:
     found, t = TimeResolution(1), 0.0
     for dt, q in ((1.0, 0.0), (1.0, 9.0), (1.0, 9.9), (1.0, 9.9), (1.0, 9.0), (0.5, 0.0), (0.2, 9.8), (0.5, 0.0)):
         t += dt
@@ -146,29 +145,32 @@ def test_a_least_tension_that_turns_sharply_is_a_warning() -> None:
     ("least", "allowed"),
     [(0.0, 10.0), (50.0, 10.0), (200.0, 20.0), (900.0, 30.0), (-150.0, 10.0), (-300.0, 15.0), (-800.0, 30.0)],
 )
-def test_least_tension_is_told_from_a_tenth_of_its_size(least: float, allowed: float) -> None:
+def test_least_tension_is_reported_from_a_tenth_of_its_size(least: float, allowed: float) -> None:
     """Of compression from a twentieth; within 1 and 3 % of the largest tension. V-shaped, by a little more or less than
     what is allowed.
     """
     for factor, warned in ((0.99, False), (1.01, True)):
         off = factor * allowed / (2.0 * SHARE)
-        told = judged([least + 2.0 * off, least + off, least, least + off, least + 2.0 * off])
-        assert bool(told) == warned
-        assert not told or ("where the riser is compressed" in told[0]) == (least < 0.0)
+        reported = judged([least + 2.0 * off, least + off, least, least + off, least + 2.0 * off])
+        assert bool(reported) == warned
+        assert not reported or ("where the riser is compressed" in reported[0]) == (least < 0.0)
 
 
-def test_tension_and_moment_are_told_of_each() -> None:
-    told = judged([230.0, 190.0, 150.0, 190.0, 230.0], [0.0, 100.0, 200.0, 100.0, 0.0])
-    assert [text.split(" may ")[0] for text in told] == ["the least effective tension", "the largest bending moment"]
+def test_tension_and_moment_are_reported_of_each() -> None:
+    reported = judged([230.0, 190.0, 150.0, 190.0, 230.0], [0.0, 100.0, 200.0, 100.0, 0.0])
+    assert [text.split(" may ")[0] for text in reported] == [
+        "the least effective tension",
+        "the largest bending moment",
+    ]
 
 
 def test_automatic_steps_are_to_take_a_smaller_tolerance() -> None:
     """Steps that are 0.456 as long have 0.456³ of the local error."""
-    (told,) = judged([230.0, 190.0, 150.0, 190.0, 230.0], automatic=True)
-    assert told.endswith("between steps of 0.1 s; take a tolerance of 0.095 of this one")
+    (reported,) = judged([230.0, 190.0, 150.0, 190.0, 230.0], automatic=True)
+    assert reported.endswith("between steps of 0.1 s; take a tolerance of 0.095 of this one")
 
 
-def test_steps_that_are_told_are_those_around_the_extreme() -> None:
+def test_steps_that_are_reported_are_those_around_the_extreme() -> None:
     found, t = TimeResolution(1), 0.0
     for dt, q in ((1.0, 0.0), (1.0, 1.0), (0.1, 2.0), (0.2, 3.0), (0.1, 2.0), (0.1, 1.0), (4.0, 0.5), (9.0, 0.4)):
         t += dt
@@ -181,10 +183,10 @@ def test_tension_beside_the_weight_is_too_small_to_judge() -> None:
 
 
 def test_impact_that_loses_the_motion_is_a_warning() -> None:
-    told = list(followed([1000.0] * 3, lost=20.0).warnings())
-    assert len(told) == 1
-    assert "impact lost 38.1 J to the time step and not to the ground, 38% of the 100 J" in told[0]
-    assert "a period of 0.5 s, 5 steps; take a time_step of 0.005 s" in told[0]
+    reported = list(followed([1000.0] * 3, lost=20.0).warnings())
+    assert len(reported) == 1
+    assert "impact lost 38.1 J to the time step and not to the ground, 38% of the 100 J" in reported[0]
+    assert "a period of 0.5 s, 5 steps; take a time_step of 0.005 s" in reported[0]
     assert list(followed([1000.0] * 3, lost=2.0).warnings()) == []
 
 
@@ -209,9 +211,9 @@ def test_what_the_scheme_puts_in_as_well_is_no_loss() -> None:
 
 
 def test_steps_that_misplace_the_riser_are_a_warning() -> None:
-    told = list(followed([1000.0] * 3, local_error=0.9).warnings())
-    assert len(told) == 1
-    assert "by some 0.9 m of its own, 3 diameters" in told[0]
+    reported = list(followed([1000.0] * 3, local_error=0.9).warnings())
+    assert len(reported) == 1
+    assert "by some 0.9 m of its own, 3 diameters" in reported[0]
     assert list(followed([1000.0] * 3, local_error=0.5).warnings()) == []
 
 

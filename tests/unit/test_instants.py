@@ -8,8 +8,7 @@ import pytest
 from riser_soil.core.arrays import views
 from riser_soil.core.snapshot import Instant, instants_at, mapped
 from riser_soil.results.figures import Extremes, pack
-from riser_soil.riser.wall_sections import wall_sections
-from riser_soil.riser.wall_stress import Wall
+from riser_soil.riser.wall_stress import Wall, wall_sections
 from tests.support.recorded_run import Catenary, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)

@@ -237,9 +237,11 @@ def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals,
     call = [sys.executable, "-c", script, str(out)]
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 128 + number
-    told = f"ended by {number.name} in stage heave at t = 1.3 s; {out} has the results up to there, marked unfinished"
+    reported = (
+        f"ended by {number.name} in stage heave at t = 1.3 s; {out} has the results up to there, marked unfinished"
+    )
     way_on = f"; go on with: riser-soil run {out}/scene.yaml -o {out} --restart" if sent == BETWEEN else ""
-    assert done.stderr.splitlines()[-1] == told + way_on
+    assert done.stderr.splitlines()[-1] == reported + way_on
     assert (out / "checkpoint.npz").exists() == (sent == BETWEEN), "within a step there is no state to go on from"
     assert len(done.stderr.splitlines()) <= 2, "but for the announcement of kernels"
     run = Run(out)
@@ -267,7 +269,7 @@ main()
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interruption_that_a_library_takes_for_its_own_is_told(number: signal.Signals) -> None:
+def test_an_interruption_that_a_library_takes_for_its_own_is_reported(number: signal.Signals) -> None:
     call = [sys.executable, "-c", TOO_EARLY.replace("SIGNAL", number.name)]
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 128 + number
@@ -275,7 +277,7 @@ def test_an_interruption_that_a_library_takes_for_its_own_is_told(number: signal
     assert done.stderr == f"ended by {number.name} before the first stage; nothing was computed\n"
 
 
-def test_a_signal_in_what_c_calls_back_is_told_at_the_next_step(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_signal_in_what_c_calls_back_is_reported_at_the_next_step(capsys: pytest.CaptureFixture[str]) -> None:
     """As LLVM calls numba: an exception ends nothing there."""
     called_back = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGTERM))
     reached = []

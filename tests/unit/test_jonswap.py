@@ -11,9 +11,9 @@ from scipy.signal import periodogram
 
 from riser_soil.core.arrays import Array
 from riser_soil.sea.components import Components
-from riser_soil.sea.jonswap import components, quantiles, spectrum
-from riser_soil.sea.sea import Sea
-from riser_soil.sea.wave_field import WaveField
+from riser_soil.sea.flows import Sea
+from riser_soil.sea.spectra import components, quantiles, spectrum
+from riser_soil.sea.waves import WaveField
 
 G, HS, TP, GAMMA, DEPTH = 9.81, 6.0, 11.0, 3.3, 120.0
 PEAK = 2.0 * np.pi / TP

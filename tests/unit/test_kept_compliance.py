@@ -17,7 +17,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.soil import kept_compliance
+from riser_soil.soil import compliance as kept_compliance
 from riser_soil.soil.compliance import Compliance
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
@@ -210,9 +210,9 @@ def test_a_run_goes_on_where_nothing_can_be_kept(
     folder.parent.mkdir()
     folder.write_text("in the way")
     assert_same(answers(compliance(), 0, 2), anew)
-    (told,) = capfd.readouterr().err.splitlines()
-    assert told.startswith("the soil's compliance is not kept for other runs (")
-    assert str(folder) in told
+    (reported,) = capfd.readouterr().err.splitlines()
+    assert reported.startswith("the soil's compliance is not kept for other runs (")
+    assert str(folder) in reported
 
 
 def test_a_disk_that_is_nearly_full_is_left_alone(
@@ -237,7 +237,7 @@ def test_memory_has_no_more_than_some_columns(
     assert factorised == [found]
 
 
-def test_the_soils_not_used_for_longest_make_room(
+def test_the_soils_not_used_for_longest_make_workspace(
     folder: Path, anew: tuple[Array, Array], monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     soils = [scene(CLAY | {"E": E}) for E in (1.0e5, 2.0e5, 3.0e5)]
@@ -294,7 +294,7 @@ def laid() -> tuple[Array, Array]:
 
 
 def test_check_tells_what_is_at_hand(folder: Path) -> None:
-    told = "soil: what earlier runs have found of its compliance is at hand"
-    assert told not in describe(scene_from_mapping(scene()))
+    reported = "soil: what earlier runs have found of its compliance is at hand"
+    assert reported not in describe(scene_from_mapping(scene()))
     answers(compliance(), 0)
-    assert told in describe(scene_from_mapping(scene()))
+    assert reported in describe(scene_from_mapping(scene()))

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.factor_memory import Room
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.solve.kept_factors import KeptFactors
 
 SIDE = 12  # cells along each edge of a cube
@@ -22,7 +22,7 @@ class Solver:
     """Solves matrices of a size one after the other, with factors that are kept."""
 
     def __init__(self, symmetric: bool, levers: Array | float = 1.0) -> None:
-        self.kept = KeptFactors(MPI.COMM_SELF, symmetric, Room())
+        self.kept = KeptFactors(MPI.COMM_SELF, symmetric, Workspace())
         self._ksp = PETSc.KSP().create(PETSc.COMM_SELF)
         self._ksp.setTolerances(rtol=TOLERANCE)
         levers = PETSc.Vec().createWithArray(np.full(len(K), levers), comm=PETSc.COMM_SELF)

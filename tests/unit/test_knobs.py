@@ -1,4 +1,4 @@
-"""Knobs of scenes: which ones a scene has, and what is left as it was when one is turned."""
+"""Settings of scenes: which ones a scene has, and what is left as it was when one is turned."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from riser_soil.accuracy.knobs import KNOBS, Knob, knobs_of, resolved, varied
+from riser_soil.accuracy.settings import SETTINGS, Setting, resolved, settings_of, varied
 from riser_soil.assembly import sized
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import scales_of
@@ -20,12 +20,12 @@ from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.scene.stages import DynamicStage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 
-ELEMENTS, TIME, SOIL, PENALTY = KNOBS
+ELEMENTS, TIME, SOIL, PENALTY = SETTINGS
 
 
 def scene(*stages: Mapping, without: tuple[str, ...] = (), **more: Any) -> Scene:
-    told = touchdown(*stages)
-    return scene_from_mapping({key: value for key, value in told.items() if key not in without} | deepcopy(more))
+    reported = touchdown(*stages)
+    return scene_from_mapping({key: value for key, value in reported.items() if key not in without} | deepcopy(more))
 
 
 def differing(a: Any, b: Any, path: str = "") -> set[str]:
@@ -52,21 +52,21 @@ def changed(before: Scene, after: Scene) -> set[str]:
         (scene(heave(1.0), without=("soil",)), ["elements", "time_step"]),
     ],
 )
-def test_a_scene_has_the_knobs_of_its_parts(given: Scene, names: list[str]) -> None:
-    assert [knob.name for knob in knobs_of(given)] == names
+def test_a_scene_has_the_settings_of_its_parts(given: Scene, names: list[str]) -> None:
+    assert [setting.name for setting in settings_of(given)] == names
 
 
-def test_a_mesh_file_is_no_knob() -> None:
+def test_a_mesh_file_is_no_setting() -> None:
     given = scene(LAY)
     assert given.soil is not None
     file = Path(__file__)
     mesh = {"mesh": {"file": file}, "block": None}
     soil = type(given.soil).model_validate(given.soil.model_dump() | mesh, context={"folder": file.parent})
-    assert [knob.name for knob in knobs_of(given.model_copy(update={"soil": soil}))] == ["elements", "penalty"]
+    assert [setting.name for setting in settings_of(given.model_copy(update={"soil": soil}))] == ["elements", "penalty"]
 
 
 @pytest.mark.parametrize(
-    ("knob", "paths"),
+    ("setting", "paths"),
     [
         (ELEMENTS, {"riser.segments.0.elements", "riser.segments.1.elements"}),
         (TIME, {"stages.1.time_step"}),
@@ -74,24 +74,24 @@ def test_a_mesh_file_is_no_knob() -> None:
         (PENALTY, {"contact.stiffness"}),
     ],
 )
-def test_a_knob_turns_what_is_its_own_and_is_as_much_finer_as_asked(knob: Knob, paths: set[str]) -> None:
+def test_a_setting_turns_what_is_its_own_and_is_as_much_finer_as_asked(setting: Setting, paths: set[str]) -> None:
     given = scene(LAY, heave(1.0), contact={"stiffness": 2.0e6})
     for factor in (0.5, 2.0):
-        turned = varied(given, knob, factor)
+        turned = varied(given, setting, factor)
         assert changed(given, turned) == paths
-        assert knob.fineness(turned) / knob.fineness(given) == pytest.approx(factor)
+        assert setting.fineness(turned) / setting.fineness(given) == pytest.approx(factor)
         assert scene_from_mapping(turned.model_dump(by_alias=True)) == turned
-        assert knob.told(turned) != knob.told(given)
-    assert varied(given, knob, 1.0) is given
+        assert setting.reported(turned) != setting.reported(given)
+    assert varied(given, setting, 1.0) is given
 
 
 def test_given_and_graded_lengths_of_elements() -> None:
-    told = touchdown(LAY)
-    told["riser"]["segments"][0] = {"line_type": "flexible", "length": 12.0, "element_length": [0.2, 1.0]}
-    told["riser"]["segments"][1] = {"line_type": "flexible", "length": 18.0, "element_length": 1.5}
-    turned = varied(scene_from_mapping(told), ELEMENTS, 2.0)
+    reported = touchdown(LAY)
+    reported["riser"]["segments"][0] = {"line_type": "flexible", "length": 12.0, "element_length": [0.2, 1.0]}
+    reported["riser"]["segments"][1] = {"line_type": "flexible", "length": 18.0, "element_length": 1.5}
+    turned = varied(scene_from_mapping(reported), ELEMENTS, 2.0)
     assert [segment.element_length for segment in turned.riser.segments] == [(0.1, 0.5), 0.75]
-    assert varied(scene_from_mapping(told), ELEMENTS, 1e-3).riser.element_count == 2
+    assert varied(scene_from_mapping(reported), ELEMENTS, 1e-3).riser.element_count == 2
     lengths = turned.riser.segments[0].element_lengths
     assert lengths[-1] / lengths[0] == pytest.approx(5.0)
 
@@ -113,19 +113,19 @@ def test_a_step_is_no_longer_than_its_stage() -> None:
 
 
 def test_the_strip_of_fine_cells_keeps_its_width() -> None:
-    told = touchdown(LAY)
-    told["soil"]["mesh"] |= {"size_at_riser": {"along": 0.6, "across": 0.1}}
-    turned = varied(scene_from_mapping(told), SOIL, 2.0).soil
+    reported = touchdown(LAY)
+    reported["soil"]["mesh"] |= {"size_at_riser": {"along": 0.6, "across": 0.1}}
+    turned = varied(scene_from_mapping(reported), SOIL, 2.0).soil
     assert turned is not None
     assert isinstance(turned.mesh, GeneratedMesh)
     assert turned.mesh.size_at_riser == CellSizes(along=0.3, across=0.05, strip=0.8)
 
 
 def test_automatic_sizes_and_penalties_are_turned_as_the_numbers_that_they_stand_for() -> None:
-    told = touchdown(LAY)
-    told["soil"] |= {"block": "auto", "mesh": "auto"}
-    told["contact"] = {"method": "surface"}
-    given = scene_from_mapping(told)
+    reported = touchdown(LAY)
+    reported["soil"] |= {"block": "auto", "mesh": "auto"}
+    reported["contact"] = {"method": "surface"}
+    given = scene_from_mapping(reported)
     assert changed(sized(given), resolved(given)) == {"contact.stiffness"}
     turned = varied(given, SOIL, 1.25)
     assert SOIL.fineness(turned) / SOIL.fineness(given) == pytest.approx(1.25)

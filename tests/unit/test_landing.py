@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.contact.landing import landing_predictor
+from riser_soil.contact.along_step import landing_predictor
 from riser_soil.core.part import State
 
 

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.families import cell_gradients
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.large_strain import turn, turned

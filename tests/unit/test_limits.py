@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
 from riser_soil.assembly import build
-from riser_soil.checks import limits, machine
+from riser_soil.checks import limits
 from riser_soil.checks.check import describe, memory
 from riser_soil.checks.estimate import size_of
 from riser_soil.checks.inventory import unknowns
@@ -102,10 +102,10 @@ def test_what_may_not_fit_into_the_memory_is_warned_of_with_the_numbers(
     """The forecast is within 30 %: what may fit is not refused, and what may not is told."""
     scene = scene_from_mapping(with_mesh(kind="hex", size_at_riser=0.1, size_far=0.1))
     need, numbers = size_of(scene).memory(1), r"soil\.mesh: .* need about .* of memory, and .* are available; take"
-    for share, told in ((0.8, 1), (1.25, 1), (1.35, 0)):
+    for share, reported in ((0.8, 1), (1.25, 1), (1.35, 0)):
         monkeypatch.setattr(limits, "available_memory", lambda share=share: share * need)
         found = limits.tight(limits.size_that_fits(scene, tmp_path, COMM), COMM)
-        assert len(found) == told
+        assert len(found) == reported
         assert all(re.match("the run may end for want of memory: " + numbers, warning) for warning in found)
     monkeypatch.setattr(limits, "available_memory", lambda: 0.75 * need)
     with pytest.raises(SceneError, match=numbers):
@@ -152,17 +152,17 @@ def test_the_least_of_the_limits_holds(tmp_path: Path, monkeypatch: pytest.Monke
     (tmp_path / "memory.max").write_text("4000000\n")
     (tmp_path / "memory.current").write_text("1000000\n")
     (tmp_path / "memory.stat").write_text("anon 5\ninactive_file 200000\n")
-    monkeypatch.setattr(machine, "_MEMORY", tmp_path / "meminfo")
-    monkeypatch.setattr(machine, "_GROUPS", ((tmp_path, "memory.max", "memory.current"),))
+    monkeypatch.setattr(limits, "_MEMORY", tmp_path / "meminfo")
+    monkeypatch.setattr(limits, "_GROUPS", ((tmp_path, "memory.max", "memory.current"),))
     monkeypatch.setattr(resource, "getrlimit", lambda kind: (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
-    assert machine.available_memory() == 3_200_000
+    assert limits.available_memory() == 3_200_000
     (tmp_path / "memory.max").write_text("max\n")
-    assert machine.available_memory() == 5_120_000
+    assert limits.available_memory() == 5_120_000
     (tmp_path / "status").write_text("VmSize:\t 1000 kB\n")
-    monkeypatch.setattr(machine, "_STATUS", tmp_path / "status")
+    monkeypatch.setattr(limits, "_STATUS", tmp_path / "status")
     monkeypatch.setattr(resource, "getrlimit", lambda kind: (2_048_000, resource.RLIM_INFINITY))
-    assert machine.available_memory() == 1_024_000
+    assert limits.available_memory() == 1_024_000
 
 
 def test_the_disk_is_that_of_the_folder_to_be(tmp_path: Path) -> None:
-    assert machine.free_disk(tmp_path / "not" / "yet") == pytest.approx(machine.free_disk(tmp_path), rel=0.01)
+    assert limits.free_disk(tmp_path / "not" / "yet") == pytest.approx(limits.free_disk(tmp_path), rel=0.01)

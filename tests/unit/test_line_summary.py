@@ -11,7 +11,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly import build
 from riser_soil.assembly.shape import tensions_of_taut
-from riser_soil.checks.line_summary import line_summary
+from riser_soil.checks.check import line_summary
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import SceneError
 from riser_soil.riser.attachments import PointAttachment
@@ -46,7 +46,7 @@ def part(length: float, line_type: str = "pipe") -> Mapping:
 LAZY = part(60.0), part(20.0, "float"), part(70.0)
 
 
-def told(given: Scene) -> list[str]:
+def reported(given: Scene) -> list[str]:
     return line_summary(build(given, MPI.COMM_SELF))
 
 
@@ -55,7 +55,7 @@ def numbers(line: str) -> list[float]:
 
 
 def test_weights_of_a_segment() -> None:
-    _, row, whole, *_ = told(scene())
+    _, row, whole, *_ = reported(scene())
     assert numbers(row) == pytest.approx([0, 150, 0.3, 0.2, 120, FULL, 9.81 * FULL, WET, 3e8, 5e4], rel=5e-4)
     assert numbers(whole) == pytest.approx([150, 0.15 * FULL, 0.15 * 9.81 * FULL, 0.15 * WET], rel=5e-4)
 
@@ -63,7 +63,7 @@ def test_weights_of_a_segment() -> None:
 def test_tension_by_hand_beside_the_cable() -> None:
     """T = H + w h over the touchdown point (Irvine, Cable Structures, 1981), and the riser's own is near."""
     given = scene()
-    *_, at_rest, top = told(given)
+    *_, at_rest, top = reported(given)
     cable, _, w, h, by_hand = numbers(top)
     H, level = numbers(at_rest)
     assert (w, h, level) == pytest.approx((WET / 1e3, 99.85, 0.15), rel=1e-3)
@@ -75,7 +75,7 @@ def test_tension_by_hand_beside_the_cable() -> None:
 
 def test_tension_by_hand_of_a_lazy_wave_with_attachments() -> None:
     row = {"from": 100.0, "to": 120.0, "spacing": 5.0, "mass": 100.0, "volume": 0.3}
-    *_, top = told(scene(*LAZY, attachments=[row]))
+    *_, top = reported(scene(*LAZY, attachments=[row]))
     cable, by_hand = numbers(top)[0], numbers(top)[-1]
     assert cable == pytest.approx(by_hand, rel=5e-3)
 

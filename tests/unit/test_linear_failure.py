@@ -70,9 +70,9 @@ def test_springs_without_stiffness_fail_and_others_after_them_do_not(
     script.write_text(SCRIPT)
     done = mpirun(ranks, str(script), how)
     assert done.returncode == 0, done.stderr
-    told = done.stdout.strip().split("; ")  # more or less of what MUMPS says, by PETSc's version
+    reported = done.stdout.strip().split("; ")  # more or less of what MUMPS says, by PETSc's version
     expected = ["-0.600000000", failure, "-0.600000000", failure, failure, "-1.200000000"]
-    assert [text[: len(start)] for text, start in zip(told, expected, strict=True)] == expected
+    assert [text[: len(start)] for text, start in zip(reported, expected, strict=True)] == expected
 
 
 HELD = '''
@@ -127,7 +127,7 @@ def test_a_complaint_without_words_is_one() -> None:
     assert complaint(PETSc.Error(76)).startswith("the linear solver failed (MUMPS")
 
 
-def test_a_dense_border_without_stiffness_fails_and_is_told() -> None:
+def test_a_dense_border_without_stiffness_fails_and_is_reported() -> None:
     """A chain held by springs, and a place that nothing holds; a second time, too."""
     chain, loose, z = Chain(np.arange(4.0), prescribed=True), Chain(np.zeros(1)), np.zeros(5)
     loose.name = loose.space = "loose"

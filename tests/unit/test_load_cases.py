@@ -23,8 +23,8 @@ from riser_soil import __version__
 from riser_soil.cases import case_files, pool, work
 from riser_soil.cases.case_folder import ATTEMPTS, CASES, Outcome, attempt, found, settle
 from riser_soil.cases.case_process import die_with
-from riser_soil.cases.case_progress import CaseProgress
-from riser_soil.cases.case_values import case_values
+from riser_soil.cases.case_table import case_values
+from riser_soil.cases.sweep import CaseProgress
 from riser_soil.cases.work import NOT_WANTED, STOPPED_BY_LIMIT, Task, run_case
 from riser_soil.commands.app import app
 from riser_soil.results.read import Run
@@ -278,7 +278,7 @@ def test_a_second_call_does_what_failed_and_what_is_new(
         ("x", ("--set", "gravity=-1"), "--set gravity=-1: gravity: value -1: must be at least 0"),
     ],
 )
-def test_bad_input_is_told_in_one_line(
+def test_bad_input_is_reported_in_one_line(
     tmp_path: Path, invoke: Callable[..., Any], there: str, options: tuple[str, ...], says: str
 ) -> None:
     case_file(tmp_path, SWEEP if "--set" not in options else "table: [{name: a, set: {title: x}}]")

@@ -14,8 +14,8 @@ from riser_soil.assembly import Assembly, build
 from riser_soil.assembly import riser as assembled
 from riser_soil.core.part import Part
 from riser_soil.errors import SceneError
-from riser_soil.riser import marine_growth
-from riser_soil.riser.marine_growth import Growth, with_growth
+from riser_soil.riser import additions
+from riser_soil.riser.additions import Growth, with_growth
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping
@@ -135,14 +135,14 @@ def test_growth_without_end_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_a_riser_without_growth_does_not_look_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr(marine_growth, "with_growth")
+    monkeypatch.delattr(additions, "with_growth")
     built(hanging(None))
     with pytest.raises(ImportError):
         built(hanging(EVERYWHERE))
 
 
 @pytest.mark.parametrize(
-    ("growth", "told"),
+    ("growth", "reported"),
     [
         ([[10.0, 0.1, 1300.0], [0.0, 0.1, 1300.0]], "the heights z must increase"),
         ([[0.0, -0.1, 1300.0]], r"water\.marine_growth\.0\.1"),
@@ -151,8 +151,8 @@ def test_a_riser_without_growth_does_not_look_for_it(monkeypatch: pytest.MonkeyP
         ([], r"water\.marine_growth"),
     ],
 )
-def test_growth_that_is_none_is_told(growth: list[list[float]], told: str) -> None:
-    with pytest.raises(SceneError, match=told):
+def test_growth_that_is_none_is_reported(growth: list[list[float]], reported: str) -> None:
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(hanging(growth))
 
 

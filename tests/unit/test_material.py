@@ -16,9 +16,9 @@ from typer.testing import CliRunner, Result
 
 from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
-from riser_soil.material.loops import closed_cycles, turns
 from riser_soil.material.path import shear_path
 from riser_soil.material.point import MaterialPoint, drive
+from riser_soil.material.study import closed_cycles, turns
 from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.laws import LAWS
 from tests.support.coupled_scenes import touchdown
@@ -59,7 +59,7 @@ def material(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Call:
         if path is not None:
             Path("path.csv").write_text(path)
             options = ("--path", "path.csv", *options)
-            monkeypatch.setattr("riser_soil.plots.material.draw", drawn)
+            monkeypatch.setattr("riser_soil.plots.soil_curves.draw", drawn)
         return CliRunner().invoke(app, ["material", "scene.yaml", *options])
 
     return call
@@ -157,10 +157,10 @@ def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> N
     """(1/k) ln[(a² - αmin²)/(a² - αmax²)] in each cycle, see riser_soil/soil/kinematic_hardening.py."""
     done = material(KINEMATIC, "gamma_xz [-]\n1e-4\n")
     assert done.exit_code == 0, done.output
-    told = table("material_memory.csv")
-    largest, a, q0 = told["stress_at_0.001"][0], 0.8 * SU, 0.2 * SU
+    reported = table("material_memory.csv")
+    largest, a, q0 = reported["stress_at_0.001"][0], 0.8 * SU, 0.2 * SU
     low, high = 0.1 * largest + q0, 0.7 * largest - q0
-    added = np.diff(told["strain_of_stress_cycles"])
+    added = np.diff(reported["strain_of_stress_cycles"])
     np.testing.assert_allclose(added, 3.0 * a / E * np.log((a**2 - low**2) / (a**2 - high**2)), rtol=0.03)
     assert f"{added[-1]:.5f} more by the last one" in done.output
 
@@ -169,9 +169,9 @@ def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> N
 def test_closed_loops_keep_mean_stress_and_strain(material: Call, law: dict[str, Any]) -> None:
     done = material(law, "gamma_xz [-]\n1e-4\n")
     assert done.exit_code == 0, done.output
-    told = table("material_memory.csv")
-    del told["cycle"]
-    for name, values in told.items():
+    reported = table("material_memory.csv")
+    del reported["cycle"]
+    for name, values in reported.items():
         np.testing.assert_allclose(values, values[0], rtol=1e-6, err_msg=name)
     assert law_of(law).forgets_at is None
 
@@ -187,7 +187,7 @@ def test_drained_triaxial_compression_of_sand_fails_as_coulomb_says(material: Ca
     assert -curve["sigma_zz"][-1] == pytest.approx(passive * side + 2.0 * 200.0 * np.sqrt(passive), rel=1e-8)
 
 
-def test_more_stress_than_the_soil_bears_is_told_and_leaves_nothing(material: Call) -> None:
+def test_more_stress_than_the_soil_bears_is_reported_and_leaves_nothing(material: Call) -> None:
     done = material(IWAN, "tau_xz [kPa]\n1.0\n5.0\n")
     assert done.exit_code == 3
     assert "path.csv, row 2: no strain brings tau_xz" in done.output
@@ -196,7 +196,7 @@ def test_more_stress_than_the_soil_bears_is_told_and_leaves_nothing(material: Ca
 
 
 @pytest.mark.parametrize(
-    ("path", "told"),
+    ("path", "reported"),
     [
         ("", "path.csv: the file is empty"),
         ("gamma_xz [-]\n", "path.csv:1: there are no rows below the header"),
@@ -209,16 +209,16 @@ def test_more_stress_than_the_soil_bears_is_told_and_leaves_nothing(material: Ca
         ("time [s]\n1.0", "no strain and no stress beside time"),
     ],
 )
-def test_a_bad_path_is_told_in_one_line(material: Call, path: str, told: str) -> None:
+def test_a_bad_path_is_reported_in_one_line(material: Call, path: str, reported: str) -> None:
     done = material(ELASTIC, path)
     assert done.exit_code == 2
-    assert told in done.output
+    assert reported in done.output
     assert done.output.count("\n") == 1
     assert not Path("scene_material").exists()
 
 
 @pytest.mark.parametrize(
-    ("options", "soil", "told"),
+    ("options", "soil", "reported"),
     [
         (("--depth", "1.5"), {}, "--depth 1.5: must lie in the soil, from 0 to 1 m"),
         (("--path", "no.csv"), {}, "no.csv: "),
@@ -226,12 +226,12 @@ def test_a_bad_path_is_told_in_one_line(material: Call, path: str, told: str) ->
         (("-o", "scene.yaml"), {}, "is a file, not a folder"),
     ],
 )
-def test_what_makes_no_sense_is_told(
-    material: Call, options: tuple[str, ...], soil: dict[str, float], told: str
+def test_what_makes_no_sense_is_reported(
+    material: Call, options: tuple[str, ...], soil: dict[str, float], reported: str
 ) -> None:
     done = material(IWAN, None, *options, **soil)
     assert done.exit_code == 2
-    assert told in done.output
+    assert reported in done.output
     assert done.output.count("\n") == 1
 
 
@@ -317,7 +317,7 @@ def test_stress_beyond_slow_strength_is_borne_by_creep(material: Call) -> None:
 
 
 @pytest.mark.parametrize("times", ["0.0", "-1.0", "1.0, 0\n1.0"])
-def test_time_that_does_not_grow_is_told(material: Call, times: str) -> None:
+def test_time_that_does_not_grow_is_reported(material: Call, times: str) -> None:
     done = material(VISCOUS, f"time [s], gamma_xz [-]\n{times}, 0.1\n")
     assert done.exit_code == 2
     assert f"path.csv:{2 + times.count(chr(10))}: time must grow from row to row" in done.output

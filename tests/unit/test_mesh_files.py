@@ -73,6 +73,6 @@ def test_files_cut_short_are_refused_in_one_line(tmp_path: Path) -> None:
         assert "\n" not in str(caught.value)
 
 
-def test_a_node_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_node_that_is_not_there_is_reported(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match=r"Wrong node index 99"):
         read(tmp_path, ACCEPTED["as it is"].replace("2 5 2 1 1 2 ", "2 5 2 1 1 99 "))

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, told_resolution
+from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, reported_resolution
 from riser_soil.checks.settlement import Settled
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -32,57 +32,59 @@ def warned(scene: Mapping) -> list[str]:
     return list(mesh_warnings(built(scene)))
 
 
-def test_cells_and_elements_that_suit_are_not_told() -> None:
+def test_cells_and_elements_that_suit_are_not_reported() -> None:
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012))) == []
 
 
-def test_cells_and_elements_longer_than_the_bend_on_soil_are_told() -> None:
+def test_cells_and_elements_longer_than_the_bend_on_soil_are_reported() -> None:
     """(4 EI/E)^(1/4) = (2e5/1.8e6)^(1/4) = 0.58 m."""
-    (told,) = warned(on_block(LAY, mesh=sizes(1.0, 0.012)))
-    assert told.startswith("soil.mesh cells along it of 1 m are long beside the 0.577 m")
+    (reported,) = warned(on_block(LAY, mesh=sizes(1.0, 0.012)))
+    assert reported.startswith("soil.mesh cells along it of 1 m are long beside the 0.577 m")
     scene = on_block(LAY, mesh=sizes(0.5, 0.012))
     scene["riser"]["segments"][0]["elements"] = 12
-    (told,) = warned(scene)
-    assert told.startswith("elements of the riser over the soil of 1 m are long beside the 0.577 m")
-    assert "take at most 0.29 m" in told
+    (reported,) = warned(scene)
+    assert reported.startswith("elements of the riser over the soil of 1 m are long beside the 0.577 m")
+    assert "take at most 0.29 m" in reported
 
 
-def test_sections_deep_beside_the_bend_on_soil_are_told() -> None:
+def test_sections_deep_beside_the_bend_on_soil_are_reported() -> None:
     """3 m below a bend of 0.58 m; the block's depth of 1 m has no more effect than the sections' own."""
     block = {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 3.0}
-    (told,) = warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections", block=block))
+    (reported,) = warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections", block=block))
     excess = math.log(3.0 / (2.516 * 0.577)) / (math.log(12.0 / 0.0236) - 0.5)
-    assert f"within 0.577 m on 3 m of soil, it settles by about {excess:.0%} more than on a block" in told
+    assert f"within 0.577 m on 3 m of soil, it settles by about {excess:.0%} more than on a block" in reported
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), block=block)) == []
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections")) == []
 
 
-def test_long_cells_under_an_oblique_riser_are_told() -> None:
+def test_long_cells_under_an_oblique_riser_are_reported() -> None:
     scene = on_block(LAY, mesh=sizes(0.5, 0.25))
     scene["riser"]["end"]["position"] = [18.0, 13.5, 15.0]
     scene["soil"]["block"]["y"] = [-1.0, 8.0]
-    assert [told for told in warned(scene) if "size_at_riser.along 0.5 m has no effect" in told]
+    assert [reported for reported in warned(scene) if "size_at_riser.along 0.5 m has no effect" in reported]
 
 
-def test_a_block_that_the_touchdown_point_will_leave_is_told() -> None:
+def test_a_block_that_the_touchdown_point_will_leave_is_reported() -> None:
     block = {"x": [7.0, 8.5], "y": [-1.0, 1.0], "depth": 1.0}
-    (told,) = (told for told in warned(on_block(LAY, heave(3.0, amplitude=2.0), block=block)) if "leaves" in told)
-    assert "take block: auto" in told
-    assert not [told for told in warned(on_block(LAY, heave(3.0, amplitude=0.01))) if "leaves" in told]
+    (reported,) = (
+        reported for reported in warned(on_block(LAY, heave(3.0, amplitude=2.0), block=block)) if "leaves" in reported
+    )
+    assert "take block: auto" in reported
+    assert not [reported for reported in warned(on_block(LAY, heave(3.0, amplitude=0.01))) if "leaves" in reported]
 
 
 def test_what_cells_miss_grows_with_their_size() -> None:
     fine, half = Settled(0.01, 0.01, 1.0), Settled(0.005, 0.005, 1.0)
     assert missed(fine, fine) == pytest.approx(0.02)
     assert missed(half, fine) == pytest.approx(0.52)
-    told = told_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
-    assert told is not None
-    assert "0.5 m along and 0.012 m across, where 0.0236 m touch" in told
-    assert told.endswith("and 2% less on these cells")
-    wide = told_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))))
+    reported = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
+    assert reported is not None
+    assert "0.5 m along and 0.012 m across, where 0.0236 m touch" in reported
+    assert reported.endswith("and 2% less on these cells")
+    wide = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))))
     assert wide is not None
     assert int(wide.rsplit("%")[0].rsplit(" ")[-1]) > 20
-    assert told_resolution(built({**touchdown(LAY), "contact": {"method": "node"}})) is None
+    assert reported_resolution(built({**touchdown(LAY), "contact": {"method": "node"}})) is None
 
 
 def stage_warnings(scene: Mapping, folder: Path) -> list[str]:
@@ -91,11 +93,13 @@ def stage_warnings(scene: Mapping, folder: Path) -> list[str]:
     return [warning for stage in stages for warning in stage["warnings"]]
 
 
-def test_a_block_too_shallow_and_narrow_is_told_after_the_run(tmp_path: Path) -> None:
+def test_a_block_too_shallow_and_narrow_is_reported_after_the_run(tmp_path: Path) -> None:
     block = {"x": [4.0, 7.0], "y": [-0.6, 0.6], "depth": 0.6}
     scene = touchdown(LAY, su=6000.0)
     scene["soil"] |= {"block": block, "mesh": {"kind": "hex", "size_at_riser": 0.2, "size_far": 0.3}}
-    bottom, sides = [told for told in stage_warnings(scene, tmp_path) if "changes the soil's stress" in told]
+    bottom, sides = [
+        reported for reported in stage_warnings(scene, tmp_path) if "changes the soil's stress" in reported
+    ]
     assert "at the block's bottom by" in bottom
     assert "take a deeper one" in bottom
     assert "sides along the riser" in sides
@@ -103,9 +107,9 @@ def test_a_block_too_shallow_and_narrow_is_told_after_the_run(tmp_path: Path) ->
     assert "told above 15%" in sides
 
 
-def test_a_block_that_was_left_is_told_after_the_run(tmp_path: Path) -> None:
+def test_a_block_that_was_left_is_reported_after_the_run(tmp_path: Path) -> None:
     block = {"x": [2.0, 5.0], "y": [-1.0, 1.0], "depth": 1.0}
     scene = touchdown(LAY, su=6000.0)
     scene["soil"]["block"] = block
-    (told,) = [told for told in stage_warnings(scene, tmp_path) if "left the soil's block" in told]
-    assert "where the seabed bears the riser" in told
+    (reported,) = [reported for reported in stage_warnings(scene, tmp_path) if "left the soil's block" in reported]
+    assert "where the seabed bears the riser" in reported

@@ -72,8 +72,8 @@ def test_check_tells_the_quality() -> None:
     scene = touchdown()
     scene["soil"]["block"]["y"] = [-1.25, 1.25]
     scene["soil"]["mesh"] = {"kind": "hex", "size_at_riser": 0.5, "size_far": 0.5}
-    told = "soil mesh: edges of 0.5 to 0.5 m, aspect ratios up to 1, scaled Jacobians from 1 (1 is best)"
-    assert told in report(scene)
+    reported = "soil mesh: edges of 0.5 to 0.5 m, aspect ratios up to 1, scaled Jacobians from 1 (1 is best)"
+    assert reported in report(scene)
 
 
 def drawn(folder: Path, *boxes: Any, **soil: Any) -> dict[str, Any]:

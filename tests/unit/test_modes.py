@@ -188,7 +188,7 @@ def test_shallow_cable_has_irvines_frequencies() -> None:
     )
 
 
-def test_what_is_not_symmetric_is_told_by_the_frequencies() -> None:
+def test_what_is_not_symmetric_is_reported_by_the_frequencies() -> None:
     """Squares of [[2, a], [-a, 3]] are (5 +- sqrt(1 - 4 a2))/2; those of the symmetric part are 2 and 3."""
     a = 0.3
     K = csr_array([[2.0, a, 0.0], [-a, 3.0, 0.0], [0.0, 0.0, 1e6]])
@@ -272,7 +272,7 @@ def test_command_leaves_shapes_and_a_picture(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("stages", "name", "told"),
+    ("stages", "name", "reported"),
     [
         ([dynamic(1.0, 0.1)], None, "stages: modes are those of a riser at rest; begin with a static stage"),
         ([static("lay")], "hang", '--stage "hang": the scene has no such stage; it has lay'),
@@ -283,10 +283,10 @@ def test_command_leaves_shapes_and_a_picture(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_only_static_stages_have_modes(stages: list[Mapping], name: str | None, told: str) -> None:
+def test_only_static_stages_have_modes(stages: list[Mapping], name: str | None, reported: str) -> None:
     with pytest.raises(SceneError) as refused:
         found(stretched(6) | {"stages": stages}, 2, stage=name)
-    assert str(refused.value) == told
+    assert str(refused.value) == reported
 
 
 def test_first_static_stage_may_be_asked_for() -> None:

@@ -84,8 +84,8 @@ def test_a_lazy_wave(tmp_path: Path) -> None:
     assert riser["start"]["position"] == (150.0, 0.0, -100.0)
     assert riser["end"]["position"] == (6.0, 0.0, -8.0)
     (joint,) = riser["attachments"]
-    told = [joint[key] for key in ("at", "mass", "volume", "drag_area", "added_mass")]
-    assert told == [130.0, 50.0, 0.2, 0.1, 0.5]
+    reported = [joint[key] for key in ("at", "mass", "volume", "drag_area", "added_mass")]
+    assert reported == [130.0, 50.0, 0.2, 0.1, 0.5]
     assert [cable[key] for key in ("outer_diameter", "mass", "EA", "EI")] == [0.2, 72.0, 6.0e8, 2.0e4]
     assert cable["drag"] == {"normal": 1.2, "tangential": 0.05, "by_reynolds": None}
     assert cable["added_mass"] == {"normal": 1.0, "tangential": 0.1}
@@ -97,15 +97,19 @@ def test_a_lazy_wave(tmp_path: Path) -> None:
     assert (friction["axial"], friction["lateral"]) == (0.3, 0.3)
 
 
-def test_what_is_not_carried_over_is_told_by_line(tmp_path: Path) -> None:
-    told = dict[int, list[str]]()
+def test_what_is_not_carried_over_is_reported_by_line(tmp_path: Path) -> None:
+    reported = dict[int, list[str]]()
     for line, text in scene_of(deck(tmp_path)).remarks:
-        told.setdefault(line, []).append(text)
-    assert sorted(told) == [6, 7, 11, 15, 23, 25, 26, 30, 32, 34, 41]
+        reported.setdefault(line, []).append(text)
+    assert sorted(reported) == [6, 7, 11, 15, 23, 25, 26, 30, 32, 34, 41]
     for line, word in {6: "BA", 11: "bodies", 15: "motion", 23: "pt", 25: "kBot", 26: "--line 4", 30: "Point1"}.items():
-        assert word in told[line][0]
-    assert [text.split()[0] for text in told[7]] == ["Cl", "EA"]
-    assert (told[32][0].split()[0], told[34][0].split()[0], told[41]) == ("dtM", "cbot", ["outputs: FairTen1"])
+        assert word in reported[line][0]
+    assert [text.split()[0] for text in reported[7]] == ["Cl", "EA"]
+    assert (reported[32][0].split()[0], reported[34][0].split()[0], reported[41]) == (
+        "dtM",
+        "cbot",
+        ["outputs: FairTen1"],
+    )
 
 
 def test_another_line_of_the_deck(tmp_path: Path) -> None:
@@ -140,7 +144,7 @@ def test_the_deck_of_the_comparison_with_moordyn(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         ("3     cable       4        3", "3     cable       4        2", r"LINE.dat:25: a third line at point 2"),
         ("1     cable       1        2", "1     chain       1        2", r"LINE.dat:23: line type chain is not among"),
@@ -153,9 +157,9 @@ def test_the_deck_of_the_comparison_with_moordyn(tmp_path: Path) -> None:
         ("LINES -", "CABLES -", "has no section LINES"),
     ],
 )  # fmt: skip
-def test_decks_that_give_no_scene(old: str, new: str, told: str, tmp_path: Path) -> None:
+def test_decks_that_give_no_scene(old: str, new: str, reported: str, tmp_path: Path) -> None:
     assert old in DECK
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene_of(deck(tmp_path, DECK.replace(old, new)))
 
 
@@ -184,7 +188,7 @@ def test_friction_along_and_across(rows: str, friction: tuple[float, float], tmp
     assert (found["axial"], found["lateral"]) == friction
 
 
-def test_friction_in_one_direction_alone_is_told(tmp_path: Path) -> None:
+def test_friction_in_one_direction_alone_is_reported(tmp_path: Path) -> None:
     """Of the two coefficients of MoorDyn-F each is 0 where it is not given."""
     found = scene_of(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", "0.6 MU_KT")))
     assert "contact" not in found.data
@@ -201,8 +205,8 @@ def test_a_scene_comes_back_from_its_deck(line: str, friction: str, tmp_path: Pa
     back = scene_of(read_deck(tmp_path / "back.dat"))
     assert scene_from_mapping(back.data) == scene
     assert back.data == first.data
-    told = {text.split()[0] for _, text in back.remarks}
-    assert told == {"BA/-zeta", "dtM"} | ({"kBot"} if line == "1" else set())  # MoorDyn's own, and of two diameters
+    reported = {text.split()[0] for _, text in back.remarks}
+    assert reported == {"BA/-zeta", "dtM"} | ({"kBot"} if line == "1" else set())  # MoorDyn's own, and of two diameters
 
 
 def test_the_step_of_a_deck_is_short_enough(tmp_path: Path) -> None:
@@ -242,8 +246,10 @@ def test_the_export_tells_what_a_deck_lacks(tmp_path: Path) -> None:
     text.write_text(yaml_text(data))
     done = CliRunner().invoke(app, ["export", str(text), "-o", str(tmp_path / "out.dat")])
     assert done.exit_code == 0, done.output
-    told = [line.split("not in the deck: ")[1].split()[0] for line in done.output.splitlines() if "not in the" in line]
-    assert told == [
+    reported = [
+        line.split("not in the deck: ")[1].split()[0] for line in done.output.splitlines() if "not in the" in line
+    ]
+    assert reported == [
         "water.current.profile", "line_types.cable.GJ", "line_types.cable.damping.ratio",
         "line_types.cable.damping.frequency", "stages.1.kind", "stages.1.duration", "stages.1.time_step",
     ]  # fmt: skip
@@ -252,18 +258,18 @@ def test_the_export_tells_what_a_deck_lacks(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ({"water": {"density": 1000.0}}, "water.surface_level: is missing"),
         ({"seabed": {"kind": "rigid", "level": -101.0}}, "seabed: only kind spring"),
     ],
 )
-def test_scenes_that_give_no_deck(change: Mapping, told: str, tmp_path: Path) -> None:
+def test_scenes_that_give_no_deck(change: Mapping, reported: str, tmp_path: Path) -> None:
     data = scene_of(deck(tmp_path), "4").data | change
     (tmp_path / "scene.yaml").write_text(yaml_text(data))
     done = CliRunner().invoke(app, ["export", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out.dat")])
     assert done.exit_code == 2
-    assert told in done.output
+    assert reported in done.output
     assert not (tmp_path / "out.dat").exists()
 
 

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.motion.carried import CarriedEnd, CarriedSupport
-from riser_soil.motion.harmonic import HarmonicMotion
-from riser_soil.motion.move import SmoothMove
-from riser_soil.motion.swing import AngleOscillation, RockingSupport, SwingingEnd
+from riser_soil.motion.harmonic import AngleOscillation, HarmonicMotion, RockingSupport, SwingingEnd
+from riser_soil.motion.rigid_body import CarriedEnd, CarriedSupport
+from riser_soil.motion.slow import SmoothMove
 from riser_soil.motion.table import TabulatedMotion
 from riser_soil.riser import rotations
 from riser_soil.riser.ends import Motion, SupportRotation

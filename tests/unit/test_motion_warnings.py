@@ -43,29 +43,29 @@ def moved(name: str = "move", duration: float = 6.2831853, time_step: float = 0.
         ({"rotation": {"axis": [0.0, 1.0, 0.0], "amplitude_deg": 9.0, "period": 6.2831853}}, "9 deg/s"),
     ],
 )
-def test_a_start_at_full_speed_is_told_and_a_ramp_heals_it(motion: Mapping, speed: str) -> None:
-    (told,) = warnings(static(), moved(**motion))
-    assert told.startswith(f"stages.1.motion.end: the end starts at {speed} from rest, at once")
-    assert told.endswith("give the motion a ramp [s]")
+def test_a_start_at_full_speed_is_reported_and_a_ramp_heals_it(motion: Mapping, speed: str) -> None:
+    (reported,) = warnings(static(), moved(**motion))
+    assert reported.startswith(f"stages.1.motion.end: the end starts at {speed} from rest, at once")
+    assert reported.endswith("give the motion a ramp [s]")
     ((kind, given),) = motion.items()
     assert not warnings(static(), moved(**{kind: given | {"ramp": 3.0}}))
 
 
 def test_a_table_that_starts_moving(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{-3 * t},0,0\n" for t in range(8)))
-    (told,) = warnings(moved(table="t.csv"), folder=tmp_path)
-    assert "the end starts at 3 m/s" in told
+    (reported,) = warnings(moved(table="t.csv"), folder=tmp_path)
+    assert "the end starts at 3 m/s" in reported
     rows = "".join(f"{t},{-0.1 * t**3},0,0\n" for t in range(8))
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows)
     assert not warnings(moved(table="t.csv"), folder=tmp_path)
 
 
-def test_what_stops_dead_is_told() -> None:
+def test_what_stops_dead_is_reported() -> None:
     ramped: dict[str, Any] = {"harmonic": HARMONIC | {"ramp": 3.0}}
-    (told,) = warnings(moved(**ramped), dynamic(1.0, 0.1, "still"))
-    assert told.startswith("stages.1: the end stops dead as the stage begins, its velocity jumping by 2 m/s")
-    (told,) = warnings(moved(**ramped), moved("again", **ramped))
-    assert told.startswith("stages.1: the end takes up another motion as the stage begins")
+    (reported,) = warnings(moved(**ramped), dynamic(1.0, 0.1, "still"))
+    assert reported.startswith("stages.1: the end stops dead as the stage begins, its velocity jumping by 2 m/s")
+    (reported,) = warnings(moved(**ramped), moved("again", **ramped))
+    assert reported.startswith("stages.1: the end takes up another motion as the stage begins")
     assert not warnings(moved(**ramped), moved("on", harmonic=HARMONIC))  # a whole period later it is the same sine
     assert not warnings(moved(**ramped), static())
     assert len(warnings(moved(**ramped), static(), moved("again", harmonic=HARMONIC))) == 1
@@ -85,9 +85,9 @@ def test_what_stops_dead_is_told() -> None:
 def test_long_time_steps(period: float, waves: Mapping | None, time_step: float, says: str | None) -> None:
     water: dict[str, Any] = {"water": {"surface_level": 10.0, "waves": waves}} if waves else {}
     harmonic = {"amplitude": [0.0, 0.0, 2.0], "period": period, "ramp": period}
-    told = warnings(static(), moved(harmonic=harmonic, time_step=time_step), **water)
-    assert len(told) == (says is not None)
-    assert all(says in warning and warning.startswith("stages.1.time_step: ") for warning in told if says)
+    reported = warnings(static(), moved(harmonic=harmonic, time_step=time_step), **water)
+    assert len(reported) == (says is not None)
+    assert all(says in warning and warning.startswith("stages.1.time_step: ") for warning in reported if says)
 
 
 @pytest.mark.parametrize(
@@ -103,15 +103,17 @@ def test_long_time_steps(period: float, waves: Mapping | None, time_step: float,
     ],
 )
 def test_ends_that_go_farther_apart_than_the_riser_is_long(stage: Mapping, path: str, apart: float) -> None:
-    (told,) = [warning for warning in warnings(static(), stage) if "long" in warning]
-    assert told.startswith(f"{path}: the ends come to be ")
-    found = float(told.split("come to be ")[1].split(" m apart")[0])
+    (reported,) = [warning for warning in warnings(static(), stage) if "long" in warning]
+    assert reported.startswith(f"{path}: the ends come to be ")
+    found = float(reported.split("come to be ")[1].split(" m apart")[0])
     assert found == pytest.approx(apart, abs=0.1)
-    assert "but the riser is only 60 m long: it is stretched by " in told
-    assert float(told.split("stretched by ")[1].split("%")[0]) == pytest.approx(100.0 * (found / 60.0 - 1.0), abs=0.01)
+    assert "but the riser is only 60 m long: it is stretched by " in reported
+    assert float(reported.split("stretched by ")[1].split("%")[0]) == pytest.approx(
+        100.0 * (found / 60.0 - 1.0), abs=0.01
+    )
 
 
-def test_ends_that_stay_within_the_length_are_not_told() -> None:
+def test_ends_that_stay_within_the_length_are_not_reported() -> None:
     assert not warnings(static(), moved(harmonic=HARMONIC | {"amplitude": [6.0, 0.0, 4.5], "ramp": 3.0}))
     assert not warnings(static(), static("pull", move={"end": [48.0, 0.0, 5.0]}))
 
@@ -121,12 +123,12 @@ def test_motions_go_on_from_where_the_stage_before_left_the_end() -> None:
     pull = static("pull", move={"end": [48.0, 0.0, 5.0]})
     heave = moved(harmonic=HARMONIC | {"amplitude": [2.0, 0.0, 4.0], "ramp": 3.0})
     assert not warnings(static(), heave)
-    (told,) = warnings(static(), pull, heave)
-    assert told.startswith("stages.2.motion: the ends come to be 6")
+    (reported,) = warnings(static(), pull, heave)
+    assert reported.startswith("stages.2.motion: the ends come to be 6")
 
 
-def test_a_table_that_leads_too_far_at_one_of_its_rows_is_told(tmp_path: Path) -> None:
+def test_a_table_that_leads_too_far_at_one_of_its_rows_is_reported(tmp_path: Path) -> None:
     rows = [(t, 20 * (t == 51)) for t in range(0, 103, 3)]
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{x},0,0\n" for t, x in rows))
-    told = warnings(static(), moved(duration=100.0, table="t.csv"), folder=tmp_path)
-    assert [warning for warning in told if "apart at 51 s" in warning]
+    reported = warnings(static(), moved(duration=100.0, table="t.csv"), folder=tmp_path)
+    assert [warning for warning in reported if "apart at 51 s" in warning]

@@ -13,14 +13,12 @@ from riser_soil.core.part import Part, State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.components import regular
-from riser_soil.sea.flows import add_flow
+from riser_soil.sea.flows import Sea, WaterMotion, add_flow
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.sea import Sea
-from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wave_field import WaveField
+from riser_soil.sea.waves import WaveField
 from tests.support import sample_water
 from tests.support.dense_chain import residual
 from tests.support.sample_line import Sample, sample
@@ -123,7 +121,7 @@ def test_froude_krylov_is_the_pressure_of_the_undisturbed_wave(tangent: Array) -
     assert errors[0] / errors[1] > 3.0
 
 
-class DriftNumbers(NamedTuple):
+class DriftData(NamedTuple):
     """A uniform flow (3,) [m/s]."""
 
     velocity: Array
@@ -133,14 +131,14 @@ class Drift:
     """A `FlowComponent`: the same everywhere."""
 
     def __init__(self, velocity: Array) -> None:
-        self.numbers = DriftNumbers(velocity)
+        self.kernel_data = DriftData(velocity)
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
         raise AssertionError("not asked for")
 
 
-@add_flow.of(DriftNumbers)
-def _drift(flow: DriftNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(DriftData)
+def _drift(flow: DriftData, motion: WaterMotion, t: Array, x: Array) -> None:
     for p in range(x.shape[0]):
         for i in range(3):
             motion.velocity[p, i] += flow.velocity[i]

@@ -10,7 +10,7 @@ import pytest
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.integration_points import ENOUGH, LARGEST, divisions
-from riser_soil.contact.near_points import NearPoints, Surface, by_facet, fill_near, near_points, points_room
+from riser_soil.contact.near_points import NearPoints, Surface, by_facet, fill_near, near_points, points_workspace
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array
 from tests.support.coupled_scenes import LAY, touchdown
@@ -74,16 +74,16 @@ def test_no_point_within_the_gap_is_passed_over(
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
 
 
-def test_points_beyond_the_room_are_counted_and_given_room(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_points_beyond_the_workspace_are_counted_and_given_workspace(monkeypatch: pytest.MonkeyPatch) -> None:
     axis, surface = axis_of(0.9, 0.2), plane_of_soil(0)
     elements, facets = np.array([0, 1, 0, 1]), np.array([0, 0, 1, 1])
     wanted = near_points(axis, surface, elements, facets, WITHIN)
-    few = points_room(3)
+    few = points_workspace(3)
     assert fill_near(axis, surface, by_facet(elements, facets, 2), WITHIN, few) == len(wanted.number) > 3
     np.testing.assert_array_equal(few.number, wanted.number[:3])
     monkeypatch.setattr("riser_soil.contact.near_points.FEW", 3)
-    for got, told in zip(near_points(axis, surface, elements, facets, WITHIN), wanted, strict=True):
-        np.testing.assert_array_equal(got, told)
+    for got, reported in zip(near_points(axis, surface, elements, facets, WITHIN), wanted, strict=True):
+        np.testing.assert_array_equal(got, reported)
 
 
 @pytest.mark.parametrize("along", [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8), (-0.8, 0.6)])

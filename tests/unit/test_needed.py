@@ -6,9 +6,8 @@ import math
 
 import pytest
 
-from riser_soil.accuracy.error_bars import ErrorBar, RunValues
-from riser_soil.accuracy.extremes import alone
-from riser_soil.accuracy.headlines import Headline
+from riser_soil.accuracy.error_bars import ErrorBar, RunValues, alone
+from riser_soil.accuracy.key_results import KeyResult
 from riser_soil.accuracy.needed import doubtful, expected, largest, needed, out_of_reach, too_dear
 
 VALUE = 1000.0
@@ -16,20 +15,22 @@ ORDERS = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}  # in which sh
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # powers: soil's cells grow in number by the cube
 SAFETY, SMALLEST = {"mesh": 2.0, "time": 2.8, "penalty": 1.6}, 5e-5  # of error bars, as calibrated
 MARGIN, BY_CHANCE = 0.8, 0.25  # of the accuracy, that bars keep to; of a share, that stays where two runs agree
-HEADLINE = Headline("hang", "top tension", "N", VALUE, 100.0)
-KEY = HEADLINE.key
+KEY_RESULT = KeyResult("hang", "top tension", "N", VALUE, 100.0)
+KEY = KEY_RESULT.key
 
 
 def bar(**shares: float) -> ErrorBar:
     """Shares relative to the value."""
     by_source = {source: share * VALUE for source, share in shares.items()}
-    return ErrorBar(HEADLINE, math.hypot(*by_source.values()) + SMALLEST * VALUE, by_source)
+    return ErrorBar(KEY_RESULT, math.hypot(*by_source.values()) + SMALLEST * VALUE, by_source)
 
 
-def values(told: float, peak: float | None = None) -> RunValues:
+def values(reported: float, peak: float | None = None) -> RunValues:
     """A run's; peak: between its steps."""
-    headline = Headline("hang", "top tension", "N", told, 100.0)
-    return RunValues({KEY: headline}, {KEY: told}, {KEY: alone(told if peak is None else peak)}, {KEY: told})
+    key_result = KeyResult("hang", "top tension", "N", reported, 100.0)
+    return RunValues(
+        {KEY: key_result}, {KEY: reported}, {KEY: alone(reported if peak is None else peak)}, {KEY: reported}
+    )
 
 
 def left(given: ErrorBar, factors: dict[str, float]) -> float:
@@ -95,7 +96,7 @@ def test_what_the_runs_that_are_left_can_not_reach_is_too_dear() -> None:
 
 
 def test_unknown_bars_ask_for_a_finer_setting() -> None:
-    unknown = ErrorBar(HEADLINE, None, {"time": 1.0}, "a companion failed")
+    unknown = ErrorBar(KEY_RESULT, None, {"time": 1.0}, "a companion failed")
     assert needed([unknown], 0.01) == {"mesh": 2.0, "time": 2.0}
     assert largest([unknown, bar(time=0.5)]) == (math.inf, KEY)
 

@@ -11,8 +11,7 @@ import xarray as xr
 
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile
-from riser_soil.results.netcdf_layout import Variable, lay_out
+from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile, Variable, lay_out
 from tests.support.recorded_run import Catenary, record
 
 ARC = np.linspace(0.0, 100.0, 11)
@@ -133,7 +132,7 @@ def test_nan_and_all_digits_survive(tmp_path: Path) -> None:
         assert np.isnan(data["touchdown_arc"][0])
 
 
-def test_what_is_left_out_takes_no_room(tmp_path: Path) -> None:
+def test_what_is_left_out_takes_no_workspace(tmp_path: Path) -> None:
     file = SeriesFile(tmp_path / "results.nc", ARC, "t", "0", left_out={"curvature", "moment_vector"})
     file.begin_stage("only")
     file.record(a_row(0.0))

@@ -9,8 +9,7 @@ import pytest
 
 from riser_soil.errors import SceneError
 from riser_soil.scene import document
-from riser_soil.scene.document import Document, parse, read_text
-from riser_soil.scene.number_lists import cut_out
+from riser_soil.scene.document import Document, cut_out, parse, read_text
 
 N = 250
 PAIRS = ", ".join(f"[{n}, -{n}.5e-3]" for n in range(N))
@@ -68,7 +67,7 @@ def test_lists_that_are_shared_are_not_the_same() -> None:
     assert data["b"][0][0] == 0
 
 
-def test_wrong_text_behind_a_long_list_is_told_with_its_line() -> None:
+def test_wrong_text_behind_a_long_list_is_reported_with_its_line() -> None:
     with pytest.raises(SceneError, match=rf"^scene:{N + 3}: not valid YAML"):
         parse(LISTS["rows of lists"] + "e: ]\n", "scene")
 

@@ -19,8 +19,8 @@ from riser_soil.orcaflex.data_file import read_data
 from riser_soil.orcaflex.scene_of import scene_of
 from riser_soil.scene.rao import MODES, Rao, read_rao
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.sea.dispersion import wave_number
-from riser_soil.sea.jonswap import mean_period
+from riser_soil.sea.components import wave_number
+from riser_soil.sea.spectra import mean_period
 from tests.support.orcaflex_data import data_text
 
 G = 9.80665
@@ -67,25 +67,25 @@ def test_numbers_in_si_units(tmp_path: Path) -> None:
     assert storm["motion"]["end"]["vessel"]["reference"] == [-22.0, 0.0, -1.0]
 
 
-def test_what_is_not_carried_over_is_told_by_line(tmp_path: Path) -> None:
+def test_what_is_not_carried_over_is_reported_by_line(tmp_path: Path) -> None:
     text = data_text()
-    told = dict(imported(tmp_path, text).remarks)
-    words = {line: text.splitlines()[line - 1].split()[0] for line in told}
+    reported = dict(imported(tmp_path, text).remarks)
+    words = {line: text.splitlines()[line - 1].split()[0] for line in reported}
     assert [*words.values()] == ["WindSpeed:", "-", "LayAzimuth:", "-"]
-    assert told[max(told)] == "Lines Other: a scene has one riser; --line 'Other' imports this one"
+    assert reported[max(reported)] == "Lines Other: a scene has one riser; --line 'Other' imports this one"
 
 
-def test_a_value_that_nothing_knows_is_told(tmp_path: Path) -> None:
+def test_a_value_that_nothing_knows_is_reported(tmp_path: Path) -> None:
     """Of the line type, of the line, of a table's column, and a section of its own."""
     text = changed(
         ("    Cl: 0\n", "    Cl: 0\n    Novel: 3\n"),
         ("ConnectionGamma\n", "ConnectionGamma, ConnectionPayoutRate\n"), ("0, 170, 0]", "0, 170, 0, 0.5]"),
         ("Groups:", "Winches:\n  - Name: Pull\n    Length: 3\nGroups:"),
     )  # fmt: skip
-    told = [text for _, text in imported(tmp_path, text).remarks]
-    assert 'LineTypes 8" hose: Novel 3' in told
-    assert "Lines Riser: ConnectionPayoutRate 0.5" in told
-    assert "Winches Pull" in told
+    reported = [text for _, text in imported(tmp_path, text).remarks]
+    assert 'LineTypes 8" hose: Novel 3' in reported
+    assert "Lines Riser: ConnectionPayoutRate 0.5" in reported
+    assert "Winches Pull" in reported
 
 
 def test_the_tension_at_rest_is_the_catenarys(tmp_path: Path) -> None:
@@ -158,7 +158,7 @@ def test_raos_in_signs_units_and_the_other_half_circle(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         ("Symmetry: xz plane", "Symmetry: Circular", "Symmetry Circular"),
         ("PhaseOrigin: [~, ~, ~]", "PhaseOrigin: [0, 0, 0]", "PhaseOrigin"),
@@ -177,12 +177,12 @@ def test_raos_in_signs_units_and_the_other_half_circle(tmp_path: Path) -> None:
         ("VariationMethod: Interpolated", "VariationMethod: Power law", "current by Power law"),
     ],
 )  # fmt: skip
-def test_what_a_scene_cannot_have_is_told(old: str, new: str, told: str, tmp_path: Path) -> None:
+def test_what_a_scene_cannot_have_is_reported(old: str, new: str, reported: str, tmp_path: Path) -> None:
     text = changed((old, new))
     pairs = zip(text.splitlines(), data_text().splitlines(), strict=True)
     line = next(n for n, (a, b) in enumerate(pairs, 1) if a != b)
     found = imported(tmp_path, text)
-    assert any(told in text and n == line for n, text in found.remarks)
+    assert any(reported in text and n == line for n, text in found.remarks)
     for name, content in found.files.items():
         (tmp_path / name).write_text(content)
     scene_from_mapping(found.data, tmp_path)
@@ -236,7 +236,7 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         ("UnitsSystem: SI", "UnitsSystem: US", r"riser.yml:5: General: UnitsSystem: is US; save it in SI units"),
         ("Lines:", "BaseFile: other.yml\nLines:", r"riser.yml:\d+: BaseFile: takes from another file"),
@@ -255,8 +255,8 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
         ("- Name: Ship", "- Name: [Ship", r"riser.yml:\d+: not valid YAML"),
     ],
 )  # fmt: skip
-def test_a_file_that_gives_no_scene_has_one_line(old: str, new: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=told) as found:
+def test_a_file_that_gives_no_scene_has_one_line(old: str, new: str, reported: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=reported) as found:
         imported(tmp_path, changed((old, new)))
     assert "\n" not in str(found.value)
 

@@ -17,7 +17,7 @@ from riser_soil.core import outputs
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.plots.curves import ALONG_ARC
-from riser_soil.plots.units import SHOWN
+from riser_soil.plots.scales import SHOWN
 from riser_soil.results import Run
 from riser_soil.results.netcdf import HEALTH, SERIES
 from tests.support.on_ranks import HANGS, ROOT, environment
@@ -55,8 +55,8 @@ def test_a_new_entry_is_in_the_files_with_its_unit_and_text(toys: tuple[Path, st
     assert times == run.time.tolist()
     with h5py.File(run.folder / "results.nc") as file:
         assert set(file) & {*outputs.choices(), "height"} == {"height"}
-        told = {name: file["height"].attrs[name] for name in ("units", "long_name", "sign_convention")}
-        assert told == {"units": HEIGHT.units, "long_name": HEIGHT.text, "sign_convention": HEIGHT.sign}
+        reported = {name: file["height"].attrs[name] for name in ("units", "long_name", "sign_convention")}
+        assert reported == {"units": HEIGHT.units, "long_name": HEIGHT.text, "sign_convention": HEIGHT.sign}
         assert file["stored_energy"].attrs["long_name"] == WHOLE_ENERGY.text
         assert file["stored_energy"].shape == file["step"].shape
 
@@ -67,11 +67,11 @@ def test_a_new_entry_of_the_soil_is_in_its_frames(toys: tuple[Path, str]) -> Non
 
 
 def test_a_new_entry_is_in_the_summary_with_its_extremes_and_on_the_screen(toys: tuple[Path, str]) -> None:
-    run, (told,) = Run(toys[0] / "solved"), Run(toys[0] / "solved").summary["stages"]
+    run, (reported,) = Run(toys[0] / "solved"), Run(toys[0] / "solved").summary["stages"]
     highest = run["height"][-1].argmax()
-    assert told["final"]["max_height"] == {"value": run["height"][-1, highest], "arc": run.arc[highest]}
-    assert list(told["final"])[-2:] == ["contact_force", "max_height"]
-    assert told["extremes"]["max_height"]["max"] == run["height"][-1, highest]
+    assert reported["final"]["max_height"] == {"value": run["height"][-1, highest], "arc": run.arc[highest]}
+    assert list(reported["final"])[-2:] == ["contact_force", "max_height"]
+    assert reported["extremes"]["max_height"]["max"] == run["height"][-1, highest]
     row = rf"greatest height +│ +{1e-3 * run['height'][-1, highest]:.5g} km at {run.arc[highest]:.5g} m"
     assert re.search(row, toys[1])
     heave = Run(toys[0] / "told").summary["stages"][1]["extremes"]["max_height"]
@@ -86,7 +86,7 @@ def of_si(unit: str, si: str) -> float:
     return 1.0 / PREFIXES[unit[0]] if unit[1:] == si else 1.0
 
 
-def test_figures_are_told_in_the_units_that_stand_beside_them() -> None:
+def test_figures_are_reported_in_the_units_that_stand_beside_them() -> None:
     spelt = {"N m-1": "N/m", "m-1": "1/m", "1": "-", "degree": "°"}
     rows = [(output.units, each.row) for output in TABLE for each in output.figures if each.row is not None]
     assert len(rows) > 15

@@ -100,19 +100,19 @@ def overloaded(scene: Mapping, folder: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("method", ["node", "surface"])
-def test_coarse_cells_that_bear_more_than_their_clay_are_told(method: str, tmp_path: Path) -> None:
-    (told,) = overloaded(on_clay(450.0) | {"contact": {"method": method}}, tmp_path)
-    found = re.search(r"bears (\S+) N/m at arc (\S+) m and 1 of the load, (\S+) times the (\S+) N/m", told)
-    assert found, told
+def test_coarse_cells_that_bear_more_than_their_clay_are_reported(method: str, tmp_path: Path) -> None:
+    (reported,) = overloaded(on_clay(450.0) | {"contact": {"method": method}}, tmp_path)
+    found = re.search(r"bears (\S+) N/m at arc (\S+) m and 1 of the load, (\S+) times the (\S+) N/m", reported)
+    assert found, reported
     load, arc, times, capacity = (float(each) for each in found.groups())
     assert capacity == pytest.approx((2.0 + np.pi) * 450.0 * D, rel=1e-3)
     assert times == pytest.approx(load / capacity, rel=0.05)
     assert load > 717.0
     assert 2.0 < arc < 9.0
-    assert "at most an eighth of the diameter" in told
+    assert "at most an eighth of the diameter" in reported
 
 
-def test_what_clay_bears_is_not_told(tmp_path: Path) -> None:
+def test_what_clay_bears_is_not_reported(tmp_path: Path) -> None:
     assert overloaded(on_clay(1500.0) | {"contact": {"method": "node"}}, tmp_path) == []
 
 

@@ -21,7 +21,7 @@ from benchmarks.peers.judge import (
     kept_error,
     quantities,
 )
-from benchmarks.peers.ladder import PROGRAMS
+from benchmarks.peers.refinement import PROGRAMS
 from benchmarks.peers.riser import scene_of
 from riser_soil.assembly import build
 from riser_soil.assembly.motions import set_motion

@@ -22,7 +22,7 @@ ONE_CELL: Mapping = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
 ROPE: Mapping = {"EA": 1.0e4, "EI": 1.0, "mass": 5.0, "outer_diameter": 0.02}
 
 
-def told(scene: Mapping, folder: Path) -> list[list[str]]:
+def reported(scene: Mapping, folder: Path) -> list[list[str]]:
     """Warnings in the summary, stage by stage."""
     run(scene_from_mapping(scene), folder)
     return [stage["warnings"] for stage in json.loads((folder / "summary.json").read_text())["stages"]]
@@ -38,7 +38,7 @@ def test_axial_strain_beyond_what_beams_stand_for(tmp_path: Path, capsys: pytest
     def force(name: str, size: float) -> Mapping:
         return static(name, loads=[{"at": "end", "force": [size, 0.0, 0.0]}])
 
-    much, little = told(pulled(force("much", 5.7e3), force("little", 0.9e3)), tmp_path)
+    much, little = reported(pulled(force("much", 5.7e3), force("little", 0.9e3)), tmp_path)
     (warning,) = much
     assert warning.startswith("the riser is strained along its axis by 0.57 at arc ")
     assert "at most 10%" in warning
@@ -51,14 +51,14 @@ def test_strain_by_bending(tmp_path: Path) -> None:
     curl = static("curl", loads=[{"at": "end", "moment": [0.0, 12.0, 0.0]}])
     scene = pulled(curl)
     scene["riser"]["segments"][0] |= {"length": 0.5, "elements": 20}
-    ((warning,),) = told(scene, tmp_path)
+    ((warning,),) = reported(scene, tmp_path)
     assert warning.startswith("the pipe's outside is strained by bending, curvature times D/2, by 0.12 at arc ")
 
 
 def test_a_stage_tells_its_worst_instant(tmp_path: Path) -> None:
     history = [[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]
     push = dynamic(2.0, 0.25, loads=[{"at": "end", "force": [4.0e3, 0.0, 0.0], "history": history}])
-    ((warning, *_),) = told(pulled(push), tmp_path)
+    ((warning, *_),) = reported(pulled(push), tmp_path)
     assert "strained along its axis" in warning
     assert warning.split(" and ")[1].startswith(("0.75 s", "1 s", "1.25 s", "1.5 s"))
 
@@ -79,12 +79,12 @@ def test_section_changes_count_with_the_weaker_side() -> None:
     assert plausibility.radius.tolist() == [0.01, 0.05, 0.05]
 
 
-def test_bending_that_elements_blur_is_told_in_every_stage(tmp_path: Path) -> None:
+def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -> None:
     pipe: Mapping = {"EA": 3.0e8, "EI": 5.0e4, "mass": 120.0, "submerged_weight": 700.0}
     ends = prescribed(0.0, 0.0, 60.0), prescribed(80.0, 0.0, 100.0, rotation="fixed")
     stages = static("hang"), static("pull", move={"end": [90.0, 0.0, 100.0]}), dynamic(0.2, 0.1)
     options: Mapping = {"pipe": pipe, "length": 150.0, "elements": 20, "start": ends[0], "end": ends[1]}
-    hang, *others = told(riser_scene(*stages, **options, gravity=9.81), tmp_path)
+    hang, *others = reported(riser_scene(*stages, **options, gravity=9.81), tmp_path)
     assert hang == []
     for (warning,) in others:
         assert warning.startswith("elements of 7.5 m are too long for the bending at arc 146.25 m: at ")
@@ -106,17 +106,17 @@ def test_bending_is_blurred_from_a_tenth_of_the_largest_moment_where_it_is_smoot
     assert [limit in warning for warning in seen.warnings()] == [True] * bool(limit)
 
 
-def test_soil_that_is_never_touched_is_told_after_the_last_stage(tmp_path: Path) -> None:
+def test_soil_that_is_never_touched_is_reported_after_the_last_stage(tmp_path: Path) -> None:
     aside = touchdown(LAY, heave(0.2))
     aside["soil"] |= {"block": {"x": [18.0, 21.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
-    lay, moved = told(aside, tmp_path / "aside")
+    lay, moved = reported(aside, tmp_path / "aside")
     assert lay == []
     (warning,) = (text for text in moved if "touch the soil" in text)
     assert warning.startswith("in no stage did the riser touch the soil, x from 18 to 21 m and y from -1 to 1 m: ")
     assert "at the end it touches down at [6" in warning
 
 
-def test_soil_that_is_touched_is_not_told(tmp_path: Path) -> None:
+def test_soil_that_is_touched_is_not_reported(tmp_path: Path) -> None:
     below = touchdown(su=2000.0)
     below["soil"] |= {"block": {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
-    assert told(below, tmp_path) == [[]]
+    assert reported(below, tmp_path) == [[]]

@@ -11,7 +11,7 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import build
-from riser_soil.assembly.end_places import corner_count, corners, cycle_count
+from riser_soil.assembly.motions import corner_count, corners, cycle_count
 from riser_soil.checks.ground_plausibility import ground_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
@@ -65,11 +65,11 @@ def test_tension_is_that_of_each_equilibrium_on_the_way(tmp_path: Path) -> None:
     """EA u/L at each record, u being straight between the table's rows; the clock is the table's."""
     stage = quasi_static(4.0, "cycles", time_step=0.4, motion=PULLED)
     run(scene(tmp_path, stage, output={"interval": 0.5}), tmp_path / "out")
-    told = Run(tmp_path / "out")
-    assert told.time == pytest.approx(np.arange(0.0, 4.01, 0.5))
-    assert told["position"][:, -1, 0] == pytest.approx(L + saw(told.time), abs=1e-12)
-    assert told["effective_tension"][:, 0] == pytest.approx(EA * saw(told.time) / L, rel=1e-6, abs=1e-6)
-    assert told["kinetic_energy"].max() == 0.0
+    reported = Run(tmp_path / "out")
+    assert reported.time == pytest.approx(np.arange(0.0, 4.01, 0.5))
+    assert reported["position"][:, -1, 0] == pytest.approx(L + saw(reported.time), abs=1e-12)
+    assert reported["effective_tension"][:, 0] == pytest.approx(EA * saw(reported.time) / L, rel=1e-6, abs=1e-6)
+    assert reported["kinetic_energy"].max() == 0.0
 
 
 def test_summary_has_the_extremes_over_the_stage_and_no_balance_of_energy(tmp_path: Path) -> None:
@@ -153,13 +153,15 @@ def test_cycles_are_counted(stage: Mapping, cycles: float, tmp_path: Path) -> No
     assert cycle_count(found, found.stages[0]) == pytest.approx(cycles)
 
 
-@pytest.mark.parametrize(("kind", "duration", "told"), [("kinematic-hardening", 100.0, True), ("iwan", 100.0, False)])
-def test_many_cycles_on_clay_that_forgets_are_told(kind: str, duration: float, told: bool) -> None:
+@pytest.mark.parametrize(
+    ("kind", "duration", "reported"), [("kinematic-hardening", 100.0, True), ("iwan", 100.0, False)]
+)
+def test_many_cycles_on_clay_that_forgets_are_reported(kind: str, duration: float, reported: bool) -> None:
     swing = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 0.01], "period": 10.0}}}
     given = touchdown(LAY, quasi_static(duration, motion=swing))
     given["soil"]["law"] = {"kind": kind, "su": 600.0, "E_over_su": 300.0, "nu": 0.49}
     warnings = [each for each in ground_warnings(built(given)) if "lets go of a mean stress" in each]
-    assert len(warnings) == told
+    assert len(warnings) == reported
     assert all("half of it in each cycle of 0.69% shear strain" in each for each in warnings)
     assert all("the scene has 10 cycles (told from 10 on): take iwan" in each for each in warnings)
 
@@ -257,22 +259,22 @@ def pressed(stage: Mapping, folder: Path) -> Mapping:
         seabed={"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 5.0e3}},
     )
     run(scene_from_mapping(given, folder), folder / "out")
-    (told,) = Run(folder / "out").summary["stages"]
-    return dict(told)
+    (reported,) = Run(folder / "out").summary["stages"]
+    return dict(reported)
 
 
 def test_a_slow_dynamic_stage_has_no_impacts_and_makes_no_energy(tmp_path: Path) -> None:
     """The supports are paid for the mean force of each step and the ground takes that at its end: what the scheme books
     for it moves nothing.
     """
-    told = pressed(dynamic(7.0, 1.0), tmp_path)
-    energy, impact = told["energy"], told["indicators"]["impact"]
+    reported = pressed(dynamic(7.0, 1.0), tmp_path)
+    energy, impact = reported["energy"], reported["indicators"]["impact"]
     assert energy["numerical"] < -0.05 * energy["turned_over"]
     assert energy["ahead"] == pytest.approx(-energy["numerical"], rel=1e-3)
     assert abs(energy["made"]) < 1e-3 * energy["turned_over"]
     assert energy["dissipated_by"]["seabed_time_scheme"] > 0.05 * energy["turned_over"]
     assert impact["lost"] < 1e-3 * energy["dissipated_by"]["seabed_time_scheme"]
-    assert not [each for each in told["warnings"] if "impact lost" in each or "the time scheme" in each]
+    assert not [each for each in reported["warnings"] if "impact lost" in each or "the time scheme" in each]
 
 
 def test_a_stage_after_it_goes_on_from_there(tmp_path: Path) -> None:
@@ -310,16 +312,16 @@ def test_a_vessel_that_answers_waves_is_refused(tmp_path: Path) -> None:
     rows = "frequency [rad/s], direction [deg], heave [m/m], heave phase [deg]\n0.1, 0, 1, 0\n2, 0, 1, 0\n"
     (tmp_path / "rao.csv").write_text(rows, encoding="utf-8")
     vessel = {"rao": "rao.csv", "reference": [0.0, 0.0, 0.0]}
-    told = refusal(tmp_path, quasi_static(1.0, motion={"end": {"vessel": vessel}}))
-    assert "a vessel answers waves, and a quasi-static stage has none; give its motions as vessel_history" in told
+    reported = refusal(tmp_path, quasi_static(1.0, motion={"end": {"vessel": vessel}}))
+    assert "a vessel answers waves, and a quasi-static stage has none; give its motions as vessel_history" in reported
 
 
 def test_two_rows_are_enough(tmp_path: Path) -> None:
     rows = "".join(f"{line}\n" for line in SAW.splitlines()[:3])
     (stretch,) = stage_histories(scene(tmp_path, quasi_static(1.0, motion=PULLED), table=rows))
     assert stretch.end.effective_tension == pytest.approx(EA * 0.04 / L, rel=1e-6)
-    told = refusal(tmp_path, dynamic(1.0, 0.1, motion=PULLED), table=rows.replace("[-]", "[s]"))
-    assert "a table of 2 rows; cubic splines need at least 4; add rows, or make the stage quasi-static" in told
+    reported = refusal(tmp_path, dynamic(1.0, 0.1, motion=PULLED), table=rows.replace("[-]", "[s]"))
+    assert "a table of 2 rows; cubic splines need at least 4; add rows, or make the stage quasi-static" in reported
 
 
 def test_a_riser_with_two_free_ends_has_no_equilibrium(tmp_path: Path) -> None:

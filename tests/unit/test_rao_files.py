@@ -13,8 +13,7 @@ from mpi4py import MPI
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.scene.rao import Rao
-from riser_soil.scene.rao_files import read_capytaine
+from riser_soil.scene.rao import Rao, read_capytaine
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.netcdf_files import Variables, write_netcdf
 from tests.support.riser_scenes import dynamic
@@ -116,7 +115,7 @@ def test_other_forms(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("other", "told"),
+    ("other", "reported"),
     [
         ({"RAO": None}, "has no variable RAO"),
         ({"radiating_dof": (("radiating_dof",), np.array([*DOFS[:5], "Bending"]))}, "Bending is no motion of a rigid"),
@@ -128,9 +127,9 @@ def test_other_forms(tmp_path: Path) -> None:
         ({"complex": None, "RAO": (("omega", "wave_direction", "radiating_dof"), np.ones((4, 8, 6)))}, "RAO is real"),
     ],
 )
-def test_files_without_raos(other: dict[str, Any], told: str, tmp_path: Path) -> None:
+def test_files_without_raos(other: dict[str, Any], reported: str, tmp_path: Path) -> None:
     write_netcdf(tmp_path / "rao.nc", changed(**other))
     stage = dynamic(20.0, 0.2, "sail", motion={"end": {"vessel": {"rao": "rao.nc", "reference": END}}})
-    with pytest.raises(SceneError, match=told) as error:
+    with pytest.raises(SceneError, match=reported) as error:
         scene_from_mapping(mapping(stage, waves=AIRY), tmp_path)
     assert "\n" not in str(error.value)

@@ -216,7 +216,7 @@ def test_layers_with_and_without_rate_lie_side_by_side() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "reported"),
     [
         ({"mu": -0.1, "reference": 1e-5}, "must be at least 0"),
         ({"mu": 1.5, "reference": 1e-5}, "must be at most 1"),
@@ -225,8 +225,8 @@ def test_layers_with_and_without_rate_lie_side_by_side() -> None:
         ({"mu": 0.1, "reference": 1e-5, "gain": 1.0}, "no such key"),
     ],
 )
-def test_wrong_constants_are_told(given: dict[str, float], told: str) -> None:
+def test_wrong_constants_are_reported(given: dict[str, float], reported: str) -> None:
     scene = touchdown()
     scene["soil"]["law"]["rate"] = given
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(scene)

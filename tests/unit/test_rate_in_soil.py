@@ -18,8 +18,8 @@ from riser_soil.soil.rate import Rate
 from riser_soil.soil.remoulding import Remoulding
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
-from riser_soil.solve.held_balance import balance_held
 from riser_soil.solve.solution import NewtonSettings
+from riser_soil.solve.step_solver import balance_held
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built, take
@@ -136,19 +136,19 @@ def test_a_new_mesh_takes_over_what_fast_shear_has_left() -> None:
 
 
 @pytest.mark.parametrize(
-    ("stages", "reference", "told"),
+    ("stages", "reference", "reported"),
     [
         ([LAY], 1e-5, "has no other"),
         ([LAY, heave(3.0)], 10.0, "10 1/s, is more than the fastest end makes over a diameter, 2.09 1/s"),
         ([LAY, heave(3.0)], 2.0, ""),
     ],
 )
-def test_a_rate_that_changes_nothing_is_told(stages: list[Mapping], reference: float, told: str) -> None:
+def test_a_rate_that_changes_nothing_is_reported(stages: list[Mapping], reference: float, reported: str) -> None:
     """The end heaves by up to 0.3 m * 2 pi / 3 s = 0.628 m/s, over a diameter of 0.3 m."""
     scene = touchdown(*stages)
     scene["soil"]["law"]["rate"] = {"mu": 0.1, "reference": reference}
     found = [text for text in ground_warnings(built(scene)) if "soil.law.rate" in text]
-    assert (told in found[0]) if told else not found
+    assert (reported in found[0]) if reported else not found
 
 
 def test_steps_tell_their_time_and_held_lines_leave_the_soil_none() -> None:

@@ -17,10 +17,8 @@ from rich.console import Console
 
 from riser_soil.errors import ResultsError, SceneError, WriteError
 from riser_soil.results import Run
-from riser_soil.results.progress import Progress
-from riser_soil.results.schedule import DueOutputs, Schedule
-from riser_soil.results.screen import print_summary
-from riser_soil.results.simulated_time import SimulatedTime
+from riser_soil.results.schedule import DueOutputs, Schedule, SimulatedTime
+from riser_soil.results.screen import Progress, print_summary
 from tests.support.recorded_run import (
     CATENARY_ARC,
     NOWHERE,
@@ -228,12 +226,12 @@ def test_without_the_soil_there_is_no_picture_of_the_last_step(tmp_path: Path) -
     assert Run(tmp_path).soil_times.tolist() == read_by_vtk(tmp_path / "riser.xdmf")[0] == [0.1]
 
 
-def test_what_is_told_of_how_far_a_run_came(tmp_path: Path) -> None:
+def test_what_is_reported_of_how_far_a_run_came(tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
         assert recorder.reached == f"before the first step; {tmp_path} holds no results yet"
         step(recorder, 0.25)
-        told = f"in stage only at t = 0.25 s; {tmp_path} has the results up to there, marked unfinished"
-        assert recorder.reached == told
+        reported = f"in stage only at t = 0.25 s; {tmp_path} has the results up to there, marked unfinished"
+        assert recorder.reached == reported
         recorder.finish()
         assert recorder.reached == f"after the last stage; {tmp_path} has the whole run"
 
@@ -350,7 +348,7 @@ def test_the_screen_tells_the_main_results(tmp_path: Path) -> None:
         assert words in text
 
 
-def test_warnings_are_told_on_the_screen(tmp_path: Path) -> None:
+def test_warnings_are_reported_on_the_screen(tmp_path: Path) -> None:
     record(tmp_path, mesh=block(4, 3, 2))
     summary = Run(tmp_path).summary
     assert "warning" not in shown(summary)
@@ -366,8 +364,8 @@ def test_top_tension_is_the_upper_ends(upper: str, tmp_path: Path) -> None:
     for tension, end in enumerate(("start", "end"), start=1):
         final = summary["stages"][0]["final"][end]
         final["effective_tension"], final["position"][2] = 1e3 * tension, float(end == upper)
-    (told,) = (line for line in shown(summary).splitlines() if "top tension" in line)
-    assert f" {1 if upper == 'start' else 2} kN" in told
+    (reported,) = (line for line in shown(summary).splitlines() if "top tension" in line)
+    assert f" {1 if upper == 'start' else 2} kN" in reported
 
 
 def shown(summary: dict[str, Any]) -> str:

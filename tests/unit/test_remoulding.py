@@ -148,15 +148,15 @@ def test_clay_without_remoulding_is_the_intact_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "reported"),
     [
         ({"sensitivity": 0.5, "xi_95": 10.0}, "must be at least 1"),
         ({"sensitivity": 3.0, "xi_95": 0.0}, "must be greater than 0"),
         ({"sensitivity": 3.0}, "missing"),
     ],
 )
-def test_wrong_constants_are_told(given: dict[str, float], told: str) -> None:
+def test_wrong_constants_are_reported(given: dict[str, float], reported: str) -> None:
     scene = touchdown()
     scene["soil"]["law"]["remoulding"] = given
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(scene)

@@ -19,11 +19,11 @@ from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
 from riser_soil.errors import ResultsError, WriteError
-from riser_soil.report.comparison import differences_table, headlines_table
 from riser_soil.report.extremes import ends_table, error_bars, extremes_table
-from riser_soil.report.extremes import headlines_table as headlines_of
+from riser_soil.report.extremes import key_results_table as key_results_of
 from riser_soil.report.health import energy_table, versions_table, warnings_of
-from riser_soil.report.report import write_report
+from riser_soil.report.report import compared_key_results_table as key_results_table
+from riser_soil.report.report import differences_table, write_report
 from riser_soil.report.scene_words import parts_table, pipes_table, prose, read, segments_table, stages_table
 from riser_soil.report.tables import ReportTable, compact, number
 from riser_soil.results import Run
@@ -133,22 +133,22 @@ def test_the_browser_would_tell(tmp_path: Path) -> None:
 
 def test_extremes_have_times_places_and_error_bars(run: Run) -> None:
     stage = run.summary["stages"][1]
-    told = row(extremes_table(run.summary, stage), "largest bending moment")
+    reported = row(extremes_table(run.summary, stage), "largest bending moment")
     known = stage["extremes"]["max_bending_moment"]
-    assert float(told["max"]) == pytest.approx(1e-3 * known["max"], rel=1e-4)
-    assert float(told["at t [s] (2)"]) == pytest.approx(known["t_max"], rel=1e-3)
-    assert float(told["at arc [m] (2)"]) == pytest.approx(known["arc_max"], rel=1e-4)
+    assert float(reported["max"]) == pytest.approx(1e-3 * known["max"], rel=1e-4)
+    assert float(reported["at t [s] (2)"]) == pytest.approx(known["t_max"], rel=1e-3)
+    assert float(reported["at arc [m] (2)"]) == pytest.approx(known["arc_max"], rel=1e-4)
     assert error_bars(run.summary, "heave") == {("max_bending_moment", "max"): 12.0}
-    assert "0.012" in told.values(), "of 12 N.m"
-    first = row(headlines_of(run.summary), "heave", "largest bending moment")
+    assert "0.012" in reported.values(), "of 12 N.m"
+    first = row(key_results_of(run.summary), "heave", "largest bending moment")
     assert (first["±"], first["by mesh"], first["by time"]) == ("0.012", "0.009", "0.003")
 
 
 def test_energy_and_versions_and_warnings(run: Run) -> None:
     stage = run.summary["stages"][1]
-    told = row(energy_table(stage), "put in since the stage began; negative where it was taken out")
-    assert float(told["kJ"]) == pytest.approx(1e-3 * stage["energy"]["work"], rel=1e-4)
-    assert float(told["% of turned over"]) == pytest.approx(100.0)
+    reported = row(energy_table(stage), "put in since the stage began; negative where it was taken out")
+    assert float(reported["kJ"]) == pytest.approx(1e-3 * stage["energy"]["work"], rel=1e-4)
+    assert float(reported["% of turned over"]) == pytest.approx(100.0)
     assert ("riser_soil", "0.1.0") in [tuple(row) for row in versions_table(run.summary).rows]
     assert warnings_of(run.summary)[0] == WARNING
 
@@ -159,8 +159,8 @@ def test_the_scene_in_words(run: Run) -> None:
     assert "The ground is a spring seabed." in prose(scene, run)
     assert row(pipes_table(scene), "flexible")["EI [N.m²]"] == "50000"
     assert row(segments_table(scene), "flexible")["to arc [m]"] == "50"
-    told = row(parts_table(scene), "seabed.stiffness")
-    assert (told["value"], told["unit"]) == ("100000", "N/m2")
+    reported = row(parts_table(scene), "seabed.stiffness")
+    assert (reported["value"], reported["unit"]) == ("100000", "N/m2")
     assert row(stages_table(scene), "heave.motion.end.harmonic.period")["value"] == "10"
 
 
@@ -172,9 +172,9 @@ def test_contents_ends_and_walls_of_the_scene(run: Run, tmp_path: Path) -> None:
     surfaced = pressed.replace("water: {density: 1025.0}", "water: {density: 1025.0, surface_level: 110.0}")
     graded = surfaced.replace("element_length: 2.0", "element_length: [1.0, 4.0]")
     (folder / "scene.yaml").write_text(graded, encoding="utf-8")
-    told = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    told["hang_off"] = {"end": "end", "asked": {"tension": 9e4}, "by": "layback", "value": 81.25}
-    (folder / "summary.json").write_text(json.dumps(told), encoding="utf-8")
+    reported = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    reported["hang_off"] = {"end": "end", "asked": {"tension": 9e4}, "by": "layback", "value": 81.25}
+    (folder / "summary.json").write_text(json.dumps(reported), encoding="utf-8")
     scene = read(Run(folder))
     assert scene is not None
     pipe = row(pipes_table(scene), "flexible")
@@ -190,10 +190,10 @@ def test_contents_ends_and_walls_of_the_scene(run: Run, tmp_path: Path) -> None:
 def test_components_of_round_off_are_left_out(run: Run) -> None:
     stage = json.loads(json.dumps(run.summary["stages"][1]))
     largest = stage["final"]["max_bending_moment"]["value"]
-    told = {"min": [0.0, -1e-13 * largest, 0.0], "max": [0.0, 1e-3 * largest, 1e-12 * largest]}
+    reported = {"min": [0.0, -1e-13 * largest, 0.0], "max": [0.0, 1e-3 * largest, 1e-12 * largest]}
     stage["final"]["start"]["moment"], stage["final"]["end"]["moment"] = [0.0, 1e-13 * largest, 0.0], [0.0] * 3
-    stage["extremes"]["start"]["moment"] |= told
-    stage["extremes"]["end"]["moment"] |= {"min": told["min"], "max": [0.0] * 3}
+    stage["extremes"]["start"]["moment"] |= reported
+    stage["extremes"]["end"]["moment"] |= {"min": reported["min"], "max": [0.0] * 3}
     table = ends_table(stage)
     assert [words for words, *_ in table.rows if "moment" in words] == ["moment at the start, y"]
     assert row(table, "moment at the start, y")["at the end"] == "0"
@@ -208,19 +208,19 @@ def test_two_runs_side_by_side(run: Run, tmp_path: Path) -> None:
     ]
     changed = other.summary["stages"][1]["extremes"]["max_bending_moment"]
     changed["max"] *= 1.1
-    told = row(headlines_table(runs), "heave: largest bending moment")
-    assert told["differs from one by [%]"] == "+10"
+    reported = row(key_results_table(runs), "heave: largest bending moment")
+    assert reported["differs from one by [%]"] == "+10"
 
 
 @pytest.mark.parametrize(
-    ("value", "told"),
+    ("value", "reported"),
     [
         *((None, "–"), (float("nan"), "–"), (0.0, "0"), (1543.21, "1543.2")),
         *((123456.7, "123457"), (1.5e-7, "1.5e-07"), (3e8, "3e+08")),
     ],
 )
-def test_numbers_read_well(value: float | None, told: str) -> None:
-    assert number(value) == told
+def test_numbers_read_well(value: float | None, reported: str) -> None:
+    assert number(value) == reported
 
 
 def test_columns_without_anything_are_left_out() -> None:
@@ -232,9 +232,9 @@ def test_a_run_whose_scene_is_gone_is_reported_without_it(run: Run, tmp_path: Pa
     folder = tmp_path / "run"
     shutil.copytree(run.folder, folder)
     (folder / "scene.yaml").unlink()
-    told = write_report([folder], tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "# scene.yaml can&#39;t be read: No such file or directory" in told
-    assert "Stage heave (dynamic)" in told
+    reported = write_report([folder], tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "# scene.yaml can&#39;t be read: No such file or directory" in reported
+    assert "Stage heave (dynamic)" in reported
 
 
 def test_what_cannot_be_reported_is_said(run: Run, tmp_path: Path) -> None:

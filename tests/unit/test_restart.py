@@ -74,7 +74,7 @@ def test_a_run_left_twice_ends_as_if_it_had_not_been_left(alone: Alone, tmp_path
     leave_after(2, read_scene(left / "scene.yaml"), left, RunPeaks(), restart=True)
     run(scene_of(), left, peaks=peaks, restart=True)
     assert unlike(alone.folder, left) == []
-    assert json.dumps(peaks.told("smooth")) == json.dumps(alone.peaks.told("smooth"))
+    assert json.dumps(peaks.reported("smooth")) == json.dumps(alone.peaks.reported("smooth"))
     assert not (left / "checkpoint.npz").exists()
 
 
@@ -147,8 +147,8 @@ def test_a_checkpoint_of_another_scene_is_refused(override: str, checkpoint: Pat
 
 def test_a_run_that_can_go_on_is_not_overwritten_by_mistake(left: Path) -> None:
     before = {path.name: path.read_bytes() for path in left.iterdir()}
-    told = "holds an unfinished run; go on with it by --restart, overwrite it by --force, or choose another folder"
-    with pytest.raises(SceneError, match=told):
+    reported = "holds an unfinished run; go on with it by --restart, overwrite it by --force, or choose another folder"
+    with pytest.raises(SceneError, match=reported):
         run(scene_of(), left)
     by_command = CliRunner().invoke(app, ["run", str(left / "scene.yaml"), "-o", str(left)])
     assert by_command.exit_code == 2
@@ -234,8 +234,8 @@ def test_a_file_that_changes_while_the_run_lasts_is_found(tmp_path: Path, monkey
     """The checkpoint is of the file that the run has read."""
     way, usual = tmp_path / "way.csv", Observer.begin_stage
 
-    def begin_stage(self: Observer, *told: Any) -> None:
-        usual(self, *told)
+    def begin_stage(self: Observer, *reported: Any) -> None:
+        usual(self, *reported)
         way.write_text(WAY.format("0.2"), encoding="utf-8")
 
     way.write_text(WAY.format("0.1"), encoding="utf-8")
@@ -250,12 +250,12 @@ def test_a_file_that_changes_while_the_run_lasts_is_found(tmp_path: Path, monkey
 def test_a_full_disk_leaves_the_last_checkpoint(alone: Alone, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     often, usual, written = scene_of("output.checkpoint.every=1e-6"), record.write_checkpoint, 0
 
-    def full(*told: Any) -> None:
+    def full(*reported: Any) -> None:
         nonlocal written
         written += 1
         if written == 3:
             raise OSError(28, "No space left on device")
-        usual(*told)
+        usual(*reported)
 
     with monkeypatch.context() as patch:
         patch.setattr(record, "write_checkpoint", full)
@@ -289,6 +289,6 @@ def test_checkpoints_are_due_by_time_at_ends_and_where_the_run_is_left() -> None
 
 
 def test_one_either_goes_on_or_overwrites() -> None:
-    told = CliRunner().invoke(app, ["run", str(ROOT / "demos/first_scene.yaml"), "--restart", "--force"])
-    assert told.exit_code == 2
-    assert told.stderr == "--restart and --force: one goes on with a run, the other overwrites it; leave one out\n"
+    reported = CliRunner().invoke(app, ["run", str(ROOT / "demos/first_scene.yaml"), "--restart", "--force"])
+    assert reported.exit_code == 2
+    assert reported.stderr == "--restart and --force: one goes on with a run, the other overwrites it; leave one out\n"

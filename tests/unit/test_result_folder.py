@@ -99,9 +99,9 @@ def test_the_seal_is_a_comment() -> None:
 def test_a_second_run_is_refused_while_the_first_writes(force: bool, tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
         step(recorder, 0.1)
-        told = rf"another run \(process {os.getpid()} on .*\) is writing there; wait for its end, or choose another"
+        reported = rf"another run \(process {os.getpid()} on .*\) is writing there; wait for its end, or choose another"
         for attempt in (refuse, prepare):
-            with pytest.raises(SceneError, match=told):
+            with pytest.raises(SceneError, match=reported):
                 attempt(tmp_path, force)
         step(recorder, 0.2)
         recorder.finish()
@@ -145,7 +145,7 @@ def test_drafts_of_a_killed_run_go(tmp_path: Path) -> None:
     assert not (tmp_path / ".riser_soil").exists()
 
 
-def test_names_too_long_are_told(tmp_path: Path) -> None:
+def test_names_too_long_are_reported(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="cannot be used as the output folder: File name too long"):
         refuse(tmp_path / ("x" * 300), force=False)
 

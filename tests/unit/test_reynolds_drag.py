@@ -13,11 +13,11 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import reynolds_drag as law
+from riser_soil.sea.flows import Sea
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import drag_coefficients
 from riser_soil.sea.moving_water import FlowAtStations, WaterLoads, through
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.sea import Sea
 from tests.support import sample_water
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent
@@ -139,7 +139,7 @@ def test_segments_without_a_table_have_none() -> None:
 
 
 @pytest.mark.parametrize(
-    ("drag", "told"),
+    ("drag", "reported"),
     [
         ({}, "the normal drag coefficient is missing"),
         ({"normal": 1.1, "by_reynolds": [[1e5, 1.1]]}, "given twice"),
@@ -148,6 +148,6 @@ def test_segments_without_a_table_have_none() -> None:
         ({"by_reynolds": []}, "by_reynolds"),
     ],
 )
-def test_a_table_that_is_none_is_told(drag: Mapping, told: str) -> None:
-    with pytest.raises(SceneError, match=told):
+def test_a_table_that_is_none_is_reported(drag: Mapping, reported: str) -> None:
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(sea(drag))

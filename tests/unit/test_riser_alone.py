@@ -55,8 +55,12 @@ def test_soil_says_in_one_line_what_it_lacks_and_who_has_it(tmp_path: Path) -> N
     assert done.returncode == SceneError.exit_status
     (line,) = done.stderr.strip().splitlines()
     assert line.startswith("demos/touchdown_clay/scene.yaml")
-    for told in ("soil: needs dolfinx, PETSc, MPI, gmsh and scipy", "are not installed", "apt install python3-dolfinx"):
-        assert told in line
+    for reported in (
+        "soil: needs dolfinx, PETSc, MPI, gmsh and scipy",
+        "are not installed",
+        "apt install python3-dolfinx",
+    ):
+        assert reported in line
     assert "conda-forge: conda install fenics-dolfinx petsc4py mpi4py python-gmsh; Docker:" in line
     assert not (tmp_path / "soil").exists()
 

@@ -68,7 +68,7 @@ def test_a_step_that_ends_in_a_tangle_is_none(monkeypatch: pytest.MonkeyPatch) -
 @pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 2), (40, 5), (66, 11)])
 def test_banded_factors_solve(n: int, b: int, diagonal: float) -> None:
     rng = np.random.default_rng(n)
-    ab, band = banded.room(n, b)
+    ab, band = banded.workspace(n, b)
     columns = np.zeros((2 * b + 1, n))  # as scipy has them: entry (i, j) at [b + i - j, j]
     for i in range(n):
         for j in range(max(0, i - b), min(n, i + b + 1)):
@@ -82,7 +82,7 @@ def test_banded_factors_solve(n: int, b: int, diagonal: float) -> None:
 
 @pytest.mark.parametrize(("n", "b"), [(1, 0), (4, 0), (1, 2), (2, 3), (4, 1), (5, 2)])
 def test_narrow_and_short_bands_are_solved_for(n: int, b: int) -> None:
-    rng, (ab, band), pivots = np.random.default_rng(b), banded.room(n, b), np.zeros(n, dtype=np.int64)
+    rng, (ab, band), pivots = np.random.default_rng(b), banded.workspace(n, b), np.zeros(n, dtype=np.int64)
     dense, load = 9.0 * np.eye(n), rng.normal(size=n)
     for i in range(n):
         for j in range(max(0, i - b), min(n, i + b + 1)):
@@ -97,7 +97,7 @@ def test_narrow_and_short_bands_are_solved_for(n: int, b: int) -> None:
 @pytest.mark.parametrize(("n", "b"), [(40, 5), (66, 11)])
 def test_fill_of_some_rows_alone_is_solved_for(n: int, b: int) -> None:
     """Rows are exchanged in the middle, so that those before and after it have no fill."""
-    rng, (ab, band) = np.random.default_rng(n), banded.room(n, b)
+    rng, (ab, band) = np.random.default_rng(n), banded.workspace(n, b)
     dense, load, pivots = np.zeros((n, n)), rng.normal(size=n), np.zeros(n, dtype=np.int64)
     for i in range(n):
         for j in range(max(0, i - b), min(n, i + b + 1)):
@@ -113,7 +113,7 @@ def test_fill_of_some_rows_alone_is_solved_for(n: int, b: int) -> None:
 
 
 def test_rows_stay_where_their_pivots_are_large_enough() -> None:
-    ab, band = banded.room(5, 1)
+    ab, band = banded.workspace(5, 1)
     pivots = np.zeros(5, dtype=np.int64)
     for pivot, row in ((0.2, 0), (0.05, 1)):
         ab[...] = 0.0
@@ -124,8 +124,8 @@ def test_rows_stay_where_their_pivots_are_large_enough() -> None:
 
 
 @pytest.mark.parametrize("wrong", [0.0, np.nan, np.inf])
-def test_a_singular_matrix_is_told(wrong: float) -> None:
-    ab, band = banded.room(3, 1)
+def test_a_singular_matrix_is_reported(wrong: float) -> None:
+    ab, band = banded.workspace(3, 1)
     ab[:3, 1] = 1.0
     ab[1, 1] = wrong
     assert not banded.factorise(ab, np.zeros(3, dtype=np.int64), band)
@@ -138,14 +138,14 @@ def test_the_midpoint_rule_is_left_to_snes() -> None:
 
 
 def test_a_step_that_fails_says_why_as_snes_does() -> None:
-    told = []
+    reported = []
     for newton in ("compiled", "snes"):
         stage = walked("surge in a plane", newton, 1)
         stage.newton.settings = replace(stage.newton.settings, tolerance=1e-12, max_iterations=1)
         with pytest.raises(SolveError, match="no convergence") as failure:
             stage.walk(200)
-        told.append(str(failure.value))
-    assert told[0] == told[1]
+        reported.append(str(failure.value))
+    assert reported[0] == reported[1]
 
 
 @pytest.mark.parametrize(
@@ -184,7 +184,7 @@ def test_contact_alone_is_found_anew_beside_a_kept_tangent() -> None:
     found, own, stale, rest = (
         matrix[places][:, places]
         for matrix in (
-            assembled(compiled.riser.room.K),
+            assembled(compiled.riser.workspace.K),
             tangent([contact], moved, WEIGHTS),
             tangent([contact], first, WEIGHTS),
             tangent(others, first, WEIGHTS),

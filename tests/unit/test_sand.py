@@ -166,7 +166,7 @@ def test_closed_cycles_take_work() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "told"),
+    ("key", "value", "reported"),
     [
         ("friction_angle_deg", 75.0, "must be at most 60"),
         ("dilation_angle_deg", 40.0, "must be at most friction_angle_deg"),
@@ -175,11 +175,11 @@ def test_closed_cycles_take_work() -> None:
         ("match", "circle", "plane-strain"),
     ],
 )
-def test_wrong_constants_are_told(key: str, value: object, told: str) -> None:
+def test_wrong_constants_are_reported(key: str, value: object, reported: str) -> None:
     scene = touchdown()
     right = {"kind": "drucker-prager", "friction_angle_deg": 35.0, "cohesion": 200.0, "E": 1e7}
     scene["soil"]["law"] = right
     scene_from_mapping(scene)
     scene["soil"]["law"] = right | {key: value}
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(scene)

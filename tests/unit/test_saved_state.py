@@ -22,12 +22,10 @@ from riser_soil.core.saved_state import (
     within,
 )
 from riser_soil.core.system import System, Timer
-from riser_soil.results.summary import StageTally
-from riser_soil.results.utilisation import MostUsed, TightestBend
-from riser_soil.solve.automatic_steps import AutoSteps
+from riser_soil.results.summary import MostUsed, StageTally, TightestBend
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings
-from riser_soil.solve.step_control import Control, StepControl
+from riser_soil.solve.step_control import AutoSteps, Control, StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper
 from tests.support.toy_chain import Chain, Inertia, Springs
@@ -113,10 +111,10 @@ def test_a_tally_comes_back_as_it_was() -> None:
     tally.implausible, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
     again = StageTally("", "")
     again.restore(tally.state())
-    told, before = (
+    reported, before = (
         {k: v for k, v in vars(each).items() if k not in ("extremes", "indicators")} for each in (again, tally)
     )
-    assert told == before
+    assert reported == before
 
 
 @pytest.mark.parametrize("scheme", [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.5)])

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from riser_soil.errors import SceneError
 from riser_soil.scene.document import parse
-from riser_soil.scene.language import spot
+from riser_soil.scene.explain import spot
 from riser_soil.scene.reader import scene_from_mapping
 
 ROOT = Path(__file__).parents[2]
@@ -79,17 +79,17 @@ SCALARS = st.one_of(
 
 @settings(max_examples=300, deadline=None)
 @given(data=st.data(), value=SCALARS)
-def test_no_value_causes_anything_but_a_told_problem(data: st.DataObject, value: Any) -> None:
+def test_no_value_causes_anything_but_a_reported_problem(data: st.DataObject, value: Any) -> None:
     path = data.draw(st.sampled_from(PATHS))
     scene = parse(TEXT, "scene").data
     holder = scene
     for item in path[:-1]:
         holder = holder[item]
     holder[path[-1]] = value
-    assert all(line.startswith("scene: ") and "; " in line for line in told(scene))
+    assert all(line.startswith("scene: ") and "; " in line for line in reported(scene))
 
 
-def told(scene: Any) -> list[str]:
+def reported(scene: Any) -> list[str]:
     """The lines told about a scene; none when it is right."""
     try:
         scene_from_mapping(scene)

@@ -9,12 +9,10 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.sea import waves
-from riser_soil.sea.components import Components, regular
+from riser_soil.sea.components import Components, regular, wave_number
 from riser_soil.sea.current import SteadyCurrent, at_heights
-from riser_soil.sea.dispersion import wave_number
-from riser_soil.sea.sea import Sea
-from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wave_field import WaveField
+from riser_soil.sea.flows import Sea, WaterMotion
+from riser_soil.sea.waves import WaveField
 
 G, LEVEL = 9.81, 7.0
 DEPTHS = [np.inf, 400.0, 30.0, 4.0]

@@ -12,8 +12,7 @@ from riser_soil.core.part import Forces, State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane
-from riser_soil.seabed.height_field import HeightField
-from riser_soil.seabed.profile import Profile
+from riser_soil.seabed.height_field import HeightField, Profile
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation

@@ -10,7 +10,7 @@ from riser_soil.assembly.shape import catenary_between
 from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.grounds import Ground, Plane
-from riser_soil.seabed.profile import Profile
+from riser_soil.seabed.height_field import Profile
 from tests.support.riser_scenes import prescribed, riser_scene, static
 
 X = np.random.default_rng(4).uniform(-3.0, 12.0, size=(40, 3))

@@ -14,14 +14,13 @@ from numba.core.errors import TypingError
 
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.friction_stations import directions_at, elastic_guess, resistance_by_position, vector_of
-from riser_soil.contact.law import Penalty
+from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.contact.suction import SuctionLaw
 from riser_soil.core.arrays import Array
 from riser_soil.seabed.compiled_law import CompiledLaw
 from riser_soil.seabed.grounds import Ground, Plane
+from riser_soil.seabed.height_field import Profile
 from riser_soil.seabed.law import NormalLaw
-from riser_soil.seabed.profile import Profile
 from tests.support.sample_line import START, sample
 from tests.support.soil_loops import after, aubeny_biscontin, randolph_quiggin
 
@@ -37,13 +36,13 @@ depths = st.floats(-0.03, 0.1)
 numbers = st.floats(-2.0, 2.0)
 
 
-class BareNumbers(NamedTuple):
+class BareData(NamedTuple):
     """Of what has no kernels."""
 
     k: float
 
 
-BARE = BareNumbers(1.0)
+BARE = BareData(1.0)
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class BareLaw(CompiledLaw):
     capacity: ClassVar[float] = math.inf
     start: ClassVar[float] = 0.0
     reach: ClassVar[float] = 0.0
-    numbers: BareNumbers = BARE
+    kernel_data: BareData = BARE
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.empty((*shape, 0))
@@ -65,19 +64,19 @@ class BareGround(Ground):
     """A ground whose kernel was forgotten."""
 
     highest: ClassVar[float] = math.inf
-    numbers: ClassVar[BareNumbers] = BARE
+    kernel_data: ClassVar[BareData] = BARE
     flat: ClassVar[bool] = True
 
 
 def test_a_law_without_kernels_is_named() -> None:
-    with pytest.raises(TypingError, match=r"No implementation of function .*\banswer\b.*\n.*\n.*answer\(BareNumbers"):
+    with pytest.raises(TypingError, match=r"No implementation of function .*\banswer\b.*\n.*\n.*answer\(BareData"):
         BareLaw().update(np.zeros(3), np.empty((3, 0)))
-    with pytest.raises(TypingError, match=r"No implementation of function .*\bmay_act\b.*\n.*\n.*may_act\(BareNumbers"):
+    with pytest.raises(TypingError, match=r"No implementation of function .*\bmay_act\b.*\n.*\n.*may_act\(BareData"):
         BareLaw().active(np.zeros(3), np.empty((3, 0)))
 
 
 def test_a_ground_without_a_kernel_is_named() -> None:
-    named = r"No implementation of function .*\bdistance_at\b.*\n.*\n.*distance_at\(BareNumbers"
+    named = r"No implementation of function .*\bdistance_at\b.*\n.*\n.*distance_at\(BareData"
     with pytest.raises(TypingError, match=named):
         BareGround().distance(np.zeros((1, 3)))
 
@@ -86,7 +85,7 @@ def test_contact_tells_both_before_a_step() -> None:
     at = sample(3)
     trial = at.line.trial(at.state(1))
     for ground, law, name in ((BareGround(), LAWS["penalty"], "distance_at"), (Plane.level(0.0), BareLaw(), "may_act")):
-        with pytest.raises(TypingError, match=rf"{name}\(BareNumbers"):
+        with pytest.raises(TypingError, match=rf"{name}\(BareData"):
             SeabedContact(at.line, np.zeros(at.line.length.size), ground, law).evaluate(trial)
 
 

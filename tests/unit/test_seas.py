@@ -15,11 +15,11 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.spreading import relative_directions
-from riser_soil.sea import given_spectrum, jonswap
+from riser_soil.scene.wave_kinds import relative_directions
+from riser_soil.sea import spectra
 from riser_soil.sea.components import Components
-from riser_soil.sea.flows import motion_room
-from riser_soil.sea.wave_field import WaveField
+from riser_soil.sea.flows import motion_workspace
+from riser_soil.sea.waves import WaveField
 from tests.support.small_scene import BASE
 
 SEA = {"Hs": 4.0, "Tp": 10.0, "components": 60}
@@ -93,7 +93,7 @@ def test_pierson_and_moskowitz_is_jonswap_without_a_sharper_peak() -> None:
         np.testing.assert_array_equal(part, other)
     w, wp = np.linspace(0.3, 3.0, 50), 2.0 * np.pi / 10.0
     closed = 5.0 / 16.0 * 4.0**2 * wp**4 * w**-5.0 * np.exp(-1.25 * (wp / w) ** 4)
-    np.testing.assert_allclose(jonswap.spectrum(w, 4.0, 10.0, 1.0), closed, rtol=1e-6)
+    np.testing.assert_allclose(spectra.spectrum(w, 4.0, 10.0, 1.0), closed, rtol=1e-6)
 
 
 def test_trains_add_up_and_differ_though_their_seeds_are_the_same() -> None:
@@ -114,7 +114,7 @@ def test_frequencies_of_a_given_spectrum_have_its_energy(tmp_path: Path) -> None
     given = sea({"spectrum": {"file": "s.csv", "components": 60}}, tmp_path)
     assert energy(given).sum() == pytest.approx(0.5 * 0.2 * 5.0, rel=1e-12)
     w = 2.0 * np.pi * np.array([0.1, 0.2, 0.3])
-    found = given_spectrum.quantiles(np.array([0.0, 0.125, 0.5, 0.875, 1.0]), w, np.array([0.0, 20.0, 0.0]))
+    found = spectra.quantiles_of_spectrum(np.array([0.0, 0.125, 0.5, 0.875, 1.0]), w, np.array([0.0, 20.0, 0.0]))
     np.testing.assert_allclose(found / (2.0 * np.pi), [0.1, 0.15, 0.2, 0.25, 0.3], rtol=1e-12)
     assert (np.diff(given.frequency) > 0.0).all()
     model = scene({"spectrum": {"file": "s.csv"}}, tmp_path).water
@@ -136,7 +136,7 @@ def test_a_record_comes_back_where_it_was_taken(tmp_path: Path) -> None:
     field = WaveField(waves, DEPTH, 0.0)
     place, found = np.array([[12.0, -5.0, -1.0]]), []
     for time in t:
-        motion = motion_room(1, 3)
+        motion = motion_workspace(1, 3)
         field.add(time, place, motion)
         found.append(motion.immersion[0])
     nyquist = np.mean(eta * (-1.0) ** np.arange(64)) * (-1.0) ** np.arange(64)
@@ -144,7 +144,7 @@ def test_a_record_comes_back_where_it_was_taken(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("waves", "told"),
+    ("waves", "reported"),
     [
         ({"jonswap": SEA | {"spreading": {"s": 10.0, "directions": 8}}}, "components: value 60: must be a multiple"),
         ({"jonswap": SEA | {"spreading": {"s": 10.0, "directions": 3}}}, r"spreading\.directions: value 3"),
@@ -158,13 +158,13 @@ def test_a_record_comes_back_where_it_was_taken(tmp_path: Path) -> None:
         ({"record": {"file": "short.csv", "shortest_period": 5.0}}, "0 waves lie between"),
     ],
 )
-def test_mistakes(waves: dict[str, Any], told: str, tmp_path: Path) -> None:
+def test_mistakes(waves: dict[str, Any], reported: str, tmp_path: Path) -> None:
     (tmp_path / "bad.csv").write_text("frequency [Hz], density [m2/Hz]\n0.2, 1\n0.1, 1\n")
     times = [0.05 * n for n in range(16)]
     for name, t in {"short": times, "uneven": [*times[:-1], 1.0]}.items():
         rows = "".join(f"{a:.4f}, {math.sin(9.0 * a) * 0.01:.6f}\n" for a in t)
         (tmp_path / f"{name}.csv").write_text("t [s], elevation [m]\n" + rows)
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene(waves, tmp_path)
 
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from riser_soil.__main__ import app
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
-from riser_soil.results.secant_stiffness import COLUMNS, secant_stiffness
+from riser_soil.results.cycles import COLUMNS, secant_stiffness
 
 PERIOD, SU = 2.0, 3.0e3
 STIFFNESS, HEAVE = 4.0e5, (0.01, 0.02, 0.005)  # N/m2; amplitude [m] in each cycle

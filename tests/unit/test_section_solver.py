@@ -12,7 +12,7 @@ from petsc4py import PETSc
 from scipy.sparse import csr_matrix
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.factor_memory import Room
+from riser_soil.core.factor_memory import Workspace
 from riser_soil.solve.chain import SingularError
 from riser_soil.solve.section_solver import SectionSolver
 
@@ -47,7 +47,7 @@ class Solver:
         numbering = SimpleNamespace(first=0, free=ROWS, index=np.arange(ROWS))
         matrix = SimpleNamespace(stored=SimpleNamespace(csr=lambda: self._csr))
         system: Any = SimpleNamespace(comm=MPI.COMM_SELF, matrix=matrix, numbering=numbering)
-        self.solver = SectionSolver(system, soil, Room())
+        self.solver = SectionSolver(system, soil, Workspace())
         self._pc: Any = None
 
     def solution(self, entries: Array, load: Array) -> Array:
@@ -122,7 +122,7 @@ def test_nothing_touches() -> None:
 
 
 @pytest.mark.parametrize("row", [2, RISER + 3, RISER + 17])
-def test_a_singular_matrix_is_told(row: int) -> None:
+def test_a_singular_matrix_is_reported(row: int) -> None:
     """In the riser, in a section and in its border."""
     entries = matrix()
     solver = Solver(entries)
@@ -131,7 +131,7 @@ def test_a_singular_matrix_is_told(row: int) -> None:
         solver.solution(entries, LOAD)
 
 
-def test_a_section_without_a_sound_pivot_is_told_and_others_after_it_are_solved() -> None:
+def test_a_section_without_a_sound_pivot_is_reported_and_others_after_it_are_solved() -> None:
     """It has an inverse, but rows would have to be exchanged."""
     entries = matrix()
     solver, spoilt = Solver(entries), entries.copy()

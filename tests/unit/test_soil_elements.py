@@ -10,7 +10,7 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
 from riser_soil.soil import kernels, mandel
-from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.families import cell_gradients
 from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.results.soil_extremes import places, with_largest
+from riser_soil.results.figures import places, with_largest
 from tests.support.recorded_run import block, record, soil
 
 MESH = block(4, 3, 2)

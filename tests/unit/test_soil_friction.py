@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from riser_soil.contact.coulomb import traction
-from riser_soil.contact.law import Penalty
+from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.soil_friction import SoilFriction
-from riser_soil.contact.suction import SuctionLaw
 from riser_soil.core.arrays import Array
 from tests.support.differences import slope as differences
 from tests.support.pipe_on_surface import RADIUS, STIFFNESS, PipeOnSurface, pipe_on_surface, sagging, shaken

@@ -19,7 +19,7 @@ from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_law import law_of, strength_of, weight_of
 from riser_soil.soil import mandel
 from riser_soil.soil.block import BlockSpec
-from riser_soil.soil.gathered import gather, top_of
+from riser_soil.soil.field import gather, top_of
 from riser_soil.soil.grading import landing
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.iwan import IwanOverlay
@@ -272,7 +272,7 @@ def test_layers_by_named_volumes(tmp_path: Path) -> None:
     np.testing.assert_array_equal(su, np.where(under > 1.0, 2.0e3, np.inf))
 
 
-def test_volumes_that_are_not_there_are_told(tmp_path: Path) -> None:
+def test_volumes_that_are_not_there_are_reported(tmp_path: Path) -> None:
     file = two_volumes(tmp_path / "two.msh")
     with pytest.raises(MeshError, match=r"no volume named sand; named volumes \(physical groups\): left, right"):
         file_grid(COMM, file, ("sand", "left"))

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from meshes.block import main as write_block
 from riser_soil.core.part import State
 from riser_soil.errors import MeshError, SceneError
-from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.families import cell_gradients
 from riser_soil.soil.grading import BlockSpec, graded, in_units
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.sections import smoothed

@@ -111,14 +111,14 @@ def test_a_riser_along_y_has_its_block_and_cells_along_y() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "reported"),
     [
         ({"riser__end": "free", "riser__initial": "straight"}, "soil.block: auto: no touchdown point can be foretold"),
         ({"riser__end__position": [18.0, 13.5, 15.0]}, "soil.mesh: auto: cells are long along x or y"),
     ],
 )
-def test_where_nothing_can_be_chosen_one_line_says_so(changes: Mapping, told: str) -> None:
-    with pytest.raises(SceneError, match=told) as caught:
+def test_where_nothing_can_be_chosen_one_line_says_so(changes: Mapping, reported: str) -> None:
+    with pytest.raises(SceneError, match=reported) as caught:
         sized(automatic(LAY, **changes))
     assert "\n" not in str(caught.value)
     assert "give " in str(caught.value)

@@ -17,7 +17,7 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.wave_kinds import GivenSpectrum
-from riser_soil.sea import jonswap
+from riser_soil.sea import spectra
 from riser_soil.sea.components import Components
 from tests.support.netcdf_files import Variables, write_netcdf
 from tests.support.small_scene import BASE
@@ -29,7 +29,7 @@ HS, TP, FROM, S = 3.0, 9.0, 247.0, 8.0
 
 def density(turn: float = 0.0) -> Array:
     """JONSWAP's [m2/Hz/deg], its mean direction turning by so many degrees from the lowest frequency to the highest."""
-    each = 2.0 * math.pi * jonswap.spectrum(2.0 * math.pi * FREQ, HS, TP, 3.3)
+    each = 2.0 * math.pi * spectra.spectrum(2.0 * math.pi * FREQ, HS, TP, 3.3)
     mean = FROM + turn * np.linspace(0.0, 1.0, FREQ.size)
     spread = np.cos(np.radians(DIR[None] - mean[:, None]) / 2.0) ** (2.0 * S)
     found: Array = each[:, None] * spread / (15.0 * spread.sum(axis=1, keepdims=True))
@@ -138,7 +138,7 @@ def test_a_sea_of_several_directions_is_no_plane_problem(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(
-    ("changed", "given", "told"),
+    ("changed", "given", "reported"),
     [
         ({}, {"at": {"time": 0}}, "efth has no dimension time"),
         ({}, {"direction_deg": 10.0}, "direction_deg: .*the file has directions of its own"),
@@ -151,16 +151,18 @@ def test_a_sea_of_several_directions_is_no_plane_problem(tmp_path: Path) -> None
         ({"efth": (("dir",), DIR)}, {}, "efth has no dimension freq"),
     ],
 )  # fmt: skip
-def test_files_that_are_no_sea(changed: Any, given: dict[str, Any], told: str, tmp_path: Path) -> None:
+def test_files_that_are_no_sea(changed: Any, given: dict[str, Any], reported: str, tmp_path: Path) -> None:
     found = {name: each for name, each in {**variables(density()), **changed}.items() if each is not None}
     write_netcdf(tmp_path / "sea.nc", found)
-    with pytest.raises(SceneError, match=told) as error:
+    with pytest.raises(SceneError, match=reported) as error:
         scene(given, tmp_path)
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize(("content", "told"), [(b"CDF\x01" + b"\0" * 40, "netCDF-3"), (b"no numbers", "can't be read")])
-def test_other_files(content: bytes, told: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("content", "reported"), [(b"CDF\x01" + b"\0" * 40, "netCDF-3"), (b"no numbers", "can't be read")]
+)
+def test_other_files(content: bytes, reported: str, tmp_path: Path) -> None:
     (tmp_path / "sea.nc").write_bytes(content)
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(SceneError, match=reported):
         scene({}, tmp_path)

@@ -17,10 +17,9 @@ from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
-from riser_soil.statistics.analysis import PlaceStatistics, Wanted
+from riser_soil.statistics.analysis import PlaceStatistics, Wanted, block_maxima, cycles, spectrum
 from riser_soil.statistics.extremes import fit_gumbel, fit_weibull, plotting_positions, rayleigh_height
 from riser_soil.statistics.records import records_of
-from riser_soil.statistics.series import block_maxima, cycles, spectrum
 
 STEP, PERIOD, AMPLITUDE, MEAN = 0.25, 8.0, 3.0, 10.0
 F0, WIDTH = 0.1, 0.02  # Hz: a narrow band of frequencies, whose waves forget each other after some cycles
@@ -250,7 +249,7 @@ def test_runs_of_unlike_steps_get_the_longest(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "arcs", "more", "told"),
+    ("name", "arcs", "more", "reported"),
     [
         ("tension", None, {}, "--of tension: is none of the outputs in time; they are position, effective_tension"),
         ("end_force", None, {}, "--of end_force: end_force is a vector; write end_force.x, .y, .z or .size"),
@@ -260,11 +259,11 @@ def test_runs_of_unlike_steps_get_the_longest(tmp_path: Path) -> None:
         ("effective_tension", None, {"stage": "lay"}, 'RUN: "lay" is no dynamic stage of the run; its dynamic stages:'),
     ],
 )
-def test_what_is_refused(tmp_path: Path, name: str, arcs: Any, more: Any, told: str) -> None:
+def test_what_is_refused(tmp_path: Path, name: str, arcs: Any, more: Any, reported: str) -> None:
     folder = run_of(tmp_path / "run", np.arange(40.0))
     with pytest.raises(ResultsError) as refused:
         records_of([Run(folder)], name, arcs, **more)
-    assert str(refused.value).replace(str(folder), "RUN").startswith(told)
+    assert str(refused.value).replace(str(folder), "RUN").startswith(reported)
 
 
 @pytest.fixture(scope="module")
@@ -310,12 +309,12 @@ def test_too_coarse_records_are_warned_of(tmp_path: Path) -> None:
     t = np.arange(1, 400) * 1.0
     folder = run_of(tmp_path / "run", np.sin(2.0 * np.pi * t / PERIOD), t)
     done = called(str(folder), "--of", "end_force.x")
-    told = "warning: there are only 8 records in a zero-crossing period, so that peaks may be missed by 7.6 %"
-    assert told in done.output
+    reported = "warning: there are only 8 records in a zero-crossing period, so that peaks may be missed by 7.6 %"
+    assert reported in done.output
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (("--of", "end_force.x", "--at", "top"), "--at top: must be start or end; other places are given by --arc"),
         (("--of", "end_force.x", "--confidence", "95"), "--confidence 95: must lie between 0 and 1"),
@@ -324,10 +323,10 @@ def test_too_coarse_records_are_warned_of(tmp_path: Path) -> None:
         (("--of", "end_force.x", "--plot", "x.pdf"), "x.pdf: a picture is a .png file; change its ending"),
     ],
 )
-def test_wrong_calls(seeds: list[str], words: tuple[str, ...], told: str) -> None:
+def test_wrong_calls(seeds: list[str], words: tuple[str, ...], reported: str) -> None:
     done = called(seeds[0], *words)
     assert done.exit_code == 2
-    assert done.output == f"{told}\n"
+    assert done.output == f"{reported}\n"
 
 
 def test_no_table_is_left_where_the_picture_is_refused(seeds: list[str], tmp_path: Path) -> None:

@@ -13,19 +13,18 @@ import pytest
 import raschii
 
 from riser_soil.assembly.sea import components_of, water_of
-from riser_soil.checks.wave_plausibility import told_regular, wave_warnings
+from riser_soil.checks.wave_plausibility import reported_regular, wave_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene
 from riser_soil.sea.components import regular
+from riser_soil.sea.flows import Sea, WaterMotion
 from riser_soil.sea.morison import Morison
-from riser_soil.sea.sea import Sea
 from riser_soil.sea.steady_flow import SteadyFlow
 from riser_soil.sea.steady_wave import SteadyWave, choose, highest, steady_wave
-from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wave_field import WaveField
+from riser_soil.sea.waves import WaveField
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
@@ -245,8 +244,8 @@ REGULAR = {"regular": {"height": 8.0, "period": 10.0, "direction_deg": 180.0}}
 
 def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> None:
     scene = scene_in({"surface_level": 100.0, "waves": REGULAR})
-    (told,) = told_regular(scene)
-    assert "Stokes's theory of fifth order: 160" in told
+    (reported,) = reported_regular(scene)
+    assert "Stokes's theory of fifth order: 160" in reported
     assert list(wave_warnings(scene)) == []
     assert resolved_dimension(scene) == 2
     echo = tmp_path / "scene.yaml"
@@ -272,7 +271,7 @@ def test_stretching_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("depth", "given", "told"),
+    ("depth", "given", "reported"),
     [
         (
             100.0,
@@ -283,8 +282,8 @@ def test_stretching_is_refused() -> None:
         (9.0, {"height": 5.0, "theory": "stokes"}, "water.waves.regular.theory: stokes: Ursell's number"),
     ],
 )
-def test_what_can_not_be_is_told_in_a_line(depth: float, given: dict[str, Any], told: str) -> None:
+def test_what_can_not_be_is_reported_in_a_line(depth: float, given: dict[str, Any], reported: str) -> None:
     scene = scene_in({"surface_level": 100.0, "depth": depth, "waves": {"regular": {"period": 10.0} | given}})
-    with pytest.raises(SceneError, match=told) as raised:
+    with pytest.raises(SceneError, match=reported) as raised:
         water_of(scene, scene.stages[1])
     assert "\n" not in str(raised.value)

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser.strain3d import Stiffness, Strain
-from riser_soil.riser.stress3d import energy, stress, stress_change
+from riser_soil.riser.strain3d import Stiffness, Strain, energy, stress, stress_change
 from tests.support.differences import slope
 
 STRIP = Stiffness(12.0, 1.28e6, 9.6e7, 3.8e4, 5.9e4)  # of 30 x 0.6, N and mm, deep about its second axis

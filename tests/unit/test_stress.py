@@ -15,11 +15,10 @@ import pytest
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
-from riser_soil.stress.answers import Answer, between, near
-from riser_soil.stress.bounds import bounds
+from riser_soil.stress.bounds import Answer, between, bounds, near
 from riser_soil.stress.extremes import BASE, extremes
 from riser_soil.stress.limited_process import Ending, Limits, ended
-from riser_soil.stress.outcome import BROKEN, LONG, PASSED, TOLD, WRONG, StressOutcome, outcome
+from riser_soil.stress.outcome import BROKEN, LONG, PASSED, REPORTED, WRONG, StressOutcome, outcome
 from riser_soil.whole_run import run
 from tests.stress.page import page
 from tests.support.on_ranks import ROOT, environment
@@ -43,12 +42,12 @@ def test_answers_hold_within_what_they_may_miss() -> None:
     [
         (Ending("done", True, 1.0, ""), RIGHT, None, PASSED, True),
         (Ending("done", True, 1.0, "warning: too coarse"), OFF, None, WRONG, False),
-        (Ending("done", True, 1.0, "warning: too coarse"), OFF, "coarse", TOLD, True),
+        (Ending("done", True, 1.0, "warning: too coarse"), OFF, "coarse", REPORTED, True),
         (Ending("done", True, 1.0, "warning: too coarse"), OFF, "too long", WRONG, False),
-        (Ending("done", True, 1.0, "warning: the energy balance is off"), ENERGY_OFF, None, TOLD, False),
+        (Ending("done", True, 1.0, "warning: the energy balance is off"), ENERGY_OFF, None, REPORTED, False),
         (Ending("done", True, 1.0, ""), ENERGY_OFF, None, WRONG, False),
-        (Ending("solve failed", True, 1.0, "no convergence"), OFF, None, TOLD, False),
-        (Ending("solve failed", True, 1.0, "no convergence"), OFF, "no conv", TOLD, True),
+        (Ending("solve failed", True, 1.0, "no convergence"), OFF, None, REPORTED, False),
+        (Ending("solve failed", True, 1.0, "no convergence"), OFF, "no conv", REPORTED, True),
         (Ending("traceback", False, 1.0, "Traceback"), OFF, "Trace", BROKEN, False),
         (Ending("hang", False, 60.0, ""), OFF, None, LONG, False),
     ],
@@ -80,8 +79,8 @@ def test_a_process_ends_at_its_limits(tmp_path: Path) -> None:
     assert ended(busy, tmp_path, Limits(cpu=1)).word == "hang"
     assert time.monotonic() - begun < 20.0
     assert ended(greedy, tmp_path, Limits()).word == "traceback"
-    told = ended(fails, tmp_path, Limits())
-    assert (told.word, told.well, told.output) == ("solve failed", True, "no convergence\n")
+    reported = ended(fails, tmp_path, Limits())
+    assert (reported.word, reported.well, reported.output) == ("solve failed", True, "no convergence\n")
     assert ended(crashes, tmp_path, Limits()).word == "killed by SIGTERM"
 
 
@@ -113,14 +112,14 @@ def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
     run(scene_from_mapping(scene), tmp_path / "run")
     assert all(answer.holds for answer in bounds(Run(tmp_path / "run")))
     summary = tmp_path / "run" / "summary.json"
-    told = json.loads(summary.read_text())
-    told["stages"][0]["final"]["end"]["force"][2] *= 1.01
-    summary.write_text(json.dumps(told))
+    reported = json.loads(summary.read_text())
+    reported["stages"][0]["final"]["end"]["force"][2] *= 1.01
+    summary.write_text(json.dumps(reported))
     wrong = [answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds]
     assert wrong == ["static: vertical forces out of balance, of the largest [-]"]
 
 
 def test_the_page_is_that_of_its_figures() -> None:
-    told = json.loads((ROOT / "docs/stress.json").read_text(encoding="utf-8"))
-    rows = [StressOutcome(**row) for row in told["cases"]]
-    assert page(rows, told["made"]) == (ROOT / "docs/stress.md").read_text(encoding="utf-8")
+    reported = json.loads((ROOT / "docs/stress.json").read_text(encoding="utf-8"))
+    rows = [StressOutcome(**row) for row in reported["cases"]]
+    assert page(rows, reported["made"]) == (ROOT / "docs/stress.md").read_text(encoding="utf-8")

@@ -19,10 +19,10 @@ from typer.testing import CliRunner
 
 from riser_soil.accuracy import findings
 from riser_soil.accuracy.findings import Study
-from riser_soil.accuracy.headlines import Headline
+from riser_soil.accuracy.key_results import KeyResult
 from riser_soil.accuracy.study import refuse, study
+from riser_soil.accuracy.study_page import words
 from riser_soil.accuracy.study_points import PointOutcome, StudyPoint
-from riser_soil.accuracy.study_words import words
 from riser_soil.commands.app import app
 from riser_soil.errors import ResultsError, SceneError, SolveError
 from riser_soil.scene.reader import scene_from_mapping
@@ -43,16 +43,16 @@ Answer = Callable[[float, float], float]
 
 
 def scene() -> Scene:
-    told = touchdown(LAY, heave(1.0, 0.01))
-    del told["soil"]
-    return scene_from_mapping(told)
+    reported = touchdown(LAY, heave(1.0, 0.01))
+    del reported["soil"]
+    return scene_from_mapping(reported)
 
 
 def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, **given: Any) -> Study:
     """A study whose runs are formulas of the sizes of elements and steps, 1 in the scene; failures by `fails`."""
     fails: Callable[[float, float], bool] = given.pop("fails", lambda h, dt: False)
 
-    def compute(points: Sequence[StudyPoint], jobs: int, told: Any) -> list[PointOutcome]:
+    def compute(points: Sequence[StudyPoint], jobs: int, reported: Any) -> list[PointOutcome]:
         return [outcome(point.factors) for point in points]
 
     def outcome(factors: tuple[float, ...]) -> PointOutcome:
@@ -60,8 +60,8 @@ def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, 
         if fails(h, dt):
             return PointOutcome(factors, 3, "no convergence at 0.3 s", 0.1, True)
         found = {
-            "heave: top tension": Headline("heave", "top tension", "N", answer(h, dt), 0.0),
-            "heave: touchdown arc": Headline("heave", "touchdown arc", "m", 20.0 + 0.1 * (answer(h, dt) - 100.0), 0.0),
+            "heave: top tension": KeyResult("heave", "top tension", "N", answer(h, dt), 0.0),
+            "heave: touchdown arc": KeyResult("heave", "touchdown arc", "m", 20.0 + 0.1 * (answer(h, dt) - 100.0), 0.0),
         }
         return PointOutcome(factors, 0, "", 2.0 / (h * dt), True, 10, found)
 
@@ -90,18 +90,18 @@ def test_how_errors_act_together_is_in_the_uncertainty(monkeypatch: pytest.Monke
     assert 0.1 < abs(found.reference.value - 100.0) <= found.uncertainty
 
 
-def test_the_limiting_knob_and_the_cheapest_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_limiting_setting_and_the_cheapest_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """1 % of 100 needs steps of a half, with elements twice as long (0.3 h^4 = 4.8) too much: 4 s. By hand."""
     made = manufactured(monkeypatch, tmp_path / "s", both)
     for target, best, seconds in ((0.01, (1.0, 2.0), 4.0), (0.001, (2.0, 8.0), 32.0)):
         reached = made.reaching(target)
         assert reached is not None
         assert (reached.factors, reached.cpu) == (best, seconds)
-    told = " | ".join(words(made))
-    assert "as it is, the scene takes 2 s and is 3.73 % off at most" in told
-    assert "what limits the accuracy is the time step" in told
-    assert "1 % is reached at the least cost, 4 s, with 36 elements, time_step 0.005 s" in told
-    assert "0.1 % is reached at the least cost, 32 s, with 72 elements, time_step 0.00125 s" in told
+    reported = " | ".join(words(made))
+    assert "as it is, the scene takes 2 s and is 3.73 % off at most" in reported
+    assert "what limits the accuracy is the time step" in reported
+    assert "1 % is reached at the least cost, 4 s, with 36 elements, time_step 0.005 s" in reported
+    assert "0.1 % is reached at the least cost, 32 s, with 72 elements, time_step 0.00125 s" in reported
 
 
 def test_the_pareto_front_falls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_errors_that_cancel_reach_nothing(monkeypatch: pytest.MonkeyPatch, tmp_p
 
 
 def test_a_failed_point_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Steps too long fail: the ladder goes on without them."""
+    """Steps too long fail: the refinement series goes on without them."""
     made = manufactured(monkeypatch, tmp_path / "s", both, fails=lambda h, dt: dt > 2.0)
     assert made.quantities()["heave: top tension"].reference.value == pytest.approx(100.0, abs=0.01)
     with (tmp_path / "s" / "study.csv").open(encoding="utf-8") as file:
@@ -147,7 +147,7 @@ def test_what_does_not_close_in_is_not_judged(monkeypatch: pytest.MonkeyPatch, t
     assert made.reaching(0.01) is None
 
 
-def test_a_target_finer_than_the_reference_counts_what_can_be_told(
+def test_a_target_finer_than_the_reference_counts_what_can_be_reported(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Steps make a noise of 2 %, elements an error of 4 % at their coarsest: those must be as fine as for 1 %."""
@@ -158,7 +158,7 @@ def test_a_target_finer_than_the_reference_counts_what_can_be_told(
     assert 0.015 < tension.doubt < 0.05
     reached = made.reaching(0.001)
     assert reached is not None
-    assert tension.error_of(reached.headlines["heave: top tension"]) <= tension.doubt
+    assert tension.error_of(reached.key_results["heave: top tension"]) <= tension.doubt
     assert made.foretold(0.001).excess((0.25, 0.25)) > 1.0
     *_, cannot, why = words(made)
     assert cannot.startswith("0.1 % can't be told; the reference is reached as far as it is known at the least cost")
@@ -167,19 +167,19 @@ def test_a_target_finer_than_the_reference_counts_what_can_be_told(
 
 def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """It runs with steps of a quarter: 0.0025 s, elements of a quarter, too. What failed is a row."""
-    found = {"heave: top tension": Headline("heave", "top tension", "N", 100.0, 0.0)}
+    found = {"heave: top tension": KeyResult("heave", "top tension", "N", 100.0, 0.0)}
 
     def outcome(point: StudyPoint) -> PointOutcome:
         if point.scene.riser.element_count < 4 * 36:
             return PointOutcome(point.factors, 3, "folded", 1.0, True)
         return PointOutcome(point.factors, 0, "", 1.0, True, 1, found)
 
-    def compute(points: Sequence[StudyPoint], jobs: int, told: Any) -> list[PointOutcome]:
+    def compute(points: Sequence[StudyPoint], jobs: int, reported: Any) -> list[PointOutcome]:
         return [outcome(point) for point in points]
 
     monkeypatch.setattr(findings, "compute", compute)
-    made = study(scene(), tmp_path / "t", rungs=3, says=lambda _: None)
-    assert made.ladders.told(made.ladders.base) == "144 elements, time_step 0.0025 s"
+    made = study(scene(), tmp_path / "t", levels=3, says=lambda _: None)
+    assert made.refinements.reported(made.refinements.base) == "144 elements, time_step 0.0025 s"
     assert words(made)[0] == (
         "the scene itself fails: folded; the study is around finer settings: 144 elements, time_step 0.0025 s"
     )
@@ -195,19 +195,19 @@ def test_a_scene_that_fails_with_finer_settings_too_ends_it(monkeypatch: pytest.
 
 def test_numbers_are_json_and_the_page_stands_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made = manufactured(monkeypatch, tmp_path / "s", both)
-    told = json.loads((tmp_path / "s" / "study.json").read_text(encoding="utf-8"))
-    assert told["cheapest"] == {"0.01": [1.0, 2.0], "0.001": [2.0, 8.0]}
-    assert told["quantities"]["heave: top tension"]["knobs"]["time_step"]["order"] == pytest.approx(2.0)
-    assert len(told["points"]) == len(made.outcomes)
+    reported = json.loads((tmp_path / "s" / "study.json").read_text(encoding="utf-8"))
+    assert reported["cheapest"] == {"0.01": [1.0, 2.0], "0.001": [2.0, 8.0]}
+    assert reported["quantities"]["heave: top tension"]["knobs"]["time_step"]["order"] == pytest.approx(2.0)
+    assert len(reported["points"]) == len(made.outcomes)
     page = (tmp_path / "s" / "study.html").read_text(encoding="utf-8")
     assert "data:image/svg+xml;base64," in page
     assert "http" not in page
-    assert all(sentence[1:] in page.replace("&#x27;", "'") for sentence in told["words"])
+    assert all(sentence[1:] in page.replace("&#x27;", "'") for sentence in reported["words"])
 
 
 def test_bad_input_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ResultsError, match="--knob penalty: the scene has no such knob; choose among elements, time"):
-        study(scene(), tmp_path / "s", knobs=["penalty"])
+        study(scene(), tmp_path / "s", settings=["penalty"])
     assert not (tmp_path / "s").exists()
     (tmp_path / "letters").mkdir()
     (tmp_path / "letters" / "a.txt").write_text("mine")
@@ -239,7 +239,7 @@ def _started(folder: Path) -> subprocess.Popen[str]:
 
 @pytest.mark.verify
 def test_a_study_that_was_interrupted_goes_on(tmp_path: Path) -> None:
-    """A run of each rung, and of those that were done before the signal none again."""
+    """A run of each level, and of those that were done before the signal none again."""
     (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")
     with _started(tmp_path) as first:
         outcomes = _first_outcomes(tmp_path, first)
@@ -249,10 +249,10 @@ def test_a_study_that_was_interrupted_goes_on(tmp_path: Path) -> None:
     assert said.startswith("ended by SIGTERM in a study; call again to go on")
     before = {path: path.stat().st_mtime_ns for path in outcomes}
     with _started(tmp_path) as again:
-        told, said = again.communicate(timeout=HANGS)
+        reported, said = again.communicate(timeout=HANGS)
     assert again.returncode == 0, said
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before
-    assert told.count("computed before") >= len(outcomes)
+    assert reported.count("computed before") >= len(outcomes)
     found = json.loads((tmp_path / "small-study" / "study.json").read_text(encoding="utf-8"))
     tension = found["quantities"]["hang: top tension"]
     assert tension["error"] < 0.02

@@ -191,8 +191,8 @@ def test_structure_of_the_file(tmp_path: Path) -> None:
     facts = replace(FACTS, warnings=("elements are long",), versions={"python": "3.11.2"})
     record(tmp_path, duration=1.0, facts=facts)
     summary = strictly((tmp_path / "summary.json").read_text())
-    told = {"title", "finished", "version", "versions", "warnings", "ranks", "parts", "dofs", "stages", "seconds"}
-    assert set(summary) == told
+    reported = {"title", "finished", "version", "versions", "warnings", "ranks", "parts", "dofs", "stages", "seconds"}
+    assert set(summary) == reported
     assert (summary["warnings"], summary["versions"]) == (["elements are long"], {"python": "3.11.2"})
     assert summary["finished"] is True
     assert summary["parts"] == {

@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 from riser_soil.commands.app import app
 from riser_soil.errors import SolveError
-from riser_soil.results.progress import Progress
+from riser_soil.results.screen import Progress
 from tests.support.case_files import SMALL
 from tests.support.on_ranks import HANGS, ROOT, environment
 
@@ -45,7 +45,7 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any
     return lambda *options: CliRunner().invoke(app, ["run", "small.yaml", *options])
 
 
-def test_all_is_told_by_default(invoke: Callable[..., Any]) -> None:
+def test_all_is_reported_by_default(invoke: Callable[..., Any]) -> None:
     done = invoke()
     assert done.stdout.splitlines() == [
         "this takes about 3 s", "warning: the pipe is bent beyond its min_bend_radius", "top tension 3 kN",
@@ -64,22 +64,22 @@ def test_quiet_tells_warnings_and_errors_alone(invoke: Callable[..., Any], optio
     assert done.exit_code == 3
 
 
-def test_the_log_file_has_all_that_is_told_with_times(invoke: Callable[..., Any], tmp_path: Path) -> None:
+def test_the_log_file_has_all_that_is_reported_with_times(invoke: Callable[..., Any], tmp_path: Path) -> None:
     """Also where the command is quiet; a second call appends."""
     invoke("--log-file", "log.txt")
     invoke("--log-file", "log.txt", "-q")
     lines = (tmp_path / "log.txt").read_text(encoding="utf-8").splitlines()
     assert all(re.match(STAMP, line) for line in lines)
-    told = [re.sub(STAMP, "", line) for line in lines]
-    assert told[0].startswith("riser-soil ")
-    assert told[1:6] == [
+    reported = [re.sub(STAMP, "", line) for line in lines]
+    assert reported[0].startswith("riser-soil ")
+    assert reported[1:6] == [
         "this takes about 3 s",
         "compiling kernels (once, about a minute)",
         "warning: the pipe is bent beyond its min_bend_radius",
         "top tension 3 kN",
         "no convergence at arc 3 m",
     ]
-    assert told[7:] == told[1:6]
+    assert reported[7:] == reported[1:6]
 
 
 def test_a_log_file_that_cannot_be_written_is_bad_input(invoke: Callable[..., Any], tmp_path: Path) -> None:
@@ -100,7 +100,7 @@ def test_a_log_on_a_full_disk_ends_alone(invoke: Callable[..., Any], capfd: pyte
 DRAWS = """
 import sys, time
 from riser_soil.commands.telling import telling
-from riser_soil.results.progress import Progress
+from riser_soil.results.screen import Progress
 from rich.console import Console
 def command():
     with Progress(enabled=True) as progress:
@@ -126,10 +126,10 @@ def test_on_a_terminal_colours_are_shown_unless_unwanted_and_never_logged(no_col
     os.close(ours)
     assert b"\x1b[?25l" in shown  # the bar hides the cursor
     assert bool(re.search(rb"\x1b\[(3|4|9)[0-9]", shown)) is not no_color
-    told = [re.sub(STAMP, "", line) for line in (tmp_path / "log.txt").read_text(encoding="utf-8").splitlines()]
-    assert told[1] == "laid in 3 steps"
-    assert told[-1] == "top tension 3 kN"
-    assert "\x1b" not in "".join(told)
+    reported = [re.sub(STAMP, "", line) for line in (tmp_path / "log.txt").read_text(encoding="utf-8").splitlines()]
+    assert reported[1] == "laid in 3 steps"
+    assert reported[-1] == "top tension 3 kN"
+    assert "\x1b" not in "".join(reported)
 
 
 def _read(terminal: int) -> bytes:

@@ -14,9 +14,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
 from riser_soil.core.system import Timer
 from riser_soil.errors import SceneError
-from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.dump import dump_scene, schema_text
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.scene.schema import schema_text
 from riser_soil.scene.seabed import HystereticSeabed
 from riser_soil.seabed.laws import LAWS as SEABED_LAWS
 from riser_soil.soil.laws import LAWS as SOIL_LAWS
@@ -88,11 +87,11 @@ def test_scene_with_a_new_soil_law() -> None:
     definitions = json.loads(schema_text())["$defs"]
     assert {"$ref": "#/$defs/OtherElastic"} in definitions["SoilScene"]["properties"]["law"]["anyOf"][0]["oneOf"]
     assert "soil" in describe(scene)
-    for wrong, told in {
+    for wrong, reported in {
         "toys": rf'soil.law.kind: value "toys": must be one of {SOIL_WORDS}, toy; .*did you mean "toy"',
         "von-mises": "soil.law.su: missing: the key is required here",
     }.items():
-        with pytest.raises(SceneError, match=told):
+        with pytest.raises(SceneError, match=reported):
             scene_from_mapping(on_soil(ELASTIC | {"kind": wrong}))
     with pytest.raises(SceneError, match=r"soil.law.Young: .* no such key here, known are kind, E, nu"):
         scene_from_mapping(on_soil(ELASTIC | {"kind": "toy", "Young": 1.0}))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
+from riser_soil.soil.large_strain import carried
 from riser_soil.soil.sections import refilled, spread
-from riser_soil.soil.transfer import carried
 
 
 def scattered(rng: np.random.Generator, n: int = 12) -> Array:

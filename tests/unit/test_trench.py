@@ -18,7 +18,7 @@ from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.seabed_features import Groove, Trench
 from riser_soil.soil.block import BlockSpec
-from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.families import cell_gradients
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid
 from riser_soil.soil.seabed_feature import GrooveSpec, TrenchSpec
 from riser_soil.soil.soil import Soil
@@ -48,15 +48,15 @@ def soil_on(grid: DistributedMesh) -> Soil:
 def heights(grid: DistributedMesh, shape: Trench | Groove, across: int) -> tuple[Array, Array]:
     """z of the nodes at the top, and as the scene's formula says."""
     points = soil_on(grid).surface.points
-    told = [shape.height(point[1 - across], point[across] - 0.2, D) for point in points]
-    return points[:, 2], 1.0 + np.array(told)
+    reported = [shape.height(point[1 - across], point[across] - 0.2, D) for point in points]
+    return points[:, 2], 1.0 + np.array(reported)
 
 
 @pytest.mark.parametrize(("riser", "across"), [(ALONG_X, 1), (ALONG_Y, 0)])
 def test_trench_has_the_shape_that_the_scene_tells(riser: Any, across: int) -> None:
     grid = dug(IN_PLAIN, riser=riser)
-    found, told = heights(grid, TRENCH, across)
-    np.testing.assert_allclose(found, told, atol=1e-9)
+    found, reported = heights(grid, TRENCH, across)
+    np.testing.assert_allclose(found, reported, atol=1e-9)
     assert found.min() == pytest.approx(0.6, abs=1e-12)
     floor, lid = 0.5 * 1.5, (0.5 + 0.8) * (1.5 + 2.0)
     middle = (0.5 + 0.4) * (1.5 + 1.0)

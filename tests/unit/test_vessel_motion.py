@@ -15,7 +15,7 @@ from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.errors import SceneError
-from riser_soil.motion.rao import RaoTable
+from riser_soil.motion.vessel import RaoTable
 from riser_soil.riser import rotations
 from riser_soil.riser.ends import SupportRotation
 from riser_soil.riser.spatial_directors import SpatialFrames
@@ -54,13 +54,13 @@ def turned(assembly: Assembly, t: float) -> SupportRotation:
     return assembly.line.end.turning(t)
 
 
-@pytest.mark.parametrize(("surge", "told"), [(6.0, 0), (14.0, 1)])
-def test_a_vessel_that_drives_too_far_is_told(surge: float, told: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("surge", "reported"), [(6.0, 0), (14.0, 1)])
+def test_a_vessel_that_drives_too_far_is_reported(surge: float, reported: int, tmp_path: Path) -> None:
     """The ends are 40 m and 33 m apart at rest, the waves 1.5 m high: a surge of 6.7 m/m uses up the 60 m."""
     text = table(*EVERYWHERE, surge=(surge, 0.0))
     assembly = begun(scene(tmp_path, text, aboard(duration=40.0)))
     warnings = [warning for warning in physical_warnings(assembly) if "m apart" in warning]
-    assert len(warnings) == told
+    assert len(warnings) == reported
     for warning in warnings:
         assert warning.startswith("stages.0.motion: the ends come to be ")
         farthest = float(np.hypot(40.0 + 1.5 * surge, 33.0))
@@ -261,10 +261,10 @@ def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> 
     assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
     assert not np.any(response.amplitude[above])
     assert np.all(response.amplitude[~above, 2])
-    told = [warning for warning in physical_warnings(assembly) if "vessel" in warning]
-    assert len(told) == warnings
-    assert all(warning.startswith("stages.0.motion.end.vessel.rao: 0 % of the waves' energy") for warning in told)
-    assert all("12.5 % above its last, 1.1 rad/s" in warning for warning in told)
+    reported = [warning for warning in physical_warnings(assembly) if "vessel" in warning]
+    assert len(reported) == warnings
+    assert all(warning.startswith("stages.0.motion.end.vessel.rao: 0 % of the waves' energy") for warning in reported)
+    assert all("12.5 % above its last, 1.1 rad/s" in warning for warning in reported)
 
 
 def test_a_table_that_misses_waves_that_matter_is_refused(tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser.wall_sections import wall_sections
 from riser_soil.riser.wall_stress import (
     Loads,
     Wall,
@@ -15,6 +14,7 @@ from riser_soil.riser.wall_stress import (
     largest_von_mises,
     shear_stress,
     von_mises_at,
+    wall_sections,
 )
 
 PIPE = Wall(np.array(0.2731), np.array(0.2319))  # 10 3/4 in x 20.6 mm
@@ -100,5 +100,5 @@ def test_nodes_between_no_walls_have_none() -> None:
     wall = Wall(np.array([0.3, 0.0, 0.0]), np.array([0.2, 0.0, 0.0]))
     found = wall_sections(wall, wall, np.zeros(3), np.ones((3, 2)))
     assert found.node.tolist() == [0, 1]
-    told = found.at_nodes(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 4)
-    assert np.isnan(told).tolist() == [False, False, True, True]
+    reported = found.at_nodes(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 4)
+    assert np.isnan(reported).tolist() == [False, False, True, True]

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.sea import jonswap, wave_series
+from riser_soil.sea import spectra, wave_series
 from riser_soil.sea.components import Components, regular
-from riser_soil.sea.places import number, places
-from riser_soil.sea.sea import Sea
-from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wave_field import WaveField
+from riser_soil.sea.flows import Sea, WaterMotion
+from riser_soil.sea.wave_series import number, places
+from riser_soil.sea.waves import WaveField
 from tests.support.summed_waves import SummedWaves
 
 G, LEVEL = 9.81, 7.0
@@ -24,7 +23,7 @@ Stretching = Literal["wheeler", "vertical"]
 
 
 def sea(h: float, Tp: float, count: int, seed: int, gamma: float = 2.0, direction: float = 0.4) -> Components:
-    return jonswap.components(0.01 * Tp**2 * (0.3 if h < 20.0 else 1.0), Tp, gamma, count, seed, direction, G, h)
+    return spectra.components(0.01 * Tp**2 * (0.3 if h < 20.0 else 1.0), Tp, gamma, count, seed, direction, G, h)
 
 
 def points(h: float, far: float, seed: int) -> Array:
@@ -111,12 +110,12 @@ def test_nothing_hangs_on_what_was_evaluated_before() -> None:
             assert np.array_equal(found, expected[some])
 
 
-def test_places_that_find_no_room_are_computed_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_places_that_find_no_workspace_are_computed_again(monkeypatch: pytest.MonkeyPatch) -> None:
     waves, x = sea(120.0, 9.0, 50, 11), points(120.0, 200.0, 12)
     roomy = Sea(LEVEL, [WaveField(waves, 120.0, LEVEL)])(4.0, x)
     monkeypatch.setattr(wave_series, "MOST", 3)
     field = WaveField(waves, 120.0, LEVEL)
-    assert field.numbers.series.cells.places.key.size == 3
+    assert field.kernel_data.series.cells.places.key.size == 3
     for _ in range(2):
         for found, expected in zip(Sea(LEVEL, [field])(4.0, x), roomy, strict=True):
             assert np.array_equal(found, expected)
@@ -128,7 +127,7 @@ def test_stations_of_a_riser_share_few_places() -> None:
     x = np.stack([150.0 * along, 0.0 * along, 120.0 * along**2], axis=-1)
     field = WaveField(sea(120.0, 13.0, 200, 1), 120.0, 120.0)
     Sea(120.0, [field])(3.0, x)
-    taken = [int(at.places.taken[0]) for at in (field.numbers.series.columns, field.numbers.series.cells)]
+    taken = [int(at.places.taken[0]) for at in (field.kernel_data.series.columns, field.kernel_data.series.cells)]
     assert min(taken) > 10
     assert sum(taken) < 120
 
@@ -143,7 +142,7 @@ def test_long_and_short_waves_of_any_unit_of_length() -> None:
     assert 1e6 * second.immersion == pytest.approx(first.immersion, abs=1e-12)
 
 
-def test_keys_keep_their_numbers_until_there_is_no_room() -> None:
+def test_keys_keep_their_numbers_until_there_is_no_workspace() -> None:
     at, keys = places(50), np.random.default_rng(15).integers(-(2**60), 2**60, 50)
     keys[:20] = np.arange(-10, 10)
     assert [number(at, key) for key in keys] == list(range(50))

@@ -15,11 +15,9 @@ from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.buoyancy import Buoyancy
 from riser_soil.sea.dry_pipe import dry_pipe
-from riser_soil.sea.flows import add_flow
+from riser_soil.sea.flows import Sea, WaterMotion, add_flow
 from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.sea import Sea
-from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
 from tests.support.dense_chain import residual
 
@@ -80,7 +78,7 @@ def test_an_upright_pipe_floats_by_archimedes(dimension: int) -> None:
     assert np.diff(dry) == pytest.approx(np.diff(out), rel=0.05)
 
 
-class RippleNumbers(NamedTuple):
+class RippleData(NamedTuple):
     """Wave number of a rippled surface [1/m]."""
 
     k: float
@@ -89,14 +87,14 @@ class RippleNumbers(NamedTuple):
 class Ripple:
     """A `FlowComponent`: a surface of 12 m long waves, of which an element holds a tenth."""
 
-    numbers = RippleNumbers(2.0 * np.pi / 12.0)
+    kernel_data = RippleData(2.0 * np.pi / 12.0)
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
         raise AssertionError("not asked for")
 
 
-@add_flow.of(RippleNumbers)
-def _ripple(flow: RippleNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(RippleData)
+def _ripple(flow: RippleData, motion: WaterMotion, t: Array, x: Array) -> None:
     for p in range(x.shape[0]):
         motion.immersion[p] += 0.2 * math.cos(flow.k * x[p, 0])
         motion.immersion_gradient[p, 0] -= 0.2 * flow.k * math.sin(flow.k * x[p, 0])

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.contact.law import Penalty
+from riser_soil.contact.along_step import work_along_step
+from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.contact.suction import SuctionLaw
-from riser_soil.contact.work_along_step import work_along_step
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes

@@ -89,7 +89,7 @@ def test_error_falls_with_the_tolerance(scheme: dict[str, object]) -> None:
     assert errors[0] < 0.05
 
 
-def test_a_tolerance_out_of_reach_is_told() -> None:
+def test_a_tolerance_out_of_reach_is_reported() -> None:
     scene = riser_scene(
         dynamic(1.0, 0.1, loads=[{"at": "end", "force": [0.0, 0.0, 1e4]}]) | {"time_step": "auto", "tolerance": 1e-6},
         pipe={"EA": 1e6, "EI": 500.0, "mass": 60.0, "outer_diameter": 0.2},

@@ -198,12 +198,12 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
         end="free",
         dimension=dimension,
     )
-    (told,) = stage_histories(swing)
-    x = np.array([position[-1, 0] for position in told.position])
+    (reported,) = stage_histories(swing)
+    x = np.array([position[-1, 0] for position in reported.position])
     crossings = [i for i, (a, b) in enumerate(pairwise(x)) if a > 0.0 >= b or a < 0.0 <= b]
-    times = [told.t[i] + told.dt[i] * x[i] / (x[i] - x[i + 1]) for i in crossings]
+    times = [reported.t[i] + reported.dt[i] * x[i] / (x[i] - x[i + 1]) for i in crossings]
     assert np.diff(times) == pytest.approx([0.5 * period], rel=2e-4)
-    assert np.ptp(told.energy) < 1e-3 * G * S * (1.0 - np.cos(tilt))
+    assert np.ptp(reported.energy) < 1e-3 * G * S * (1.0 - np.cos(tilt))
 
 
 @both_dimensions

@@ -122,7 +122,7 @@ def test_four_cells_across_what_touches_are_too_few_where_a_pipe_has_sunk_in() -
 
 
 @pytest.mark.parametrize(("cells", "off"), [(2, 0.66), (4, 0.35), (8, 0.11)])
-def test_what_cells_miss_is_told(cells: int, off: float) -> None:
+def test_what_cells_miss_is_reported(cells: int, off: float) -> None:
     """Force at an indentation of D/50 above that of cells of D/128; the settlement is too small as `check` says."""
     force = Pushed(cells).q
     assert force / FINE.force - 1.0 == pytest.approx(off, abs=0.02)

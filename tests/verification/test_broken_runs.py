@@ -21,7 +21,7 @@ class Ended(NamedTuple):
 
     folder: Path
     status: int
-    told: list[str]
+    reported: list[str]
 
 
 def end_by(number: signal.Signals, folder: Path, runs: int) -> list[Ended]:
@@ -40,8 +40,8 @@ def end_by(number: signal.Signals, folder: Path, runs: int) -> list[Ended]:
             time.sleep(0.02)
         time.sleep(seconds)
         process.send_signal(number)
-        _, told = process.communicate(timeout=300)
-        return Ended(out, process.returncode, told.splitlines())
+        _, reported = process.communicate(timeout=300)
+        return Ended(out, process.returncode, reported.splitlines())
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         return list(pool.map(end, range(runs), [chance.uniform(0.0, 5.0) for _ in range(runs)]))
@@ -77,7 +77,7 @@ def test_ten_signals(number: signal.Signals, tmp_path: Path) -> None:
     print(f"rows: {[x.rows for x in left]}")
     for run, found in zip(runs, left, strict=True):
         assert run.status == 128 + number
-        (line,) = run.told
+        (line,) = run.reported
         assert line.startswith(f"ended by {number.name} ")
         assert (found.rows or 0) == (found.frames or 0)
     assert sum((x.rows or 0) > 1 for x in left) >= 5
@@ -91,14 +91,14 @@ def test_twenty_disks_that_others_fill(tmp_path: Path) -> None:
         disk = tmp_path / f"disk-{left}"
         disk.mkdir()
         process = start_on_a_filled_disk(tmp_path / f"{left}", disk, left)
-        _, told = process.communicate(timeout=300)
-        return Ended(tmp_path / f"{left}", process.returncode, told.splitlines())
+        _, reported = process.communicate(timeout=300)
+        return Ended(tmp_path / f"{left}", process.returncode, reported.splitlines())
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         runs = list(pool.map(end, [400_000 * k for k in range(20)]))
     for run in runs:
-        assert run.status == 4, run.told
-        (line,) = run.told
+        assert run.status == 4, run.reported
+        (line,) = run.reported
         assert "No space left on device" in line
     left = look([run.folder for run in runs])
     print(f"rows: {[x.rows for x in left]}")
@@ -111,9 +111,9 @@ def test_twenty_files_that_may_not_grow(tmp_path: Path) -> None:
     for size in [1000 * 2**k // 4 for k in range(20)][:14] + [3_000_000 + 300_000 * k for k in range(6)]:
         folders.append(tmp_path / f"{size}")
         process = start(folders[-1], "-c", ON_A_SMALL_DISK, str(size))
-        _, told = process.communicate(timeout=120)
-        assert process.returncode == 4, told
-        (line,) = told.splitlines()
+        _, reported = process.communicate(timeout=120)
+        assert process.returncode == 4, reported
+        (line,) = reported.splitlines()
         assert "cannot be written: File too large" in line
     left = look(folders)
     print(f"rows: {[x.rows for x in left]}")

@@ -77,8 +77,8 @@ def waving(folder: Path, **more: Any) -> Run:
 def test_ledger_of_each_step_adds_up(tmp_path: Path) -> None:
     """In waves and current, with structural damping, a load and a moving end: nothing is left out of the sums."""
     seen = waving(tmp_path / "out")
-    told = ("structural_damping",), ("loads", "morison", "buoyancy", "supports")
-    for total, names in zip(("dissipated", "work"), told, strict=True):
+    reported = ("structural_damping",), ("loads", "morison", "buoyancy", "supports")
+    for total, names in zip(("dissipated", "work"), reported, strict=True):
         parts = [seen[f"{total}_{name}"][1:] for name in names]
         assert all(np.abs(part).max() > 0.1 for part in parts)
         np.testing.assert_allclose(sum(parts), seen[total][1:], rtol=1e-12)
@@ -101,15 +101,15 @@ def test_ledger_in_the_summary_is_that_of_the_last_step(tmp_path: Path) -> None:
     assert abs(worst["value"]) == pytest.approx(np.abs(np.cumsum(seen["energy_residual"][1:])).max(), rel=1e-9)
 
 
-def test_what_cannot_turn_energy_over_is_not_told(tmp_path: Path) -> None:
+def test_what_cannot_turn_energy_over_is_not_reported(tmp_path: Path) -> None:
     ends = prescribed(0.0, 0.0, 0.0), prescribed(9.0, 0.0, 0.0)
     pipe = {"EA": 1e6, "EI": 2e3, "mass": 20.0}
     scene = riser_scene(static(), dynamic(0.1, 0.1), pipe=pipe, length=9.0, elements=3, start=ends[0], end=ends[1])
     run(scene_from_mapping(scene), tmp_path)
-    with pytest.raises(Exception, match="no dissipated_morison; it has") as told:
+    with pytest.raises(Exception, match="no dissipated_morison; it has") as reported:
         Run(tmp_path)["dissipated_morison"]
-    assert "work_supports" in str(told.value)
-    assert "work_loads" not in str(told.value)
+    assert "work_supports" in str(reported.value)
+    assert "work_loads" not in str(reported.value)
 
 
 @pytest.mark.parametrize("duration", [2.0])

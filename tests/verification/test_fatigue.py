@@ -104,12 +104,12 @@ def test_every_damage_is_fatpack_s_by_hand(folder: Path) -> None:
 def test_the_upper_side_is_as_loads_and_turns_by_hand_have_it(folder: Path) -> None:
     """Ranges 2.0, 0.4 and 0.4 of tension and bending together; inertia changes them by less than a per cent."""
     assessed(folder, given())
-    told = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
-    assert told["largest"]["angle_deg"] == 90.0
+    reported = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
+    assert reported["largest"]["angle_deg"] == 90.0
     S = 1e-6 * (PULL / A + BEND * 0.5 * OUTER / I) * np.array([2.0, 0.4, 0.4])
     N = np.where(S > 83.4, 10.0**11.764 / S**3.0, 10.0**15.606 / S**5.0)
-    assert told["largest"]["damage_per_year"] == pytest.approx(0.4 * YEAR / 8.0 * np.sum(1.0 / N), rel=0.01)
-    assert told["cases"][0]["damage_per_year"] == told["largest"]["damage_per_year"]
+    assert reported["largest"]["damage_per_year"] == pytest.approx(0.4 * YEAR / 8.0 * np.sum(1.0 / N), rel=0.01)
+    assert reported["cases"][0]["damage_per_year"] == reported["largest"]["damage_per_year"]
 
 
 def test_factors_surface_and_shares(folder: Path) -> None:
@@ -146,18 +146,18 @@ def test_in_a_bend_stiffener_it_is_the_run_s_own_wall(tmp_path: Path) -> None:
     assert recorded[:, 0].max() < 0.4 * recorded[:, -1].max()
 
 
-def test_what_is_doubtful_is_told(folder: Path) -> None:
+def test_what_is_doubtful_is_reported(folder: Path) -> None:
     done = assessed(folder, given(design_life=25.0, design_fatigue_factor=10.0, skip=0.5, arcs=[0.0, 3.0]))
-    told = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
-    used = 250.0 * told["largest"]["damage_per_year"]
-    assert told["design"]["utilisation"] == pytest.approx(used, rel=1e-12)
-    assert told["cases"][0]["seconds"] == pytest.approx(7.5, abs=1e-9)
+    reported = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
+    used = 250.0 * reported["largest"]["damage_per_year"]
+    assert reported["design"]["utilisation"] == pytest.approx(used, rel=1e-12)
+    assert reported["cases"][0]["seconds"] == pytest.approx(7.5, abs=1e-9)
     assert table(folder)["arc_m"].max() == 3.0
-    texts = " ".join(told["warnings"])
+    texts = " ".join(reported["warnings"])
     assert "the cases stand for 40 % of the year" in texts
     assert f"times 10 is {used:.4g}, more than 1" in texts
     assert "uncertain by some" in texts
-    assert all(f"warning: {text}" in done.output for text in told["warnings"])
+    assert all(f"warning: {text}" in done.output for text in reported["warnings"])
     short = assessed(folder, given(skip=7.5)).output
     assert "warning: shaken: the stress goes up through its mean less than twice in 0.5 s, too short" in short
 
@@ -170,7 +170,7 @@ def test_the_picture_is_drawn(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "told"),
+    ("more", "reported"),
     [
         ({"curve": {"dnv": "DD", "environment": "air"}}, r"yaml:\d+: curve.dnv: value \"DD\": must be one of B1"),
         ({"curve": {"dnv": "D"}}, "curve.environment: missing: the key is required here"),
@@ -190,30 +190,30 @@ def test_the_picture_is_drawn(folder: Path) -> None:
         ({"point": 8}, r"point: value 8: no such key here.*did you mean \"points\""),
     ],
 )
-def test_what_is_refused(folder: Path, more: Mapping, told: str) -> None:
+def test_what_is_refused(folder: Path, more: Mapping, reported: str) -> None:
     shutil.rmtree(folder / "damage", ignore_errors=True)
     done = assessed(folder, given(**more))
     assert done.exit_code == 2
     assert "Traceback" not in done.output
     (line,) = done.output.splitlines()
-    assert re.search(told, line), line
+    assert re.search(reported, line), line
     assert not (folder / "damage").exists()
 
 
 @pytest.mark.parametrize(
-    ("scene", "told"),
+    ("scene", "reported"),
     [
         (shaken(wall=False), "no line type has a wall, from whose stress fatigue follows"),
         (shaken(fields=("effective_tension",)), "results.nc has no bending_moment_y, which the stress follows from"),
         (shaken(elements=3), "has other nodes or walls than"),
     ],
 )
-def test_runs_that_do_not_fit(folder: Path, scene: Mapping, told: str) -> None:
+def test_runs_that_do_not_fit(folder: Path, scene: Mapping, reported: str) -> None:
     scene["stages"][0]["duration"] = 0.5
     run(scene_from_mapping(scene), folder / "other", True)
     done = assessed(folder, given(cases=[{"run": name, "share": 0.5} for name in ("shaken", "other")]))
     assert done.exit_code == 2
-    assert told in done.output
+    assert reported in done.output
 
 
 def test_a_finished_assessment_is_kept(folder: Path) -> None:

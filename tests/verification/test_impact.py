@@ -105,9 +105,9 @@ def test_automatic_steps_find_the_impact() -> None:
     the tolerance asks. Its energy is still kept.
     """
     coarse, fine = stage_histories(automatic(2e-2))[0], stage_histories(automatic(2e-3))[0]
-    for told in (coarse, fine):
-        assert max(told.dt[: len(told.dt) // 4]) > 5.0 * min(told.dt)
-        assert sum(told.cuts) < 0.15 * len(told.dt)
+    for reported in (coarse, fine):
+        assert max(reported.dt[: len(reported.dt) // 4]) > 5.0 * min(reported.dt)
+        assert sum(reported.cuts) < 0.15 * len(reported.dt)
     assert min(coarse.dt) > 2.0 * min(fine.dt)
     assert min(fine.dt) < 2e-3
     assert energies(automatic(2e-2)).gain.max() < 1e-4 * FALL
@@ -119,9 +119,9 @@ def test_a_pipe_that_lies_still_needs_no_cuts() -> None:
         assert sum(stage_histories(flat(k, dt))[0].cuts) == 0
     scene = flat(1e8, 0.1)
     scene["stages"][0] |= {"time_step": "auto"}
-    told = stage_histories(scene)[0]
-    assert sum(told.cuts) < 15
-    assert max(told.dt) > 0.05
+    reported = stage_histories(scene)[0]
+    assert sum(reported.cuts) < 15
+    assert max(reported.dt) > 0.05
 
 
 def test_contact_averaged_with_the_pipe_would_gain_energy() -> None:
@@ -136,8 +136,8 @@ def test_contact_averaged_with_the_pipe_would_gain_energy() -> None:
 )
 def test_page_tells_what_the_methods_do(method: Method) -> None:
     *_, row = pair_table([method])
-    told = next(line for line in PAGE.read_text().splitlines() if line.startswith(row[: row.index("%") - 8]))
-    np.testing.assert_allclose(figures(told), figures(row), rtol=0.02, atol=1e-6)
+    reported = next(line for line in PAGE.read_text().splitlines() if line.startswith(row[: row.index("%") - 8]))
+    np.testing.assert_allclose(figures(reported), figures(row), rtol=0.02, atol=1e-6)
 
 
 def figures(row: str) -> list[float]:

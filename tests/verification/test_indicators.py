@@ -39,7 +39,7 @@ def tensions(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
     return np.array([stage["extremes"][end]["effective_tension"]["max"] for end in ("start", "end")])
 
 
-def told(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
+def reported(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Their errors as estimated."""
     return np.array([stage["indicators"]["time_step"][f"{end}.effective_tension"]["max"] for end in ("start", "end")])
 
@@ -59,7 +59,7 @@ def tension_errors(name: str) -> list[tuple[float, float, float, float, bool]]:
     fine, stages = stepped_stages(name)
     exact, rows = tensions(fine), []
     for dt, stage in stages:
-        error, estimate = abs(tensions(stage) - exact) / exact.max(), told(stage) / exact.max()
+        error, estimate = abs(tensions(stage) - exact) / exact.max(), reported(stage) / exact.max()
         worst = int(error.argmax())
         rows.append((dt, error[worst], estimate[worst], estimate.max(), bool(stage["warnings"])))
         print(f"| {name} | {dt:g} | {error[worst]:.2%} | {estimate[worst]:.2%} | {'yes' if rows[-1][-1] else ''} |")
@@ -90,7 +90,7 @@ def tells_of_tension(stage: Mapping[str, Any]) -> bool:
 
 
 @stepped_scenes
-def test_steps_too_long_for_the_tension_are_told(name: str) -> None:
+def test_steps_too_long_for_the_tension_are_reported(name: str) -> None:
     """Whether told at all, and by a number of the error's size."""
     for dt, error, estimate, _, warned in tension_errors(name):
         if error > WRONG:
@@ -123,7 +123,7 @@ def test_few_good_runs_are_warned_of() -> None:
 
 
 @stepped_scenes
-def test_steps_too_long_for_the_least_tension_are_told(name: str) -> None:
+def test_steps_too_long_for_the_least_tension_are_reported(name: str) -> None:
     for dt, error, estimate, _ in least_tension_errors(name):
         stage = dict(stepped_stages(name)[1])[dt]
         if error > LEAST_WRONG:
@@ -166,18 +166,18 @@ def test_first_scene_in_steps_of_a_tenth_of_its_period_is_warned_of() -> None:
         for dt in case.steps
     ],
 )
-def test_snap_after_compression_is_told_by_the_least_tension(name: str, dt: float) -> None:
+def test_snap_after_compression_is_reported_by_the_least_tension(name: str, dt: float) -> None:
     """The largest tension is 9 to 20 % off as a snap is not seen, and its own estimate does not tell."""
     case = COMPRESSED[name]
     stage = last_stage(case.scene(dt))
     assert tensions(stage).max() < 0.95 * case.largest
-    assert told(stage).max() < LARGE_ERROR * case.largest
+    assert reported(stage).max() < LARGE_ERROR * case.largest
     assert tells_of_tension(stage)
     assert any("where the riser is compressed" in text for text in stage["warnings"])
 
 
 @pytest.mark.verify
-def test_heaves_that_miss_the_tension_are_told() -> None:
+def test_heaves_that_miss_the_tension_are_reported() -> None:
     """By how far the largest tension at either end is off, over the larger one. The riser has no damping of its own, so
     that waves along it grow with finer steps: what no course of a figure shows is not told.
     """
@@ -191,17 +191,17 @@ def test_heaves_that_miss_the_tension_are_told() -> None:
             kind = "wrong" if error > WRONG else "off" if error > 0.02 else "right"
             runs[kind].append((*heave, dt, tells_of_tension(stage)))
     for kind, each in runs.items():
-        print(f"| {kind} | {len(each)} | {sum(told for *_, told in each)} |")
-        print([run for *run, told in each if told == (kind == "right")])
-    told = {kind: sum(told for *_, told in each) for kind, each in runs.items()}
+        print(f"| {kind} | {len(each)} | {sum(reported for *_, reported in each)} |")
+        print([run for *run, reported in each if reported == (kind == "right")])
+    reported = {kind: sum(reported for *_, reported in each) for kind, each in runs.items()}
     assert len(runs["wrong"]) >= 20
-    assert told["wrong"] >= 0.9 * len(runs["wrong"])
+    assert reported["wrong"] >= 0.9 * len(runs["wrong"])
     assert len(runs["right"]) >= 10
-    assert told["right"] <= 0.2 * len(runs["right"])
+    assert reported["right"] <= 0.2 * len(runs["right"])
 
 
 @pytest.mark.parametrize(("heave", "largest", "off"), [((2.0, 7.0), 123.6e3, False), ((4.0, 9.0), 143.4e3, True)])
-def test_of_two_heaves_the_one_that_misses_the_tension_is_told(
+def test_of_two_heaves_the_one_that_misses_the_tension_is_reported(
     heave: tuple[float, float], largest: float, off: bool
 ) -> None:
     """Beside the largest tension in steps of 0.01 s [N]."""
@@ -216,7 +216,7 @@ IMPACTS = [(1e5, 2e-2), (1e5, 3e-3), (1e6, 1e-2), (1e6, 3e-3), (1e6, 1e-3), (1e7
 @pytest.mark.parametrize(
     ("k", "dt"), [each if each == (1e6, 1e-3) else pytest.param(*each, marks=pytest.mark.verify) for each in IMPACTS]
 )
-def test_force_of_an_impact_is_told_to_be_too_small(k: float, dt: float) -> None:
+def test_force_of_an_impact_is_reported_to_be_too_small(k: float, dt: float) -> None:
     """A pipe falls by h = 0.1 m on a lossless floor: at most w + sqrt(w² + 2 k w h) per length."""
     stage, w = last_stage(falling(dt, k)), 700.0
     exact = 40.0 * (w + math.sqrt(w * w + 2.0 * k * w * 0.1))
@@ -230,7 +230,7 @@ def test_force_of_an_impact_is_told_to_be_too_small(k: float, dt: float) -> None
 
 
 @pytest.mark.verify
-def test_impact_in_short_steps_is_not_told() -> None:
+def test_impact_in_short_steps_is_not_reported() -> None:
     stage = last_stage(falling(2e-4, 1e6))
     assert not any("impact lost" in text for text in stage["warnings"])
     assert stage["indicators"]["impact"]["steps_in_contact_period"] == pytest.approx(344.0, rel=0.01)
@@ -248,7 +248,7 @@ HUNG: dict[str, tuple[float, tuple[float, float, float], str]] = {
 @pytest.mark.parametrize(
     "name", [name if name == "10 km, steep" else pytest.param(name, marks=pytest.mark.verify) for name in HUNG]
 )
-def test_elements_too_long_for_the_moment_are_told(name: str) -> None:
+def test_elements_too_long_for_the_moment_are_reported(name: str) -> None:
     length, top, rotation = HUNG[name]
     exact = moment(last_stage(hung(640, length, top, rotation)))
     for elements in (10, 20, 40, 80):

@@ -42,7 +42,7 @@ def test_states_are_those_of_the_direct_solver(ranks: int, tmp_path: Path) -> No
     assert direct.soil_frame().fields["equivalent_plastic_strain"].max() > 0.0
 
 
-def test_iterations_that_do_not_converge_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_iterations_that_do_not_converge_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(iterative_solver, "MOST_ITERATIONS", 2)
     scene = on_clay("iterative")
     scene["solver"] |= {"min_load_step": 1.0}

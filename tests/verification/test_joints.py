@@ -18,7 +18,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.section_forces import element_residual, section_forces
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
-from riser_soil.scene.grading import graded_lengths
+from riser_soil.scene.riser import graded_lengths
 from tests.support.dense_chain import solve
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -111,7 +111,7 @@ def test_a_case_that_kills_its_workers_is_a_row(tmp_path: Path) -> None:
     assert (row["status"], row["reason"]) == ("137", "its worker died 4 times; is memory enough?")
 
 
-def test_a_scheduler_that_is_lost_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_scheduler_that_is_lost_is_reported_in_one_line(tmp_path: Path) -> None:
     case_file(tmp_path, product(*FEW))
     with (
         LocalCluster(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster,
@@ -157,7 +157,7 @@ asyncio.run(work())
 """
 
 
-def test_a_worker_that_lacks_the_package_is_told_before_it_gets_a_case(tmp_path: Path) -> None:
+def test_a_worker_that_lacks_the_package_is_reported_before_it_gets_a_case(tmp_path: Path) -> None:
     """It could not even read what it is sent, and the command would wait for it."""
     case_file(tmp_path, product(*FEW))
     with LocalCluster(n_workers=0, host="127.0.0.1", dashboard_address=None) as cluster:

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from riser_soil.scene.scene import Scene
-from riser_soil.scene.solver import Solver
+from riser_soil.scene.scene import Scene, Solver
 from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
 from tests.support.sinking_pipe import sinking

@@ -151,7 +151,7 @@ def test_pulled_riser_slides_as_far_as_friction_lets_it(dimension: int) -> None:
     assert np.count_nonzero(np.abs(share - 1.0) < 0.02) > 5
 
 
-def test_slip_is_told_where_there_is_friction(tmp_path: Path) -> None:
+def test_slip_is_reported_where_there_is_friction(tmp_path: Path) -> None:
     """The pulled end's side slides, the anchor's side does not; without friction the field is left out."""
     scene = read_scene(SCENES / "hysteretic.yaml", ("stages.1.duration=6.0", "contact.friction.mobilisation=1e-3"))
     run(scene, tmp_path / "rough")

@@ -32,5 +32,5 @@ def test_settlement_is_foretold_within_half_of_it(clay: str) -> None:
     rises = np.maximum.accumulate(found.V) + 1e-9 * np.arange(found.V.size)
     for load in LOADS:
         expected = D * float(np.interp(load, rises, found.w))
-        told = settlement(soil, Scales(load * SU * D, D, 1.0), 5.0 * D)
-        assert 1.0 / 1.5 < told / expected < 1.5
+        reported = settlement(soil, Scales(load * SU * D, D, 1.0), 5.0 * D)
+        assert 1.0 / 1.5 < reported / expected < 1.5

@@ -79,7 +79,7 @@ def test_dynamics_may_come_first(tmp_path: Path) -> None:
     assert np.ptp(found["end_force"], axis=0).max() < 1e-4 * 60.0 * W
 
 
-def test_a_loop_too_tight_for_its_elements_is_told(tmp_path: Path) -> None:
+def test_a_loop_too_tight_for_its_elements_is_reported(tmp_path: Path) -> None:
     seabed = {"kind": "rigid", "level": 0.0, "contact_at": "axis"}
     lies, asked = r"would lie \d[\d.e+-]* m beyond its place", r"take elements well below \(EI/w\)\^\(1/3\) = 2.71 m"
     with pytest.raises(SolveError, match=f"the riser is slack: .* {lies}.* {asked}"):

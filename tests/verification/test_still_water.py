@@ -38,7 +38,7 @@ def test_a_lying_pipe_falls_by_the_hyperbolic_tangent(dimension: int) -> None:
     final = np.sqrt(WEIGHT / (0.5 * RHO * D * CD))
     time = mass * final / WEIGHT
     coarse, fine = (fallen(dt, dimension) for dt in (0.04, 0.02))
-    heights = [np.array([x[:, 2].mean() for x in told.position]) for told in (coarse, fine)]
+    heights = [np.array([x[:, 2].mean() for x in reported.position]) for reported in (coarse, fine)]
     exact = -final * time * np.log(np.cosh(np.array(coarse.t) / time))
     errors = [np.abs(h - exact).max() / np.abs(exact).max() for h in (heights[0], heights[1][1::2])]
     assert errors[1] < 5e-5

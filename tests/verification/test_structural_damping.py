@@ -110,10 +110,10 @@ def swinging(dt: float, dimension: int, **damping: Any) -> Mapping:
 def test_energy_balance_closes_with_damping(dimension: int) -> None:
     given, gaps = {"damping": {"ratio": 0.05, "frequency": 1.0}}, []
     for dt in (0.01, 0.005):
-        told = stage_histories(swinging(dt, dimension, **given))[-1]
-        stored, turned = np.array(told.energy), np.cumsum(told.work)
+        reported = stage_histories(swinging(dt, dimension, **given))[-1]
+        stored, turned = np.array(reported.energy), np.cumsum(reported.work)
         gaps.append(np.abs(stored - turned - (stored[0] - turned[0])).max())
-    lost = stage_histories(swinging(0.01, dimension))[-1].energy[-1] - told.energy[-1]
+    lost = stage_histories(swinging(0.01, dimension))[-1].energy[-1] - reported.energy[-1]
     assert lost > 25.0
     assert gaps[1] < 2e-2 * lost
     assert gaps[0] / gaps[1] > 3.5

@@ -9,7 +9,7 @@ import pytest
 from tests.support.on_ranks import ROOT
 
 SCENE = ROOT / "demos" / "first_scene.yaml"
-FINE = (4.0, 16.0)  # times the scene's elements and steps: beyond every rung
+FINE = (4.0, 16.0)  # times the scene's elements and steps: beyond every level
 
 
 @pytest.mark.verify
@@ -24,18 +24,20 @@ def test_references_hold_what_a_much_finer_run_finds(tmp_path: Path) -> None:
     made.compute([FINE], 1)
     fine = made.outcomes.pop(FINE)
     for key, each in quantities.items():
-        off, doubt = each.error_of(fine.headlines[key]), each.doubt
+        off, doubt = each.error_of(fine.key_results[key]), each.doubt
         print(f"{key}: scene {each.error:.3%} off, reference {off:.4%} off the fine run, uncertainty {doubt:.4%}")
     assert fine.done
     assert len(made.judged()) == len(quantities) >= 15
-    assert all(each.error_of(fine.headlines[key]) <= each.doubt + 1e-5 for key, each in quantities.items())
+    assert all(each.error_of(fine.key_results[key]) <= each.doubt + 1e-5 for key, each in quantities.items())
     for target in (0.01, 0.001):
         reached = made.reaching(target)
         assert reached is not None
         true = {
-            key: abs(fine.headlines[key].value - found.value) / quantities[key].reference.scale
-            for key, found in reached.headlines.items()
+            key: abs(fine.key_results[key].value - found.value) / quantities[key].reference.scale
+            for key, found in reached.key_results.items()
         }
-        print(f"{target:.1%} by {made.ladders.told(reached.factors)}: {max(true.values()):.4%} off the fine run")
+        print(
+            f"{target:.1%} by {made.refinements.reported(reached.factors)}: {max(true.values()):.4%} off the fine run"
+        )
         assert max(true.values()) <= 1.2 * target
     assert made.error(made.scene)[0] < 0.002

@@ -68,17 +68,17 @@ def test_coarse_cells_settle_less_as_the_warning_says(cells: int) -> None:
     unit = case.q / (np.pi * case.modulus)
     constant = fine.indentation * np.pi * fine.modulus / fine.q - 2.0 * np.log(1.0 / fine.half_width)
     missing = unit * (2.0 * np.log(1.0 / case.half_width) + constant) - case.indentation
-    told = 2.0 * unit * np.log(LIKE_CONTACT * D / cells / (2.0 * case.half_width))
-    assert told == pytest.approx(missing, rel=0.3)
+    reported = 2.0 * unit * np.log(LIKE_CONTACT * D / cells / (2.0 * case.half_width))
+    assert reported == pytest.approx(missing, rel=0.3)
 
 
-def test_wide_cells_are_told() -> None:
+def test_wide_cells_are_reported() -> None:
     scene = touchdown(LAY, su=6000.0)
     at_nodes = scene | {"contact": {"method": "node"}}
-    assert not any("size_at_riser" in told for told in ground_warnings(built(at_nodes)))
-    (told,) = (told for told in ground_warnings(built(scene)) if "size_at_riser" in told)
-    assert "by which the riser touches at rest: it settles by about" in told
-    assert "mm of fine cells; take at most" in told
+    assert not any("size_at_riser" in reported for reported in ground_warnings(built(at_nodes)))
+    (reported,) = (reported for reported in ground_warnings(built(scene)) if "size_at_riser" in reported)
+    assert "by which the riser touches at rest: it settles by about" in reported
+    assert "mm of fine cells; take at most" in reported
 
 
 def test_contact_at_nodes_has_no_limit() -> None:
@@ -87,7 +87,7 @@ def test_contact_at_nodes_has_no_limit() -> None:
     assert np.ptp(with_nodes) > 0.1 * with_nodes.max()
 
 
-def test_soil_that_flows_from_under_the_pipe_is_told(tmp_path: Path) -> None:
+def test_soil_that_flows_from_under_the_pipe_is_reported(tmp_path: Path) -> None:
     """Pushed in by D/16, plastic clay moves aside: the resistance is no figure any more."""
     scene = slice_of_soil(4)
     scene["soil"] |= {"law": {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": NU}, "strain": "small"}

@@ -12,7 +12,7 @@ import pytest
 from riser_soil.contact.touchdown import ContactInterval
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
-from riser_soil.results.touchdown_zone import joined
+from riser_soil.results.instants import joined
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
@@ -99,13 +99,13 @@ def test_the_warning_tells_where_and_when_the_pipe_is_bent_most(sag: Run) -> Non
     assert lay["warnings"] == []
     assert 1.0 < used.max() <= found["max"] < 1.01 * used.max()
     assert found["t_max"] == sag.time[row]
-    told = re.fullmatch(
+    reported = re.fullmatch(
         rf"the pipe is bent beyond its min_bend_radius: {found['max']:.4g} times what is allowed at arc (\S+) m and "
         rf"{sag.time[row]:.5g} s, where the bend radius is {ALLOWED / found['max']:.4g} m",
         heave["warnings"][0],
     )
-    assert told is not None
-    assert abs(float(told[1]) - sag.arc[node]) < 0.75
+    assert reported is not None
+    assert abs(float(reported[1]) - sag.arc[node]) < 0.75
 
 
 def test_units(sag: Run) -> None:

@@ -160,8 +160,8 @@ def test_the_stress_that_is_warned_of_is_that_of_the_weaker_steel(tmp_path: Path
     used, stress = done["stress_utilisation"][-1], done["wall_von_mises_stress"][-1]
     assert int(np.argmax(used)) == 4
     assert stress[4] > 1.1 * used[4] * 5.0e7
-    (told,) = done.summary["stages"][0]["warnings"]
-    assert told.endswith(f"arc 20 m and 1 of the load, where von Mises' stress is {used[4] * 5.0e7:.4g} Pa")
+    (reported,) = done.summary["stages"][0]["warnings"]
+    assert reported.endswith(f"arc 20 m and 1 of the load, where von Mises' stress is {used[4] * 5.0e7:.4g} Pa")
 
 
 def test_without_a_wall_nothing_of_it_is_recorded(tmp_path: Path) -> None:
@@ -179,7 +179,7 @@ def test_in_a_plane_torque_is_not_recorded(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "reported"),
     [
         ({"wall": {"inner_diameter": 0.4}}, r"line_types.pipe.wall: .*must lie between two diameters.*0\.35 m.*0\.4 m"),
         ({"inner_diameter": 0.0}, "line_types.pipe.wall: .*needs an inner diameter"),
@@ -188,8 +188,8 @@ def test_in_a_plane_torque_is_not_recorded(tmp_path: Path) -> None:
         ({"max_tension": 0.0}, "line_types.pipe.max_tension: .*greater than 0"),
     ],
 )
-def test_what_is_refused(change: Mapping, told: str) -> None:
-    with pytest.raises(SceneError, match=told):
+def test_what_is_refused(change: Mapping, reported: str) -> None:
+    with pytest.raises(SceneError, match=reported):
         scene_from_mapping(hanging(STEEL | change))
 
 

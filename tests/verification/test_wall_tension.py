@@ -55,11 +55,11 @@ def test_a_full_pipe_in_air_carries_its_contents_by_its_lower_end(dimension: int
 
 def test_the_foot_of_a_submerged_pipe_is_pressed_by_the_water() -> None:
     """T_w = -p_o A_o at a closed free end, whatever is above it; at the top the dry weight less that force."""
-    told = settled(hanging(-10.0, water={"density": RHO, "surface_level": 0.0}))
-    foot = RHO * G * -told.position[-1, 2] * A_OUT
-    assert told.effective_tension[-1] == pytest.approx(0.0, abs=1e-6 * foot)
-    assert told.wall_tension[-1] == pytest.approx(-foot, rel=1e-9)
-    assert told.wall_tension[0] == pytest.approx(MASS * G * L - RHO * G * (10.0 + L) * A_OUT, rel=1e-9)
+    reported = settled(hanging(-10.0, water={"density": RHO, "surface_level": 0.0}))
+    foot = RHO * G * -reported.position[-1, 2] * A_OUT
+    assert reported.effective_tension[-1] == pytest.approx(0.0, abs=1e-6 * foot)
+    assert reported.wall_tension[-1] == pytest.approx(-foot, rel=1e-9)
+    assert reported.wall_tension[0] == pytest.approx(MASS * G * L - RHO * G * (10.0 + L) * A_OUT, rel=1e-9)
 
 
 def test_the_level_of_the_contents_can_be_given() -> None:
@@ -70,10 +70,10 @@ def test_the_level_of_the_contents_can_be_given() -> None:
 
 
 def test_above_the_water_nothing_presses_from_outside() -> None:
-    told = settled(hanging(30.0, water={"density": RHO, "surface_level": 0.0}))
-    z = told.position[:, 2]
-    assert np.array_equal(told.wall_tension[z > 0.0], told.effective_tension[z > 0.0])
-    pressed = told.effective_tension - told.wall_tension
+    reported = settled(hanging(30.0, water={"density": RHO, "surface_level": 0.0}))
+    z = reported.position[:, 2]
+    assert np.array_equal(reported.wall_tension[z > 0.0], reported.effective_tension[z > 0.0])
+    pressed = reported.effective_tension - reported.wall_tension
     assert pressed[z < 0.0] == pytest.approx(-RHO * G * z[z < 0.0] * A_OUT, rel=1e-9)
 
 
@@ -82,10 +82,10 @@ def test_at_a_joint_the_areas_are_the_means_of_both_sides() -> None:
     scene["line_types"]["thin"] = PIPE | {"inner_diameter": 0.1}
     half = {"length": 0.5 * L, "elements": 4}
     scene["riser"]["segments"] = [{"line_type": "pipe"} | half, {"line_type": "thin"} | half]
-    told = settled(scene)
+    reported = settled(scene)
     areas = np.r_[np.full(4, A_IN), 0.5 * (A_IN + 0.25 * A_IN), np.full(4, 0.25 * A_IN)]
-    pressure = 1.0e6 - OIL * G * told.position[:, 2]
-    assert told.wall_tension - told.effective_tension == pytest.approx(pressure * areas, rel=1e-9)
+    pressure = 1.0e6 - OIL * G * reported.position[:, 2]
+    assert reported.wall_tension - reported.effective_tension == pytest.approx(pressure * areas, rel=1e-9)
 
 
 def finished(scene: Mapping, folder: Path) -> Run:

@@ -1,0 +1,130 @@
+"""Key results of a run, by stage: what an engineer reads first in its summary, and what its error is part of.
+
+In a static stage they are the values at its end, in others the extremes over the stage; the soil's settlement is
+the largest over the stage in both, as far as the soil was recorded.
+
+Errors are told relative to a scale, at least the value's own size and never less than a floor, as a quantity that
+passes through zero has no relative error:
+
+| quantity | floor of its scale |
+|---|---|
+| forces | 0.1 of the largest key result force of the stage |
+| arc length of the touchdown point | the distance of the riser's ends, as an arc counts from anywhere |
+| bending moment | 1e-9 of that largest force times that distance, above round-off alone |
+| curvature, settlement | 1e-6 over that distance, 1e-7 of it, likewise |
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from riser_soil.core.outputs import upper_end
+
+FORCE_FLOOR = 0.1  # of the largest key result force
+MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
+
+Reported = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class KeyResult:
+    """A key result of one stage: value and floor of its scale in `unit` (SI).
+
+    figure, which: the summary's figure that it is, and whether its min or max; of a static stage, the value at its end.
+    """
+
+    stage: str
+    name: str
+    unit: str
+    value: float
+    floor: float
+    figure: str = ""
+    which: str = ""
+
+    @property
+    def scale(self) -> float:
+        """What errors are told relative to, in `unit`."""
+        return max(abs(self.value), self.floor)
+
+    @property
+    def key(self) -> str:
+        """What it is called among those of a run."""
+        return f"{self.stage}: {self.name}"
+
+    def relative(self, difference: float) -> float:
+        """Size of a difference in `unit` over the scale; 0 for none, inf where there is no scale."""
+        if difference == 0.0:
+            return 0.0
+        return abs(difference) / self.scale if self.scale > 0.0 else math.inf
+
+
+def key_results(summary: Reported) -> dict[str, KeyResult]:
+    """Key results by their keys, stage by stage, of a summary.json's content; those that it has."""
+    return {each.key: each for stage in summary["stages"] if stage["final"] is not None for each in _of_stage(stage)}
+
+
+def _of_stage(stage: Reported) -> list[KeyResult]:
+    final, values = stage["final"], list(_values(stage))
+    length = math.dist(final["start"]["position"], final["end"]["position"])
+    force = max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
+    floors = {"N": FORCE_FLOOR * force, "N.m": MOMENT_FLOOR * force * length, "m": SETTLEMENT_FLOOR * length}
+    floors["1/m"] = CURVATURE_FLOOR / length if length > 0.0 else 0.0
+
+    def floor(name: str, unit: str) -> float:
+        return length if name.endswith("arc") else floors[unit]
+
+    return [
+        KeyResult(stage["name"], name, unit, value, floor(name, unit), figure, which)
+        for name, unit, value, figure, which in values
+    ]
+
+
+Known = tuple[str, str, float, str, str]
+
+
+def _values(stage: Reported) -> Iterator[Known]:
+    """Name, unit, value, figure, and min or max of the known ones."""
+    upper = upper_end(stage["final"])
+    for name, unit, path, which in (
+        ("top tension", "N", (upper, "effective_tension"), "max"),
+        ("force at start", "N", ("start", "resultant_force"), "max"),
+        ("force at end", "N", ("end", "resultant_force"), "max"),
+        ("largest bending moment", "N.m", ("max_bending_moment",), "max"),
+        ("largest curvature", "1/m", ("max_curvature",), "max"),
+        ("least effective tension", "N", ("min_effective_tension",), "min"),
+    ):
+        yield from _known(name, unit, _value(stage, path, which), ".".join(path), which)
+    yield from _contact(stage)
+
+
+def _contact(stage: Reported) -> Iterator[Known]:
+    """Those of a riser that touches; one that never does has no touchdown point, and a contact force of 0."""
+    if stage["kind"] == "static":
+        yield from _known("touchdown arc", "m", _value(stage, ("touchdown_arc",), "max"), "touchdown_arc", "max")
+    else:
+        for which, word in (("min", "least"), ("max", "largest")):
+            value = _value(stage, ("touchdown_arc",), which)
+            yield from _known(f"{word} touchdown arc", "m", value, "touchdown_arc", which)
+    force = _value(stage, ("contact_force",), "max")
+    yield from _known("largest contact force", "N", force if force else None, "contact_force", "max")
+    settled = stage.get("soil", {}).get("max_settlement", {}).get("value")
+    yield from _known("soil settlement", "m", settled, "max_settlement", "max")
+
+
+def _known(name: str, unit: str, value: float | None, figure: str, which: str) -> Iterator[Known]:
+    if value is not None and math.isfinite(value):
+        yield name, unit, value, figure, which
+
+
+def _value(stage: Reported, path: tuple[str, ...], which: str) -> float | None:
+    """A figure at the end of a static stage, or an extreme, min or max, of another; None where there is none."""
+    static = stage["kind"] == "static"
+    found: Any = stage["final" if static else "extremes"]
+    for key in path:
+        found = found.get(key) if found is not None else None
+    if isinstance(found, dict):
+        found = found["value" if static else which]
+    return found

@@ -1,0 +1,78 @@
+"""Refinement series of a study: how fine its points are, setting by setting around the scene's own settings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from riser_soil.accuracy.settings import Setting, settings_reported, varied
+from riser_soil.accuracy.study_points import Factors
+from riser_soil.scene.scene import Scene
+
+RATIOS = {"elements": 2.0, "time_step": 2.0, "soil_mesh": 2.0 ** (1.0 / 3.0), "penalty": 10.0**0.5}
+"""From level to level: the soil's cells grow in number by the cube, so that each level about doubles a run's cost; the
+penalty costs little and its error falls with its inverse."""
+SAME = 0.01  # two levels closer than that, by rounding, are one
+
+
+@dataclass(frozen=True, eq=False)
+class Refinements:
+    """The settings of a study and how fine their levels are; the scene is the point (1, 1, ...).
+
+    levels: of each setting, of which half (rounded down) are finer than the scene.
+    """
+
+    scene: Scene
+    settings: tuple[Setting, ...]
+    levels: int = 5
+
+    @property
+    def base(self) -> Factors:
+        """The scene as it is."""
+        return (1.0,) * len(self.settings)
+
+    @cached_property
+    def factors(self) -> tuple[tuple[float, ...], ...]:
+        """Of each setting, from coarse to fine; those that rounding makes equal are there once."""
+        finer = self.levels // 2
+        exponents = range(finer + 1 - self.levels, finer + 1)
+        powers = ([RATIOS[setting.name] ** n for n in exponents] for setting in self.settings)
+        return tuple(self._distinct(number, factors) for number, factors in enumerate(powers))
+
+    @property
+    def corner(self) -> Factors | None:
+        """All settings one level finer at once, which tells whether their errors add up; None of a single setting."""
+        return tuple(RATIOS[setting.name] for setting in self.settings) if len(self.settings) > 1 else None
+
+    def along(self, number: int) -> list[Factors]:
+        """Points of one setting's refinement series, from coarse to fine; the others are as in the scene."""
+        return [self.turned(number, factor) for factor in self.factors[number]]
+
+    def turned(self, number: int, factor: float) -> Factors:
+        return tuple(factor if n == number else 1.0 for n in range(len(self.settings)))
+
+    def scene_at(self, point: Factors) -> Scene:
+        """SceneError where a setting can't be turned so far."""
+        scene = self.scene
+        for setting, factor in zip(self.settings, point, strict=True):
+            scene = varied(scene, setting, factor)
+        return scene
+
+    def reported(self, point: Factors) -> str:
+        """The settings in words."""
+        return settings_reported(self.scene_at(point), self.settings)
+
+    def fineness(self, number: int, factor: float) -> float:
+        """Of a level over the scene's, after counts are rounded."""
+        setting = self.settings[number]
+        return setting.fineness(varied(self.scene, setting, factor)) / setting.fineness(self.scene)
+
+    def _distinct(self, number: int, factors: Sequence[float]) -> tuple[float, ...]:
+        """The scene's own level stays, of the others the first of those that are equal."""
+        kept = {1.0: 1.0}
+        for factor in sorted(factors, key=lambda f: max(f, 1.0 / f)):
+            fine = self.fineness(number, factor)
+            if all(abs(fine - other) > SAME * other for other in kept.values()):
+                kept[factor] = fine
+        return tuple(sorted(kept))

@@ -1,0 +1,244 @@
+"""Settings of a scene that its accuracy hangs on, and the scene with one of them turned.
+
+A setting is turned by a factor of fineness: 2 gives twice the elements, half the time step (automatic steps: the
+tolerance that halves them, an eighth), cells of the soil of half the size, twice the penalty. A setting that a scene
+lacks is not among its settings: soil of a mesh file has no mesh to vary, a bed of springs or of hysteretic clay no
+penalty.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from riser_soil.core.quantities import MOST_ELEMENTS
+from riser_soil.errors import SceneError
+from riser_soil.scene.riser import Segment
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import RigidSeabed
+from riser_soil.scene.soil import CellSizes, GeneratedMesh, MeshFile
+from riser_soil.scene.stages import DynamicStage, Stage
+
+LOCAL_ORDER = 3  # of the local error of automatic steps in their size
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """A setting of a scene that costs time and gives accuracy.
+
+    there: whether a scene has it. turned: the scene with it finer by a factor. fineness: of the scene in it, in units
+    of its own (elements, 1/s, 1/m, N/m2); its ratio between two scenes is what was reached where counts are rounded.
+    reported: the setting in words.
+    """
+
+    name: str
+    words: str
+    there: Callable[[Scene], bool]
+    turned: Callable[[Scene, float], Scene]
+    fineness: Callable[[Scene], float]
+    reported: Callable[[Scene], str]
+
+
+def settings_of(scene: Scene) -> tuple[Setting, ...]:
+    """Those that the scene has."""
+    return tuple(setting for setting in SETTINGS if setting.there(scene))
+
+
+def varied(scene: Scene, setting: Setting, factor: float) -> Scene:
+    """The scene with the setting finer by a factor, the scene itself for 1; SceneError where that can't be.
+
+    Stage names, loads, block and all else stay. What is `auto` is turned as the number that it stands for.
+    """
+    if factor == 1.0:
+        return scene
+    turned = setting.turned(resolved(scene), factor)
+    if turned.riser.element_count > MOST_ELEMENTS:
+        raise SceneError(f"{setting.words}, {factor:g} times as fine: more than {MOST_ELEMENTS} elements")
+    return turned
+
+
+def settings_reported(scene: Scene, settings: Iterable[Setting] | None = None) -> str:
+    """Settings of the scene in words; settings: those to tell, all that it has by default."""
+    return ", ".join(setting.reported(scene) for setting in (settings_of(scene) if settings is None else settings))
+
+
+def resolved(scene: Scene) -> Scene:
+    """The scene with numbers where settings are `auto`; nothing else changes by that.
+
+    Of soil beside a rigid seabed both get the larger of their penalties.
+    """
+    return _with_stiffness(_with_tolerance(_with_sizes(scene)))
+
+
+def _with_sizes(scene: Scene) -> Scene:
+    from riser_soil.assembly import sized
+
+    return sized(scene)
+
+
+def _with_tolerance(scene: Scene) -> Scene:
+    if not any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages):
+        return scene
+    from riser_soil.assembly.assembly import AUTO_TOLERANCE
+    from riser_soil.assembly.riser import elements_of
+    from riser_soil.assembly.scales import scales_of
+
+    tolerance = AUTO_TOLERANCE * scales_of(elements_of(scene)).diameter
+
+    def with_number(stage: Stage) -> Stage:
+        if not isinstance(stage, DynamicStage) or stage.time_step != "auto" or stage.tolerance is not None:
+            return stage
+        return stage.model_copy(update={"tolerance": tolerance})
+
+    return scene.model_copy(update={"stages": tuple(with_number(stage) for stage in scene.stages)})
+
+
+def _with_stiffness(scene: Scene) -> Scene:
+    if not _has_penalty(scene) or scene.contact is None or scene.contact.stiffness != "auto":
+        return scene
+    from riser_soil.assembly.ground import stiffnesses
+    from riser_soil.assembly.riser import elements_of
+    from riser_soil.assembly.scales import scales_of
+
+    of_each = stiffnesses(scene, scene.contact, scales_of(elements_of(scene)))
+    if not isinstance(scene.seabed, RigidSeabed):
+        of_each.pop("seabed", None)  # a bed of springs has its own
+    contact = scene.contact.model_copy(update={"stiffness": max(of_each.values())})
+    return scene.model_copy(update={"contact": contact})
+
+
+def _has_steps(scene: Scene) -> bool:
+    return any(isinstance(stage, DynamicStage) for stage in scene.stages)
+
+
+def _has_soil_mesh(scene: Scene) -> bool:
+    return scene.soil is not None and not isinstance(scene.soil.mesh, MeshFile)
+
+
+def _has_penalty(scene: Scene) -> bool:
+    return scene.soil is not None or isinstance(scene.seabed, RigidSeabed)
+
+
+def _finer_elements(scene: Scene, factor: float) -> Scene:
+    segments = tuple(_cut(segment, factor) for segment in scene.riser.segments)
+    return scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": segments})})
+
+
+def _cut(segment: Segment, factor: float) -> Segment:
+    """At least one element is left; graded lengths stay graded."""
+    if segment.elements is not None:
+        return segment.model_copy(update={"elements": max(1, round(segment.elements * factor))})
+    given = segment.element_length
+    assert given is not None
+    finer = tuple(x / factor for x in given) if isinstance(given, tuple) else given / factor
+    return segment.model_copy(update={"element_length": finer})
+
+
+def _shorter_steps(scene: Scene, factor: float) -> Scene:
+    return scene.model_copy(update={"stages": tuple(_stepped(stage, factor) for stage in scene.stages)})
+
+
+def _stepped(stage: Stage, factor: float) -> Stage:
+    """A given step is at most the stage's duration."""
+    if not isinstance(stage, DynamicStage):
+        return stage
+    if stage.time_step != "auto":
+        return stage.model_copy(update={"time_step": min(stage.time_step / factor, stage.duration)})
+    assert stage.tolerance is not None  # resolved
+    return stage.model_copy(update={"tolerance": stage.tolerance / factor**LOCAL_ORDER})
+
+
+def _finer_soil(scene: Scene, factor: float) -> Scene:
+    """All sizes of the cells; the strip where they do not grow keeps its width."""
+    soil = scene.soil
+    assert soil is not None
+    assert isinstance(soil.mesh, GeneratedMesh)  # resolved
+    at = soil.mesh.size_at_riser
+    if isinstance(at, CellSizes):
+        finer: CellSizes | float = CellSizes(along=at.along / factor, across=at.across / factor, strip=soil.mesh.strip)
+    else:
+        finer = at / factor
+    mesh = soil.mesh.model_copy(update={"size_at_riser": finer, "size_far": soil.mesh.size_far / factor})
+    return scene.model_copy(update={"soil": soil.model_copy(update={"mesh": mesh})})
+
+
+def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
+    contact = scene.contact
+    assert contact is not None
+    stiffness = _penalty(scene) * factor
+    made = {"stiffness": stiffness} | _corner(scene, stiffness)
+    return scene.model_copy(update={"contact": contact.model_copy(update=made)})
+
+
+def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
+    """Of a rigid seabed so stiff that the automatic corner would be wider than what the riser sinks in by its weight:
+    just that, also where it was that before.
+
+    Where an end is held on the seabed a wider one presses the riser by a force that grows with the penalty, to no
+    limit.
+    """
+    from riser_soil.assembly.ground import NARROWEST_CORNER
+    from riser_soil.assembly.riser import elements_of
+    from riser_soil.assembly.scales import scales_of
+
+    contact = scene.contact
+    if contact is None or scene.soil is not None:
+        return {}
+    scales = scales_of(elements_of(scene))
+    width, at_rest = contact.smoothing, scales.weight / stiffness
+    if width == "auto":
+        return {"smoothing": at_rest} if at_rest < NARROWEST_CORNER * scales.diameter else {}
+    follows = math.isclose(float(width) * _penalty(scene), scales.weight, rel_tol=1e-6)
+    return {"smoothing": at_rest} if follows else {}
+
+
+def _penalty(scene: Scene) -> float:
+    """Force per length and penetration [N/m2]."""
+    contact = _with_stiffness(scene).contact
+    assert contact is not None
+    return float(contact.stiffness)
+
+
+def _across(scene: Scene) -> float:
+    """Size of the cells across the riser [m]."""
+    soil = _with_sizes(scene).soil
+    assert soil is not None
+    assert isinstance(soil.mesh, GeneratedMesh)
+    return soil.mesh.across
+
+
+def _first_steps(scene: Scene) -> DynamicStage:
+    return next(stage for stage in _with_tolerance(scene).stages if isinstance(stage, DynamicStage))
+
+
+def _steps_per_time(scene: Scene) -> float:
+    """Of the first dynamic stage [1/s]; of automatic steps up to a factor that stays."""
+    stage = _first_steps(scene)
+    if stage.time_step != "auto":
+        return 1.0 / float(stage.time_step)
+    assert stage.tolerance is not None
+    return float(stage.tolerance ** (-1.0 / LOCAL_ORDER))
+
+
+def _steps_reported(scene: Scene) -> str:
+    stage = _first_steps(scene)
+    automatic = stage.time_step == "auto"
+    return f"time_step auto, tolerance {stage.tolerance:.4g} m" if automatic else f"time_step {stage.time_step:.4g} s"
+
+
+SETTINGS = (
+    Setting(
+        "elements", "elements of the riser", lambda scene: True, _finer_elements,
+        lambda scene: float(scene.riser.element_count), lambda scene: f"{scene.riser.element_count} elements",
+    ),
+    Setting("time_step", "time step", _has_steps, _shorter_steps, _steps_per_time, _steps_reported),
+    Setting(
+        "soil_mesh", "mesh of the soil", _has_soil_mesh, _finer_soil,
+        lambda scene: 1.0 / _across(scene), lambda scene: f"soil cells of {_across(scene):.4g} m across the riser",
+    ),
+    Setting(
+        "penalty", "penalty of contact", _has_penalty, _stiffer_penalty, _penalty,
+        lambda scene: f"contact.stiffness {_penalty(scene):.4g} N/m2",
+    ),
+)  # fmt: skip

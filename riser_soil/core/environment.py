@@ -1,0 +1,22 @@
+"""Environment of a run: versions of its packages, and variables of a process that this one starts for itself."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+
+# A child that saw its parent's MPI rank in these would take itself for that rank.
+_MPI = ("OMPI_", "PMIX_", "PMI_", "HYDRA_", "SLURM_")
+_PACKAGES = ("numpy", "scipy", "numba", "petsc4py", "mpi4py", "h5py", "dolfinx")
+
+
+def environment_alone() -> dict[str, str]:
+    """This process's environment without what MPI told it."""
+    return {name: value for name, value in os.environ.items() if not name.startswith(_MPI)}
+
+
+def versions() -> dict[str, str]:
+    """Version by name; of the packages those that this process has imported: a riser without soil has no dolfinx."""
+    there = {name: sys.modules[name] for name in _PACKAGES if name in sys.modules}
+    return {"python": platform.python_version()} | {name: module.__version__ for name, module in there.items()}
