@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.contact.soil_friction import SoilFriction
 from riser_soil.contact.surface_contact import SurfaceContact
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Renewing
 from riser_soil.core.saved_state import Saved, Stateful
@@ -78,7 +78,16 @@ class MeshRenewal:
     def _renewed_line(self, line: Array, sections: Sections, state: State) -> Array:
         top, gaps = spread(line, sections.columns, self._contact.gaps(line, state))
         brought = self._contact.brought_to(top, gaps, state)
-        return refilled(line, brought, gaps > CLEAR * self._contact.radius, sections.across)
+        clear = CLEAR * self._contact.radius
+        return self._refilled(line, brought, gaps > clear, sections.across, clear, state)
+
+    def _refilled(
+        self, line: Array, top: Array, free: BoolArray, across: int, clear: float, state: State
+    ) -> Array:
+        """See `refilled`; a node that would be raised to the pipe stays."""
+        out = refilled(line, top, free, across)
+        close = free & (self._contact.gaps(out, state) < clear)
+        return self._refilled(line, top, free & ~close, across, clear, state) if close.any() else out
 
     def state(self) -> Saved:
         return {"count": np.array(self.count), "lost": np.array(self._lost)}

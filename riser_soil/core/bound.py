@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.core import event
 from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
@@ -91,7 +90,7 @@ def _compiled(kernel: Any, kinds: Any) -> Any:
     calling.__module__ = kernel.py_func.__module__
     calling.__qualname__ = calling.__name__ = f"{kernel.py_func.__name__}_{mark(kinds)}"
     entry: Any = CFunc(calling, ((types.intp,), types.void), {}, OPTIONS)
-    with caching_in(str(FOLDER)), event.trigger_event("numba:compile"):
+    with caching_in(str(FOLDER)):
         entry._cache = EntryCache(calling)
         entry.compile()
     return entry

@@ -17,10 +17,12 @@ from typing import Any
 from llvmlite import ir
 from llvmlite.binding import parse_assembly
 from numba import config
+from numba.core import event
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.runtime import rtsys
 
 PACKAGE = Path(__file__).parents[1]
+COMPILING = "numba:compile"  # the event of it
 
 
 class MachineCode(CompileResultCacheImpl):
@@ -73,7 +75,14 @@ class EntryCache(FunctionCache):
     _impl_class = MachineCode
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        return _loaded(self, sig, target_context)
+        found = _loaded(self, sig, target_context)
+        if found is None:
+            event.start_event(COMPILING)  # until it is saved
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        event.end_event(COMPILING)
+        super().save_overload(sig, data)
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         return codegen.magic_tuple()

@@ -1,4 +1,4 @@
-"""Wave components, a sea state as a sum of long-crested linear waves, and their dispersion relation."""
+"""Wave components: a sea state as a sum of long-crested linear waves."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.sea.dispersion import wave_number
 
 
 class Components(NamedTuple):
@@ -52,20 +53,3 @@ def regular(height: float, period: float, direction: float, phase: float, g: flo
     """A single wave from trough to crest of `height` [m], with `period` [s], in water of depth h [m]; angles in rad."""
     w = np.array([2.0 * np.pi / period])
     return Components(np.array([0.5 * height]), w, wave_number(w, g, h), np.array([direction]), np.array([phase]))
-
-
-def wave_number(w: Array, g: float, h: float) -> Array:
-    """Wave numbers k [rad/m] of angular frequencies w [rad/s] in water of depth h [m], which may be inf.
-
-    Root of w^2 = g k tanh k h: Guo's explicit formula (Coastal Engineering 45, 2002, 71-74), wrong by 0.75 % at most,
-    and Newton's method from there to round-off.
-    """
-    deep = w * w / g
-    if np.isinf(h):
-        return deep
-    y = deep * h
-    x = y * (-np.expm1(-(y**1.245))) ** (-1.0 / 2.490)
-    for _ in range(3):
-        tanh = np.tanh(x)
-        x = x - (x * tanh - y) / (tanh + x * (1.0 - tanh * tanh))
-    return x / h

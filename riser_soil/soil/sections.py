@@ -89,10 +89,10 @@ def refilled(line: Array, top: Array, free: BoolArray, across: int) -> Array:
     along[1:-1] = 0.5 * (after[2:] - after[:-2])
     width = np.linalg.norm(along, axis=1)
     ways = np.where(free & (width > 0.0), np.linalg.norm(after - before, axis=1), 0.0)
-    lost, workspace = _below(before) - _below(after), float(ways @ width)
-    if workspace == 0.0:
+    lost, swept = _below(before) - _below(after), float(ways @ width)
+    if swept == 0.0:
         return top
-    raised = ways * min(max(lost / workspace, -0.5), 0.5)
+    raised = ways * min(max(lost / swept, -0.5), 0.5)
     out, up = top.copy(), along / np.where(width > 0.0, width, 1.0)[:, None]
     out[:, across] -= raised * up[:, 1]
     out[:, 2] += raised * up[:, 0]

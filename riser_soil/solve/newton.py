@@ -464,4 +464,3 @@ class Newton:
 
     def destroy(self) -> None:
         self.loop.destroy()
-        del self.loop  # which refers to this: what both hold is freed now, not some time later

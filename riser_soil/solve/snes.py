@@ -159,6 +159,7 @@ class SnesLoop:
     def destroy(self) -> None:
         self.release()
         self.linear.forget()
+        del self._balance  # which refers to this: what both hold is freed now, not some time later
 
     def release(self) -> None:
         """Let go of the matrix, in whose place another is to come."""

@@ -69,7 +69,8 @@ class Energies(StatelessObserver):
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """A step just committed; its kinetic energy is that of the pipe as it moves."""
-        by_contact = sum(step.turned[each].dissipated for each in ("seabed", "contact") if each in step.turned)
+        taking = [step.turned[each] for each in ("seabed", "contact", "new mesh") if each in step.turned]
+        by_contact = sum(work.dissipated for work in taking)
         self._rows.append((stepper.energy.total, step.work, step.dissipated, by_contact))
         self.cuts += step.cuts
 
@@ -93,7 +94,7 @@ class Energies(StatelessObserver):
 
     @property
     def by_contact(self) -> Array:
-        """What the contact dissipated in each step."""
+        """What the contact dissipated in each step, with new meshes, which move the surface under it."""
         return np.array(self._rows)[:, 3]
 
     def report(self) -> str:

@@ -315,7 +315,7 @@ def _wait_for_steps(folder: Path, process: subprocess.Popen[bytes]) -> None:
 
 def test_recording_imports_no_drawing() -> None:
     code = (
-        "import sys; from riser_soil.results import progress, read, record, screen\n"
+        "import sys; from riser_soil.results import read, record, screen\n"
         "heavy = {'pyvista', 'vtk', 'vtkmodules', 'matplotlib', 'scipy', 'dolfinx', 'xarray', 'pandas'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )

@@ -59,7 +59,7 @@ def test_tangles_in_a_plane_are_those_of_the_line() -> None:
 
 def test_a_step_that_ends_in_a_tangle_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = walked("surge in a plane", "compiled", 1)
-    monkeypatch.setattr(PackedRiser, "tangled", (1, 1))
+    monkeypatch.setattr(PackedRiser, "folding", (1, 1))
     with pytest.raises(NotConvergedError, match="folded at arc"):
         stage.newton.solve(stage.stepper.next_step(stage.control))
 

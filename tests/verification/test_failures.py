@@ -45,7 +45,10 @@ def reported(done: subprocess.CompletedProcess[str]) -> str:
     return mine[0]
 
 
-PLACE = re.compile(r"sits at the (riser node at arc [\d.]+ m|soil (node|surface) at \([-\d., e]+\) m), \w+")
+AT = r"at \([-\d., e]+\) m"
+PLACE = re.compile(
+    rf"sits at the (riser node at arc [\d.]+ m|soil (node|surface) {AT}), \w+|cell of the soil {AT} would fold"
+)
 
 
 @RANKS

@@ -101,7 +101,10 @@ def test_what_balances_a_new_mesh_leaves_no_matrix_behind(monkeypatch: pytest.Mo
     monkeypatch.setattr(step_solver, "System", remembered)
     gc.disable()
     try:
-        steps(on_sections("auto", tolerance=1e-7))
+        scene = on_sections("auto", tolerance=1e-7)
+        scene["stages"][-1]["motion"]["end"]["harmonic"]["amplitude"] = [0.0, 0.0, 1.5]
+        scene["stages"][-1]["duration"] = 1.2
+        steps(scene)
         assert len(made) > 1
         assert not [system for system in made if system() is not None]
     finally:
