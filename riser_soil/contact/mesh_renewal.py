@@ -84,7 +84,7 @@ class MeshRenewal:
     def _refilled(
         self, line: Array, top: Array, free: BoolArray, across: int, clear: float, state: State
     ) -> Array:
-        """See `refilled`; a node that would be raised to the pipe stays."""
+        """See `refilled`; a node that would be raised to within `clear` of the pipe [m] stays."""
         out = refilled(line, top, free, across)
         close = free & (self._contact.gaps(out, state) < clear)
         return self._refilled(line, top, free & ~close, across, clear, state) if close.any() else out

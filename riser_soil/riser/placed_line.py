@@ -22,7 +22,7 @@ class LineBase:
         self._updated: Array | None = None  # the places of its nodes as they were then
 
     def update(self) -> None:
-        """Bring it to where the line is accepted now; a line that is accepted elsewhere has other arrays."""
+        """Write where the line is accepted now; a line that is accepted elsewhere has other arrays."""
         if self._updated is not self._line.x:
             for kept, given in zip(self.packed.value, base_of(self._line), strict=True):
                 kept[...] = given
