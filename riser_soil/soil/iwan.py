@@ -68,8 +68,8 @@ class IwanOverlay(UndrainedClay):
         strain, slope = self._backbone()
         share = slope - np.append(slope[1:], 0.0)
         bends = share > STRAIGHT  # points in one line with their neighbours are no corners
-        moduli = share[bends] * shear[:, None]
-        return Overlay(bulk, moduli, np.sqrt(3.0) * moduli * strain[bends], limit, initial, self.rate)
+        first, corners = share[bends].sum(), strain[bends] / np.sqrt(3.0)
+        return Overlay(bulk, first * shear, share[bends] / first, corners, limit, initial, self.rate)
 
     def _backbone(self) -> tuple[Array, Array]:
         """Shear strains of the corners, the last one where the stress is su, and slopes before them over G0, (N,)."""
@@ -90,15 +90,17 @@ class IwanOverlay(UndrainedClay):
 
 @dataclass(frozen=True, eq=False)
 class Overlay:
-    """Bulk modulus (n,); shear moduli and largest equivalent stresses of the elements (n, N), the latter of the sum
-    `limit` (n,), in slow shear; initial stress (n, 6) [Pa].
+    """Bulk modulus (n,), shear modulus of the backbone's first side (n,), largest equivalent stress in slow shear (n,)
+    and initial stress (n, 6) [Pa]. Of each element its share of the shear modulus and the equivalent strain at which it
+    yields (N,).
 
     History (n, 7 + 6 N): stress, equivalent plastic strain, deviators of the elements.
     """
 
     bulk: Array
-    moduli: Array
-    limits: Array
+    shear: Array
+    shares: Array
+    corners: Array
     limit: Array
     initial: Array
     rate: Rate | None = None
@@ -109,17 +111,22 @@ class Overlay:
         return self.rate is not None
 
     @cached_property
-    def shear(self) -> Array:
-        """Shear modulus (n,) of clay in which no element yields [Pa]: that of the backbone's first side."""
-        return self.moduli.sum(axis=1)
+    def moduli(self) -> Array:
+        """Shear moduli of the elements (n, N) [Pa]."""
+        return self.shear[:, None] * self.shares
+
+    @cached_property
+    def limits(self) -> Array:
+        """Largest equivalent stresses of the elements (n, N) in slow shear [Pa]."""
+        return 3.0 * self.moduli * self.corners
 
     @property
     def columns(self) -> tuple[str, ...]:
-        own = (f"element_{i + 1}{name[6:]}" for i in range(self.moduli.shape[1]) for name in STRESS)
+        own = (f"element_{i + 1}{name[6:]}" for i in range(len(self.shares)) for name in STRESS)
         return (*STRESS, PLASTIC_STRAIN, *own)
 
     def start(self) -> Array:
-        of_elements = self._first.reshape(len(self.limit), 6 * self.moduli.shape[1])
+        of_elements = self._first.reshape(len(self.limit), 6 * len(self.shares))
         return np.column_stack((self.initial, np.zeros(len(self.limit)), of_elements))
 
     @cached_property
@@ -127,52 +134,50 @@ class Overlay:
         """Deviators (n, N, 6) of elements as loaded in proportion to the initial stress: the backbone at its q."""
         s = mandel.deviator(self.initial)
         q = np.sqrt(1.5 * mandel.product(s, s))
-        corners = self.limits / (3.0 * self.moduli)  # equivalent strains
-        strain = np.array([self._strain_at(*point) for point in zip(q, corners, self.moduli, strict=True)], dtype=float)
-        of_each = np.minimum(3.0 * self.moduli * strain[:, None], self.limits)
+        backbone = np.minimum(self.corners[:, None], self.corners) @ (3.0 * self.shares)  # q over the shear modulus
+        strain = np.interp(q / self.shear, np.append(0.0, backbone), np.append(0.0, self.corners))
+        of_each = 3.0 * self.moduli * np.minimum(strain[:, None], self.corners)
         return of_each[:, :, None] * (s / np.where(q > 0.0, q, 1.0)[:, None])[:, None, :]
-
-    @staticmethod
-    def _strain_at(q: float, corners: Array, moduli: Array) -> float:
-        stress = np.minimum(corners[:, None], corners) @ (3.0 * moduli)
-        return float(np.interp(q, np.append(0.0, stress), np.append(0.0, corners)))
 
     def update(
         self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
     ) -> StressUpdate:
+        e, before = mandel.deviator(strain_increment), history[:, :6]
+        after = history.copy()
+        q, elements = np.empty(self.moduli.shape), after[:, 7:]
+        kernels.stretch_elements(self.moduli, e, elements, q)
         limits = np.reshape(strength, (-1, 1)) * self.limits
-        n, e = len(self.limit), mandel.deviator(strain_increment)
-        trial = history[:, 7:].reshape(n, self.moduli.shape[1], 6) + 2.0 * self.moduli[:, :, None] * e[:, None, :]
-        q = np.sqrt(1.5 * np.einsum("nki,nki->nk", trial, trial))
         shrink, slope = gain_of(self.rate, dt).radial_return(q, limits, 3.0 * self.moduli)
-        s = shrink[:, :, None] * trial
-        before = history[:, :6]
-        change = s.sum(axis=1) - mandel.deviator(before)
-        pressed = 3.0 * (self.bulk * mandel.mean(strain_increment))[:, None] * mandel.UNIT
-        stress = before + change + pressed
+        s, stored, tangent = self._returned(elements, q, shrink, slope)
+        change = s - mandel.deviator(before)
+        stress = before + change + 3.0 * (self.bulk * mandel.mean(strain_increment))[:, None] * mandel.UNIT
         plastic = e - change / (2.0 * self.shear)[:, None]
-        slip = history[:, 6] + np.sqrt(2.0 / 3.0 * mandel.product(plastic, plastic))
+        after[:, :6] = stress
+        after[:, 6] += np.sqrt(2.0 / 3.0 * mandel.product(plastic, plastic))
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
-        stored = self._stored(stress, s) - self._stored_first - mandel.product(self.initial, elastic)
-        after = np.column_stack((stress, slip, s.reshape(n, history.shape[1] - 7)))
-        return StressUpdate(stress, self._tangent(trial, q, shrink, slope), after, stored, elastic)
+        stored += self._volumetric(stress) - self._stored_first - mandel.product(self.initial, elastic)
+        return StressUpdate(stress, tangent, after, stored, elastic)
+
+    def _returned(self, elements: Array, q: Array, shrink: Array, slope: Array) -> tuple[Array, Array, Array]:
+        """Of trials (n, 6N), which become what stays of them: deviator (n, 6), energy of all (n,), and the tangent
+        K 1⊗1 + Σ 2 Gi (θi P - (θi - slope) n⊗n where it yields).
+        """
+        tangent = mandel.stiffness(self.bulk, np.einsum("nk,nk->n", self.moduli, shrink))
+        yields = shrink < 1.0
+        weight = np.where(yields, 3.0 * self.moduli * (shrink - slope) / np.where(yields, q, 1.0) ** 2, 0.0)
+        s, stored = np.zeros((len(q), 6)), np.zeros(len(q))
+        kernels.return_elements(shrink, weight, self.moduli, elements, s, stored, tangent)
+        return s, stored, tangent
 
     @cached_property
     def _stored_first(self) -> Array:
-        return self._stored(self.initial, self._first)
+        """Elastic energy (n,) [J/m3] of elements and volume at the start."""
+        of_elements = np.einsum("nki,nki,nk->n", self._first, self._first, 0.25 / self.moduli)
+        return of_elements + self._volumetric(self.initial)
 
-    def _stored(self, stress: Array, s: Array) -> Array:
-        """Elastic energy of all elements and of the volume (n,) [J/m3]."""
-        of_elements = np.einsum("nki,nki,nk->n", s, s, 0.25 / self.moduli)
-        return of_elements + 0.5 * mandel.mean(stress) ** 2 / self.bulk
-
-    def _tangent(self, trial: Array, q: Array, shrink: Array, slope: Array) -> Array:
-        """K 1⊗1 + Σ 2 Gi (θi P - (θi - slope) n⊗n where it yields)."""
-        moduli = mandel.stiffness(self.bulk, np.einsum("nk,nk->n", self.moduli, shrink))
-        yields = shrink < 1.0
-        weight = np.where(yields, 3.0 * self.moduli * (shrink - slope) / np.where(yields, q, 1.0) ** 2, 0.0)
-        kernels.subtract_products(weight, trial, moduli)
-        return moduli
+    def _volumetric(self, stress: Array) -> Array:
+        """Elastic energy of the volume (n,) [J/m3]."""
+        return 0.5 * mandel.mean(stress) ** 2 / self.bulk
 
     def overstress(self, stress: Array) -> Array:
         return mandel.von_mises(stress) / self.limit

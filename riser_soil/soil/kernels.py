@@ -6,6 +6,8 @@ nc cells, nq quadrature points, nn nodes a cell; `full` (nc, nq, nn, 3), `volume
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
@@ -143,16 +145,40 @@ def _product(weight: float, C: Array, B: Array, CB: Array) -> None:
 
 
 @njit
-def subtract_products(weights: Array, tensors: Array, out: Array) -> None:
-    """Subtract Σ w a⊗a, of weights (n, N) and tensors a (n, N, 6), from out (n, 6, 6)."""
-    for n in range(weights.shape[0]):
-        for k in range(weights.shape[1]):
-            w, a = weights[n, k], tensors[n, k]
-            if w == 0.0:
-                continue
+def stretch_elements(moduli: Array, e: Array, s: Array, q: Array) -> None:
+    """Elastic trials of elements in parallel: deviators s (n, 6N) grow by 2G e, of moduli G (n, N) and one deviatoric
+    strain increment e (n, 6) for all; their equivalent stresses are written to q (n, N).
+    """
+    for n in range(q.shape[0]):
+        for k in range(q.shape[1]):
+            twice, square = 2.0 * moduli[n, k], 0.0
+            for i in range(6 * k, 6 * k + 6):
+                s[n, i] += twice * e[n, i - 6 * k]
+                square += s[n, i] ** 2
+            q[n, k] = math.sqrt(1.5 * square)
+
+
+@njit
+def return_elements(
+    shrink: Array, weights: Array, moduli: Array, s: Array, sums: Array, energy: Array, C: Array
+) -> None:
+    """Shares `shrink` (n, N) of trials s (n, 6N) stay. Added: the deviators that stay to sums (n, 6), their energy
+    s:s/4G to energy (n,); subtracted: Σ w s⊗s of the trials, of weights w (n, N), from the moduli C (n, 6, 6).
+    """
+    for n in range(shrink.shape[0]):
+        for k in range(shrink.shape[1]):
+            w, left, square = weights[n, k], shrink[n, k], 0.0
+            trial = s[n, 6 * k : 6 * k + 6]
+            if w != 0.0:
+                for i in range(6):
+                    for j in range(6):
+                        C[n, i, j] -= w * trial[i] * trial[j]
             for i in range(6):
-                for j in range(6):
-                    out[n, i, j] -= w * a[i] * a[j]
+                stays = left * trial[i]
+                trial[i] = stays
+                sums[n, i] += stays
+                square += stays**2
+            energy[n] += 0.25 / moduli[n, k] * square
 
 
 @njit
