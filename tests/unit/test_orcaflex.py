@@ -112,6 +112,7 @@ def test_the_tension_at_rest_is_the_catenarys(tmp_path: Path) -> None:
     assert tension == pytest.approx(weight * (low + height), rel=2e-3)
 
 
+@pytest.mark.verify
 @pytest.mark.parametrize("name", ["JONSWAP", "Airy"])
 def test_the_imported_scene_runs(name: str, tmp_path: Path) -> None:
     text = changed(("WaveType: Airy", f"WaveType: {name}\n      WaveHs: 1\n      WaveTz: 8\n      WaveGamma: 2"))

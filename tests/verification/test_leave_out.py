@@ -121,6 +121,8 @@ def test_what_a_scene_lacks_takes_part_in_no_step(name: str) -> None:
     """
     scene = mapping(name)
     scene["stages"][1]["duration"] = 0.5
+    if "soil" in scene:
+        scene["soil"]["mesh"]["size_at_riser"] = 1.0
     assembly = built(scene)
     first, second = assembly.scene.stages
     before = run_stage(assembly, first, State.at_rest(0.0, assembly.size), IterationCounter(), Timer.new())

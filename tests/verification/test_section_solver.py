@@ -15,6 +15,7 @@ from scipy.sparse import csr_matrix
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
+from riser_soil.results import Run
 from riser_soil.solve import section_factors, step_solver
 from riser_soil.solve.section_factors import SectionFactors
 from riser_soil.solve.section_solver import SectionSolver
@@ -118,9 +119,14 @@ def test_a_rank_without_sections_takes_part(tmp_path: Path) -> None:
     np.testing.assert_allclose(two["position"], one["position"], rtol=0.0, atol=1e-8)
 
 
-@pytest.mark.parametrize("ranks", [1, 2, pytest.param(3, marks=pytest.mark.verify)])
-def test_runs_are_the_same_on_any_number_of_ranks(ranks: int, tmp_path: Path) -> None:
-    direct = ran(on_sections("direct"), tmp_path / "direct")
+@pytest.fixture(scope="module")
+def direct(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """By the general solver."""
+    return ran(on_sections("direct"), tmp_path_factory.mktemp("direct") / "run")
+
+
+@pytest.mark.parametrize("ranks", [2, *(pytest.param(n, marks=pytest.mark.verify) for n in (1, 3))])
+def test_runs_are_the_same_on_any_number_of_ranks(ranks: int, direct: Run, tmp_path: Path) -> None:
     sections = ran(on_sections("auto"), tmp_path / "sections", ranks)
     for name in COMPARED:
         scale = np.nanmax(np.abs(direct[name]))
