@@ -16,7 +16,7 @@ from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.shape import least_bend
 from riser_soil.assembly.soil_block import condensed_of
-from riser_soil.assembly.stage import dynamic_parts, loads_of, prescribe_spin
+from riser_soil.assembly.stage import contents_of, dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field, Model, Part
@@ -229,6 +229,7 @@ class Assembly:
         set_motions(self.line, stage, self.vessels, origins)
         prescribe_spin(self.scene, self.line, stage)
         parts = [*self.riser_parts, *loads_of(self.scene, self.line, stage)]
+        parts += contents_of(self.scene, self.line, self.elements, stage)
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)

@@ -34,6 +34,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "riser": "",
         "springs": "" if sprung else "no end has a rotational spring",
         "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
+        "contents": _no_contents(scene),
         "loads": "" if any(s.loads for s in scene.stages) or tensioned else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "no stage is dynamic",
         "rotary inertia": _no_rotary_inertia(scene),
@@ -61,7 +62,7 @@ SPLIT = {
     "seabed": ("seabed", "seabed_time_scheme"),
     "contact": ("contact", "contact_time_scheme"),
 }
-WORKING = ("loads", "morison", "vortices", "buoyancy")
+WORKING = ("loads", "contents", "morison", "vortices", "buoyancy")
 
 
 def dissipating(scene: Scene) -> tuple[str, ...]:
@@ -81,6 +82,13 @@ def _in_ledger(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
 
 def has_dynamics(scene: Scene) -> bool:
     return any(s.kind == "dynamic" for s in scene.stages)
+
+
+def _no_contents(scene: Scene) -> str:
+    given = scene.riser.contents
+    if given is None:
+        return "the riser is empty"
+    return "" if given.uneven_or_moving else "even contents at rest count in the riser's mass and weight"
 
 
 def _no_cushion(scene: Scene) -> str:

@@ -98,6 +98,7 @@ def _rows_in_chunk(variable: Variable, sizes: Mapping[str, int | None]) -> int:
 
 
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
+    "contents": "contents that flow or are uneven",
     "morison": "drag and other forces of the water's motion",
     "vortices": "force of shed vortices across the flow",
     "buoyancy": "buoyancy in waves",

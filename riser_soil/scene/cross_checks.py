@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from riser_soil.core.quantities import Vector
+from riser_soil.scene.contents_checks import contents_conflicts
 from riser_soil.scene.end_checks import end_conflicts, hang_off_conflicts
 from riser_soil.scene.ground_checks import feature_conflicts, ground_conflicts
 from riser_soil.scene.layout import initial_ends
@@ -140,12 +141,6 @@ def _attachments_fit(scene: Scene) -> Iterator[Problem]:
                 yield Problem((*path, key), "acts in water only, and the scene has no water", remedy)
 
 
-def _contents_fit(scene: Scene) -> Iterator[Problem]:
-    if scene.riser.contents and not any(line.inner_diameter for line in scene.used_line_types.values()):
-        remedy = "give inner_diameter in line_types, or leave out contents"
-        yield Problem(("riser", "contents"), "no line type of the riser has room for contents", remedy)
-
-
 def _stays_in_plane(scene: Scene) -> Iterator[Problem]:
     if scene.dimension == 2:
         for path in leaving_the_plane(scene):
@@ -263,7 +258,7 @@ _CHECKS: tuple[_Check, ...] = (
     _water_where_it_acts,
     _pressure_on_walls_known,
     _attachments_fit,
-    _contents_fit,
+    contents_conflicts,
     _stays_in_plane,
     ground_conflicts,
     _initial_shape_possible,

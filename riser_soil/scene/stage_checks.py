@@ -146,6 +146,8 @@ def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
     path, remedy = ("stages", n, "scheme"), "choose another scheme"
     if scene.contact:
         yield Problem(path, "the midpoint rule would make energy out of contact", remedy)
+    if scene.riser.contents is not None and scene.riser.contents.uneven_or_moving:
+        yield Problem(path, "the midpoint rule has no contents that flow or are uneven", remedy)
     for key, motion in stage.motion.by_end.items() if stage.motion else ():
         end = getattr(scene.riser, key)
         if isinstance(end, Support) and end.rotation == "fixed" and motion.turns:
