@@ -29,6 +29,9 @@ def stage_conflicts(scene: Scene) -> Iterator[Problem]:
         for m, load in enumerate(stage.loads):
             yield from _load_on_riser(scene, ("stages", n, "loads", m), load)
             yield from _moment_on_chain(scene, ("stages", n, "loads", m), load)
+        if stage.pressure is not None and scene.riser.contents is None:
+            remedy = "add riser.contents: {density: ...}, or leave it out"
+            yield Problem(("stages", n, "pressure"), "is that of the contents, and the riser is empty", remedy)
         if isinstance(stage, DynamicStage):
             yield from _dynamic(scene, n, stage)
         else:
