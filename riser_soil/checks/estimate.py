@@ -42,7 +42,8 @@ WITHIN = 1.3  # memory is, times or over this, what it is foretold to be
 
 # Parts whose tangents are not symmetric, so that the soil's factor is twice as large.
 UNSYMMETRIC = {
-    *("inertia", "rotary inertia", "structural damping", "contents", "morison", "vortices"),
+    *("inertia", "rotary inertia", "structural damping", "contents", "morison"),
+    *("vortices", "vortices in line"),
     *("friction", "soil friction"),
 }
 

@@ -91,7 +91,7 @@ def _diameter_needed(scene: Scene, line: LineType) -> str | None:
         return "rotary inertia follows from the diameters, unless it is given in kg.m"
     if scene.water and scene.water.marine_growth:
         return "marine growth lies around the outer diameter"
-    if line.drag or line.added_mass or line.sheds:
+    if line.drag or line.added_mass or line.sheds or line.strakes:
         return "drag, added mass and vortices follow from the outer diameter"
     if scene.contact and scene.contact_at == "outer":
         return "the pipe's outer surface touches the ground, unless seabed.contact_at is axis"
@@ -111,7 +111,7 @@ def _water_where_it_acts(scene: Scene) -> Iterator[Problem]:
     for name, line in scene.used_line_types.items():
         given = {"drag": line.drag, "added_mass": line.added_mass}
         acting = {key: each is not None and each.acts for key, each in given.items()}
-        for key, acts in (acting | {"vortex_force": line.sheds}).items():
+        for key, acts in (acting | {"vortex_force": line.sheds, "strakes": line.strakes is not None}).items():
             if acts and not scene.water:
                 remedy = f"add water: {{density: 1025.0}}, or leave out {key}"
                 yield Problem(

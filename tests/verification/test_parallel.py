@@ -42,7 +42,7 @@ def scene(name: str) -> Mapping:
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
     if name == "vortices":
         shaken = in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
-        shaken["line_types"]["pipe"] |= {"GJ": 2.0e3, "vortex_force": {}}
+        shaken["line_types"]["pipe"] |= {"GJ": 2.0e3, "vortex_force": {"in_line": {"coefficient": 0.2}}}
         return shaken
     if name == "slugs":
         filled = in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}

@@ -18,7 +18,8 @@ from tests.support.sinking_pipe import sinking
 ROOT = Path(__file__).parents[2]
 MIDPOINT = "stages.1.scheme={midpoint: {}}"
 IN_SPACE = ("dimension=3", "line_types.flexible.GJ=4.0e4")
-VORTICES = ("water.current={profile: [[0.0, 0.8, 0.1]]}", "line_types.flexible.vortex_force={}")
+SHAKEN = "line_types.flexible.vortex_force={in_line: {coefficient: 0.2}}"
+VORTICES = ("water.current={profile: [[0.0, 0.8, 0.1]]}", SHAKEN)
 SLUG = "slugs: [{density: 800.0, length: 12.0, spacing: 40.0, front: 90.0}]"
 SLUGS = f"riser.contents={{density: 90.0, speed: 8.0, {SLUG}}}"
 STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
