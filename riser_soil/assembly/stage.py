@@ -124,11 +124,11 @@ def dynamic_parts(
 def contents_of(scene: Scene, line: Line, elements: Elements, stage: Stage) -> list[Part]:
     """The part of contents that flow or are uneven in a stage, if there are any.
 
-    In a first static stage they grow with the load factor, as a current does; then slugs stand where the clock of the
-    dynamic stages has them.
+    In a first static stage they grow with the load factor, as a current does, but where a scene begins with the end of
+    another run. In stages without time slugs stand where the clock of the dynamic stages has them.
     """
     runs, first = isinstance(stage, DynamicStage), stage.name == scene.stages[0].name
-    grows = isinstance(stage, StaticStage) and first
+    grows = isinstance(stage, StaticStage) and first and scene.initial is None
     return contents_at(scene, line, elements, wave_clock(scene, stage), runs=runs, grows=grows)
 
 

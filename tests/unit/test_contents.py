@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eig
 
+from riser_soil.assembly.stage import contents_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State, Weights
 from riser_soil.errors import SceneError
@@ -22,7 +23,7 @@ from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.scene.scene import Scene
+from riser_soil.scene.scene import Initial, Scene
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent
 from tests.support.driven_stage import built
@@ -234,6 +235,20 @@ def test_nothing_is_built_where_nothing_flows() -> None:
     slug = {"density": 900.0, "length": 5.0}
     for more in ({"speed": 2.0}, {"slugs": [slug | {"front": 5.0}]}, {"speed": -1.0, "slugs": [slug]}):
         assert "contents" in parts_of({"density": 850.0} | more)
+
+
+def test_they_grow_in_the_first_static_stage_but_not_after_another_run() -> None:
+    slug = {"density": 900.0, "length": 5.0, "front": 30.0}
+    assembly = built(scene({"density": 850.0, "slugs": [slug]}, stages=(static("first"), static("second"))))
+    goes_on = assembly.scene.model_copy(update={"initial": Initial.model_construct()})
+    first, second = assembly.scene.stages
+    weights = []
+    for given, stage in ((assembly.scene, first), (assembly.scene, second), (goes_on, first)):
+        (part,) = contents_of(given, assembly.line, assembly.elements, stage)
+        assert isinstance(part, InnerFlow)
+        weights.append(matrices_of(part, 0.25).weight.sum())
+    assert weights[1] > 0.0
+    assert weights == pytest.approx([0.25 * weights[1], weights[1], weights[1]])
 
 
 SLUG: Mapping = {"density": 900.0, "length": 5.0}
