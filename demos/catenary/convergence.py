@@ -1,4 +1,4 @@
-"""Convergence of case 3.1 in element length and time step, with run times: the tables of README.md.
+"""Convergence of case 3.1 in element length and time step, with run times: the tables of convergence.md.
 
 Usage, in the project's folder: python -m demos.catenary.convergence [--elements 35 70 …] [--steps 0.2 0.1 …] [--page]
 The lists must double and halve from item to item. Three minutes as they stand; runs go to `results` beside this file.
@@ -18,7 +18,7 @@ from demos.compute import compute
 from demos.page import publish, table
 from riser_soil.results.stage_records import peak
 
-SCENE, PAGE = HERE / "scene.yaml", HERE / "README.md"
+SCENE, PAGE = HERE / "scene.yaml", HERE / "convergence.md"
 ELEMENTS, STEPS = (35, 70, 140, 280, 560), (0.2, 0.1, 0.05, 0.025, 0.0125, 0.00625)
 # Those of one list are computed with this member of the other.
 STEP, COUNT = 0.025, 140

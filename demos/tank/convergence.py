@@ -1,4 +1,4 @@
-"""Convergence of the swinging hose in elements, time step and contact stiffness, with run times: tables of README.md.
+"""Convergence of the swinging hose in elements, step and contact stiffness, with run times: tables of convergence.md.
 
 Usage, in the project's folder: python -m demos.tank.convergence [--elements 50 100 …] [--steps 0.1 0.05 …] [--page]
 The lists must double and halve from item to item. Three minutes as they stand; runs go to `results` beside this file.
@@ -14,7 +14,7 @@ from demos.page import publish, table
 from demos.tank.statics import HERE
 from demos.tank.swing import EXTREMES, FORCES, MOMENT, TOUCHDOWN, Swing, error, orders, swing
 
-PAGE = HERE / "README.md"
+PAGE = HERE / "convergence.md"
 ELEMENTS, STEPS, STIFFNESSES = (50, 100, 200, 400), (0.1, 0.05, 0.025, 0.0125), (1e5, 1e6, 1e7, 1e8)
 # Those of one list are computed with these members of the others.
 COUNT, STEP, STIFFNESS = 200, 0.025, 1e7

@@ -16,7 +16,7 @@ from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.shape import least_bend
 from riser_soil.assembly.soil_block import condensed_of
-from riser_soil.assembly.stage import dynamic_parts, loads_of, prescribe_spin
+from riser_soil.assembly.stage import contents_of, dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field, Model, Part
@@ -27,7 +27,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage, pressure_in
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
@@ -59,7 +59,7 @@ class Assembly:
     vessels: those that carry ends, None where there are none.
     condensed: linear soil as it is solved for, in the place of `soil`, whose state is then that of `recovered_soil`.
     start_places: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow
-    from it.
+    from it. stage: the last one begun.
     """
 
     scene: Scene
@@ -81,6 +81,7 @@ class Assembly:
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
     start_places: dict[str, Array] = field(default_factory=dict)
+    stage: Stage | None = None
 
     @property
     def ground_fields(self) -> list[Field]:
@@ -226,9 +227,11 @@ class Assembly:
         self.start_places = dict(saved)
 
     def _enter(self, stage: Stage, origins: Array) -> Model:
+        self.stage = stage
         set_motions(self.line, stage, self.vessels, origins)
         prescribe_spin(self.scene, self.line, stage)
         parts = [*self.riser_parts, *loads_of(self.scene, self.line, stage)]
+        parts += contents_of(self.scene, self.line, self.elements, stage)
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
@@ -239,6 +242,13 @@ class Assembly:
         if self.condensed is not None:
             with_soil = [*on_ground, *self.soil_parts]
         return Model([self.line], [*parts, *with_soil], self.ground_fields)
+
+    def pressure_change(self, t: float) -> float:
+        """How much higher the pressure inside [Pa] is at t of the present stage than the contents' own."""
+        given = self.scene.riser.contents
+        if given is None or self.stage is None:
+            return 0.0
+        return pressure_in(self.scene.stages, self.stage, t, given.pressure) - given.pressure
 
     def moved(self, t0: float, t1: float) -> float:
         """How far the end that the present stage moves farthest [m] is at t1 from where it is at t0."""

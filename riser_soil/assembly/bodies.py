@@ -48,9 +48,9 @@ class Body(ABC):
         """Whether it has added mass."""
 
     @property
-    def shedding(self) -> Shedding | None:
-        """Its vortices, of a body that sheds any."""
-        return None
+    def shedding(self) -> dict[bool, Shedding]:
+        """Its vortices, by whether they push in line with the flow; empty where there are none."""
+        return {}
 
     @property
     def reynolds(self) -> ReynoldsTables | None:
@@ -108,13 +108,14 @@ class PipeInWater(Body):
         return self.tables
 
     @property
-    def shedding(self) -> Shedding | None:
-        coefficient, middle, width = self.elements.vortices.T.copy()
-        if not coefficient.any():
-            return None
+    def shedding(self) -> dict[bool, Shedding]:
+        given = {False: self.elements.vortices, True: self.elements.in_line_vortices}
+        return {in_line: self._shedding(values) for in_line, values in given.items() if values[:, 0].any()}
+
+    def _shedding(self, given: Array) -> Shedding:
         from riser_soil.sea.vortex_law import Shedding
 
-        diameter = self.elements.outer_diameter
+        (coefficient, middle, width), diameter = given.T.copy(), self.elements.outer_diameter
         return Shedding(0.5 * self.rho * diameter * coefficient, diameter, middle, width)
 
     @property

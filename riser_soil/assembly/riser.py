@@ -92,9 +92,8 @@ def _line_type(given: LineType) -> sections.SectionProperties:
     formed: dict[str, Any] = {
         "EI_y": EI_y,
         "EI_z": EI_z,
-        "drag": (given.drag.normal or 0.0, given.drag.tangential) if given.drag else (0.0, 0.0),
+        "drag": (given.normal_drag, given.drag.tangential if given.drag else 0.0),
         "added_mass": (given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
-        "vortices": tuple(given.vortex_force.model_dump().values()) if given.vortex_force else (0.0, 0.0, 0.0),
         "rotary_inertia": None if given.rotary_inertia is True else float(given.rotary_inertia),
         "damping": given.damping.time if given.damping else 0.0,
         "wall_outer_diameter": outer,

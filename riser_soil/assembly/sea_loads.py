@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 def sea_loads(
     scene: Scene, line: Line, elements: Elements, stage: Stage, attachments: Sequence[PointAttachment] = ()
 ) -> list[Part]:
-    """The parts "morison", "vortices" and "buoyancy" of a stage, of the pipe and of the modules on it."""
+    """The parts "morison", "vortices", "vortices in line" and "buoyancy" of a stage, of the pipe and its modules."""
     if scene.water is None:
         return []
     bodies: list[Body] = [PipeInWater(scene.water.density, line, elements, tables_of(scene, scene.water, elements))]
@@ -67,8 +67,8 @@ class _BodyLoads:
             yield self.morison
             if (tables := self.body.reynolds) is not None:
                 yield self._reynolds_drag(tables)
-        if (shedding := self.body.shedding) is not None and isinstance(self.stage, DynamicStage):
-            yield self._vortices(shedding)
+        if isinstance(self.stage, DynamicStage):
+            yield from (self._vortices(shedding, in_line) for in_line, shedding in self.body.shedding.items())
         if self.surface is not None:
             yield self.buoyancy
 
@@ -132,10 +132,10 @@ class _BodyLoads:
 
         return reynolds_drag(self._through(dissipative=self.stream is None), tables)
 
-    def _vortices(self, shedding: Shedding) -> Vortices:
+    def _vortices(self, shedding: Shedding, in_line: bool) -> Vortices:
         from riser_soil.sea.vortices import Vortices
 
-        return Vortices(self._through(dissipative=False), shedding)
+        return Vortices(self._through(dissipative=False), shedding, in_line)
 
     @property
     def buoyancy(self) -> Buoyancy:

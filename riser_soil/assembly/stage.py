@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from riser_soil.assembly.riser import spins_freely
-from riser_soil.assembly.sea import current_times
+from riser_soil.assembly.sea import current_times, wave_clock
 from riser_soil.core.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
@@ -20,6 +20,7 @@ from riser_soil.scene.stages import (
     MidpointScheme,
     NewmarkScheme,
     Stage,
+    StaticStage,
     TimedStage,
     loads_in,
 )
@@ -118,6 +119,35 @@ def dynamic_parts(
 
         parts.append(StructuralDamping(line, elements))
     return parts
+
+
+def contents_of(scene: Scene, line: Line, elements: Elements, stage: Stage) -> list[Part]:
+    """The part of contents that flow or are uneven in a stage, if there are any.
+
+    In a first static stage they grow with the load factor, as a current does, but where a scene begins with the end of
+    another run. In stages without time slugs stand where the clock of the dynamic stages has them.
+    """
+    runs, first = isinstance(stage, DynamicStage), stage.name == scene.stages[0].name
+    grows = isinstance(stage, StaticStage) and first and scene.initial is None
+    return contents_at(scene, line, elements, wave_clock(scene, stage), runs=runs, grows=grows)
+
+
+def contents_at(
+    scene: Scene, line: Line, elements: Elements, clock: float, runs: bool = False, grows: bool = False
+) -> list[Part]:
+    """The same at a reading of the clock [s]; runs: whether it goes on, grows: whether forces do, see `Flow`."""
+    given = scene.riser.contents
+    if given is None or not given.uneven_or_moving:
+        return []
+    from riser_soil.riser.contents import Flow, InnerFlow, SlugTrain
+
+    fronts = [given.front_of(each, scene.riser.length) for each in given.slugs]
+    slugs = [
+        SlugTrain(each.density - given.density, each.length, front, each.spacing or 0.0)
+        for each, front in zip(given.slugs, fronts, strict=True)
+    ]
+    flow = Flow(given.density, given.speed, slugs, scene.gravity, clock, runs, grows)
+    return [InnerFlow(line, elements.inner_diameter, flow)]
 
 
 def _inertia(line: Line, elements: Elements, attachments: Sequence[PointAttachment]) -> list[Part]:

@@ -41,7 +41,11 @@ PER_LAYER = 60.0  # bytes of the factors of an unknown in a section, whose band 
 WITHIN = 1.3  # memory is, times or over this, what it is foretold to be
 
 # Parts whose tangents are not symmetric, so that the soil's factor is twice as large.
-UNSYMMETRIC = {"inertia", "rotary inertia", "structural damping", "morison", "vortices", "friction", "soil friction"}
+UNSYMMETRIC = {
+    *("inertia", "rotary inertia", "structural damping", "contents", "morison"),
+    *("vortices", "vortices in line"),
+    *("friction", "soil friction"),
+}
 
 # Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes,
 # somewhat more than one.

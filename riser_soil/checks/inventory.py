@@ -34,12 +34,14 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "riser": "",
         "springs": "" if sprung else "no end has a rotational spring",
         "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
+        "contents": _no_contents(scene),
         "loads": "" if any(s.loads for s in scene.stages) or tensioned else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "no stage is dynamic",
         "rotary inertia": _no_rotary_inertia(scene),
         "structural damping": _no_structural_damping(scene),
         "morison": _no_morison(scene),
         "vortices": _no_vortices(scene),
+        "vortices in line": _no_vortices_in_line(scene),
         "buoyancy": _no_buoyancy(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
         "friction": _no_friction(scene, "seabed"),
@@ -61,7 +63,7 @@ SPLIT = {
     "seabed": ("seabed", "seabed_time_scheme"),
     "contact": ("contact", "contact_time_scheme"),
 }
-WORKING = ("loads", "morison", "vortices", "buoyancy")
+WORKING = ("loads", "contents", "morison", "vortices", "vortices in line", "buoyancy")
 
 
 def dissipating(scene: Scene) -> tuple[str, ...]:
@@ -81,6 +83,13 @@ def _in_ledger(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
 
 def has_dynamics(scene: Scene) -> bool:
     return any(s.kind == "dynamic" for s in scene.stages)
+
+
+def _no_contents(scene: Scene) -> str:
+    given = scene.riser.contents
+    if given is None:
+        return "the riser is empty"
+    return "" if given.uneven_or_moving else "even contents at rest count in the riser's mass and weight"
 
 
 def _no_cushion(scene: Scene) -> str:
@@ -134,7 +143,8 @@ def _no_morison(scene: Scene) -> str:
     if not has_dynamics(scene) and scene.water.current is None:
         return "no stage is dynamic, and still water does not load a riser at rest"
     types, attachments = scene.used_line_types.values(), scene.riser.attachments
-    resist = any(t.drag or t.added_mass for t in types) or any(a.drag_area or a.added_mass for a in attachments)
+    resist = any(t.drag or t.added_mass or t.strakes for t in types)
+    resist = resist or any(a.drag_area or a.added_mass for a in attachments)
     changes = scene.water.current is not None and scene.water.current.history is not None
     if resist or ((scene.water.waves or changes) and has_dynamics(scene)):
         return ""
@@ -144,7 +154,14 @@ def _no_morison(scene: Scene) -> str:
 def _no_vortices(scene: Scene) -> str:
     if not has_dynamics(scene):
         return "no stage is dynamic"
-    return "" if any(t.sheds for t in scene.used_line_types.values()) else "no line type has a vortex_force"
+    return "" if any(t.vortices[0] for t in scene.used_line_types.values()) else "no line type has a vortex_force"
+
+
+def _no_vortices_in_line(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "no stage is dynamic"
+    acts = any(t.in_line_vortices[0] for t in scene.used_line_types.values())
+    return "" if acts else "no line type has a vortex_force.in_line"
 
 
 def _no_buoyancy(scene: Scene) -> str:

@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.sea_loads import sea_loads
-from riser_soil.assembly.stage import dynamic_parts
+from riser_soil.assembly.stage import contents_at, dynamic_parts
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Model, Part, State, Weights
 from riser_soil.core.system import System, Timer
@@ -229,6 +229,7 @@ def _with_mass(assembly: Assembly) -> list[Part]:
     if scene.water is not None:
         scene = scene.model_copy(update={"water": scene.water.model_copy(update={"waves": None, "current": None})})
     parts = dynamic_parts(MOVING, line, elements, attached) + sea_loads(scene, line, elements, MOVING, attached)
+    parts += contents_at(scene, line, elements, clock=0.0)
     return [part for part in parts if "I" in part.traits.groups]
 
 

@@ -25,7 +25,7 @@ _DAMPING = -0.8  # of MoorDyn's own time steps: axial, over the critical one of 
 _STEP = 0.5  # over the time of the fastest element's own motion, 1/w; a step of explicit schemes is stable to about 2
 _HAS = re.compile(
     r"title|gravity|water\.(density|surface_level|depth)|line_types\.[^.]*\.(outer_diameter|mass|EA|EI\w*)"
-    r"|line_types\.[^.]*\.(inner_diameter|submerged_weight|drag\.\w+|added_mass\.\w+)"
+    r"|line_types\.[^.]*\.(inner_diameter|submerged_weight|drag\.\w+|added_mass\.\w+|strakes\.(drag|cover))"
     r"|riser\.segments\.\d+\.(line_type|length|elements)|riser\.attachments\.\d+\.\w+"
     r"|riser\.contents\.density|riser\.(start|end)(\.position)?"
     r"|seabed\.(kind|stiffness|level)|contact\.friction\.(axial|lateral)|stages\.\d+\.(name|kind)"
@@ -102,7 +102,7 @@ def _properties(scene: Scene, name: str, line: LineType) -> list[float]:
     filled = scene.riser.contents.density * math.pi / 4.0 * line.inner_diameter**2 if scene.riser.contents else 0.0
     if line.drag and line.drag.normal is None:
         raise SceneError(f"{path}.drag.by_reynolds: a deck has one coefficient across the line; give normal")
-    drag = (line.drag.normal or 0.0, line.drag.tangential) if line.drag else (0.0, 0.0)
+    drag = line.normal_drag, line.drag.tangential if line.drag else 0.0
     added = (line.added_mass.normal, line.added_mass.tangential) if line.added_mass else (0.0, 0.0)
     return [line.outer_diameter, line.mass + filled, line.EA, _DAMPING, about_y, drag[0], added[0], drag[1], added[1]]
 

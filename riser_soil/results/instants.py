@@ -41,10 +41,11 @@ class OnGround(NamedTuple):
 
 class Look(NamedTuple):
     """Vectors that later steps leave as they are: inside, see `SectionForces.within`, and of each contact, see
-    `ContactResults.within`.
+    `ContactResults.within`. pressure: change of that inside since the first stage began [Pa].
     """
 
     inside: Array
+    pressure: float
     contacts: tuple[Array, ...]
     ground: OnGround
 
@@ -72,7 +73,7 @@ class InstantReader:
             of_one = self._inside(inside[None])
             arc, _, _ = self._touchdown(of_one, self._found([own[None] for own in found]))
             self._sections.lay(of_one.position[0], of_one.tangent[0], float(arc[0]))
-        return Look(inside, found, self._ground(state))
+        return Look(inside, self._assembly.pressure_change(state.t), found, self._ground(state))
 
     def _ground(self, state: State) -> OnGround:
         wanted = self._fields if self._assembly.contacts else ()
@@ -89,7 +90,7 @@ class InstantReader:
         found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
         pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
         ground = mapped(lambda *values: np.stack(values), *(each.ground for each in looks))
-        riser = snapshot_of(self._assembly, inside, pressed)
+        riser = snapshot_of(self._assembly, inside, pressed, np.array([each.pressure for each in looks]))
         return Instant(self._assembly.line.arc, riser, self._touch(inside, found, ground))
 
     def _inside(self, numbers: Array) -> SectionForces:

@@ -98,8 +98,10 @@ def _rows_in_chunk(variable: Variable, sizes: Mapping[str, int | None]) -> int:
 
 
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
+    "contents": "contents that flow or are uneven",
     "morison": "drag and other forces of the water's motion",
     "vortices": "force of shed vortices across the flow",
+    "vortices_in_line": "force of shed vortices in line with the flow",
     "buoyancy": "buoyancy in waves",
     "contact": "contact of the riser with the soil",
     "soil_plasticity": "plastic flow of the soil",

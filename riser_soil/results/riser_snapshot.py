@@ -31,16 +31,21 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
     inside = SectionForces.within(look_inside(assembly, stepper), assembly.line.nodes)
     pressed = [contact.force_per_length(stepper.now) for contact in assembly.contacts]
-    return snapshot_of(assembly, inside, np.sum([np.zeros(assembly.line.nodes), *pressed], axis=0))
+    contact_force = np.sum([np.zeros(assembly.line.nodes), *pressed], axis=0)
+    return snapshot_of(assembly, inside, contact_force, assembly.pressure_change(stepper.now.t))
 
 
-def snapshot_of(assembly: Assembly, inside: SectionForces, contact_force: Array) -> RiserSnapshot:
-    """From its section forces and the contact force per length (nn,), at one instant or at many."""
+def snapshot_of(
+    assembly: Assembly, inside: SectionForces, contact_force: Array, pressure: Array | float
+) -> RiserSnapshot:
+    """From its section forces, the contact force per length (nn,) and the change of the pressure inside [Pa], at one
+    instant or at many.
+    """
     most_used, tightest = _tightest_bend(assembly, inside)
     return RiserSnapshot(
         position=inside.position,
         effective_tension=inside.effective_tension,
-        wall_tension=_wall_tension(assembly, inside),
+        wall_tension=_wall_tension(assembly, inside, pressure),
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
         bend_utilisation=_bend_utilisation(assembly, inside.curvature_beside),
@@ -58,7 +63,7 @@ def snapshot_of(assembly: Assembly, inside: SectionForces, contact_force: Array)
         start_tangent=inside.tangent[..., 0, 0, :],
         end_tangent=inside.tangent[..., -1, 1, :],
         tension_utilisation=_tension_utilisation(assembly, inside.effective_tension),
-        wall=_wall(assembly, inside),
+        wall=_wall(assembly, inside, pressure),
     )
 
 
@@ -95,10 +100,10 @@ def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[ExtremeAl
     return ExtremeAlong(used[()], arc[()]), radius[()]
 
 
-def _wall_tension(assembly: Assembly, inside: SectionForces) -> Array | None:
+def _wall_tension(assembly: Assembly, inside: SectionForces, pressure: Array | float) -> Array | None:
     if assembly.pressures is None:
         return None
-    return assembly.pressures.wall_tension(inside.effective_tension, inside.position[..., 2])
+    return assembly.pressures.wall_tension(inside.effective_tension, inside.position[..., 2], pressure)
 
 
 def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
@@ -112,18 +117,20 @@ def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
     return np.where(share > 0.0, tension * share, np.nan)
 
 
-def _wall(assembly: Assembly, inside: SectionForces) -> WallSnapshot | None:
+def _wall(assembly: Assembly, inside: SectionForces, pressure: Array | float) -> WallSnapshot | None:
     sections = assembly.wall_sections
     if sections is None:
         return None
 
-    return wall_snapshot(assembly, sections, inside)
+    return wall_snapshot(assembly, sections, inside, pressure)
 
 
-def wall_snapshot(assembly: Assembly, sections: WallSections, forces: SectionForces) -> WallSnapshot:
+def wall_snapshot(
+    assembly: Assembly, sections: WallSections, forces: SectionForces, pressure: Array | float
+) -> WallSnapshot:
     assert assembly.pressures is not None  # scenes with a wall are refused without
     wall, nodes = sections.wall, assembly.line.nodes
-    inside, outside = assembly.pressures.at(forces.position[..., 2])
+    inside, outside = assembly.pressures.at(forces.position[..., 2], pressure)
     about_axes = forces.about_axes * assembly.elements.bends_beside[:, None]
     torque, moment_y, moment_z = np.moveaxis(about_axes, -1, 0)
     loads = sections.loads(forces.effective_tension, moment_y, moment_z, torque, inside, outside)

@@ -24,7 +24,8 @@ class SectionProperties:
     one.
     drag and added_mass: (normal, tangential) coefficients of Morison's formula, see
     `riser_soil.sea.morison_law`. vortices: coefficient Cv of their force, middle and half width of the range of
-    frequencies that shedding locks to, see `riser_soil.sea.vortex_law`; zeros for none.
+    frequencies that shedding locks to, see `riser_soil.sea.vortex_law`; zeros for none. in_line_vortices: the same of
+    that in line with the flow.
     rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters. The inertia about
     the pipe's own axis follows, see `polar_inertia`.
     damping: s, ratio of viscous to elastic stiffness. min_bend_radius: m, the least that is allowed; 0 for any.
@@ -43,6 +44,7 @@ class SectionProperties:
     drag: tuple[float, float] = (0.0, 0.0)
     added_mass: tuple[float, float] = (0.0, 0.0)
     vortices: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    in_line_vortices: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rotary_inertia: float | None = 0.0
     damping: float = 0.0
     min_bend_radius: float = 0.0
@@ -88,9 +90,10 @@ class Surroundings:
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """Properties per element (ne,); drag and added_mass (ne, 2), vortices (ne, 3). mass includes the contents, weight
-    is submerged. rotary_inertia: kg m about an axis across the pipe, polar_inertia: about its own; damping: s, of
-    viscous over elastic stiffness.
+    """Properties per element (ne,); drag and added_mass (ne, 2), vortices and in_line_vortices (ne, 3).
+
+    mass includes the contents, weight is submerged. rotary_inertia: kg m about an axis across the pipe, polar_inertia:
+    about its own; damping: s, of viscous over elastic stiffness.
     min_bend_radius: m, the least that is allowed, max_tension: N and allowable_stress: Pa, the largest; 0 for any.
     wall_outer_diameter, wall_inner_diameter: m, of the wall that bears the stress, 0 where there is none.
     pipe_diameter: m, pipe_EI_y and pipe_EI_z: N m2, of the pipe without a bend stiffener around it.
@@ -108,6 +111,7 @@ class Elements:
     drag: Array
     added_mass: Array
     vortices: Array
+    in_line_vortices: Array
     rotary_inertia: Array
     polar_inertia: Array
     damping: Array

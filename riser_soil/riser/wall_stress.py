@@ -218,16 +218,22 @@ class Pressures:
     inner_diameter: Array
     outer_diameter: Array
 
-    def at(self, z: Array) -> tuple[Array, Array]:
-        """Pressure inside and outside [Pa] at heights [m]; 0 where there is no fluid."""
-        inside, outside = (np.zeros_like(z) if fluid is None else fluid.at(z) for fluid in (self.inside, self.outside))
-        return inside, np.maximum(outside, 0.0)
+    def at(self, z: Array, more: Array | float = 0.0) -> tuple[Array, Array]:
+        """Pressure inside and outside [Pa] at heights (..., nn) [m]; 0 where there is no fluid.
 
-    def wall_tension(self, effective: Array, z: Array) -> Array:
-        """N, positive in tension, from the effective tension [N] and the heights [m] of the nodes, each (..., nn)."""
+        more (...): pressure inside beyond that of the fluid [Pa], as when a stage changes it.
+        """
+        inside, outside = (np.zeros_like(z) if fluid is None else fluid.at(z) for fluid in (self.inside, self.outside))
+        return inside + np.asarray(more)[..., None], np.maximum(outside, 0.0)
+
+    def wall_tension(self, effective: Array, z: Array, more: Array | float = 0.0) -> Array:
+        """N, positive in tension, from the effective tension [N] and the heights [m] of the nodes, each (..., nn).
+
+        more: as of `at`.
+        """
         wall, (bore, around) = effective, self._areas
         if self.inside is not None:
-            wall = wall + self.inside.at(z) * bore
+            wall = wall + (self.inside.at(z) + np.asarray(more)[..., None]) * bore
         if self.outside is not None:
             wall = wall - np.maximum(self.outside.at(z), 0.0) * around
         return wall

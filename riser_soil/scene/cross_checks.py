@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from riser_soil.core.quantities import Vector
+from riser_soil.scene.contents_checks import contents_conflicts
 from riser_soil.scene.end_checks import end_conflicts, hang_off_conflicts
 from riser_soil.scene.ground_checks import feature_conflicts, ground_conflicts
 from riser_soil.scene.layout import initial_ends
@@ -90,7 +91,7 @@ def _diameter_needed(scene: Scene, line: LineType) -> str | None:
         return "rotary inertia follows from the diameters, unless it is given in kg.m"
     if scene.water and scene.water.marine_growth:
         return "marine growth lies around the outer diameter"
-    if line.drag or line.added_mass or line.sheds:
+    if line.drag or line.added_mass or line.sheds or line.strakes:
         return "drag, added mass and vortices follow from the outer diameter"
     if scene.contact and scene.contact_at == "outer":
         return "the pipe's outer surface touches the ground, unless seabed.contact_at is axis"
@@ -110,7 +111,7 @@ def _water_where_it_acts(scene: Scene) -> Iterator[Problem]:
     for name, line in scene.used_line_types.items():
         given = {"drag": line.drag, "added_mass": line.added_mass}
         acting = {key: each is not None and each.acts for key, each in given.items()}
-        for key, acts in (acting | {"vortex_force": line.sheds}).items():
+        for key, acts in (acting | {"vortex_force": line.sheds, "strakes": line.strakes is not None}).items():
             if acts and not scene.water:
                 remedy = f"add water: {{density: 1025.0}}, or leave out {key}"
                 yield Problem(
@@ -138,12 +139,6 @@ def _attachments_fit(scene: Scene) -> Iterator[Problem]:
             if getattr(given, key) > 0.0 and scene.water is None:
                 remedy = f"add water: {{density: 1025.0}}, or leave out {key}"
                 yield Problem((*path, key), "acts in water only, and the scene has no water", remedy)
-
-
-def _contents_fit(scene: Scene) -> Iterator[Problem]:
-    if scene.riser.contents and not any(line.inner_diameter for line in scene.used_line_types.values()):
-        remedy = "give inner_diameter in line_types, or leave out contents"
-        yield Problem(("riser", "contents"), "no line type of the riser has room for contents", remedy)
 
 
 def _stays_in_plane(scene: Scene) -> Iterator[Problem]:
@@ -263,7 +258,7 @@ _CHECKS: tuple[_Check, ...] = (
     _water_where_it_acts,
     _pressure_on_walls_known,
     _attachments_fit,
-    _contents_fit,
+    contents_conflicts,
     _stays_in_plane,
     ground_conflicts,
     _initial_shape_possible,

@@ -17,6 +17,7 @@ from riser_soil.core.quantities import (
     LengthOrNone,
     MassPerLength,
     NonNegative,
+    Part,
     Ratio,
     RotaryInertiaPerLength,
     Stress,
@@ -71,8 +72,24 @@ class AddedMass(BaseModel):
         return bool(self.normal or self.tangential)
 
 
+class InLineForce(BaseModel):
+    """Force of shed vortices in line with the flow."""
+
+    model_config = FROZEN
+
+    coefficient: Coefficient = Field(description="of the force, on the outer diameter [-]; 0: none")
+    frequency: Ratio | None = Field(
+        default=None,
+        description="middle of the frequencies that it locks to, times diameter over speed [-]; twice that across the "
+        "flow by default",
+    )
+    width: NonNegative | None = Field(
+        default=None, description="half the width of their range, below frequency [-]; twice that across by default"
+    )
+
+
 class VortexForce(BaseModel):
-    """Force of shed vortices across the flow."""
+    """Force of shed vortices across the flow, and in line with it."""
 
     model_config = FROZEN
 
@@ -81,12 +98,44 @@ class VortexForce(BaseModel):
         default=0.18, description="middle of the frequencies that shedding locks to, times diameter over speed [-]"
     )
     width: NonNegative = Field(default=0.08, description="half the width of their range, below frequency [-]")
+    in_line: InLineForce | None = Field(
+        default=None, description="force in line with the flow, {coefficient, frequency, width}; none by default"
+    )
 
     @model_validator(mode="after")
     def _frequencies_above_zero(self) -> Self:
         if self.width >= self.frequency:
             raise wrong("width", f"must be below frequency ({self.frequency:g})", "lower it")
+        _, frequency, width = self.of_in_line
+        if self.in_line is not None and width >= frequency:
+            raise wrong("in_line", f"its width ({width:g}) must be below its frequency ({frequency:g})", "lower it")
         return self
+
+    @property
+    def of_cross_flow(self) -> tuple[float, float, float]:
+        """Coefficient, middle and half width of the frequencies across the flow."""
+        return self.coefficient, self.frequency, self.width
+
+    @property
+    def of_in_line(self) -> tuple[float, float, float]:
+        """The same in line with it; coefficient 0 for none."""
+        given = self.in_line
+        if given is None:
+            return 0.0, 2.0 * self.frequency, 2.0 * self.width
+        frequency = 2.0 * self.frequency if given.frequency is None else given.frequency
+        return given.coefficient, frequency, 2.0 * self.width if given.width is None else given.width
+
+
+class Strakes(BaseModel):
+    """Helical strakes around the pipe, which keep vortices from shaking it."""
+
+    model_config = FROZEN
+
+    drag: Coefficient = Field(description="normal drag coefficient of the straked pipe, on the outer diameter [-]")
+    cover: Part = Field(default=1.0, description="share of the length that has strakes [-]")
+    suppression: Part = Field(
+        default=0.95, description="share of the vortices' force that strakes take away where they are [-]"
+    )
 
 
 class Damping(BaseModel):
@@ -174,8 +223,13 @@ class LineType(BaseModel):
     added_mass: AddedMass | None = Field(default=None, description="added mass coefficients; none by default")
     vortex_force: VortexForce | None = Field(
         default=None,
-        description="force of shed vortices across the flow, {coefficient, frequency, width}, in dynamic stages in "
-        "three dimensions; none by default, as for straked pipe",
+        description="force of shed vortices across the flow and in line with it, {coefficient, frequency, width, "
+        "in_line}, in dynamic stages in three dimensions; none by default",
+    )
+    strakes: Strakes | None = Field(
+        default=None,
+        description="helical strakes, {drag, cover, suppression}, by which there is more drag and less of the "
+        "vortex_force; none by default",
     )
     damping: Damping | None = Field(
         default=None, description="structural damping in motion, {ratio, frequency}; none by default"
@@ -240,10 +294,40 @@ class LineType(BaseModel):
             raise wrong("wall", "has a design_factor without a yield_stress", "give wall.yield_stress [Pa]")
         return self
 
+    @model_validator(mode="after")
+    def _one_drag_with_strakes(self) -> Self:
+        if self.strakes is not None and self.drag is not None and self.drag.by_reynolds is not None:
+            allowed = "strakes have one drag coefficient, and drag.by_reynolds has many"
+            raise wrong("strakes", allowed, "give drag.normal, or leave out strakes")
+        return self
+
+    @property
+    def normal_drag(self) -> float:
+        """Normal drag coefficient, strakes counted in; 0 where it goes by Reynolds's number."""
+        bare = (self.drag.normal or 0.0) if self.drag is not None else 0.0
+        if self.strakes is None:
+            return bare
+        return self.strakes.cover * self.strakes.drag + (1.0 - self.strakes.cover) * bare
+
+    @property
+    def vortices(self) -> tuple[float, float, float]:
+        """Coefficient of the force across the flow, strakes counted in, and the frequencies; zeros for none."""
+        return (0.0, 0.0, 0.0) if self.vortex_force is None else self._straked(self.vortex_force.of_cross_flow)
+
+    @property
+    def in_line_vortices(self) -> tuple[float, float, float]:
+        """The same in line with the flow."""
+        return (0.0, 0.0, 0.0) if self.vortex_force is None else self._straked(self.vortex_force.of_in_line)
+
+    def _straked(self, force: tuple[float, float, float]) -> tuple[float, float, float]:
+        coefficient, frequency, width = force
+        left = 1.0 if self.strakes is None else 1.0 - self.strakes.cover * self.strakes.suppression
+        return left * coefficient, frequency, width
+
     @property
     def sheds(self) -> bool:
         """Whether vortices act on it."""
-        return self.vortex_force is not None and self.vortex_force.coefficient > 0.0
+        return self.vortices[0] > 0.0 or self.in_line_vortices[0] > 0.0
 
     @property
     def wall_diameters(self) -> tuple[float, float]:

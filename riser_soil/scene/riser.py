@@ -20,6 +20,7 @@ from riser_soil.core.quantities import (
     RotationalStiffness,
     Stress,
     Text,
+    Velocity,
     word_or,
     wrong,
 )
@@ -89,16 +90,59 @@ class Segment(BaseModel):
         return given if isinstance(given, tuple) else (given, given)
 
 
+class Slug(BaseModel):
+    """A stretch of other contents that moves with the flow."""
+
+    model_config = FROZEN
+
+    density: Density = Field(description="density of the slug [kg/m3]")
+    length: Length = Field(description="length along the riser [m]")
+    front: Coordinate | None = Field(
+        default=None,
+        description="arc length of its leading end when the first dynamic stage begins [m], which may lie beyond the "
+        "riser; by default where the flow comes in",
+    )
+    spacing: Length | None = Field(
+        default=None, description="from its front to that of the next one [m], without end; one slug by default"
+    )
+
+    @model_validator(mode="after")
+    def _follows_at_a_distance(self) -> Self:
+        if self.spacing is not None and self.spacing <= self.length:
+            allowed = f"must be longer than the slug ({self.length:g} m), as it counts from front to front"
+            raise wrong("spacing", allowed, "lengthen it")
+        return self
+
+
 class Contents(BaseModel):
     """What fills the pipe."""
 
     model_config = FROZEN
 
     density: Density = Field(description="density of the contents [kg/m3]")
+    speed: Velocity = Field(
+        default=0.0, description="speed of the flow from start to end, below 0 from end to start [m/s]"
+    )
+    slugs: tuple[Slug, ...] = Field(
+        default=(),
+        description="stretches of other contents that move at this speed, {density, length, front, spacing}; none by "
+        "default",
+    )
     pressure: Pressure = Field(default=0.0, description="gauge pressure of the contents at pressure_level [Pa]")
     pressure_level: Coordinate | None = Field(
         default=None, description="height z at which the contents have that pressure [m]; the higher end by default"
     )
+
+    @property
+    def uneven_or_moving(self) -> bool:
+        """Whether more than even contents at rest are in the pipe."""
+        return bool(self.slugs) or self.speed != 0.0
+
+    def front_of(self, slug: Slug, length: float) -> float:
+        """Distance of a slug's front from where the flow comes into a riser of this length, at first [m]."""
+        if slug.front is None:
+            return 0.0
+        return slug.front if self.speed >= 0.0 else length - slug.front
 
 
 class RotationSpring(BaseModel):

@@ -29,6 +29,9 @@ def stage_conflicts(scene: Scene) -> Iterator[Problem]:
         for m, load in enumerate(stage.loads):
             yield from _load_on_riser(scene, ("stages", n, "loads", m), load)
             yield from _moment_on_chain(scene, ("stages", n, "loads", m), load)
+        if stage.pressure is not None and scene.riser.contents is None:
+            remedy = "add riser.contents: {density: ...}, or leave it out"
+            yield Problem(("stages", n, "pressure"), "is that of the contents, and the riser is empty", remedy)
         if isinstance(stage, DynamicStage):
             yield from _dynamic(scene, n, stage)
         else:
@@ -146,6 +149,8 @@ def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
     path, remedy = ("stages", n, "scheme"), "choose another scheme"
     if scene.contact:
         yield Problem(path, "the midpoint rule would make energy out of contact", remedy)
+    if scene.riser.contents is not None and scene.riser.contents.uneven_or_moving:
+        yield Problem(path, "the midpoint rule has no contents that flow or are uneven", remedy)
     for key, motion in stage.motion.by_end.items() if stage.motion else ():
         end = getattr(scene.riser, key)
         if isinstance(end, Support) and end.rotation == "fixed" and motion.turns:

@@ -20,6 +20,7 @@ from riser_soil.core.quantities import (
     NonNegative,
     OneOf,
     Position,
+    Pressure,
     Ratio,
     Real,
     Text,
@@ -177,6 +178,7 @@ Scheme = Annotated[
 
 _KIND = "static, quasi-static or dynamic"
 _LOADS = "loads on the riser during this stage"
+_PRESSURE = "gauge pressure of the contents at pressure_level from this stage on [Pa]; by default as it was before"
 
 
 class StaticStage(BaseModel):
@@ -188,7 +190,9 @@ class StaticStage(BaseModel):
     kind: Literal["static"] = Field(description=_KIND)
     move: MovedEnds | None = Field(default=None, description="new prescribed positions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
-
+    pressure: Pressure | None = Field(
+        default=None, description=f"{_PRESSURE}; it changes linearly over a static stage"
+    )
 
     @property
     def end(self) -> float:
@@ -217,6 +221,7 @@ class QuasiStaticStage(BaseModel):
         default=None, description="prescribed motions of ends, {start, end}; tables are straight between their rows"
     )
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
+    pressure: Pressure | None = Field(default=None, description=_PRESSURE)
 
     @model_validator(mode="after")
     def _lasts_a_step(self) -> Self:
@@ -255,6 +260,7 @@ class DynamicStage(BaseModel):
     )
     motion: Motion | None = Field(default=None, description="prescribed motions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
+    pressure: Pressure | None = Field(default=None, description=_PRESSURE)
     scheme: Scheme = Field(
         default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlphaParameters()),
         description="{newmark: {beta, gamma}}, {generalized_alpha: {rho_inf}} or {midpoint: {}}",
@@ -290,3 +296,15 @@ def loads_in(stages: Sequence[Stage], stage: Stage) -> tuple[Load, ...]:
     before = stages[: names.index(stage.name)] if stage.name in names else ()
     kept = (load.kept_after(each.end) for each in before for load in each.loads if load.keep)
     return (*kept, *stage.loads)
+
+
+def pressure_in(stages: Sequence[Stage], stage: Stage, t: float, first: float) -> float:
+    """Pressure inside [Pa] at a time of a stage, t, by that of the contents at first: it changes with a static stage's
+    load factor, and at once where another one begins.
+    """
+    names = [each.name for each in stages]
+    before = stages[: names.index(stage.name)] if stage.name in names else ()
+    given = [first, *(each.pressure for each in before if each.pressure is not None)][-1]
+    if stage.pressure is None:
+        return given
+    return given + (t if isinstance(stage, StaticStage) else 1.0) * (stage.pressure - given)

@@ -1,18 +1,23 @@
-"""Force of shed vortices across the flow, and how the phase of their shedding follows the pipe's motion.
+"""Force of shed vortices across the flow and in line with it, and how the phase of their shedding follows the pipe.
 
 With the velocity u of the water past the pipe, across it u_n = u - (u.tau) tau, diameter D and the vortices' phase phi,
 the pipe feels per length
 
     (1/2) rho D Cv cos(phi) |u_n| (tau x u_n),
 
-at right angles to pipe and flow. The phase turns at the rate
+at right angles to pipe and flow, and in line with the flow, with a coefficient, a phase and frequencies of its own,
 
-    dphi/dt = 2 pi |u_n|/D [f0 + df sin(theta)],    theta = phase of the cross-flow velocity - phi,
+    (1/2) rho D C cos(phi) |u_n| u_n,
+
+the part of the drag that the vortices make vary. Each phase turns at the rate
+
+    dphi/dt = 2 pi |u_n|/D [f0 + df sin(theta)],    theta = phase of the pipe's velocity along the force - phi,
 
 so that shedding locks to an oscillation of the frequency f |u_n|/D with f within f0 - df to f0 + df, the force ahead of
 or behind the velocity by sin(theta) = (f - f0)/df. Where it locks with theta about 0 it puts energy in.
-Source: Thorsen, Saevik & Larsen, J. Fluids Struct. 51 (2014) and 61 (2016), in relative velocity as in the manual of
-MoorDyn v2; from memory.
+Sources: Thorsen, Saevik & Larsen, J. Fluids Struct. 51 (2014) and 61 (2016), across the flow, in relative velocity as
+in the manual of MoorDyn v2; Ulveseter, Saevik & Larsen, J. Fluids Struct. 68 (2017), in line, who have two ranges of
+frequencies and a damping fitted to experiments; here it is one range, and damping is that of the drag. From memory.
 
 Of the pipe's velocity and acceleration along the force, y' and y'', an oscillation at the angular frequency w has the
 phase atan2(-y'', w y'). For w the rate of shedding itself is taken: where it is locked that is the oscillation's, so
@@ -71,7 +76,7 @@ def _cross(a: Array, b: Array) -> tuple[float, float, float]:
 
 
 @njit
-def _dot(a: Array, b: Array) -> float:
+def _dot(a: Array, b: Array | tuple[float, float, float]) -> float:
     total = 0.0
     for i in range(3):
         total += a[i] * b[i]
@@ -89,7 +94,9 @@ def _speed(v: Array, tau: Array) -> float:
 
 @njit
 def put_resistance(v: Array, tau: Array, k: float, f: Array) -> None:
-    """Write the resistance f at one station, of velocity v through the water; k: half rho D Cv cos(phi)."""
+    """Write the resistance f across the flow at one station, of velocity v through the water; k: half rho D Cv
+    cos(phi). In line it is that of a drag.
+    """
     across, speed = _cross(tau, v), _speed(v, tau)
     for i in range(3):
         f[i] = k * speed * across[i]
@@ -117,16 +124,36 @@ def put_derivatives(v: Array, tau: Array, stretch: float, k: float, by_v: Array,
 
 
 @njit
+def _force_direction(v: Array, tau: Array, speed: float, in_line: bool) -> tuple[float, float, float]:
+    """Unit vector of the force at phase 0, of velocity v through the water and speed across the pipe."""
+    along, across = _dot(v, tau), _cross(v, tau)
+    if in_line:
+        x, y, z = along * tau[0] - v[0], along * tau[1] - v[1], along * tau[2] - v[2]
+        return x / speed, y / speed, z / speed
+    return across[0] / speed, across[1] / speed, across[2] / speed
+
+
+@njit
 def shedding_rate(
-    v: Array, own: Array, a: Array, tau: Array, phase: float, rate: float, diameter: float, middle: float, width: float
+    v: Array,
+    own: Array,
+    a: Array,
+    tau: Array,
+    phase: float,
+    rate: float,
+    diameter: float,
+    middle: float,
+    width: float,
+    in_line: bool,
 ) -> float:
     """Rate of the phase [1/s] at one station. v: velocity through the water, own: the pipe's, a: its acceleration;
     rate: as it is foreseen.
     """
-    speed, across = _speed(v, tau), _cross(v, tau)
+    speed = _speed(v, tau)
     if speed == 0.0:
         return 0.0
-    cosine, sine = rate * _dot(own, across) / speed, -_dot(a, across) / speed
+    toward = _force_direction(v, tau, speed, in_line)
+    cosine, sine = rate * _dot(own, toward), -_dot(a, toward)
     size, least = math.hypot(cosine, sine), rate * rate * LEAST_MOTION * diameter
     ahead = sine * math.cos(phase) - cosine * math.sin(phase)
     square = size * size + least * least
@@ -136,11 +163,21 @@ def shedding_rate(
 
 @njit
 def advance(
-    wake: Wake, shed: Shedding, t: float, phase: float, e: int, g: int, v: Array, own: Array, a: Array, tau: Array
+    wake: Wake,
+    shed: Shedding,
+    in_line: bool,
+    t: float,
+    phase: float,
+    e: int,
+    g: int,
+    v: Array,
+    own: Array,
+    a: Array,
+    tau: Array,
 ) -> None:
     """Keep phase and rate of one station at the end t of an accepted step; the time is the caller's to keep."""
     of_pipe, since = (shed.diameter[e], shed.middle[e], shed.width[e]), t - wake.time[0]
     foreseen = max(wake.rate[e, g] + since * wake.growth[e, g], 0.0)
-    rate = shedding_rate(v, own, a, tau, phase, foreseen, *of_pipe)
+    rate = shedding_rate(v, own, a, tau, phase, foreseen, *of_pipe, in_line)
     wake.growth[e, g] = (rate - wake.rate[e, g]) / since if since > 0.0 else 0.0
     wake.phase[e, g], wake.rate[e, g] = phase % (2.0 * math.pi), rate

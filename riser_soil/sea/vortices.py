@@ -1,4 +1,4 @@
-"""Vortices shed by the pipe, which shake it across the flow: the part "vortices" of dynamic stages in space."""
+"""Vortices shed by the pipe: the parts "vortices", across the flow, and "vortices in line" of stages in space."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from riser_soil.riser.part_kernels import keep
 from riser_soil.riser.stations import POINTS
 from riser_soil.sea import through_kernels
 from riser_soil.sea import vortex_law as law
+from riser_soil.sea.morison_law import put_drag, put_drag_derivatives
 from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.moving_water_kernels import MovingWaterData
 from riser_soil.sea.pipe import Pipe
@@ -30,10 +31,13 @@ from riser_soil.sea.through_kernels import END, put_derivatives, put_resistance,
 
 
 class Push(NamedTuple):
-    """Half rho D Cv (ne,) [kg/m2], and phases (2, ne, ng) where a step starts and ends."""
+    """Half rho D Cv (ne,) [kg/m2], and phases (2, ne, ng) where a step starts and ends; in line with the flow or
+    across.
+    """
 
     lift: Array
     phases: Array
+    in_line: bool
 
 
 class VortexData(NamedTuple):
@@ -48,20 +52,21 @@ class VortexData(NamedTuple):
 class Vortices(CompiledPart):
     """Force of the vortices on the pipe (group F), whose wake is kept from step to step; all is external work.
 
-    loads: as of `moving_water.through`.
+    loads: as of `moving_water.through`. in_line: whether it acts in line with the flow, or across it.
     """
 
-    name = "vortices"
     traits = Traits("F", symmetric=False, follows=True, path_dependent=True, roles=(Stateful, Starting))
 
-    def __init__(self, loads: WaterLoads, shed: law.Shedding) -> None:
+    def __init__(self, loads: WaterLoads, shed: law.Shedding, in_line: bool = False) -> None:
         super().__init__(loads.pipe.line)
-        self._loads, self._shed, self._wake = loads, shed, _new_wake(loads.pipe)
+        self.name = "vortices in line" if in_line else "vortices"
+        self._loads, self._shed, self._in_line, self._wake = loads, shed, in_line, _new_wake(loads.pipe)
 
     def make_numbers(self) -> VortexData:
         flow = self._loads.kernel_data()
         assert isinstance(flow, MovingWaterData)
-        return VortexData(flow, Push(self._shed.lift, np.zeros((2, *flow.share.shape))), self._shed, self._wake)
+        push = Push(self._shed.lift, np.zeros((2, *flow.share.shape)), self._in_line)
+        return VortexData(flow, push, self._shed, self._wake)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         """Phases are known before a step, when the wake is kept where it starts."""
@@ -99,7 +104,11 @@ through_kernels.with_kernels(VortexData)
 
 @put_resistance.of(Push)
 def _put_resistance(push: Push, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
-    law.put_resistance(v, tau, push.lift[m] * math.cos(push.phases[side, m, g]), f)
+    k = push.lift[m] * math.cos(push.phases[side, m, g])
+    if push.in_line:
+        put_drag(v, tau, (k, 0.0), f, D)
+    else:
+        law.put_resistance(v, tau, k, f)
 
 
 @put_derivatives.of(Push)
@@ -116,7 +125,10 @@ def _put_derivatives(
     D: Size,
 ) -> None:
     k = weight * push.lift[m] * math.cos(push.phases[END, m, g])
-    law.put_derivatives(v, tau, stretch, k, by_v, by_slope)
+    if push.in_line:
+        put_drag_derivatives(v, tau, stretch, (k, 0.0), 1.0, by_v, by_slope, D)
+    else:
+        law.put_derivatives(v, tau, stretch, k, by_v, by_slope)
 
 
 @njit
@@ -131,7 +143,8 @@ def _shed(part: VortexData, at: Configuration, moves: float) -> None:
             for i in range(len(at.D)):
                 workspace.v[i] *= moves
                 workspace.a[i] *= moves
-            law.advance(wake, part.shed, t, phase, m, g, workspace.through, workspace.v, workspace.a, workspace.tau)
+            moved = workspace.through, workspace.v, workspace.a, workspace.tau
+            law.advance(wake, part.shed, part.law.in_line, t, phase, m, g, *moved)
     wake.time[0] = t
 
 

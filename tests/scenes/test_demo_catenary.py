@@ -14,7 +14,7 @@ from demos.catenary.statics import COARSE, COLUMNS, FINE, WEIGHTS, Published, ha
 from demos.catenary.surge import EXTREMES, UNIFORM, surge
 from demos.page import block
 
-PAGE = (statics.HERE / "README.md").read_text(encoding="utf-8")
+PAGE = "".join((statics.HERE / page).read_text(encoding="utf-8") for page in ("README.md", "convergence.md"))
 IMPLIED, STATED = "364.2", "346.1"
 ROUND_OFF = 1e-9
 Found = dict[tuple[str, int], dict[str, float]]

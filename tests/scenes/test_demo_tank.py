@@ -17,7 +17,7 @@ from demos.tank.swing import EXTREMES, MOMENT, SCENE, TOUCHDOWN, Swing, orders, 
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import read_scene
 
-PAGE = (HERE / "README.md").read_text(encoding="utf-8")
+PAGE = "".join((HERE / page).read_text(encoding="utf-8") for page in ("README.md", "convergence.md"))
 EXAMPLE = Path(__file__).parent / "tank.yaml"
 SHOWN = slice(4, 4 + len(EXTREMES))
 Rows = list[list[str]]

@@ -9,7 +9,7 @@ from tests.support.on_ranks import ROOT
 
 README = ROOT / "README.md"
 DOCS = sorted((ROOT / "docs").glob("*.md"))
-DEMOS = sorted((ROOT / "demos").glob("*/README.md"))
+DEMOS = sorted((ROOT / "demos").glob("*/*.md"))
 
 
 def text(page: Path) -> str:

@@ -32,7 +32,8 @@ from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.sample_line import Sample, sample
 
-TURNING = "end spring", "morison", "vortices", "buoyancy", "seabed", "friction"  # whose kernels say what they turn over
+# Parts whose kernels say what they turn over.
+TURNING = "end spring", "contents", "morison", "vortices", "buoyancy", "seabed", "friction"
 IN_WATER = (
     sample_water.current,
     sample_water.half_out_in_waves,
@@ -48,7 +49,7 @@ SCENES = Path(__file__).parent.parent / "scenes"
 def all_parts(at: Sample) -> list[Any]:
     """One of each kind that has kernels."""
     makers: list[Callable[[Sample], Any]] = [Sample.beam, Sample.inertia, Sample.rotary, Sample.damping]
-    makers += [Sample.morison, Sample.turned_spring, Sample.attachments, Sample.forces, Sample.moments]
+    makers += [Sample.contents, Sample.morison, Sample.turned_spring, Sample.attachments, Sample.forces, Sample.moments]
     return [make(at) for make in makers]
 
 

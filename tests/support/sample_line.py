@@ -11,6 +11,7 @@ from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.attachments import Attachments, PointAttachment, masses
 from riser_soil.riser.beam import Beam
+from riser_soil.riser.contents import Flow, InnerFlow, SlugTrain
 from riser_soil.riser.ends import End, SupportRotation
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
@@ -112,6 +113,11 @@ class Sample:
         spread = AppliedLoad(lambda t: 2.0, distributed=np.array([5.0, 4.0, -3.0]))
         loads = [AppliedLoad(lambda t: 1.0 + t, arc[-1], tip), AppliedLoad(lambda t: t, 0.3 * arc[1], inner), spread]
         return PointLoads(self.line, loads)
+
+    def contents(self) -> InnerFlow:
+        """In flow, with slugs that begin and end within elements."""
+        flow = Flow(850.0, 2.0, [SlugTrain(400.0, 1.7, 5.0, 2.6)], gravity=9.81)
+        return InnerFlow(self.line, np.full(self.line.length.size, 0.3), flow)
 
     def moments(self) -> PointLoads:
         moment = np.array([150.0, -90.0, 60.0])

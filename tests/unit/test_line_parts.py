@@ -28,6 +28,7 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "attachments": Sample.attachments,
     "turned spring": Sample.turned_spring,
     "forces": Sample.forces,
+    "contents": Sample.contents,
     "moments": Sample.moments,
     "current": sample_water.current,
     "waves": sample_water.waves,
@@ -40,7 +41,7 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "buoyancy in waves": sample_water.floating_in_waves,
 }
 WITHIN_ELEMENTS = [
-    *("beam", "inertia", "rotary", "damping", "morison", "forces", "attachments"),
+    *("beam", "inertia", "rotary", "damping", "morison", "forces", "attachments", "contents"),
     *("half out of waves", "buoyancy", "modules", "modules half out of waves", "modules' buoyancy"),
 ]
 every_part = pytest.mark.parametrize("name", list(MAKERS))

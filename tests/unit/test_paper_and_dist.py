@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from riser_soil import __version__
 from tests.support.on_ranks import ROOT
 
 PAPER = (ROOT / "paper.md").read_text(encoding="utf-8")
@@ -38,6 +39,20 @@ def test_the_paper_has_a_source_for_each_reference() -> None:
 def test_figures_of_the_paper_stand_in_the_pages(page: str, row: str, figures: tuple[str, ...]) -> None:
     assert row in (ROOT / f"docs/{page}.md").read_text(encoding="utf-8")
     assert all(figure in " ".join(BODY.split()) for figure in figures)
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    """The changelog's first section is that of the version, with the date of its release."""
+    cited = dict(re.findall(r"^(version|date-released): (\S+)$", text("CITATION.cff"), re.MULTILINE))
+    first = re.search(r"^## (.+)$", text("CHANGELOG.md"), re.MULTILINE)
+    assert first is not None
+    assert first.group(1) == f"{__version__} ({cited['date-released']})"
+    assert cited["version"] == __version__
+    assert f"\nVersion {__version__}. " in text("README.md")
+
+
+def text(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
 
 
 def test_wheel_and_source_distribution(tmp_path: Path) -> None:

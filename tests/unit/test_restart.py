@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from riser_soil import __version__
 from riser_soil.__main__ import app
 from riser_soil.assembly import Assembly
 from riser_soil.core.saved_state import packed, unpacked
@@ -118,7 +119,7 @@ def left(left_once: Path, tmp_path: Path) -> Path:
 def checkpoint(tmp_path: Path) -> Path:
     """Of a run that has not begun."""
     path = tmp_path / run_folder.CHECKPOINT
-    write_checkpoint(path, About("0.1.0", 1, identity_of(scene_of())), [{"stepper/before/u": np.arange(3.0)}])
+    write_checkpoint(path, About(__version__, 1, identity_of(scene_of())), [{"stepper/before/u": np.arange(3.0)}])
     return path
 
 

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
+from riser_soil.errors import SceneError
 from riser_soil.riser import stations
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import vortex_law as law
 from riser_soil.sea.moving_water import FlowAtStations, through
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.vortices import Push, Vortices
 from tests.support import sample_water
+from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
+from tests.support.driven_stage import built
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.sample_line import RHO, Sample, sample
 from tests.support.through_water import resistance
 
@@ -52,13 +58,19 @@ def behind_half_out(at: Sample) -> Vortices:
     return in_water(at, half_out=True)
 
 
-both = pytest.mark.parametrize("make", [behind, behind_half_out])
+def in_line(at: Sample) -> Vortices:
+    pipe = Pipe(at.line)
+    loads = through(FlowAtStations(pipe, sample_water.water), pipe.span)
+    return underway(Vortices(loads, shedding(at.line.length.size), in_line=True), at)
+
+
+every_one = pytest.mark.parametrize("make", [behind, behind_half_out, in_line])
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.4, 2.0])
 def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
     """An upright pipe in a flow along x is pushed towards y by at most 1/2 rho D Cv U^2; flow along it does nothing."""
-    push = Push(shedding().lift, np.full((2, 1, 1), phase))
+    push = Push(shedding().lift, np.full((2, 1, 1), phase), in_line=False)
 
     def force(v: Array) -> Array:
         return -resistance(push, v, TAU)
@@ -69,26 +81,35 @@ def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
     assert not force(-U * TAU).any()
 
 
+@pytest.mark.parametrize("phase", [0.0, 0.4, 2.0])
+def test_in_line_it_is_a_drag_that_swings(phase: float) -> None:
+    """Along the flow across the pipe, 1/2 rho D C U^2 cos(phi); flow along the pipe does nothing."""
+    push = Push(shedding(Cv=0.3).lift, np.full((2, 1, 1), phase), in_line=True)
+    for along in (0.0, 2.0):
+        found = -resistance(push, -U * (ALONG_X + along * TAU), TAU)
+        np.testing.assert_allclose(found, 0.5 * RHO * D * 0.3 * U**2 * np.cos(phase) * ALONG_X, atol=1e-12)
+
+
 def new_wake() -> law.Wake:
     return law.Wake(np.zeros(1), *(np.zeros((1, 1)) for _ in range(3)))
 
 
-def advance(wake: law.Wake, t: float, v: Array, own: Array, a: Array) -> None:
+def advance(wake: law.Wake, t: float, v: Array, own: Array, a: Array, in_line: bool = False) -> None:
     """To the end of an accepted step: velocity through the water, own velocity and acceleration, each (3,)."""
-    law.advance(wake, shedding(), t, law.phases_at(wake, t)[0, 0], 0, 0, v, own, a, TAU)
+    law.advance(wake, shedding(), in_line, t, law.phases_at(wake, t)[0, 0], 0, 0, v, own, a, TAU)
     wake.time[0] = t
 
 
-def locked(frequency: float, steps: int, amplitude: float = 0.05) -> tuple[Array, Array]:
+def locked(frequency: float, steps: int, amplitude: float = 0.05, in_line: bool = False) -> tuple[Array, Array]:
     """Phase of an oscillation's velocity less that of the vortices, and the latter's frequency times D/U, over the last
     of thirty periods; steps: of a period; amplitude: over D.
     """
     wake = new_wake()
-    w, v, y = 2.0 * np.pi * frequency * U / D, -U * ALONG_X, np.array([0.0, 1.0, 0.0])
+    w, v, y = 2.0 * np.pi * frequency * U / D, -U * ALONG_X, ALONG_X if in_line else np.array([0.0, 1.0, 0.0])
     ahead, rates = [], []
     for t in np.arange(30 * steps) * (2.0 * np.pi / w / steps):
         own, a = (amplitude * D * w * s * y for s in (np.cos(w * t), -w * np.sin(w * t)))
-        advance(wake, t, v, own, a)
+        advance(wake, t, v, own, a, in_line)
         ahead.append(w * t - wake.phase[0, 0])
         rates.append(wake.rate[0, 0] * D / (2.0 * np.pi * U))
     return np.array(ahead[-steps:]), np.array(rates[-steps:])
@@ -106,6 +127,15 @@ def test_the_phase_locks_where_its_frequency_is_the_oscillations(frequency: floa
         np.testing.assert_allclose(rates, frequency, rtol=2e-3)
     assert errors[1] < 1e-3
     assert errors[1] < 0.35 * errors[0] or errors[0] < 1e-3
+
+
+@pytest.mark.parametrize("frequency", [0.15, 0.22])
+def test_in_line_the_phase_follows_the_motion_along_the_flow(frequency: float) -> None:
+    """As it does across; the flow's velocity through the water is taken for steady here."""
+    ahead, rates = locked(frequency, 80, in_line=True)
+    np.testing.assert_allclose(np.sin(ahead), (frequency - MIDDLE) / WIDTH, atol=1e-3)
+    assert np.cos(ahead).min() > 0.0
+    np.testing.assert_allclose(rates, frequency, rtol=2e-3)
 
 
 @pytest.mark.parametrize("frequency", [0.06, 0.32])
@@ -139,7 +169,7 @@ def test_nothing_is_shed_without_flow() -> None:
     assert not any(values.any() for values in wake[1:])
 
 
-@both
+@every_one
 def test_tangent_is_the_derivative_of_the_residual(make: Callable[[Sample], Vortices]) -> None:
     at = sample(3)
     part, state = make(at), at.state(1)
@@ -198,3 +228,86 @@ def test_element_forces_add_up_to_the_residual() -> None:
     collected = np.zeros(at.line.size)
     at.line.scatter(force, collected)
     np.testing.assert_allclose(collected, total.force, atol=1e-12 * np.abs(total.force).max())
+
+
+# Scenes
+
+PIPE: dict[str, Any] = {"EA": 1.0e8, "EI": 1.0e4, "GJ": 1.0e4, "mass": 80.0, "outer_diameter": D}
+PIPE |= {"drag": {"normal": 1.2, "tangential": 0.05}}
+STRAKED = {"drag": 1.8, "cover": 0.8, "suppression": 0.9}
+CROSS, IN_LINE = "vortices", "vortices in line"
+
+
+def scene(**more: Any) -> Mapping:
+    """A riser in a current, its pipe with more keys."""
+    return riser_scene(
+        *(static(), dynamic(1.0, 0.1)),
+        pipe=PIPE | more,
+        length=20.0,
+        elements=4,
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(0.0, 0.0, 20.1),
+        water={"density": RHO, "current": {"profile": [[0.0, U, 0.0]]}},
+        riser={"initial": "straight"},
+    )
+
+
+def forces(**more: Any) -> dict[str, law.Shedding]:
+    """Of the parts of the dynamic stage, by name."""
+    assembly = built(scene(**more))
+    found: dict[str, Any] = {part.name: part for part in assembly.begin(assembly.scene.stages[1]).parts}
+    return {name: found[name].kernel_data().shed for name in (CROSS, IN_LINE) if name in found}
+
+
+def test_each_direction_is_built_where_it_has_a_coefficient() -> None:
+    assert forces() == {}
+    assert list(forces(vortex_force={})) == [CROSS]
+    assert list(forces(vortex_force={"in_line": {"coefficient": 0.2}})) == [CROSS, IN_LINE]
+    assert list(forces(vortex_force={"coefficient": 0.0, "in_line": {"coefficient": 0.2}})) == [IN_LINE]
+    assert list(forces(vortex_force={"in_line": {"coefficient": 0.0}})) == [CROSS]
+
+
+def test_in_line_vortices_lock_to_twice_the_frequencies_by_default() -> None:
+    default = forces(vortex_force={"frequency": 0.2, "width": 0.05, "in_line": {"coefficient": 0.2}})[IN_LINE]
+    assert default.lift[0] == pytest.approx(0.5 * RHO * D * 0.2)
+    assert (default.middle[0], default.width[0]) == pytest.approx((0.4, 0.1))
+    given = {"coefficient": 0.2, "frequency": 0.3, "width": 0.02}
+    found = forces(vortex_force={"in_line": given})[IN_LINE]
+    assert (found.middle[0], found.width[0]) == (0.3, 0.02)
+
+
+def test_strakes_take_from_the_vortices_and_add_to_the_drag() -> None:
+    """By their cover: what is left of the force, and the mean of both coefficients of drag."""
+    force = {"coefficient": 1.1, "in_line": {"coefficient": 0.3}}
+    bare, straked = forces(vortex_force=force), forces(vortex_force=force, strakes=STRAKED)
+    for name in (CROSS, IN_LINE):
+        np.testing.assert_allclose(straked[name].lift, (1.0 - 0.8 * 0.9) * bare[name].lift, rtol=1e-14)
+    elements = built(scene(strakes=STRAKED)).elements
+    np.testing.assert_allclose(elements.drag, [[0.8 * 1.8 + 0.2 * 1.2, 0.05]] * 4, rtol=1e-14)
+    assert forces(vortex_force=force, strakes={"drag": 1.8, "suppression": 1.0}) == {}
+    by_default = forces(vortex_force=force, strakes={"drag": 1.8})[CROSS]
+    np.testing.assert_allclose(by_default.lift, 0.05 * bare[CROSS].lift)
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"vortex_force": {"in_line": {}}}, r"vortex_force\.in_line\.coefficient: missing"),
+    ({"vortex_force": {"in_line": {"coefficient": 0.2, "width": 0.4}}}, r"its width \(0\.4\) must be below"),
+    ({"vortex_force": {"in_lien": {"coefficient": 0.2}}}, 'did you mean "in_line"'),
+    ({"strakes": {}}, r"strakes\.drag: missing"),
+    ({"strakes": {"drag": 1.8, "cover": 1.2}}, r"strakes\.cover"),
+    ({"strakes": {"drag": 1.8, "efficiency": 0.9}}, r"strakes\.efficiency"),
+    ({"strakes": STRAKED, "drag": {"by_reynolds": [[1e4, 1.2]]}}, "strakes have one drag coefficient"),
+]
+
+
+@pytest.mark.parametrize(("more", "reported"), WRONG)
+def test_what_can_not_be_is_reported(more: dict[str, Any], reported: str) -> None:
+    with pytest.raises(SceneError, match=reported):
+        scene_from_mapping(scene(**more))
+
+
+def test_strakes_act_in_water_only() -> None:
+    given = scene(strakes=STRAKED)
+    del given["water"], given["line_types"]["pipe"]["drag"]
+    with pytest.raises(SceneError, match=r"strakes.*acts in water only"):
+        scene_from_mapping(given)

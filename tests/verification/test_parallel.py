@@ -42,8 +42,14 @@ def scene(name: str) -> Mapping:
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
     if name == "vortices":
         shaken = in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
-        shaken["line_types"]["pipe"] |= {"GJ": 2.0e3, "vortex_force": {}}
+        shaken["line_types"]["pipe"] |= {"GJ": 2.0e3, "vortex_force": {"in_line": {"coefficient": 0.2}}}
         return shaken
+    if name == "slugs":
+        filled = in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
+        filled["line_types"]["pipe"] |= {"inner_diameter": 0.2}
+        slugs = [{"density": 900.0, "length": 3.3, "spacing": 8.0}]
+        filled["riser"]["contents"] = {"density": 100.0, "speed": 6.0, "slugs": slugs}
+        return filled
     if name == "demo held":
         return held_demo()
     given: Mapping = YAML(typ="safe").load({"demo": ON_BLOCK, "riser": CATENARY, "clay": CLAY}[name])
@@ -159,9 +165,9 @@ def test_kept_factors_agree_on_two_ranks() -> None:
     assert_same("kept", 2)
 
 
-@pytest.mark.parametrize("name", ["sea", "vortices", "clay"])
+@pytest.mark.parametrize("name", ["sea", "vortices", "slugs", "clay"])
 def test_a_riser_alone_agrees_on_two_ranks(name: str) -> None:
-    """At sea, in space by its vortices, too; and on hysteretic clay, with friction."""
+    """At sea, in space by its vortices, too, and with slugs; and on hysteretic clay, with friction."""
     assert_same(name, 2)
 
 

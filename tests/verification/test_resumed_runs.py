@@ -18,7 +18,10 @@ from tests.support.sinking_pipe import sinking
 ROOT = Path(__file__).parents[2]
 MIDPOINT = "stages.1.scheme={midpoint: {}}"
 IN_SPACE = ("dimension=3", "line_types.flexible.GJ=4.0e4")
-VORTICES = ("water.current={profile: [[0.0, 0.8, 0.1]]}", "line_types.flexible.vortex_force={}")
+SHAKEN = "line_types.flexible.vortex_force={in_line: {coefficient: 0.2}}"
+VORTICES = ("water.current={profile: [[0.0, 0.8, 0.1]]}", SHAKEN)
+SLUG = "slugs: [{density: 800.0, length: 12.0, spacing: 40.0, front: 90.0}]"
+SLUGS = f"riser.contents={{density: 90.0, speed: 8.0, {SLUG}}}"
 STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
 SHORT_BLOCK = "soil.block.x=[25.5,29.5]"
 COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.0", "stages.1.time_step=0.2")
@@ -88,6 +91,7 @@ SHORT = {
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
     "automatic steps on a seabed": (lambda: shortened("demos/first_scene.yaml", 1.0, "stages.1.time_step=auto"), (12,)),
     "vortices": (lambda: shortened("tests/scenes/catenary.yaml", 1.0, *IN_SPACE, *VORTICES), (4,)),
+    "slugs": (lambda: shortened("tests/scenes/catenary.yaml", 1.0, SLUGS), (4,)),
     "friction on hysteretic clay": (lambda: shortened("tests/scenes/hysteretic.yaml", 1.5, *IN_SPACE), (8,)),
 }
 

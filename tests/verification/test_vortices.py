@@ -66,10 +66,14 @@ NATURAL = math.sqrt(2.0 * EA * STRAIN / (CABLE * (1.0 + STRAIN)) / MOVED) / (2.0
 
 
 @cache
-def mounted(reduced: float, steps: int = 60, periods: int = 60) -> tuple[float, Shaken]:
-    """The current, and the cylinder in it, by its reduced velocity U/(fn D); steps: of a natural period."""
+def mounted(reduced: float, steps: int = 60, periods: int = 60, in_line: float = 0.0) -> tuple[float, Shaken]:
+    """The current, and the cylinder in it, by its reduced velocity U/(fn D); steps: of a natural period. in_line: the
+    coefficient of vortices that shake it in line with the flow alone; across it by default.
+    """
     U, cable = reduced * NATURAL * D, {"mass": LIGHT, "EA": EA, "EI": 1.0, "GJ": 1.0e3, "outer_diameter": 0.01}
-    pipe = {"mass": MASS, "outer_diameter": D, "EA": 1.0e12, "EI": 1.0e9, "GJ": 1.0e9} | FORCES
+    pipe: Mapping = {"mass": MASS, "outer_diameter": D, "EA": 1.0e12, "EI": 1.0e9, "GJ": 1.0e9} | FORCES
+    if in_line:
+        pipe |= {"vortex_force": {"coefficient": 0.0, "in_line": {"coefficient": in_line}}}
     top, elements = 2.0 * CABLE * (1.0 + STRAIN) + LENGTH, {"cable": CABLE, "pipe": LENGTH}
     segments = [{"line_type": n, "length": elements[n], "elements": 2} for n in ("cable", "pipe", "cable")]
     scene = riser_scene(
@@ -87,9 +91,9 @@ def mounted(reduced: float, steps: int = 60, periods: int = 60) -> tuple[float, 
     return U, shaken(scene)
 
 
-def oscillation(found: Shaken) -> tuple[float, float]:
-    """Frequency [Hz] and amplitude [m] of the middle across the flow."""
-    t, y = found.t[found.later], found.x[found.later, found.x.shape[1] // 2, 1]
+def oscillation(found: Shaken, axis: int = 1) -> tuple[float, float]:
+    """Frequency [Hz] and amplitude [m] of the middle along an axis: across the flow, or 0 in line with it."""
+    t, y = found.t[found.later], found.x[found.later, found.x.shape[1] // 2, axis]
     y = y - y.mean()
     (up,) = np.nonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
     cross = t[up] - y[up] * (t[up + 1] - t[up]) / (y[up + 1] - y[up])
@@ -121,6 +125,26 @@ def test_half_the_step_gives_the_same() -> None:
 
 def test_off_resonance_the_cylinder_hardly_moves() -> None:
     assert oscillation(mounted(2.0)[1])[1] < 0.06 * D
+
+
+@pytest.mark.parametrize("reduced", [2.6, 2.8, 3.0])
+def test_in_line_a_cylinder_locks_in_where_drag_takes_what_vortices_give(reduced: float) -> None:
+    """At half the speed of the lock-in across. The force's power over a period is rho D C U^2 v/4 cos(theta), that of
+    the drag rho D Cd U v^2/2 by the velocity's amplitude v, which is small beside U: so v = U C cos(theta)/(2 Cd).
+    """
+    C = 0.2
+    U, found = mounted(reduced, in_line=C)
+    f, A = oscillation(found, axis=0)
+    lag = (f * D / U - 2.0 * MIDDLE) / (2.0 * WIDTH)
+    assert abs(lag) < 0.5
+    assert 2.0 * math.pi * f * A == pytest.approx(0.5 * U * C / CD * math.sqrt(1.0 - lag**2), rel=0.05)
+    assert np.abs(found.x[..., 1]).max() < 1e-6 * A
+    assert found.work("vortices in line") > 0.0
+
+
+def test_in_line_nothing_locks_in_a_slow_flow() -> None:
+    slow, locked = (oscillation(mounted(reduced, in_line=0.2)[1], axis=0)[1] for reduced in (1.5, 2.8))
+    assert slow < 0.2 * locked
 
 
 # A riser under tension in a current that grows with height

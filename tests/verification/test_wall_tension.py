@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.stages import QuasiStaticStage, StaticStage, pressure_in
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
+from tests.support.riser_scenes import StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
 
 G, RHO, OIL, L = 9.81, 1025.0, 850.0, 40.0
 OUTER, INNER, MASS = 0.3, 0.2, 120.0
@@ -88,6 +90,53 @@ def test_at_a_joint_the_areas_are_the_means_of_both_sides() -> None:
     assert reported.wall_tension - reported.effective_tension == pytest.approx(pressure * areas, rel=1e-9)
 
 
+SEA: Mapping = {"density": RHO, "surface_level": 0.0}
+
+
+def stages_of(*given: Mapping, **more: Any) -> list[StageHistory]:
+    """Of a pipe full of oil under 1 MPa, one stage after the other."""
+    scene = hanging(-10.0, {"density": OIL, "pressure": 1.0e6}, water=SEA, **more)
+    return stage_histories(scene | {"stages": list(given)})
+
+
+def pressed(reported: StageHistory) -> Array:
+    """Pressure inside [Pa] by the tension in the wall, less that of the oil's own weight and of the water."""
+    end = reported.end
+    assert end.wall_tension is not None
+    z = end.position[:, 2]
+    outside = -RHO * G * z * A_OUT
+    return np.asarray((end.wall_tension - end.effective_tension + outside) / A_IN + OIL * G * (z + 10.0))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_stage_changes_the_pressure_and_those_after_it_keep_it(dimension: int) -> None:
+    """T_w = T + p_i A_i - p_o A_o, with T, shape and strain as they are."""
+    test, later = static("test", pressure=5.0e6), dynamic(0.2, 0.1, "later")
+    found = stages_of(static("hang"), test, later, dynamic(0.2, 0.1, "open", pressure=0.0), dimension=dimension)
+    for reported, pressure in zip(found, (1.0e6, 5.0e6, 5.0e6, 0.0), strict=True):
+        np.testing.assert_allclose(pressed(reported), pressure, rtol=1e-9, atol=1e-2)
+    still = found[0].end
+    for reported in found[1:]:
+        np.testing.assert_allclose(reported.end.effective_tension, still.effective_tension, rtol=1e-9, atol=1e-4)
+        np.testing.assert_allclose(reported.end.position, still.position, atol=1e-9)
+
+
+def test_over_a_static_stage_the_pressure_changes_with_the_load_factor() -> None:
+    given = {"a": None, "b": 5.0e6, "c": 2.0e6}
+    hang, test, last = (StaticStage(name=name, kind="static", pressure=p) for name, p in given.items())
+    stages = hang, test, last
+    assert [pressure_in(stages, test, t, 1.0e6) for t in (0.0, 0.25, 1.0)] == [1.0e6, 2.0e6, 5.0e6]
+    assert [pressure_in(stages, last, t, 1.0e6) for t in (0.0, 0.5, 1.0)] == [5.0e6, 3.5e6, 2.0e6]
+    assert pressure_in(stages, hang, 0.5, 1.0e6) == 1.0e6
+    moved = QuasiStaticStage(name="d", kind="quasi-static", duration=9.0, pressure=7.0e6)
+    assert pressure_in((*stages, moved), moved, 0.0, 1.0e6) == 7.0e6
+
+
+def test_a_pressure_needs_contents() -> None:
+    with pytest.raises(SceneError, match=r"stages\.0\.pressure.*is that of the contents, and the riser is empty"):
+        scene_from_mapping(hanging(0.0) | {"stages": [static(pressure=1.0e6)]})
+
+
 def finished(scene: Mapping, folder: Path) -> Run:
     run(scene_from_mapping(scene), folder)
     return Run(folder)
@@ -113,3 +162,14 @@ def test_where_the_pressure_outside_is_unknown_it_is_left_out(tmp_path: Path) ->
     with pytest.raises(Exception, match="has no wall_tension"):
         done["wall_tension"]
     assert "wall_tension" not in (tmp_path / "out" / "riser.xdmf").read_text()
+
+
+def test_results_have_the_pressure_of_each_step(tmp_path: Path) -> None:
+    """In results.nc, where many steps are told together, with the stress of the wall."""
+    scene = hanging(-10.0, {"density": OIL, "pressure": 1.0e6}, water=SEA)
+    scene["line_types"]["pipe"]["wall"] = {}
+    scene["stages"] = [static("hang"), static("test", pressure=5.0e6), dynamic(0.4, 0.1, "open", pressure=2.0e6)]
+    scene |= {"output": {"interval": 0.1}, "solver": {"load_steps": 4}}
+    done = finished(scene, tmp_path / "out")
+    shown = 1e6 * np.array([1.0, 5.0, 2.0, 2.0, 2.0, 2.0])
+    np.testing.assert_allclose(done["internal_pressure"][:, 0], shown, rtol=1e-9)
