@@ -92,8 +92,7 @@ def _overloads(assembly: Assembly) -> Iterator[Overload]:
 
 def _limits(assembly: Assembly) -> Iterator[tuple[RiserContact, float, str]]:
     """Grounds that bear so much only [N/m], and what that is."""
-    soil, D = assembly.scene.soil, assembly.scales.diameter
-    bearing = soil.top_law.bearing(D) if soil is not None else None
+    D, bearing = assembly.scales.diameter, surface_bearing(assembly)
     if assembly.soil_contact is not None and bearing is not None:
         yield assembly.soil_contact, *bearing
     if assembly.seabed is not None and math.isfinite(assembly.seabed.law.capacity):

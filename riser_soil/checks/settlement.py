@@ -7,7 +7,8 @@ below is shortened as a half space without change of volume under that strip, fr
 
 for a uniform plane strain modulus E* that is q/(pi E*) (2 ln(4 z/width) - 1) (K. L. Johnson, Contact Mechanics, 1985,
 from memory); of soil that yields E* is that of the secant modulus at half of the strength. Cells wider than what
-touches spread the load over LIKE_CONTACT times their size. Where the riser comes down it lies deepest, by the overshoot
+touches spread the load over LIKE_CONTACT times their size. A firmer layer stops the pipe that sinks through the one
+above. Where the riser comes down it lies deepest, by the overshoot
 of `riser.touchdown_bend` on ground as stiff as a secant through that.
 """
 
@@ -70,7 +71,11 @@ def settlement(soil: SoilScene, scales: Scales, depth: float, across: float = 0.
     """Settlement [m] of a pipe by its weight on soil of a depth, on cells of a size across it [m]."""
     width, spread = touching_width(scales, soil.top_law), LIKE_CONTACT * across
     yields = width > max(spread, contact_width(scales, soil.top_law.surface_modulus(scales.diameter)))
-    chord = chord_depth(width, scales.diameter) if yields else 0.0
+    if not yields:
+        return _shortened(soil, scales, max(width, spread), depth)
+    below = (top + chord_depth(touching_width(scales, law), scales.diameter) for law, top in _layers(soil)[1:])
+    chord = min([chord_depth(width, scales.diameter), *below])
+    width = 2.0 * np.sqrt(chord * (scales.diameter - chord))
     return chord + _shortened(soil, scales, max(width, spread), depth)
 
 
@@ -91,10 +96,7 @@ def _shortened(soil: SoilScene, scales: Scales, width: float, depth: float) -> f
 
 def _moduli(soil: SoilScene, z: Array) -> Array:
     """Plane strain moduli E* (n,) [Pa] at depths below the seabed [m]."""
-    layers = soil.layers or ()
-    laws, tops = [layer.law for layer in layers] or [soil.top_law], np.array([0.0, *boundaries(layers)])
-    if len(laws) != len(tops):  # volumes of any shape
-        laws, tops = laws[:1], tops[:1]
+    laws, tops = zip(*_layers(soil), strict=True)
     moduli, at = np.empty(z.size), np.searchsorted(tops, z, side="right") - 1
     for n, law in enumerate(laws):
         within = z[at == n] - tops[n]
@@ -102,6 +104,15 @@ def _moduli(soil: SoilScene, z: Array) -> Array:
         G, K = formula.shear * secant_share(law), formula.bulk
         moduli[at == n] = 4.0 * G * (3.0 * K + G) / (3.0 * K + 4.0 * G)
     return moduli
+
+
+def _layers(soil: SoilScene) -> list[tuple[SoilLaw, float]]:
+    """Laws and the depths [m] at which their layers begin; the first alone of volumes of any shape."""
+    layers = soil.layers or ()
+    tops = [0.0, *boundaries(layers)]
+    if len(layers) != len(tops):
+        return [(soil.top_law, 0.0)]
+    return [(layer.law, top) for layer, top in zip(layers, tops, strict=True)]
 
 
 def secant_share(law: SoilLaw) -> float:

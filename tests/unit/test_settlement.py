@@ -48,6 +48,16 @@ def test_clay_bears_on_the_chord() -> None:
     assert settlement(stiff, pipe(2.0 * 5.0e3 * D), DEPTH, 0.5 * D) < 1e-2 * depth
 
 
+def test_a_firm_layer_stops_a_pipe_that_sinks() -> None:
+    """Through 30 mm that bear a third of it, and into the firm clay by the chord that bears it there; soil a thousand
+    times as stiff adds next to nothing.
+    """
+    weight, firm, stiff = 5.0e2, 5.0e3, {"E_over_su": 3.0e5}
+    layers = [{"to": 0.03, "law": CLAY | stiff | {"su": 100.0}}, {"law": CLAY | stiff | {"su": firm}}]
+    chord = chord_depth(weight / ((2.0 + np.pi) * firm), D)
+    assert settlement(soil(layers=layers), pipe(weight), DEPTH) == pytest.approx(0.03 + chord, rel=2e-2)
+
+
 def test_secant_at_half_of_the_strength() -> None:
     """Where clay is elastic up to that, its own modulus; of kinematic hardening that of fine increments."""
     assert secant_share(LinearElastic(**ELASTIC)) == 1.0
