@@ -166,7 +166,6 @@ def seabed_contact_of(
         _ground(scene, scene.seabed),
         law,
         ENDS if settings.at_nodes else gauss(GAUSS_POINTS),
-        covered=None if beside is None else beside.covers,
         covering=beside,
     )
 
@@ -190,7 +189,7 @@ def cushion_of(
         scene.seabed_level,
         scales.weight,
         CUSHION * scales.diameter,
-        lambda xy: ~contact.covers(xy),
+        contact,
     )
 
 

@@ -2,7 +2,7 @@
 
 Traction t (..., r) on the riser per length in r directions along the ground [N/m]; ds (..., r) its movement in
 the step. With the normal force N >= 0 at the end of the step, coefficients mu (r,) and the adhesion A, infinite where
-there is none, the limits are L_i = min(mu_i N, A), and
+there is none, the limits are L_i = min(mu_i N, A), 0 where N = 0 even of coefficients without a bound, and
 
     t* = t_n - k ds;   m = sqrt(sum (t*_i/L_i)^2);   t = t* where m <= 1,  else t*/m.
 
@@ -39,13 +39,6 @@ def traction(
     _tractions(elastic.reshape(-1, r), pushed, mu, *found)
     t, by_elastic, by_penetration = found
     return t.reshape(elastic.shape), by_elastic.reshape(*elastic.shape, r), by_penetration.reshape(elastic.shape)
-
-
-def stuck(elastic: Array, N: Array) -> tuple[Array, Array, Array]:
-    """As `traction` where nothing slides, however large t* is: of small motions about rest. None where nothing presses.
-    """
-    presses = (N > 0.0)[..., None]
-    return elastic * presses, np.eye(elastic.shape[-1]) * presses[..., None], np.zeros_like(elastic)
 
 
 @njit
@@ -109,13 +102,3 @@ def adhesion_at(clay: Adhesion, penetration: float) -> Pair:
     widening = 2.0 / math.sqrt(deep * (2.0 - deep)) if 0.0 < deep < 1.0 else 0.0
     su = strength_at(clay.strength, z)
     return clay.share * su * arc, clay.share * (clay.strength.gradient * arc + su * widening)
-
-
-@njit
-def adhesions(clay: Adhesion, penetration: Array) -> tuple[Array, Array]:
-    """`adhesion_at` stations (m, ng)."""
-    value, slope = np.empty(penetration.shape), np.empty(penetration.shape)
-    for i in range(penetration.shape[0]):
-        for g in range(penetration.shape[1]):
-            value[i, g], slope[i, g] = adhesion_at(clay, penetration[i, g])
-    return value, slope

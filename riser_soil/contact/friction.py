@@ -2,44 +2,62 @@
 
 from __future__ import annotations
 
+import math
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact import friction_stations, seabed_stations
-from riser_soil.contact.coulomb import Adhesion, adhesions, stuck, traction
-from riser_soil.contact.seabed_contact import SeabedContact, StationContact
-from riser_soil.contact.seabed_loop import FrictionData
-from riser_soil.contact.seabed_stations import StationForces
-from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
+from riser_soil.contact.coulomb import Adhesion, Pair, adhesion_at, limits, return_map
+from riser_soil.contact.friction_stations import (
+    directions_at,
+    elastic_guess,
+    put_along,
+    read_along,
+    resistance_by_position,
+    slip_at,
+    vector_of,
+)
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.contact.seabed_kernels import SeabedData
+from riser_soil.core.arrays import Array
+from riser_soil.core.bound import Bound
+from riser_soil.core.compiled import njit
+from riser_soil.core.packed import Packed
+from riser_soil.core.part import State, Traits
+from riser_soil.core.rows import add_pulled_back, add_weighed, held
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
-from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.trial import Trial
+from riser_soil.riser.compiled_part import BoundPart, CompiledPart
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
+from riser_soil.riser.vectors import Vec, add, dot, padded, put, put_matrix, scale, sub
 
 
-class FrictionTraction(NamedTuple):
-    """Elements that touch (m,); minus the traction on the riser (m, ng, d) [N/m], its derivative by the position
-    (m, ng, d, d).
+class FrictionData(NamedTuple):
+    """A `CoulombFriction` at the stations of a contact: coefficients (2,), infinite where nothing slides; adhesion,
+    stiffness (ne,).
+
+    Where a step starts: positions (ne, ng, d); directions along the ground (ne, ng, d, r), axial and, in space,
+    lateral; traction (ne, ng, d) on the riser [N/m] and way slid (ne, ng) [m].
+    resistance (ne, ng, d): minus the traction found last, of elements that touch.
     """
 
-    elements: IntArray
-    resistance: Array
-    by_position: Array
-
-
-class FrictionState(NamedTuple):
-    """State at the start of a step: positions (ne, ng, d), directions along the ground (ne, ng, d, r), axial and, in
-    space, lateral; traction (ne, ng, d) on the riser.
-    """
-
+    contact: SeabedData
+    mu: Array
+    adhesion: Adhesion
+    stiffness: Array
     position: Array
     along: Array
     traction: Array
+    slid: Array
+    resistance: Array
 
 
-class CoulombFriction(LinePart):
+AT_START = "position", "along", "traction"  # of `FrictionData`: what a step starts from
+
+
+class CoulombFriction(CompiledPart):
     """Part "friction": friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
 
     axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2], see
@@ -49,125 +67,48 @@ class CoulombFriction(LinePart):
 
     name = "friction"
     traits = Traits("E", symmetric=False, path_dependent=True, gradual=True, roles=(Stateful,))
+    after_forces = True
 
     def __init__(
         self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array, adhesion: Adhesion | None = None
     ) -> None:
         super().__init__(contact.line)
         self.contact = contact
-        self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
+        self._mu = np.array([axial, lateral if self.line.dimension == 3 else axial])
         self._stiffness, self._adhesion = stiffness, adhesion or Adhesion()
-        self._start_state: FrictionState | None = None
-        self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
-        self._sticks = False
+        self._begun = False  # whether it is known what a step starts from
 
     def stick(self) -> None:
         """From now on nothing slides, as in small vibrations about rest."""
-        self._sticks = True
-        self.line.forget()
+        self._mu[:] = np.inf
+        self._trials.forget()
 
-    def evaluate(self, trial: Trial) -> FrictionTraction:
-        """Tractions of the elements that touch."""
-        found: FrictionTraction = trial.once((self, "sliding"), self._evaluate)
+    def make_numbers(self) -> FrictionData:
+        d, shape = self.line.dimension, self.contact.share.shape
+        position, traction, resistance = (np.zeros((*shape, d)) for _ in range(3))
+        given = self.contact.kernel_data(), self._mu, self._adhesion, self._stiffness
+        return FrictionData(*given, position, np.zeros((*shape, d, d - 1)), traction, self._slid, resistance)
+
+    def kernel_data(self) -> FrictionData:
+        found: FrictionData = self._numbers
         return found
 
-    def _evaluate(self, trial: Trial) -> FrictionTraction:
-        found = self.contact.evaluate(trial)
-        touching, start_state, k = found.touching, self._friction_state(trial), self._stiffness
-        elastic = friction_stations.elastic_guesses(touching.elements, tuple(start_state), k, found.position)
-        tractions = stuck(elastic, touching.force) if self._sticks else self._limited(elastic, found)
-        resistance = friction_stations.resistances(touching.elements, start_state.along, k, tractions, touching.normal)
-        return FrictionTraction(touching.elements, *resistance)
-
-    def _limited(self, elastic: Array, found: StationContact) -> tuple[Array, Array, Array]:
-        pressed = found.touching
-        most = adhesions(self._adhesion, found.penetration[pressed.elements])
-        return traction(elastic, pressed.force, pressed.slope, self._mu, *most)
-
-    def _friction_state(self, trial: Trial) -> FrictionState:
-        return self._friction_state_from(trial.state.t)
-
-    def _friction_state_from(self, t: float) -> FrictionState:
-        if self._start_state is None:
-            start = self.line.trial(State.at_rest(t, self.line.size))
-            self._start_state = self._friction_state_at(start, np.zeros_like(self.contact.evaluate(start).position))
-        return self._start_state
-
-    def _friction_state_at(self, trial: Trial, traction: Array) -> FrictionState:
-        found = self.contact.evaluate(trial)
-        tau, _ = stations.unit_tangents(self.contact.at, trial.chord, trial.turn.tangent)
-        return FrictionState(found.position, directions(tau, found.normal), traction)
-
-    def element_forces(self, state: State) -> tuple[None, Array]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        trial = self.line.trial(state)
-        sliding = self.evaluate(trial)
-        return None, self._forces.in_elements(trial, sliding.elements, sliding.resistance)
-
-    def residual(self, state: State, forces: Forces) -> None:
-        self.line.scatter(self.element_forces(state)[1], forces.end)
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        """Unweighted: friction stands at the end of the step."""
-        trial = self.line.trial(state)
-        self._forces.add_tangent(values[self.line.name], trial, *self.evaluate(trial))
-
-    def kernel_data(self) -> FrictionData | None:
-        """After those of its contact have been asked for."""
-        shape, d = self.contact.share.shape, self.line.dimension
-        vectors = (np.zeros((*shape, d)) for _ in range(3))
-        position, traction, resistance = vectors
-        along, mu = np.zeros((*shape, d, d - 1)), (float(self._mu[0]), float(self._mu[-1]))
-        self._in_loop = FrictionData(
-            *(self.contact.in_loop, mu, self._adhesion, self._stiffness),
-            *(position, along, traction, np.zeros(shape), resistance),
-        )
-        return self._in_loop
+    @cached_property
+    def _put_start(self) -> Bound:
+        return Bound(put_start, Packed(self._numbers), Packed(self._trials.now.at))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        start_state, numbers = self._friction_state_from(end), self._in_loop
-        if start_state.position is not numbers.position:  # else the loop has kept it
-            numbers.position[:], numbers.along[:], numbers.traction[:] = start_state
-            numbers.slid[:] = self._slid
-            self._start_state, self._slid = (
-                FrictionState(numbers.position, numbers.along, numbers.traction),
-                numbers.slid,
-            )
+        if not self._begun:
+            self.contact.find(State.at_rest(end, self.line.size))
+            self._put_start()
+            self._begun = True
 
-    def energy(self, state: State) -> Energy:
-        """Stored in what the ground gives elastically along itself."""
-        sliding = self.evaluate(self.line.trial(state))
-        return Energy(potential=self._stored(sliding.elements, sliding.resistance))
-
-    def _stored(self, elements: IntArray, traction: Array) -> float:
-        return float(friction_stations.stored(self.contact.share, elements, self._stiffness, traction))
-
-    def work(self, before: State, after: State) -> Work:
-        """Energy dissipated by friction: its work less the change of the energy stored; never negative."""
-        trial = self.line.trial(after)
-        sliding, start_state, share = self.evaluate(trial), self._friction_state(trial), self.contact.share
-        way = start_state.position, self.contact.evaluate(trial).position
-        taken = seabed_stations.work_of(share, sliding.elements, sliding.resistance, *way)
-        stored = self._stored(np.arange(self.line.length.size), start_state.traction)
-        return Work(dissipated=taken - self.energy(after).potential + stored)
-
-    def commit(self, state: State) -> None:
-        """Keep the traction, and the place and directions from which the next step slides."""
-        trial = self.line.trial(state)
-        sliding = self.evaluate(trial)
-        traction = np.zeros_like(self.contact.evaluate(trial).position)
-        traction[sliding.elements] = -sliding.resistance
-        slid = self._slide(trial, sliding)
-        self._start_state, self._slid = self._friction_state_at(trial, traction), self._slid + slid
-
-    def _slide(self, trial: Trial, sliding: FrictionTraction) -> Array:
-        """Plastic slip of each station (ne, ng) in the step, beyond the elastic mobilisation [m]."""
-        found, start_state = self.contact.evaluate(trial), tuple(self._friction_state(trial))
-        slid: Array = friction_stations.slips(
-            sliding.elements, start_state, self._stiffness, found.position, sliding.resistance, found.touching.force
-        )
-        return slid
+    def _go_to(self, state: State) -> BoundPart:
+        """The contact's forces come first."""
+        self.renew_kernel_data(state.t, state.t)
+        self.contact.find(state)
+        return super()._go_to(state)
 
     def slip(self) -> Array:
         """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
@@ -177,18 +118,18 @@ class CoulombFriction(LinePart):
         """Sum of the friction on the riser (3,) [N], global axes."""
         if not self.line.active:
             return np.zeros(3)
-        sliding = self.evaluate(self.line.trial(state))
-        per_station = self.contact.share[sliding.elements][..., None] * sliding.resistance
-        return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
+        return np.asarray(-self.line.basis @ self._found(state).forces.end_q[:, ::2].sum(axis=(0, 1)))
 
     def state(self) -> Saved:
-        """The state at the start of the next step, if there was one, and the slip of the stations."""
-        kept = {"slid": self._slid} | (self._start_state._asdict() if self._start_state is not None else {})
-        return {name: values.copy() for name, values in kept.items()}
+        """What the next step starts from, if there was one, and the slip of the stations."""
+        known = {name: getattr(self._numbers, name).copy() for name in AT_START} if self._begun else {}
+        return {"slid": self._slid.copy()} | known
 
     def restore(self, saved: Saved) -> None:
-        start_state = [saved[name] for name in FrictionState._fields if name in saved]
-        self._start_state, self._slid = FrictionState(*start_state) if start_state else None, saved["slid"]
+        self._slid[...], self._begun = saved["slid"], "position" in saved
+        for name in AT_START if self._begun else ():
+            getattr(self._numbers, name)[...] = saved[name]
+        self._trials.forget()
 
 
 def mobilised_within(
@@ -200,9 +141,109 @@ def mobilised_within(
     return np.asarray(np.minimum(max(axial, lateral) * weight, most) / mobilisation)
 
 
-def directions(tau: Array, normal: Array) -> Array:
-    """Unit vectors (ne, ng, d, d - 1) along the ground: axial, and in space lateral, from the riser's tangents and the
-    ground's normals (ne, ng, d); zero where the riser stands upright on the ground.
-    """
-    found: Array = friction_stations.directions(np.ascontiguousarray(tau), np.ascontiguousarray(normal))
-    return found
+@njit
+def _elastic(part: FrictionData, e: int, g: int) -> Pair:
+    """t* of `coulomb` at a station."""
+    guess: Pair = elastic_guess(
+        read_along(part.along[e, g]), padded(part.traction[e, g]), part.stiffness[e], _moved(part, e, g)
+    )
+    return guess
+
+
+@njit
+def _moved(part: FrictionData, e: int, g: int) -> Vec:
+    """The movement of a station in the step."""
+    moved: Vec = sub(padded(part.contact.found.position[e, g]), padded(part.position[e, g]))
+    return moved
+
+
+@njit
+def _limits(part: FrictionData, e: int, g: int) -> tuple[Pair, Pair]:
+    """L of `coulomb` at a station, and its derivative by the penetration."""
+    found, mu = part.contact.found, (part.mu[0], part.mu[1])
+    most = adhesion_at(part.adhesion, found.penetration[e, g]) if mu[0] < math.inf else (math.inf, 0.0)
+    limit: tuple[Pair, Pair] = limits(found.force[e, g], found.slope[e, g], mu, most)
+    return limit
+
+
+@add_forces.of(FrictionData)
+def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> None:
+    """After those of the contact that it belongs to."""
+    contact = part.contact
+    for e in range(part.stiffness.size):
+        if not contact.found.touches[e]:
+            continue
+        for g in range(contact.share.shape[1]):
+            limit, rise = _limits(part, e, g)
+            t, _, _ = return_map(_elastic(part, e, g), limit, rise)
+            put(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
+            p = e * contact.share.shape[1] + g
+            stations.add_integrand_at(contact.at.weighted, p, held(part.resistance[e, g], at.D), out.end_q, e, at.D)
+
+
+@add_tangent.of(FrictionData)
+def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    contact, found, workspace = part.contact, part.contact.found, part.contact.element
+    for e in range(part.stiffness.size):
+        if not found.touches[e]:
+            continue
+        workspace[:] = 0.0
+        for g in range(contact.share.shape[1]):
+            limit, rise = _limits(part, e, g)
+            _, by_elastic, by_penetration = return_map(_elastic(part, e, g), limit, rise)
+            ways, normal = read_along(part.along[e, g]), padded(found.normal[e, g])
+            put_matrix(
+                resistance_by_position(ways, part.stiffness[e], by_elastic, by_penetration, normal), contact.by
+            )
+            dragged = contact.at.N[e, g], contact.by, maps.place_rows[e]
+            add_weighed(workspace, contact.at.weighted[e, g], (dragged,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], workspace, at.D, at.R)
+
+
+@add_energy.of(FrictionData)
+def _friction_energy(part: FrictionData, at: Configuration, energy: Array) -> None:
+    for e in range(part.stiffness.size):
+        if part.contact.found.touches[e]:
+            for g in range(part.contact.share.shape[1]):
+                t: Vec = padded(part.resistance[e, g])
+                energy[2] += 0.5 * part.contact.share[e, g] / part.stiffness[e] * dot(t, t)
+
+
+@add_work.of(FrictionData)
+def _friction_work(part: FrictionData, first: Configuration, last: Configuration, work: Array) -> None:
+    """Dissipated is the work of friction less the change of the energy stored; never negative."""
+    contact = part.contact
+    for e in range(part.stiffness.size):
+        for g in range(contact.share.shape[1]):
+            share, begun = contact.share[e, g], padded(part.traction[e, g])
+            work[0] += 0.5 * share / part.stiffness[e] * dot(begun, begun)
+            if contact.found.touches[e]:
+                t: Vec = padded(part.resistance[e, g])
+                work[0] += share * dot(t, _moved(part, e, g)) - 0.5 * share / part.stiffness[e] * dot(t, t)
+
+
+@keep.of(FrictionData)
+def _keep_traction(part: FrictionData, at: Configuration) -> None:
+    """The traction, the way slid beyond the elastic mobilisation, and what the next step starts from."""
+    found = part.contact.found
+    for e in range(part.stiffness.size):
+        for g in range(part.slid.shape[1]):
+            t, k = padded(part.traction[e, g]), part.stiffness[e]
+            if found.touches[e] and found.force[e, g] > 0.0:
+                taken = add(t, padded(part.resistance[e, g]))
+                part.slid[e, g] += slip_at(read_along(part.along[e, g]), taken, k, _moved(part, e, g))
+            for i in range(len(at.D)):
+                part.traction[e, g, i] = -part.resistance[e, g, i] if found.touches[e] else 0.0
+    put_start(part, at)
+
+
+@njit
+def put_start(part: FrictionData, at: Configuration) -> None:
+    """Write the places and directions from which a step starts, where the contact's forces have been found."""
+    contact = part.contact
+    for e in range(part.stiffness.size):
+        for g in range(part.slid.shape[1]):
+            stations.put_unit_tangent(contact.at.dN[e, g], at.chord[e], at.tangent[e], contact.f, at.D)
+            put_along(directions_at(padded(contact.f), padded(contact.found.normal[e, g])), part.along[e, g])
+            for i in range(len(at.D)):
+                part.position[e, g, i] = contact.found.position[e, g, i]

@@ -1,20 +1,17 @@
-"""Compiled loops over the stations of a line that slides over a seabed, and what they do at one station.
+"""What a line that slides over a seabed does at one of its stations.
 
 Vectors are in the line's axes. In the plane their third component is 0, and so are components in the lateral direction,
-which stands square to the plane. Arrays (ne, ng, d) hold those of all stations, and (m, ng, d) those of the elements
-that touch; directions are (ne, ng, d, r), axial and, in space, lateral.
+which stands square to the plane. Directions are stored in arrays (d, r), axial and, in space, lateral.
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from riser_soil.contact.coulomb import Pair
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, matadd, norm, outer, padded, put, put_matrix, scale, sub
+from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, matadd, norm, outer, padded, put, scale, sub
 
 UPRIGHT = 1e-6  # sine of the angle to the ground's normal below which a riser has no axial direction along the ground
 Along = tuple[Vec, Vec]  # directions along the ground, axial and lateral
@@ -77,93 +74,3 @@ def put_along(along: Along, out: Array) -> None:
     put(along[0], out[:, 0])
     if out.shape[1] > 1:
         put(along[1], out[:, 1])
-
-
-@njit
-def read_pair(a: Array) -> Pair:
-    """The components that are stored in an array (r,)."""
-    return a[0], a[1] if a.size > 1 else 0.0
-
-
-@njit
-def directions(tau: Array, normal: Array) -> Array:
-    """`directions_at` all stations (ne, ng, d, r)."""
-    ne, ng, d = tau.shape
-    out = np.empty((ne, ng, d, d - 1))
-    for e in range(ne):
-        for g in range(ng):
-            put_along(directions_at(padded(tau[e, g]), padded(normal[e, g])), out[e, g])
-    return out
-
-
-@njit
-def elastic_guesses(elements: IntArray, start_state: tuple[Array, Array, Array], k: Array, position: Array) -> Array:
-    """`elastic_guess` (m, ng, r) of some elements; start_state: a `FrictionState`, k (ne,)."""
-    before, along, traction = start_state
-    m, ng, r = elements.size, along.shape[1], along.shape[3]
-    out = np.empty((m, ng, r))
-    for i in range(m):
-        e = elements[i]
-        for g in range(ng):
-            moved = sub(padded(position[e, g]), padded(before[e, g]))
-            guess = elastic_guess(read_along(along[e, g]), padded(traction[e, g]), k[e], moved)
-            out[i, g, 0] = guess[0]
-            if r > 1:
-                out[i, g, 1] = guess[1]
-    return out
-
-
-@njit
-def resistances(
-    elements: IntArray, along: Array, k: Array, found: tuple[Array, Array, Array], normal: Array
-) -> tuple[Array, Array]:
-    """Minus the tractions (m, ng, d) of some elements, and their derivative by the position (m, ng, d, d).
-
-    found: what `coulomb.traction` tells; normal (m, ng, d): of the ground.
-    """
-    t, by_elastic, by_penetration = found
-    m, ng, d = normal.shape
-    resistance, by_position = np.empty((m, ng, d)), np.empty((m, ng, d, d))
-    for i in range(m):
-        e = elements[i]
-        for g in range(ng):
-            ways = read_along(along[e, g])
-            put(scale(-1.0, vector_of(ways, read_pair(t[i, g]))), resistance[i, g])
-            by_guess = read_pair(by_elastic[i, g, 0]), read_pair(by_elastic[i, g, -1])
-            by = resistance_by_position(ways, k[e], by_guess, read_pair(by_penetration[i, g]), padded(normal[i, g]))
-            put_matrix(by, by_position[i, g])
-    return resistance, by_position
-
-
-@njit
-def slips(
-    elements: IntArray,
-    start_state: tuple[Array, Array, Array],
-    k: Array,
-    position: Array,
-    resistance: Array,
-    force: Array,
-) -> Array:
-    """`slip_at` all stations (ne, ng), 0 where they do not press; arguments as above."""
-    before, along, traction = start_state
-    out = np.zeros(along.shape[:2])
-    for i in range(elements.size):
-        e = elements[i]
-        for g in range(force.shape[1]):
-            if force[i, g] > 0.0:
-                moved = sub(padded(position[e, g]), padded(before[e, g]))
-                taken = add(padded(traction[e, g]), padded(resistance[i, g]))
-                out[e, g] = slip_at(read_along(along[e, g]), taken, k[e], moved)
-    return out
-
-
-@njit
-def stored(share: Array, elements: IntArray, k: Array, traction: Array) -> float:
-    """Energy that the ground stores elastically under tractions (m, ng, d) of some elements; share (ne, ng) [m]."""
-    total = 0.0
-    for i in range(elements.size):
-        e = elements[i]
-        for g in range(share.shape[1]):
-            t = padded(traction[i, g])
-            total += 0.5 * share[e, g] / k[e] * dot(t, t)
-    return total

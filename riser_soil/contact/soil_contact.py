@@ -13,9 +13,9 @@ from riser_soil.contact.contact import LineContact
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.pairing import Cover, facet_below
-from riser_soil.contact.seabed_loop import covered_by
+from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.contact.touchdown import PointsAlong
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
@@ -144,13 +144,8 @@ class SoilContact(LineContact):
             self._patch = self.candidates(State.at_rest(0.0, max(ends)))
         return self._patch
 
-    def covers(self, xy: Array) -> BoolArray:
-        """Which horizontal positions (n, 2) [m] lie over the soil as it is now."""
-        facet, _ = self._soil.locate(xy, self._soil.settled)
-        return np.asarray(facet >= 0)
-
     def cover(self) -> Cover:
-        """The same for compiled code."""
+        """What lies over the soil as it is now, for a seabed beside it."""
         return self._soil.cover()
 
     def renew_cover(self, cover: Cover) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.contact.active_pairs import ActivePairs, add_products, add_rows
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.coulomb import stuck, traction
+from riser_soil.contact.coulomb import traction
 from riser_soil.contact.cylinder_gap import Slide, slide
 from riser_soil.contact.integration_points import PointMemory
 from riser_soil.contact.near_points import NearPoints, Surface
@@ -69,11 +69,10 @@ class SoilFriction(LinePart):
         self._memory = PointMemory(np.zeros(AREA + 1))
         self._at_start: tuple[Axis, Surface] | None = None
         self._slid: Array = np.zeros(self.line.nodes)
-        self._sticks = False
 
     def stick(self) -> None:
         """From now on nothing slides, as in small vibrations about rest."""
-        self._sticks = True
+        self._mu, self._adhesion = np.full(2, np.inf), None
         self.line.forget()
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -100,8 +99,6 @@ class SoilFriction(LinePart):
 
     def _return(self, elastic: Array, pressed: ActivePairs) -> tuple[Array, Array, Array]:
         """Components (n, r) of the traction, their derivatives by those of t* and by the penetration."""
-        if self._sticks:
-            return stuck(elastic, pressed.force)
         pressure, slope = pressed.force / pressed.points.area, pressed.slope / pressed.points.area
         return traction(elastic, pressure, slope, self._mu, self._most(pressed.points))
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -82,6 +82,10 @@ class LineTrials:
         self._start, self._end = start, end
         return start, end
 
+    def forget(self) -> None:
+        """What has been found does not hold any more: the parts' numbers have changed, or others have used them."""
+        self.now.forget()
+
 
 class BoundPart:
     """Kernels of a part, bound to its numbers and to the trials of its line, and what they have found last.
@@ -133,9 +137,13 @@ class BoundPart:
 
 
 class CompiledPart(LinePart, ABC):
-    """Base of the parts whose formulas are kernels; a part has numbers, and history if any."""
+    """Base of the parts whose formulas are kernels; a part has numbers, and history if any.
+
+    after_forces: whether its kernels of energy and work read what that of its forces has found at the trial.
+    """
 
     traits: Traits
+    after_forces: ClassVar[bool] = False
 
     @abstractmethod
     def make_numbers(self) -> tuple[Any, ...]:
@@ -176,6 +184,10 @@ class CompiledPart(LinePart, ABC):
         found = self._go_to(state)
         return found if found.found == self._trials.now.count else self._find(state)
 
+    def _placed(self, state: State) -> BoundPart:
+        """Ready for energy and work at a trial state."""
+        return self._found(state) if self.after_forces else self._go_to(state)
+
     def residual(self, state: State, forces: Forces) -> None:
         found = self._find(state)
         found.collect()
@@ -183,6 +195,8 @@ class CompiledPart(LinePart, ABC):
             forces.inertia[self.line.part] += found.forces.inertia.ravel()
         if "F" in self.traits.groups:
             forces.force[self.line.part] += found.forces.force.ravel()
+        if "E" in self.traits.groups:
+            forces.end[self.line.part] += found.forces.end.ravel()
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         found, K = self._found(state), values[self.line.name]
@@ -192,7 +206,7 @@ class CompiledPart(LinePart, ABC):
         found.add_tangent()
 
     def energy(self, state: State) -> Energy:
-        found = self._go_to(state)
+        found = self._placed(state)
         found.energy[:] = 0.0
         found.add_energy()
         return Energy(*listed(found.energy))
@@ -202,8 +216,8 @@ class CompiledPart(LinePart, ABC):
         if found.add_work is None:
             return Work()
         trials.then.move(before)
-        trials.now.move(after)
-        self.renew_kernel_data(*trials.step(before.t, after.t))
+        trials.step(before.t, after.t)
+        self._placed(after)
         found.turned_over[:] = 0.0
         found.add_work()
         return Work(*listed(found.turned_over))
@@ -211,7 +225,7 @@ class CompiledPart(LinePart, ABC):
     def commit(self, state: State) -> None:
         """Keep the history."""
         if type(self.kernel_data()) in keep.kernels:
-            self._find(state).keep()
+            self._found(state).keep()
 
     def taken(self, before: State, after: State) -> float:
         """Work [J] against the mean of the forces at the ends of a step, over its increments."""
@@ -225,7 +239,7 @@ class CompiledPart(LinePart, ABC):
         forces, P, groups = self._found(state).forces, self._trials.now.at.P, self.traits.groups
         return (
             hermite.pull_back(forces.inertia_q, P) + forces.inertia_e if "I" in groups else None,
-            hermite.pull_back(forces.force_q, P) + forces.force_e if "F" in groups else None,
+            hermite.pull_back(forces.force_q + forces.end_q, P) + forces.force_e if groups != "I" else None,
         )
 
     def forces_on_nodes(self, state: State) -> Array:

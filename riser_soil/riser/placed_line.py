@@ -52,6 +52,10 @@ class PlacedTrial:
         self._state, self._from = state, line.x
         self.count += 1
 
+    def forget(self) -> None:
+        """Place it anew when it is asked for next."""
+        self._state = None
+
 
 class PlacedLine:
     """The accepted configuration `at` of a line, placed once for all that ask in turn, with rates as each asks for.

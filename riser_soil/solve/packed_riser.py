@@ -13,7 +13,7 @@ from riser_soil.core.arrays import Array, BoolArray, listed
 from riser_soil.core.bound import Bound, calls, in_turn
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Weights, Work
-from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.compiled_part import CompiledPart, LineTrials
 from riser_soil.riser.configuration import (
     maps_for,
     place,
@@ -213,9 +213,12 @@ class KernelParts:
         kernels = [(part, type(held) in add_work.kernels) for part, held in numbered]
         self.committed = [part for part, held in numbered if type(held) not in keep.kernels]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or _by_method(part)]
+        self._trials = {part.line.once(LineTrials) for part in self.parts}
 
     def update(self, start: float, end: float) -> None:
         """Write what depends on the time into the numbers, for a step between two times."""
+        for trials in self._trials:
+            trials.forget()
         for part in self._renewed:
             part.renew_kernel_data(start, end)
         self.t = end

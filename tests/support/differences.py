@@ -37,7 +37,3 @@ def difference_tangent(part: Part, state: State, weights: Weights, h: float = 1e
 
 def error(K: Array, expected: Array) -> float:
     return float(np.abs(K - expected).max() / np.abs(expected).max())
-
-
-def no_operation(*_: object) -> None:
-    pass

@@ -237,26 +237,3 @@ def require_steps_of_snes(case: str) -> None:
         mine = [*vars(compiled._taken.turned[name]).values()]
         np.testing.assert_allclose(mine, [*vars(work).values()], rtol=1e-6, atol=1e-6)
     assert compiled._taken.braking == pytest.approx(snes._taken.braking, rel=1e-6)
-
-
-def require_kept_history(case: str) -> None:
-    """What parts keep of a step by their kernels is what their methods keep, but for the round-off of places."""
-    stage = walked(case, "compiled", 25)
-    solved, newton = stage.stepper.advance(stage.control).solution.state, stage.newton
-    assert isinstance(newton, RiserNewton)
-    seabed, friction = stage.assembly.seabed, stage.assembly.friction
-    assert isinstance(seabed, SeabedContact)
-    assert friction is not None
-    before = seabed.state(), friction.state()
-    for part in (seabed, friction):
-        part.commit(solved)
-    by_methods = seabed.state() | friction.state()
-    seabed.restore(before[0])
-    friction.restore(before[1])
-    newton._parts.update(solved.t, solved.t)
-    newton._riser.keep()
-    for name, found in (seabed.state() | friction.state()).items():
-        scale = np.abs(by_methods[name]).max()
-        assert scale > 0.0
-        np.testing.assert_allclose(found, by_methods[name], rtol=0.0, atol=1e-11 * scale, err_msg=name)
-        assert not np.array_equal(found, (before[0] | before[1])[name]), name

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.contact.coulomb import Adhesion, adhesions, traction
-from riser_soil.contact.friction import CoulombFriction, directions, mobilised_within
+from riser_soil.contact.coulomb import Adhesion, adhesion_at, traction
+from riser_soil.contact.friction import CoulombFriction, mobilised_within
+from riser_soil.contact.friction_stations import directions_at
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.riser import hermite, shapes, stations
+from riser_soil.riser import shapes, stations
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
 from riser_soil.seabed.bearing import Strength
@@ -23,7 +22,6 @@ from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import Profile
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
-from tests.support.riser_loop import require_kernels
 from tests.support.sample_line import DIRECTION, START, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
@@ -76,13 +74,10 @@ def test_derivatives_of_the_return_map(N: float, most: float) -> None:
 
 
 def test_directions_lie_in_the_ground_and_follow_the_pipe() -> None:
-    tau = np.array([[[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]])
-    up = np.broadcast_to([0.0, 0.0, 2.0], (1, 3, 3))
-    found = directions(tau, up)
-    np.testing.assert_allclose(found[0, 0], [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], atol=1e-15)
-    np.testing.assert_allclose(found[0, 1], [[0.0, -1.0], [1.0, 0.0], [0.0, 0.0]], atol=1e-15)
-    assert not found[0, 2].any()
-    np.testing.assert_allclose(directions(tau[:, :1, ::2], up[:, :1, ::2])[0, 0], [[1.0], [0.0]], atol=1e-15)
+    up = (0.0, 0.0, 2.0)
+    np.testing.assert_allclose(directions_at((0.6, 0.0, 0.8), up), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], atol=1e-15)
+    np.testing.assert_allclose(directions_at((0.0, 1.0, 0.0), up), [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]], atol=1e-15)
+    np.testing.assert_array_equal(directions_at((0.0, 0.0, 1.0), up), np.zeros((2, 3)))
 
 
 def straight(dimension: int, adhesion: Adhesion | None = None) -> tuple[Line, CoulombFriction]:
@@ -202,14 +197,14 @@ ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sam
 def test_arc_below_the_seabed() -> None:
     """Of a pipe above it, on it, sunk in by a quarter of its diameter (a third of a turn), by half and more."""
     D, clay = 0.4, Adhesion(0.5, Strength(2.0e3, 3.0e3), 0.4)
-    z = np.array([[-0.1, 0.0, 0.25 * D, 0.5 * D, 0.7 * D]])
-    found, slope = adhesions(clay, z)
+    z = np.array([-0.1, 0.0, 0.25 * D, 0.5 * D, 0.7 * D])
+    found, slope = np.transpose([adhesion_at(clay, depth) for depth in z])
     arc = np.pi * D * np.array([0.0, 0.0, 1.0 / 3.0, 0.5, 0.5])
-    np.testing.assert_allclose(found[0], 0.5 * (2.0e3 + 3.0e3 * np.maximum(z[0], 0.0)) * arc, rtol=1e-12)
-    deeper, shallower = (adhesions(clay, z + h)[0] for h in (1e-7, -1e-7))
+    np.testing.assert_allclose(found, 0.5 * (2.0e3 + 3.0e3 * np.maximum(z, 0.0)) * arc, rtol=1e-12)
+    deeper, shallower = (np.array([adhesion_at(clay, depth + h)[0] for depth in z]) for h in (1e-7, -1e-7))
     inside = [0, 2, 4]
-    np.testing.assert_allclose(slope[0, inside], (deeper - shallower)[0, inside] / 2e-7, rtol=1e-7)
-    np.testing.assert_array_equal(adhesions(Adhesion(), z)[0], np.inf)
+    np.testing.assert_allclose(slope[inside], (deeper - shallower)[inside] / 2e-7, rtol=1e-7)
+    assert {adhesion_at(Adhesion(), depth)[0] for depth in z} == {np.inf}
 
 
 @both_dimensions
@@ -266,41 +261,13 @@ def test_tangent_is_the_derivative_of_the_residual(
 @both_dimensions
 def test_adhesion_limits_some_of_the_sample(dimension: int) -> None:
     (held, state), (free, _) = (rubbing(dimension, "profile", 1.0e7, clay) for clay in (CLAY, None))
-    most, least = (np.linalg.norm(f.evaluate(f.line.trial(state)).resistance, axis=2) for f in (free, held))
+    for friction in (free, held):
+        friction.energy(state)
+    most, least = (np.linalg.norm(f.kernel_data().resistance, axis=2) for f in (free, held))
     lower = least < 0.99 * most
     assert lower.any()
     assert not lower.all()
     assert (least <= most * (1.0 + 1e-12)).all()
-
-
-@both_dimensions
-def test_kernels_of_adhesion_are_the_parts_methods(dimension: int) -> None:
-    at = sample(dimension)
-    contact = SeabedContact(at.line, 0.5 * at.elements.outer_diameter, HILL, ROUND)
-    friction = CoulombFriction(contact, AXIAL, LATERAL, np.full(at.line.length.size, 1.0e5), CLAY)
-    require_kernels(at, [at.beam(), contact, friction])
-
-
-@both_dimensions
-@pytest.mark.parametrize("term", ["turning of the slip", "change of the normal force", "geometric"])
-def test_tangent_needs_all_its_terms(dimension: int, term: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    friction, state = rubbing(dimension, "profile", 1.0e7)
-    expected = tangent([friction], state, WEIGHTS)
-    if term == "geometric":
-        monkeypatch.setattr(hermite, "add_geometric", lambda *_: None)
-    else:
-
-        def without(*given: Any) -> tuple[Array, Array, Array]:
-            t, by_elastic, by_N = traction(*given)
-            return (t, 0.0 * by_elastic, by_N) if term.startswith("turning") else (t, by_elastic, 0.0 * by_N)
-
-        monkeypatch.setattr("riser_soil.contact.friction.traction", without)
-    friction.line.forget()
-    found = tangent([friction], state, WEIGHTS)
-    if dimension == 2 and term.startswith("turning"):
-        assert error(found, expected) < 1e-12  # in a plane the slip has one direction only
-    else:
-        assert error(found, expected) > 1e-5
 
 
 @both_dimensions

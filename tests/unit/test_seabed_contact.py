@@ -7,15 +7,15 @@ import pytest
 
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
-from riser_soil.riser import hermite, shapes, stations
+from riser_soil.riser import shapes, stations
 from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import HeightField, Profile
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from tests.support.covered_ground import Beyond
 from tests.support.dense_chain import tangent
-from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation
+from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import DIRECTION, START, Sample, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
@@ -47,25 +47,6 @@ def test_tangent_is_the_derivative_of_the_residual(dimension: int, ground: str, 
 
 
 @both_dimensions
-@pytest.mark.parametrize("left_out", ["add_geometric", "bend"])
-def test_tangent_needs_all_its_terms(dimension: int, left_out: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    at = sample(dimension)
-    part, state = contact(at, HILL), at.state(1)
-    expected = difference_tangent(part, state, WEIGHTS)
-    if left_out == "add_geometric":
-        monkeypatch.setattr(hermite, "add_geometric", no_operation)
-    else:
-        monkeypatch.setattr(
-            SeabedContact, "_by_position", lambda self, t: t.slope[..., None, None] * _dyads(t.normal)
-        )
-    assert error(tangent([part], state, WEIGHTS), expected) > 1e-4
-
-
-def _dyads(normal: Array) -> Array:
-    return normal[..., :, None] * normal[..., None, :]
-
-
-@both_dimensions
 def test_forces_are_the_derivative_of_the_stored_energy(dimension: int) -> None:
     at = sample(dimension)
     part, state = contact(at, HILL), at.state(2)
@@ -81,15 +62,16 @@ def test_forces_are_the_derivative_of_the_stored_energy(dimension: int) -> None:
 
 @both_dimensions
 def test_the_first_guess_lands_as_it_does_beside_soil(dimension: int) -> None:
-    """Where the seabed may be covered, its nodes are looked up one array at a time."""
+    """Where something covers the seabed it stands aside: far away, or below all of the line."""
     at = sample(dimension)
     ground = Plane.sloping(START - np.array([0.0, 0.0, 0.1]), 0.1, 0.3)
     radius, guess = np.full(at.line.length.size, 0.1), at.state(1)
     alone = SeabedContact(at.line, radius, ground, ROUND)
-    beside = SeabedContact(at.line, radius, ground, ROUND, covered=lambda x: np.zeros(len(x), dtype=bool))
+    beside, below = (SeabedContact(at.line, radius, ground, ROUND, covering=Beyond(x)) for x in (1e6, -1e6))
     found = alone.predict(guess)
     assert np.abs(found - guess.u).max() > 0.0
-    np.testing.assert_allclose(found, beside.predict(guess), rtol=1e-12, atol=1e-12)
+    np.testing.assert_array_equal(found, beside.predict(guess))
+    np.testing.assert_array_equal(guess.u, below.predict(guess))
 
 
 @both_dimensions

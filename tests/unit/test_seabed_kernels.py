@@ -21,6 +21,7 @@ from riser_soil.seabed.compiled_law import CompiledLaw
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import Profile
 from riser_soil.seabed.law import NormalLaw
+from tests.support.covered_ground import Beyond
 from tests.support.sample_line import START, sample
 from tests.support.soil_loops import after, aubeny_biscontin, randolph_quiggin
 
@@ -83,10 +84,10 @@ def test_a_ground_without_a_kernel_is_named() -> None:
 
 def test_contact_tells_both_before_a_step() -> None:
     at = sample(3)
-    trial = at.line.trial(at.state(1))
+    state = at.state(1)
     for ground, law, name in ((BareGround(), LAWS["penalty"], "distance_at"), (Plane.level(0.0), BareLaw(), "may_act")):
         with pytest.raises(TypingError, match=rf"{name}\(BareData"):
-            SeabedContact(at.line, np.zeros(at.line.length.size), ground, law).evaluate(trial)
+            SeabedContact(at.line, np.zeros(at.line.length.size), ground, law).energy(state)
 
 
 @every_law
@@ -164,14 +165,19 @@ def test_covered_stations_feel_nothing_and_keep_their_history(dimension: int) ->
     middle = float(np.median(at.line.to_global(at.line.x)[:, 0]))
     ground, radius = Plane.level(START[2] + 5.0), np.zeros(at.line.length.size)
     free = SeabedContact(at.line, radius, ground, law)
-    part = SeabedContact(at.line, radius, ground, law, covered=lambda xy: xy[:, 0] > middle)
+    part = SeabedContact(at.line, radius, ground, law, covering=Beyond(middle))
     state = at.state(1)
-    seen, all_of_it = part.evaluate(at.line.trial(state)), free.evaluate(at.line.trial(state))
+    seen, all_of_it = (contact.kernel_data().found for contact in (part, free))
+    for contact in (part, free):
+        contact.find(state)
     beyond = at.line.to_global(seen.position)[..., 0] > middle
     assert beyond.any()
     assert not beyond.all()
     assert np.all(seen.penetration[beyond] == -np.inf)
     np.testing.assert_array_equal(seen.penetration[~beyond], all_of_it.penetration[~beyond])
+    clear, force = part.contact_along_line(state)
+    assert np.isinf(clear[beyond.ravel()]).all()
+    assert not force[beyond.ravel()].any()
     part.commit(state)
     assert np.all(np.isinf(part.memory[beyond]))
     assert np.all(part.memory[~beyond] == 0.0)

@@ -10,7 +10,6 @@ from tests.support.riser_loop import (
     CASES,
     IN_WATER,
     all_parts,
-    require_kept_history,
     require_kernels,
     require_kernels_of_parts,
     require_mass,
@@ -47,10 +46,6 @@ def test_kernels_in_water_are_those_of_the_parts(dimension: int) -> None:
 @pytest.mark.parametrize("case", CASES)
 def test_steps_are_those_of_snes(case: str) -> None:
     require_steps_of_snes(case)
-
-
-def test_history_is_kept_as_by_the_parts() -> None:
-    require_kept_history("storm over clay")
 
 
 def test_a_bar_that_has_turned_many_times_comes_to_rest_without_a_cut_step(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -69,10 +69,9 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
     arc = assembly.line.arc[:-1, None] + assembly.line.length[:, None] * stations.gauss(GAUSS_POINTS).points
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        seen = seabed_contact.evaluate(assembly.line.trial(stepper.now))
-        force = np.zeros_like(seabed_contact.share)
-        force[seen.touching.elements] = seen.touching.force
-        first = law.update(seen.penetration, law.initial_history(seen.penetration.shape)).force
+        clearance, force = seabed_contact.contact_along_line(stepper.now)
+        penetration = (-clearance - law.start).reshape(seabed_contact.share.shape)
+        first = law.update(penetration, law.initial_history(penetration.shape)).force
         at = (x.ravel() for x in (arc, seabed_contact.share, force, first))
         found.append(Laid(seabed_contact.touchdown_arc(stepper.now), *at))
 

@@ -1,4 +1,7 @@
-"""Contact with a seabed and friction on it in the compiled loop over a riser alone, see `part_kernels`."""
+"""Kernels of the contact with a seabed, see `part_kernels`: what touches, and what the ground answers.
+
+Vectors are in the line's axes, the third component 0 in the plane.
+"""
 
 from __future__ import annotations
 
@@ -6,27 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.along_step import work_at
+from riser_soil.contact.along_step import lift, work_at
 from riser_soil.contact.contact import ContactResults, put_results
-from riser_soil.contact.coulomb import Adhesion, Pair, adhesion_at, limits, return_map
-from riser_soil.contact.friction_stations import (
-    directions_at,
-    elastic_guess,
-    put_along,
-    read_along,
-    resistance_by_position,
-    slip_at,
-    vector_of,
-)
-from riser_soil.contact.seabed_stations import (
-    LineFrame,
-    OverNodes,
-    by_position,
-    distance_in,
-    frame_of,
-    global_place,
-    put_contact,
-)
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
@@ -35,15 +19,54 @@ from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
-from riser_soil.riser.vectors import Vec, add, dot, padded, put, put_matrix, scale, sub
+from riser_soil.riser.vectors import (
+    Mat,
+    Vec,
+    add,
+    dot,
+    matadd,
+    matmul,
+    matrix,
+    matscale,
+    matvec,
+    outer,
+    padded,
+    put,
+    put_matrix,
+    scale,
+    sub,
+    transpose,
+    vecmat,
+    vector,
+)
 from riser_soil.seabed.compiled_law import answer, may_act
+from riser_soil.seabed.grounds import distance_at
 from riser_soil.seabed.law import NormalLaw
+
+UNKNOWN = -1  # number of what lies on the ground below a place
+
+
+class LineFrame(NamedTuple):
+    """Origin [m] and axes of a line, global; the rows of `axes` are unit vectors, the third 0 in the plane."""
+
+    origin: Vec
+    axes: Mat
+
+
+class OverNodes(NamedTuple):
+    """What stations (ne, ng) share with the nodes: radius and length of the line that belongs to a node (nn,) [m];
+    linear (2, ng): shares of a station at the first and the second node of its element.
+    """
+
+    radius: Array
+    length: Array
+    linear: Array
 
 
 class Found(NamedTuple):
     """What was found last at the stations: which elements touch (ne,); position and normal (ne, ng, d); penetration,
-    force, its slope and energy stored (ne, ng); what covers the ground below (ne, ng), or -1; the law's history after
-    the step (ne, ng, nh), of elements that touch.
+    force, its slope and energy stored (ne, ng); what covers the ground below (ne, ng), see `covered_by`; the law's
+    history after the step (ne, ng, nh), of elements that touch.
     """
 
     touches: BoolArray
@@ -65,8 +88,9 @@ class Bare(NamedTuple):
 
 class SeabedData(NamedTuple):
     """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), the
-    nodes, and the numbers of its ground and law; the law's start and reach; what covers the ground in places; workspace
-    for an element, for the force and its derivative at a station, and for a history (nh,).
+    nodes, and the numbers of its ground and law; the law's start and reach; shares (2,) of the law that act where a
+    step starts and where it ends; what covers the ground in places; workspace for an element, for the force and its
+    derivative at a station, and for a history (nh,).
     """
 
     at: stations.Stations
@@ -79,28 +103,13 @@ class SeabedData(NamedTuple):
     law: Any
     start: float
     reach: float
+    acting: Array
     cover: Any
     found: Found
     element: Array
     f: Array
     by: Array
     after: Array
-
-
-class FrictionData(NamedTuple):
-    """A `CoulombFriction` at the stations of a contact: coefficients, adhesion, stiffness (ne,), its `FrictionState`
-    and way slid (ne, ng), and minus the traction found last (ne, ng, d).
-    """
-
-    contact: SeabedData
-    mu: Pair
-    adhesion: Adhesion
-    stiffness: Array
-    position: Array
-    along: Array
-    traction: Array
-    slid: Array
-    resistance: Array
 
 
 def seabed_data(
@@ -112,24 +121,52 @@ def seabed_data(
     nodes: OverNodes,
     ground: Any,
     law: NormalLaw,
-    cover: Any = None,
+    cover: Any,
 ) -> SeabedData:
-    """With the workspace that they need; ground: its numbers; cover: what lies on it in places, if anything."""
+    """With the workspace that they need; ground: its numbers; cover: what lies on it in places, None for nothing."""
     (ne, ng), d = share.shape, line.dimension
     position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
-    touches, below = np.zeros(ne, dtype=np.bool_), np.full((ne, ng), -1)
+    touches, below = np.zeros(ne, dtype=np.bool_), np.full((ne, ng), UNKNOWN)
     found = Found(touches, position, normal, penetration, force, slope, stored, below, np.zeros(memory.shape))
     element = stations.element_workspace(2 * line.ndof, fixed(d))
     workspace = element, np.zeros(d), np.zeros((d, d)), np.zeros(memory.shape[2])
-    law_data = law.kernel_data, float(law.start), float(law.reach)
-    given = at, share, radius, memory.copy(), nodes, frame_of(line), ground, *law_data
+    law_data = law.kernel_data, float(law.start), float(law.reach), np.ones(2)
+    given = at, share, radius, memory, nodes, frame_of(line), ground, *law_data
     return SeabedData(*given, Bare(-1) if cover is None else cover, found, *workspace)
+
+
+def frame_of(line: Line) -> LineFrame:
+    """The frame of a line's coordinates."""
+    axes = np.zeros((3, 3))
+    axes[: line.dimension] = line.basis.T
+    return LineFrame(vector(line.origin), matrix(axes))
+
+
+@njit
+def distance_in(frame: LineFrame, ground: Any, x: Vec) -> tuple[float, Vec, Mat]:
+    """Distance of a point from the ground [m], its gradient and hessian [1/m], in the line's axes as x is."""
+    value, gradient, hessian = distance_at(ground, global_place(frame, x))
+    return value, matvec(frame.axes, gradient), matmul(matmul(frame.axes, hessian), transpose(frame.axes))
+
+
+@njit
+def global_place(frame: LineFrame, x: Vec) -> Vec:
+    """A place in global axes [m]."""
+    return add(frame.origin, vecmat(x, frame.axes))
+
+
+@njit
+def by_position(force: float, slope: float, normal: Vec, bend: Mat) -> Mat:
+    """Derivative by the position of minus the force per length on the riser; bend: derivative of the normal."""
+    return matadd(matscale(slope, outer(normal, normal)), matscale(-force, bend))
 
 
 @by_type
 def covered_by(cover: Any, x: Vec, known: int) -> Any:
-    """What lies on the ground below a place x, in global axes: its number, or -1. known: what was found there last."""
+    """What lies on the ground below a place x, in global axes: its number, < 0 for nothing. known: what was found there
+    last, UNKNOWN at first.
+    """
 
 
 @covered_by.of(Bare)
@@ -143,6 +180,26 @@ def _is_covered(part: SeabedData, place: Array, e: int, g: int) -> bool:
     below = part.found.below
     below[e, g] = covered_by(part.cover, global_place(part.frame, padded(place)), below[e, g])
     return bool(below[e, g] >= 0)
+
+
+@njit
+def land(part: SeabedData, x: Array, moved: Array) -> None:
+    """Raise the increments (nn, ndof) of nodes at x (nn, d) that would sink, see `along_step`."""
+    d, start = x.shape[1], part.start
+    for n in range(x.shape[0]):
+        now = padded(x[n])
+        then = add(now, padded(moved[n, :d]))
+        present, _, _ = distance_in(part.frame, part.ground, now)
+        guessed, _, _ = distance_in(part.frame, part.ground, then)
+        present, guessed = present - part.nodes.radius[n] - start, guessed - part.nodes.radius[n] - start
+        if lift(np.inf, guessed, start) > 0.0 and not _lies_beside(part, then):
+            moved[n, d - 1] += lift(np.inf if _lies_beside(part, now) else present, guessed, start)
+
+
+@njit
+def _lies_beside(part: SeabedData, x: Vec) -> bool:
+    """Whether something else lies on the ground below a place."""
+    return bool(covered_by(part.cover, global_place(part.frame, x), UNKNOWN) >= 0)
 
 
 @add_forces.of(SeabedData)
@@ -173,8 +230,9 @@ def _press(part: SeabedData, at: Configuration, e: int, out: LineForces) -> None
     found = part.found
     for g in range(part.share.shape[1]):
         force, slope, stored = answer(part.law, found.penetration[e, g], part.memory[e, g], found.after[e, g])
-        found.force[e, g], found.slope[e, g], found.stored[e, g] = force, slope, stored
-        put(scale(-force, padded(found.normal[e, g])), part.f)
+        acting = part.acting[1]
+        found.force[e, g], found.slope[e, g], found.stored[e, g] = acting * force, acting * slope, acting * stored
+        put(scale(-acting * force, padded(found.normal[e, g])), part.f)
         p = e * part.share.shape[1] + g
         stations.add_integrand_at(part.at.weighted, p, held(part.f, at.D), out.end_q, e, at.D)
 
@@ -204,7 +262,12 @@ def _contact_energy(part: SeabedData, at: Configuration, energy: Array) -> None:
 
 @add_work.of(SeabedData)
 def _contact_work(part: SeabedData, first: Configuration, last: Configuration, work: Array) -> None:
-    """See `SeabedContact.work`; the last configuration is that of the forces found last."""
+    """Dissipated is the work of the force at the end of the step less the change of the energy stored.
+
+    Never negative on a plane, where the stored energy is convex in the penetration. What that force takes beyond the
+    work of the law along the step is the time scheme's; on ground without a history it is all. The last configuration
+    is that of the forces found last.
+    """
     found, ng = part.found, part.share.shape[1]
     taken, gained, by_law = 0.0, 0.0, 0.0
     before, began = np.zeros(ng), np.zeros((ng, part.f.size))
@@ -226,7 +289,8 @@ def _contact_work(part: SeabedData, first: Configuration, last: Configuration, w
                 taken -= share * found.force[e, g] * dot(padded(found.normal[e, g]), way)
                 gained += share * found.stored[e, g]
             if touched:
-                gained -= share * answer(part.law, before[g], part.memory[e, g], part.after)[2]
+                stored = answer(part.law, before[g], part.memory[e, g], part.after)[2]
+                gained -= share * part.acting[0] * stored
             if part.memory.shape[2] > 0 and (touched or found.touches[e]):
                 after = found.penetration[e, g]
                 by_law += share * work_at(part.law, part.reach, before[g], after, part.memory[e, g], part.after)
@@ -236,7 +300,7 @@ def _contact_work(part: SeabedData, first: Configuration, last: Configuration, w
 
 @keep.of(SeabedData)
 def _keep_memory(part: SeabedData, at: Configuration) -> None:
-    """See `SeabedContact.commit`."""
+    """The law's history after the step."""
     found, memory = part.found, part.memory
     for e in range(memory.shape[0] if memory.shape[2] > 0 else 0):
         for g in range(memory.shape[1]):
@@ -248,104 +312,39 @@ def _keep_memory(part: SeabedData, at: Configuration) -> None:
 
 @put_results.of(SeabedData)
 def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -> None:
-    """Of ground on which nothing lies anywhere."""
-    found = part.found.touches, part.found.penetration, part.found.force, part.found.normal
-    put_contact(part.frame, part.ground, part.nodes, part.start, part.share, at.x, found, out)
+    found, nodes, total = part.found, part.nodes, (0.0, 0.0, 0.0)
+    ng = part.share.shape[1]
+    out.force_per_length[:], out.deepest[0] = 0.0, 0.0
+    for e in range(part.radius.size):
+        for g in range(ng):
+            pressing, k = found.force[e, g] if found.touches[e] else 0.0, e * ng + g
+            covered = _is_covered(part, found.position[e, g], e, g)
+            out.clearance[k] = np.inf if covered else -found.penetration[e, g] - part.start
+            out.force[k] = pressing
+            out.deepest[0] = max(out.deepest[0], found.penetration[e, g])
+            for side in range(2):
+                out.force_per_length[e + side] += nodes.linear[side, g] * (part.share[e, g] * pressing)
+            total = add(total, scale(part.share[e, g] * pressing, padded(found.normal[e, g])))
+    put(vecmat(total, part.frame.axes), out.on_riser)
+    for n in range(nodes.length.size):
+        value, _, _ = distance_in(part.frame, part.ground, padded(at.x[n]))
+        inside = max(0.0, nodes.radius[n] - value)
+        out.force_per_length[n] /= nodes.length[n]
+        if inside > 0.0 and _lies_beside(part, padded(at.x[n])):
+            inside = 0.0
+        out.penetration[n] = out.depth[n] = inside
 
 
 @njit
-def _elastic(part: FrictionData, e: int, g: int) -> Pair:
-    """t* of `coulomb` at a station."""
-    guess: Pair = elastic_guess(
-        read_along(part.along[e, g]), padded(part.traction[e, g]), part.stiffness[e], _moved(part, e, g)
-    )
-    return guess
-
-
-@njit
-def _moved(part: FrictionData, e: int, g: int) -> Vec:
-    """The movement of a station in the step."""
-    moved: Vec = sub(padded(part.contact.found.position[e, g]), padded(part.position[e, g]))
-    return moved
-
-
-@njit
-def _limits(part: FrictionData, e: int, g: int) -> tuple[Pair, Pair]:
-    """L of `coulomb` at a station, and its derivative by the penetration."""
-    found = part.contact.found
-    most = adhesion_at(part.adhesion, found.penetration[e, g])
-    limit: tuple[Pair, Pair] = limits(found.force[e, g], found.slope[e, g], part.mu, most)
-    return limit
-
-
-@add_forces.of(FrictionData)
-def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> None:
-    """After those of the contact that it belongs to."""
-    contact = part.contact
-    for e in range(part.stiffness.size):
-        if not contact.found.touches[e]:
-            continue
-        for g in range(contact.share.shape[1]):
-            limit, rise = _limits(part, e, g)
-            t, _, _ = return_map(_elastic(part, e, g), limit, rise)
-            put(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
-            p = e * contact.share.shape[1] + g
-            stations.add_integrand_at(contact.at.weighted, p, held(part.resistance[e, g], at.D), out.end_q, e, at.D)
-
-
-@add_tangent.of(FrictionData)
-def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    contact, found, workspace = part.contact, part.contact.found, part.contact.element
-    for e in range(part.stiffness.size):
-        if not found.touches[e]:
-            continue
-        workspace[:] = 0.0
-        for g in range(contact.share.shape[1]):
-            limit, rise = _limits(part, e, g)
-            _, by_elastic, by_penetration = return_map(_elastic(part, e, g), limit, rise)
-            ways, normal = read_along(part.along[e, g]), padded(found.normal[e, g])
-            put_matrix(
-                resistance_by_position(ways, part.stiffness[e], by_elastic, by_penetration, normal), contact.by
-            )
-            dragged = contact.at.N[e, g], contact.by, maps.place_rows[e]
-            add_weighed(workspace, contact.at.weighted[e, g], (dragged,), at.D, at.R)
-        add_pulled_back(K[e], at.P[e], workspace, at.D, at.R)
-
-
-@add_energy.of(FrictionData)
-def _friction_energy(part: FrictionData, at: Configuration, energy: Array) -> None:
-    for e in range(part.stiffness.size):
-        if part.contact.found.touches[e]:
-            for g in range(part.contact.share.shape[1]):
-                t: Vec = padded(part.resistance[e, g])
-                energy[2] += 0.5 * part.contact.share[e, g] / part.stiffness[e] * dot(t, t)
-
-
-@add_work.of(FrictionData)
-def _friction_work(part: FrictionData, first: Configuration, last: Configuration, work: Array) -> None:
-    """See `CoulombFriction.work`."""
-    contact = part.contact
-    for e in range(part.stiffness.size):
-        for g in range(contact.share.shape[1]):
-            share, begun = contact.share[e, g], padded(part.traction[e, g])
-            work[0] += 0.5 * share / part.stiffness[e] * dot(begun, begun)
-            if contact.found.touches[e]:
-                t: Vec = padded(part.resistance[e, g])
-                work[0] += share * dot(t, _moved(part, e, g)) - 0.5 * share / part.stiffness[e] * dot(t, t)
-
-
-@keep.of(FrictionData)
-def _keep_traction(part: FrictionData, at: Configuration) -> None:
-    """See `CoulombFriction.commit`."""
-    found = part.contact.found
-    for e in range(part.stiffness.size):
-        for g in range(part.slid.shape[1]):
-            t, k = padded(part.traction[e, g]), part.stiffness[e]
-            if found.touches[e] and found.force[e, g] > 0.0:
-                taken = add(t, padded(part.resistance[e, g]))
-                part.slid[e, g] += slip_at(read_along(part.along[e, g]), taken, k, _moved(part, e, g))
-            stations.put_unit_tangent(part.contact.at.dN[e, g], at.chord[e], at.tangent[e], part.contact.f, at.D)
-            put_along(directions_at(padded(part.contact.f), padded(found.normal[e, g])), part.along[e, g])
-            for i in range(len(at.D)):
-                part.position[e, g, i] = found.position[e, g, i]
-                part.traction[e, g, i] = -part.resistance[e, g, i] if found.touches[e] else 0.0
+def at_nodes(nodes: OverNodes, share: Array, values: Array) -> Array:
+    """Means at the nodes (nn,) of values at the stations (ne, ng), which count with their share (ne, ng) of arc
+    length.
+    """
+    out = np.zeros(nodes.length.size)
+    for e in range(values.shape[0]):
+        for g in range(values.shape[1]):
+            for side in range(2):
+                out[e + side] += nodes.linear[side, g] * share[e, g] * values[e, g]
+    for n in range(out.size):
+        out[n] /= nodes.length[n]
+    return out
