@@ -10,7 +10,7 @@ As `riser.section_forces`, which asks the parts' methods one by one. At an accep
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -47,21 +47,10 @@ from riser_soil.riser.section_forces import NO_FRAMES, section_input, viscous_re
 from riser_soil.riser.section_kernels import SectionForces, put_section_forces, size_of
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.packed_riser import KernelParts, matrix_workspace
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData
-from riser_soil.solve.riser_mass import projectors
+from riser_soil.solve.line_mass import LineMass
+from riser_soil.solve.packed_riser import KernelParts
 
 KernelData = tuple[Any, ...]
-
-
-class MassData(NamedTuple):
-    """inverse (nn, ndof) [1/m] of the levers of moments; moving (nn, ndof, ndof): see `riser_mass.projectors`; whole
-    (nn,): where they change nothing.
-    """
-
-    inverse: Array
-    moving: Array
-    whole: BoolArray
 
 
 class CompiledMass:
@@ -81,13 +70,8 @@ class CompiledMass:
         levers: Array,
         update: Callable[[float], None],
     ) -> None:
-        self._line, self._update, self._free, self._placed = line, update, ~prescribed, placed
-        shape = line.nodes, line.ndof
-        self._forces, self._energy, self._known = forces_of(line), np.zeros(3), False
-        self._step, self._workspace = StepData(*(np.zeros(shape) for _ in range(6))), matrix_workspace(line)
-        self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
-        moving, whole = np.zeros((*shape, line.ndof)), np.zeros(line.nodes, dtype=bool)
-        self._mass = MassData(1.0 / levers.reshape(shape), moving, whole)
+        self._line, self._update, self._placed = line, update, placed
+        self._mass, self._forces, self._energy = LineMass(line.nodes, prescribed, levers), forces_of(line), np.zeros(3)
         self._bind_state(bulk, inertial)
         self._bind_mass(inertial)
 
@@ -101,22 +85,13 @@ class CompiledMass:
     def _bind_mass(self, inertial: Sequence[KernelData]) -> None:
         """Bind the kernels of the mass at rest."""
         at = self._placed.at
-        here, workspace, dofs, mass = map(Packed, (at, self._workspace, self._dofs, self._mass))
-        K, none = Packed(self._workspace.K), np.zeros(1)
-        progress = Packed(NewtonProgress(none, none, np.zeros(2, dtype=np.int64)))
-        maps, weights = Packed(maps_for(self._line)._replace(shift_a=1.0)), Packed(LineWeights(1.0, 0.0))
+        here, K, weights = Packed(at), Packed(self._mass.K), Packed(LineWeights(1.0, 0.0))
+        maps = Packed(maps_for(self._line)._replace(shift_a=1.0))
         self._find_matrices = in_turn(
             *(bound(find_water, numbers, here) for numbers in inertial if type(numbers) in find_water.kernels),
             bound(put_maps, at, maps),
             Bound(loop.clear_tangent, K),
             *(bound(add_tangent, numbers, here, maps, weights, K) for numbers in inertial),
-            Bound(weigh, workspace, mass),
-        )
-        self._solve = in_turn(
-            Bound(project, workspace, dofs, mass),
-            Bound(loop.fill, workspace, dofs),
-            Bound(loop.factorise, workspace, progress),
-            Bound(loop.improve, workspace, Packed(self._step), dofs),
         )
 
     def bulk_forces(self, state: State) -> Forces:
@@ -140,25 +115,15 @@ class CompiledMass:
         self._update(t)
         self._placed.stand()
         self._find_matrices()
-        if not self._known:
-            self._know(projectors(self._workspace.K, self._free))
-        self._step.u[...] = 0.0
-        np.negative(force, out=self._dofs.residual.ravel())
-        self._solve()
-        return self._step.u.ravel() * self._mass.inverse.ravel()
+        return self._mass.accelerations(force)
 
     def state(self) -> Saved:
         """As of `RiserMass`."""
-        return {self._line.name: self._mass.moving.copy()} if self._known else {}
+        moving = self._mass.moving
+        return {} if moving is None else {self._line.name: moving}
 
     def restore(self, saved: Saved) -> None:
-        self._known = False
-        if self._line.name in saved:
-            self._know(saved[self._line.name])
-
-    def _know(self, moving: Array) -> None:
-        self._mass.moving[...], self._known = moving, True
-        self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))
+        self._mass.restore(saved.get(self._line.name))
 
 
 def mass_of(
@@ -167,61 +132,6 @@ def mass_of(
     """Inverse of a line's mass, by its parts; see `CompiledMass`."""
     groups = parts.in_groups("IF"), parts.in_groups("I")
     return CompiledMass(line, placed, *groups, prescribed, levers, parts.update_to)
-
-
-@njit
-def weigh(workspace: MatrixWorkspace, mass: MassData) -> None:
-    """Divide element matrices by the levers, so that all masses are in kg."""
-    n, inverse = workspace.K.shape[1], mass.inverse.reshape(mass.inverse.size)
-    for e in range(workspace.K.shape[0]):
-        K, of_ends = workspace.K[e], inverse[e * (n // 2) : e * (n // 2) + n]
-        for i in range(n):
-            for j in range(n):
-                K[i, j] *= of_ends[i] * of_ends[j]
-
-
-@njit
-def project(workspace: MatrixWorkspace, dofs: Dofs, mass: MassData) -> None:
-    """Project element matrices and forces over the levers onto what moves; what does not gets the largest mass, which
-    is on a diagonal.
-    """
-    K, ndof, largest = workspace.K, mass.inverse.shape[1], 0.0
-    left, own = np.zeros((ndof, ndof)), np.zeros(ndof)
-    for e in range(K.shape[0]):
-        for i in range(2 * ndof):
-            largest = max(largest, K[e, i, i])
-        if mass.whole[e] and mass.whole[e + 1]:
-            continue
-        for row in range(2):
-            for column in range(2):
-                block = K[e, row * ndof : (row + 1) * ndof, column * ndof : (column + 1) * ndof]
-                _multiply(mass.moving[e + row], block, left)
-                _multiply(left, mass.moving[e + column], block)
-    if largest == 0.0:
-        largest = 1.0
-    for n in range(dofs.residual.shape[0]):
-        e, first = max(n - 1, 0), ndof if n > 0 else 0
-        for i in range(ndof):
-            own[i] = dofs.residual[n, i] * mass.inverse[n, i]
-            dofs.residual[n, i] = own[i]
-        if mass.whole[n]:
-            continue
-        for i in range(ndof):
-            dofs.residual[n, i] = 0.0
-            for j in range(ndof):
-                dofs.residual[n, i] += mass.moving[n, i, j] * own[j]
-                K[e, first + i, first + j] += largest * ((1.0 if i == j else 0.0) - mass.moving[n, i, j])
-
-
-@njit
-def _multiply(left: Array, right: Array, out: Array) -> None:
-    """Write the product of two matrices, to another place."""
-    for i in range(left.shape[0]):
-        for j in range(right.shape[1]):
-            total = 0.0
-            for k in range(left.shape[1]):
-                total += left[i, k] * right[k, j]
-            out[i, j] = total
 
 
 class ElementForces:

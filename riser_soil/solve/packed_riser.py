@@ -65,7 +65,8 @@ class PackedRiser:
         border: LoopBorder | None = None,
     ) -> None:
         self._line, self._placed, shape = line, placed, (line.nodes, line.ndof)
-        self.step, self.forces, self.workspace = StepData(*_zeros(6, shape)), forces_of(line), matrix_workspace(line)
+        self.step, self.forces = StepData(*_zeros(6, shape)), forces_of(line)
+        self.workspace = matrix_workspace(*shape, line.dimension)
         self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(most + 1), np.zeros(2, dtype=np.int64))
@@ -186,16 +187,16 @@ def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
     return [np.zeros(shape) for _ in range(n)]
 
 
-def matrix_workspace(line: Line) -> MatrixWorkspace:
-    """Workspace for the tangent of a line."""
-    ne, d, r, n = line.length.size, line.dimension, line.frames.dofs, line.ndof
-    matrix, band = banded.workspace(line.size, 2 * n - 1)
+def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspace:
+    """Workspace for the tangent of a line; with room for its turning, where it has a dimension."""
+    ne, r, size = nodes - 1, ndof - dimension if dimension else 0, nodes * ndof
+    matrix, band = banded.workspace(size, 2 * ndof - 1)
     return MatrixWorkspace(
-        np.empty((ne, 2 * n, 2 * n)),
-        np.empty((ne, 2, d)),
+        np.empty((ne, 2 * ndof, 2 * ndof)),
+        np.empty((ne, 2, dimension)),
         np.empty((ne, 2, r, r)),
         matrix,
-        np.empty(line.size, dtype=np.int64),
+        np.empty(size, dtype=np.int64),
         band,
     )
 
