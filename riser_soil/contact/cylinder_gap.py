@@ -44,16 +44,16 @@ FORMS = 4
 PARALLEL = 1e-12  # sine of the angle below which two directions are one
 
 
-def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> tuple[Array, Array, Array]:
-    """Linear forms (n, 4, 4 d + 3 nv) of the gap at some points, the symmetric matrices C (n, 4, 4) with which
-    δ²g = forms·C·forms, and the last form; the first is δg, the last δs.
+def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> tuple[Array, Array]:
+    """Linear forms (n, 4, 4 d + 3 nv) of the gap at some points, and the symmetric matrices C (n, 4, 4) with which
+    δ²g = forms·C·forms; the first is δg, the last δs.
 
     Columns: q of the element in axes basis (3, d), then the facet's nodes.
     """
     columns = 4 * basis.shape[1] + 3 * surface.facets.shape[1]
     forms, C = np.empty((len(near.gap), FORMS, columns)), np.zeros((len(near.gap), FORMS, FORMS))
     put_gap_forms(axis, surface, near, basis, forms, C)
-    return forms, C, forms[:, -1]
+    return forms, C
 
 
 @njit

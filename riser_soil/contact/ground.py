@@ -70,6 +70,11 @@ class DeformedSurface:
         self.facets = strips(corners)
 
     @property
+    def part(self) -> slice:
+        """The surface's slice of local arrays."""
+        return slice(self._surface.offset, self.end)
+
+    @property
     def end(self) -> int:
         """First local dof number behind the surface's."""
         return self._surface.offset + self._surface.size

@@ -1,66 +1,193 @@
-"""What touches at a trial: pairs of an element and a facet with their points, contact forces and contact stiffness."""
+"""Points of the soil's surface that touch the pipe: forces there, on the pipe and on the soil, and their derivatives.
+
+A force f on the pipe at a point does the work f·(δp - N δq) as the point moves by δp and the axis at its place by N δq.
+z is q of an element, then the nodes of a facet.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.near_points import NearPoints
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.contact.closest_point import Axis
+from riser_soil.contact.cylinder_gap import FORMS, away_from_axis, gap_forms, put_gap_forms
+from riser_soil.contact.facets import fill_shape
+from riser_soil.contact.near_points import NearPoints, Surface, point_on
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.riser.hermite import shape as axis_shape
+from riser_soil.riser.vectors import add, dot, put, scale, sub, vector
+from riser_soil.seabed.compiled_law import answer
+
+HELD, BEYOND = -1, -2  # in place of a dof's row: of those that are supported, and of those that are not reached
 
 
-@dataclass(frozen=True, eq=False)
-class ActivePairs:
-    """What touches at a trial: n points in m pairs of an element and a facet.
+class Pairs(NamedTuple):
+    """Pairs of an element and a facet: the pair of each point (n,), element and facet of each pair (m,)."""
 
-    points: the n points. pair (n,): of each point; element, facet (m,): of each pair. forms (n, k, nz), C: see
-    `gap_forms` and `row_forms`; by_place (n, nz): the form of the place on the axis.
-    force (n,) [N] = area times pressure, slope (n,) [N/m]: derivative by the penetration; potential [J] of all.
-    history (n, nh): of the pressure law after a step that ends here. dimension: d of the line.
-    """
-
-    points: NearPoints
     pair: IntArray
     element: IntArray
     facet: IntArray
-    forms: Array
-    C: Array
-    by_place: Array
+
+
+@dataclass(frozen=True, eq=False)
+class PressedPoints:
+    """What touches at a trial: n points. axis, surface: pipe and soil there; basis (3, d): of the line.
+
+    force (n,) [N] = area times pressure, slope (n,) [N/m]: derivative by the penetration; potential [J] of all.
+    history (n, nh): of the pressure law after a step that ends here.
+    """
+
+    axis: Axis
+    surface: Surface
+    basis: Array
+    points: NearPoints
     force: Array
     slope: Array
     potential: float
     history: Array
-    dimension: int
 
-    @property
-    def on_line(self) -> Array:
-        """Force of each point on the line (n, d) [N]: against the normal, which the positions' share in δg has."""
-        d = self.dimension
-        return np.asarray(self.force[:, None] * (self.forms[:, 0, :d] + self.forms[:, 0, 2 * d : 3 * d]))
+    @classmethod
+    def of(
+        cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, before: Array
+    ) -> PressedPoints:
+        """By the law's numbers and its history (n, nh) at the points."""
+        n = len(points.gap)
+        force, slope, after = np.empty(n), np.empty(n), np.empty_like(before)
+        potential = press(law, points, n, before, after, force, slope)
+        return cls(axis, surface, basis, points, force, slope, potential, after)
 
     @cached_property
-    def gradient(self) -> Array:
-        """dψ/dz (m, nz) of the pairs by z: q of the element, then the facet's nodes [N, N.m]."""
-        out = np.zeros((len(self.element), self.forms.shape[2]))
-        add_rows(out, self.pair, -self.force, self.forms[:, 0])
+    def on_riser(self) -> Array:
+        """Force on the pipe at each point (n, 3) [N], global axes."""
+        out = np.empty((len(self.force), 3))
+        put_on_riser(self.axis, self.surface, self.points, len(out), self.force, out)
         return out
 
-    def hessian(self) -> Array:
-        """d²ψ/dz² (m, nz, nz) of the pairs."""
-        nz = self.forms.shape[2]
-        out = np.zeros((len(self.element), nz, nz))
-        add_products(out, self.pair, self.forms, by_curvature(self.forms, self.C, self.force, self.slope))
-        return out
+    @cached_property
+    def pairs(self) -> Pairs:
+        found: Pairs = paired(self.points, len(self.axis.length))
+        return found
+
+    @cached_property
+    def forms(self) -> Array:
+        """Forms (n, k, nz) of the gap, the last of the place on the axis, see `gap_forms`."""
+        return gap_forms(self.axis, self.surface, self.points, self.basis)[0]
+
+    def spread(self, f: Array) -> tuple[Array, Array]:
+        """Residuals of forces f (n, 3) on the pipe: conjugate to q (ne, 4, d), and of the surface (np, 3)."""
+        F, soil = np.zeros((len(self.axis.length), 4, self.basis.shape[1])), np.zeros(self.surface.deformed.shape)
+        rows, met = np.arange(soil.size).reshape(soil.shape), np.empty(0, dtype=np.bool_)  # all nodes are reached
+        spread(self.axis, self.surface, self.basis, self.points, len(f), f, F, rows, soil.ravel(), met)
+        return F, soil
+
+    def work(self, f: Array, before: PressedPoints) -> float:
+        """Work [J] of forces f (n, 3) on the pipe and on the soil on the way from another trial."""
+        way = before.axis.q, before.surface.deformed
+        return float(work_of(self.axis, self.surface, self.points, len(f), f, *way))
 
 
 @njit
-def paired(element: IntArray, facet: IntArray, elements: int) -> tuple[IntArray, IntArray, IntArray]:
-    """Pairs of n points that come facet by facet, numbered as they come: the pair of each point (n,), element and facet
-    of each pair (m,). elements: of the riser.
+def put_axis(origin: Array, basis: Array, q: Array, axis: Array) -> None:
+    """Write q (ne, 4, d) of a line in global axes (ne, 4, 3)."""
+    for e in range(q.shape[0]):
+        for a in range(4):
+            for i in range(3):
+                value = origin[i] if a % 2 == 0 else 0.0
+                for j in range(q.shape[2]):
+                    value += basis[i, j] * q[e, a, j]
+                axis[e, a, i] = value
+
+
+@njit
+def press(law: Any, points: NearPoints, n: int, before: Array, after: Array, force: Array, slope: Array) -> float:
+    """Write force [N] and slope [N/m] of the first n points, area included, and the law's history after them (n, nh);
+    the energy stored [J].
     """
+    energy = 0.0
+    for i in range(n):
+        found, rise, stored = answer(law, -points.gap[i], before[i], after[i])
+        force[i], slope[i] = points.area[i] * found, points.area[i] * rise
+        energy += points.area[i] * stored
+    return energy
+
+
+@njit
+def put_on_riser(axis: Axis, surface: Surface, points: NearPoints, n: int, force: Array, out: Array) -> None:
+    """Write the force on the pipe (n, 3) [N] at the first n points: away from the soil."""
+    nv = surface.facets.shape[1]
+    N, dN = np.empty(nv), np.empty((nv, 2))
+    for i in range(n):
+        e, nodes = points.element[i], surface.facets[points.facet[i]]
+        p = point_on(surface.deformed, nodes, points.xi[i, 0], points.xi[i, 1], N, dN)
+        _, away = away_from_axis(axis.q[e], axis.length[e], axis.radius[e], points.along[i], p)
+        put(scale(-force[i], away), out[i])
+
+
+@njit
+def spread(
+    axis: Axis,
+    surface: Surface,
+    basis: Array,
+    points: NearPoints,
+    n: int,
+    f: Array,
+    F: Array,
+    rows: IntArray,
+    residual: Array,
+    met: BoolArray,
+) -> None:
+    """Add the residual of forces f (n, 3) on the pipe at the first n points: F (ne, 4, d) is conjugate to q, rows
+    (np, 3) are those of the soil's residual. Nodes that are not reached are marked in `met` (np,).
+    """
+    nv = surface.facets.shape[1]
+    N, dN = np.empty(nv), np.empty((nv, 2))
+    for i in range(n):
+        e, nodes, force = points.element[i], surface.facets[points.facet[i]], vector(f[i])
+        shares = axis_shape(points.along[i], axis.length[e])
+        for j in range(basis.shape[1]):
+            along = basis[0, j] * force[0] + basis[1, j] * force[1] + basis[2, j] * force[2]
+            for a in range(4):
+                F[e, a, j] -= along * shares[a]
+        fill_shape(points.xi[i, 0], points.xi[i, 1], N, dN)
+        for a in range(nv):
+            for j in range(3):
+                row = rows[nodes[a], j]
+                if row >= 0:
+                    residual[row] += N[a] * force[j]
+                elif row == BEYOND and dot(force, force) > 0.0:
+                    met[nodes[a]] = True
+
+
+@njit
+def work_of(
+    axis: Axis, surface: Surface, points: NearPoints, n: int, f: Array, first: Array, before: Array
+) -> float:
+    """Work [J] of forces f (n, 3) on the pipe at the first n points, and of their opposites on the soil, as q go from
+    first (ne, 4, 3) to where they are, and the soil's points from before (np, 3).
+    """
+    nv, total = surface.facets.shape[1], 0.0
+    N, dN = np.empty(nv), np.empty((nv, 2))
+    for i in range(n):
+        e, nodes, way = points.element[i], surface.facets[points.facet[i]], (0.0, 0.0, 0.0)
+        shares = axis_shape(points.along[i], axis.length[e])
+        fill_shape(points.xi[i, 0], points.xi[i, 1], N, dN)
+        for a in range(nv):
+            moved = sub(vector(surface.deformed[nodes[a]]), vector(before[nodes[a]]))
+            way = add(way, scale(N[a], moved))
+        for a in range(4):
+            way = sub(way, scale(shares[a], sub(vector(axis.q[e, a]), vector(first[e, a]))))
+        total += dot(vector(f[i]), way)
+    return total
+
+
+@njit
+def paired(points: NearPoints, elements: int) -> Pairs:
+    """Pairs of n points that come facet by facet, numbered as they come. elements: of the riser."""
+    element, facet = points.element, points.facet
     n, m = len(element), 0
     pair, first, last = np.empty(n, np.int64), np.empty(n, np.int64), np.full(elements, -1)
     for i in range(n):
@@ -69,15 +196,27 @@ def paired(element: IntArray, facet: IntArray, elements: int) -> tuple[IntArray,
             known, first[m], m = m, i, m + 1
             last[element[i]] = known
         pair[i] = known
-    return pair, element[first[:m]], facet[first[:m]]
+    return Pairs(pair, element[first[:m]], facet[first[:m]])
 
 
 @njit
-def add_rows(out: Array, pair: IntArray, factor: Array, rows: Array) -> None:
-    """Add factor (n,) times rows (n, nz) to those (m, nz) of the points' pairs (n,)."""
-    for i in range(len(pair)):
-        for c in range(rows.shape[1]):
-            out[pair[i], c] += factor[i] * rows[i, c]
+def pair_tangents(
+    axis: Axis,
+    surface: Surface,
+    basis: Array,
+    points: NearPoints,
+    force: Array,
+    slope: Array,
+    pairs: Pairs,
+    P: Array,
+) -> Array:
+    """Derivative (m, nr, nr) of the residual of what presses by the dofs of its pairs, P (ne, 2, d, r) held."""
+    n, nz = len(points.gap), 4 * basis.shape[1] + 3 * surface.facets.shape[1]
+    forms, C = np.empty((n, FORMS, nz)), np.zeros((n, FORMS, FORMS))
+    put_gap_forms(axis, surface, points, basis, forms, C)
+    by_z = np.zeros((pairs.element.size, nz, nz))
+    add_products(by_z, pairs.pair, forms, by_curvature(forms, C, force, slope))
+    return in_dofs(by_z, pairs.element, P)
 
 
 @njit

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.active_pairs import ActivePairs, add_products, add_rows
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.cylinder_gap import Slide, slide
 from riser_soil.contact.integration_points import PointMemory
 from riser_soil.contact.near_points import NearPoints, Surface
+from riser_soil.contact.pressed_points import PressedPoints, add_products, in_dofs
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
@@ -24,16 +24,17 @@ AREA = 3  # column of the memory, behind the traction
 
 @dataclass(frozen=True, eq=False)
 class SlidingState:
-    """Friction at a state: elastic guess (n, 3) and traction (n, 3) on the riser [Pa] of the n points that press;
-    by_z (n, nz): its force on each point's z, see `ActivePairs`, and gradient (m, nz): residual of the pairs [N, N.m].
-    """
+    """Friction at a state: elastic guess (n, 3) and traction (n, 3) on the riser [Pa] of the n points that press."""
 
     found: SurfaceState
     moved: Slide
     elastic: Array
     traction: Array
-    by_z: Array
-    gradient: Array
+
+    @property
+    def on_riser(self) -> Array:
+        """Force on the pipe at each point (n, 3) [N], global axes."""
+        return np.asarray(self.found.pressed.points.area[:, None] * self.traction)
 
 
 SoilAdhesion = Callable[[IntArray, Array], Array]
@@ -41,7 +42,7 @@ SoilAdhesion = Callable[[IntArray, Array], Array]
 (n,) [Pa].
 """
 
-Sliding = tuple[Slide, Array, Array, Array, Array]  # what a trial keeps of a SlidingState: all but what holds the trial
+Sliding = tuple[Slide, Array, Array]  # what a trial keeps of a SlidingState: all but what holds the trial
 
 
 class SoilFriction(LinePart):
@@ -86,18 +87,15 @@ class SoilFriction(LinePart):
         return SlidingState(found, *made)
 
     def _evaluate(self, found: SurfaceState) -> Sliding:
-        pressed, now = found.pressed, (self.contact.axis(found.trial), self.contact.surface(found.deformed))
+        pressed = found.pressed
+        now = pressed.axis, pressed.surface
         moved = slide(pressed.points, self._start(found.trial.state), now, self.line.basis)
         before = self._memory.at(pressed.points.number)[:, :AREA]
         elastic = before - self._stiffness * moved.moved
         t, _, _ = self._return(_along(moved.along, elastic), pressed)
-        on_riser = np.einsum("nri,nr->ni", moved.along, t)
-        gradient = np.zeros_like(pressed.gradient)
-        by_z = np.einsum("ni,niz->nz", pressed.points.area[:, None] * on_riser, moved.by_z)
-        add_rows(gradient, pressed.pair, -np.ones(len(by_z)), by_z)
-        return moved, elastic, on_riser, by_z, gradient
+        return moved, elastic, np.einsum("nri,nr->ni", moved.along, t)
 
-    def _return(self, elastic: Array, pressed: ActivePairs) -> tuple[Array, Array, Array]:
+    def _return(self, elastic: Array, pressed: PressedPoints) -> tuple[Array, Array, Array]:
         """Components (n, r) of the traction, their derivatives by those of t* and by the penetration."""
         pressure, slope = pressed.force / pressed.points.area, pressed.slope / pressed.points.area
         return traction(elastic, pressure, slope, self._mu, self._most(pressed.points))
@@ -110,41 +108,42 @@ class SoilFriction(LinePart):
         """The pipe's axis and the soil's surface at the start of the step."""
         if self._at_start is None:
             rest = State.at_rest(state.t, state.u.size)
-            found = self.contact.evaluate(rest)
-            self._at_start = self.contact.axis(found.trial), self.contact.surface(found.deformed)
+            found = self.contact.evaluate(rest).pressed
+            self._at_start = found.axis, found.surface
         return self._at_start
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         sliding = self.evaluate(state)
-        return None, self.contact.in_elements(sliding.found, sliding.gradient)
+        return None, sliding.found.on_elements(sliding.found.pressed.spread(sliding.on_riser)[0])
 
     def residual(self, state: State, forces: Forces) -> None:
         sliding = self.evaluate(state)
-        self.line.scatter(self.element_forces(state)[1], forces.end)
-        self.contact.add_to_soil(forces, sliding.found.pressed, sliding.gradient)
+        self.contact.add_residual(sliding.found, sliding.on_riser, forces)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Unweighted: friction stands at the end of the step."""
         sliding = self.evaluate(state)
         pressed = sliding.found.pressed
-        nz, area = pressed.forms.shape[2], pressed.points.area[:, None, None]
-        by_z = np.zeros((len(pressed.element), nz, nz))
+        (pair, element, _), forms = pressed.pairs, pressed.forms
+        nz, area = forms.shape[2], pressed.points.area[:, None, None]
+        by_z = np.zeros((len(element), nz, nz))
         turning = np.einsum("ni,niz->nz", sliding.traction, sliding.moved.by_s_z)
         left = np.concatenate([sliding.moved.by_z, turning[:, None]], axis=1)
-        right = np.concatenate([self._traction_by_z(sliding), pressed.by_place[:, None]], axis=1)
-        add_products(by_z, pressed.pair, -area * left, right)
-        self.contact.add_tangent(values, sliding.found, by_z, sliding.gradient)
+        right = np.concatenate([self._traction_by_z(sliding, forms), forms[:, -1:]], axis=1)
+        add_products(by_z, pair, -area * left, right)
+        by_dofs = in_dofs(by_z, element, sliding.found.trial.turn.P)
+        self.contact.add_tangent(values, sliding.found, by_dofs, sliding.on_riser)
 
-    def _traction_by_z(self, sliding: SlidingState) -> Array:
+    def _traction_by_z(self, sliding: SlidingState, forms: Array) -> Array:
         """Derivative (n, 3, nz) of the traction."""
         moved, pressed, k = sliding.moved, sliding.found.pressed, self._stiffness
-        at, by_place = _along(moved.along, sliding.elastic), pressed.by_place
+        at, by_place = _along(moved.along, sliding.elastic), forms[:, -1]
         t, by_elastic, by_penetration = self._return(at, pressed)
         elastic = -k * np.einsum("nri,niz->nrz", moved.along, moved.by_z)
         turned = _along(moved.along_by_s, sliding.elastic) - k * _along(moved.along, moved.moved_by_s)
         elastic += turned[:, :, None] * by_place[:, None]
-        components = by_elastic @ elastic - by_penetration[:, :, None] * pressed.forms[:, None, 0]
+        components = by_elastic @ elastic - by_penetration[:, :, None] * forms[:, None, 0]
         out = np.einsum("nri,nrz->niz", moved.along, components)
         return np.asarray(out + np.einsum("nri,nr->ni", moved.along_by_s, t)[:, :, None] * by_place[:, None])
 
@@ -178,14 +177,11 @@ class SoilFriction(LinePart):
 
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
-        points, slid, pressing = sliding.found.pressed.points, np.zeros(self.line.nodes), np.zeros(self.line.nodes)
+        pressed = sliding.found.pressed
         plastic = _along(sliding.moved.along, sliding.traction - sliding.elastic) / self._stiffness
-        slip = np.linalg.norm(plastic, axis=1)
-        for node, share in ((points.element, 1.0 - points.along), (points.element + 1, points.along)):
-            weight = share * points.area * (sliding.found.pressed.force > 0.0)
-            np.add.at(slid, node, weight * slip)
-            np.add.at(pressing, node, weight)
-        return slid / np.where(pressing > 0.0, pressing, 1.0)
+        slip, pressing = np.linalg.norm(plastic, axis=1), pressed.points.area * (pressed.force > 0.0)
+        slid, share = self.contact.at_nodes(pressed.points, np.stack([pressing * slip, pressing], axis=1)).T
+        return np.asarray(slid / np.where(share > 0.0, share, 1.0))
 
     def slip(self) -> Array:
         """Accumulated slip of the riser over the soil at its nodes (nn,) [m], >= 0."""
@@ -195,19 +191,18 @@ class SoilFriction(LinePart):
         """Sum of the friction on the riser (3,) [N], global axes."""
         if not self.line.active:
             return np.zeros(3)
-        sliding = self.evaluate(state)
-        return self.contact.sum_on_riser(sliding.found.pressed, sliding.gradient)
+        return self.contact.within_line(self.evaluate(state).on_riser.sum(axis=0))
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the friction on the soil (3,) [N], global axes."""
-        return self.contact.sum_on_soil(self.evaluate(state).gradient) if self.line.active else np.zeros(3)
+        return np.asarray(-self.evaluate(state).on_riser.sum(axis=0)) if self.line.active else np.zeros(3)
 
     def force_on_soil_per_length(self, state: State) -> Array:
         """The points' friction on the nodes of their facets (nn, 3) [N/m], shared by two nodes of the riser."""
         if not self.line.active:
             return np.zeros((self.line.nodes, 3))
         sliding = self.evaluate(state)
-        return self.contact.soil_per_length(sliding.found.pressed, sliding.by_z)
+        return self.contact.soil_per_length(sliding.found.pressed.points, sliding.on_riser)
 
     def state(self) -> Saved:
         return {"slid": self._slid} | gathered({"points": self._memory})

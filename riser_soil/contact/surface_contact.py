@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.active_pairs import ActivePairs, add_rows, in_dofs, paired
 from riser_soil.contact.along_step import landing_predictor, work_along_step
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.cylinder_gap import gap_forms, gaps_of
+from riser_soil.contact.cylinder_gap import gaps_of
 from riser_soil.contact.facets import heights
-from riser_soil.contact.ground import add_blocks, add_shares
+from riser_soil.contact.ground import add_blocks
 from riser_soil.contact.integration_points import PointMemory, divisions
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.near_points import (
@@ -25,6 +24,7 @@ from riser_soil.contact.near_points import (
     near_points,
     points_of,
 )
+from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, put_axis
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.surface_loop import TouchData
 from riser_soil.core.arrays import Array, IntArray
@@ -40,11 +40,14 @@ AROUND = 0.25  # radii around the pipe in which facets are candidates: each of t
 
 @dataclass(frozen=True, eq=False)
 class SurfaceState:
-    """Riser and soil at a state: the axis, the deformed points (np, 3) of the surface [m], and what touches."""
+    """Riser and soil at a state, and what touches."""
 
     trial: Trial
-    deformed: Array
-    pressed: ActivePairs
+    pressed: PressedPoints
+
+    def on_elements(self, F: Array) -> Array:
+        """Element residuals (ne, 2 ndof) of what is conjugate to q (ne, 4, d)."""
+        return self.trial.pull_back(F)
 
 
 class SurfaceContact(SoilContact):
@@ -75,7 +78,7 @@ class SurfaceContact(SoilContact):
         reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, pressure, surface)
-        self._radius, self._pressure = radius, pressure
+        self._radius, self._pressure, self._basis = radius, pressure, np.ascontiguousarray(line.basis)
         if not self.active:
             return
         half = 0.5 * self._soil.facet_size
@@ -92,35 +95,26 @@ class SurfaceContact(SoilContact):
         late.
         """
         trial = self.line.trial(state)
-        found: tuple[Array, ActivePairs] = trial.once((self, "surface"), self._evaluate)
-        return SurfaceState(trial, *found)
+        found: PressedPoints = trial.once((self, "surface"), self._evaluate)
+        return SurfaceState(trial, found)
 
-    def _evaluate(self, trial: Trial) -> tuple[Array, ActivePairs]:
+    def _evaluate(self, trial: Trial) -> PressedPoints:
         deformed = self._soil.deformed(trial.state)
         axis, surface = self.axis(trial), self.surface(deformed)
         reach = self._pressure.reach if len(self._memory.numbers) else self.law.start
         elements, facets = self._pairs(axis, deformed, CandidateRange(reach, reach))
         near = near_points(axis, surface, elements, facets, reach)
-        acting = self.law.active(-near.gap, self._memory.at(near.number))
-        return deformed, self._pressed(axis, surface, near.of(acting))
-
-    def _pressed(self, axis: Axis, surface: Surface, near: NearPoints) -> ActivePairs:
-        """Forces at points near enough to have any."""
-        forms, C, by_place = gap_forms(axis, surface, near, self.line.basis)
-        pair, element, facet = paired(near.element, near.facet, self.line.length.size)
-        answer = self.law.update(-near.gap, self._memory.at(near.number))
-        weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
-        touching = near, pair, element, facet, forms, C, by_place
-        return ActivePairs(*touching, *weighed, answer.history, self.line.dimension)
+        near = near.of(self.law.active(-near.gap, self._memory.at(near.number)))
+        memory = self._memory.at(near.number)
+        return PressedPoints.of(axis, surface, self._basis, near, self.law.kernel_data, memory)
 
     def touch_data(self) -> TouchData | None:
         """For the compiled loop, with workspace for axis and surface; None with a history."""
         if self.law.columns:
             return None
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
-        frame = np.ascontiguousarray(self.line.basis), self.line.origin
         surface = self.surface(self._soil.settled)
-        return TouchData(axis, surface, *frame, self.law.kernel_data, float(self.law.start))
+        return TouchData(axis, surface, self._basis, self.line.origin, self.law.kernel_data, float(self.law.start))
 
     def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
         """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
@@ -141,8 +135,8 @@ class SurfaceContact(SoilContact):
 
     def axis(self, trial: Trial) -> Axis:
         """The riser's axis at a trial."""
-        q = trial.q @ self.line.basis.T
-        q[:, ::2] += self.line.origin
+        q = np.empty((self.line.length.size, 4, 3))
+        put_axis(self.line.origin, self._basis, trial.q, q)
         return Axis(q, self.line.length, self._radius)
 
     @property
@@ -177,45 +171,31 @@ class SurfaceContact(SoilContact):
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         found = self.evaluate(state)
-        return None, self.in_elements(found, found.pressed.gradient)
-
-    def in_elements(self, found: SurfaceState, gradient: Array) -> Array:
-        """Element residuals (ne, 2 ndof) of forces on the pairs, minus `gradient` (m, nz)."""
-        return found.trial.pull_back(self._on_line(found.pressed, gradient))
+        return None, found.on_elements(found.pressed.spread(found.pressed.on_riser)[0])
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
         found = self.evaluate(state)
-        self.line.scatter(self.element_forces(state)[1], forces.end)
-        self.add_to_soil(forces, found.pressed, found.pressed.gradient)
+        self.add_residual(found, found.pressed.on_riser, forces)
 
-    def add_to_soil(self, forces: Forces, pressed: ActivePairs, gradient: Array) -> None:
-        """Add the facets' share of forces on the pairs, minus `gradient` (m, nz)."""
-        add_shares(forces.end, self._soil.facet_dofs(pressed.facet), self._on_facets(gradient))
-
-    def _on_line(self, pressed: ActivePairs, gradient: Array) -> Array:
-        """Residual conjugate to q (ne, 4, d)."""
-        d = self.line.dimension
-        F = np.zeros((self.line.length.size, 4 * d))
-        add_rows(F, pressed.element, np.ones(len(gradient)), gradient[:, : 4 * d])
-        return F.reshape(-1, 4, d)
-
-    def _on_facets(self, gradient: Array) -> Array:
-        """Residual (m, 3 nv) of the pairs' facets [N]."""
-        return gradient[:, 4 * self.line.dimension :]
+    def add_residual(self, found: SurfaceState, f: Array, forces: Forces) -> None:
+        """Add that of forces f (n, 3) on the pipe at the points."""
+        F, soil = found.pressed.spread(f)
+        self.line.scatter(found.on_elements(F), forces.end)
+        forces.end[self._soil.part] += soil.ravel()
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
         found = self.evaluate(state)
-        self.add_tangent(values, found, found.pressed.hessian(), found.pressed.gradient)
+        at, P = found.pressed, found.trial.turn.P
+        by_dofs = pair_tangents(at.axis, at.surface, at.basis, at.points, at.force, at.slope, at.pairs, P)
+        self.add_tangent(values, found, by_dofs, at.on_riser)
 
-    def add_tangent(self, values: dict[str, Array], found: SurfaceState, by_z: Array, gradient: Array) -> None:
-        """Add the derivative of the pairs' forces, minus `gradient` (m, nz), which is `by_z` (m, nz, nz)."""
-        pressed = found.pressed
-        by_dofs = in_dofs(by_z, pressed.element, found.trial.turn.P)
-        places = self.places(values[SOIL], pressed.element, pressed.facet)
-        add_blocks(values[SOIL], places, by_dofs)
-        found.trial.add_turning(values[self.line.name], 1.0, self._on_line(pressed, gradient))
+    def add_tangent(self, values: dict[str, Array], found: SurfaceState, by_dofs: Array, f: Array) -> None:
+        """Add the derivative of the residual of forces f (n, 3) on the pipe; by_dofs (m, nr, nr): of pairs, P held."""
+        pairs: Pairs = found.pressed.pairs
+        add_blocks(values[SOIL], self.places(values[SOIL], pairs.element, pairs.facet), by_dofs)
+        found.trial.add_turning(values[self.line.name], 1.0, found.pressed.spread(f)[0])
 
     def energy(self, state: State) -> Energy:
         """Potential of the penalty."""
@@ -226,7 +206,7 @@ class SurfaceContact(SoilContact):
         it took beyond the work of the law along the step, all of it without suction.
         """
         first, last = self.evaluate(before).pressed, self.evaluate(after).pressed
-        taken = float(np.sum(last.gradient * self.moved(before, after)))
+        taken = last.work(last.on_riser, first)
         lost = taken - last.potential + first.potential
         by_scheme = taken - self._by_law(first.points, last.points) if self.law.columns else lost
         return Work(dissipated=lost, by_scheme=by_scheme)
@@ -240,15 +220,6 @@ class SurfaceContact(SoilContact):
             area[at], way[at] = points.area, -points.gap
         return float(area @ work_along_step(self.law, ways[0], ways[1], self._memory.at(numbers)))
 
-    def moved(self, before: State, after: State) -> Array:
-        """Movement (m, nz) in a step of what touches at its end: q of the elements, then the facets' nodes [m]."""
-        first, last = self.evaluate(before), self.evaluate(after)
-        pressed, d = last.pressed, self.line.dimension
-        moved_q = (last.trial.q - first.trial.q)[pressed.element].reshape(len(pressed.element), 4 * d)
-        facets = self._soil.facets[pressed.facet]
-        moved = (last.deformed - first.deformed)[facets].reshape(len(facets), 3 * facets.shape[1])
-        return np.hstack([moved_q, moved])
-
     def commit(self, state: State) -> None:
         """Keep the history of the points."""
         super().commit(state)
@@ -260,14 +231,19 @@ class SurfaceContact(SoilContact):
         """Contact force per length at the nodes (nn,) [N/m]: the size of the sum of the points' forces, shared linearly
         by two nodes; < 0 where it pulls the riser down.
         """
-        total = np.zeros((self.line.nodes, self.line.dimension))
-        if self.active:
-            pressed = self.evaluate(state).pressed
-            element, along = pressed.points.element, pressed.points.along[:, None]
-            np.add.at(total, element, (1.0 - along) * pressed.on_line)
-            np.add.at(total, element + 1, along * pressed.on_line)
+        if not self.active:
+            return np.zeros(self.line.nodes)
+        pressed = self.evaluate(state).pressed
+        total = self.at_nodes(pressed.points, pressed.on_riser @ self._basis)
         size = np.linalg.norm(total, axis=1) / self.line.tributary_length
         return np.asarray(np.where(total[:, -1] < 0.0, -size, size))
+
+    def at_nodes(self, points: NearPoints, values: Array) -> Array:
+        """Values at points (n, k) shared linearly by the two nodes beside them (nn, k)."""
+        total, along = np.zeros((self.line.nodes, values.shape[1])), points.along[:, None]
+        np.add.at(total, points.element, (1.0 - along) * values)
+        np.add.at(total, points.element + 1, along * values)
+        return total
 
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of the soil's surface into the pipe [m], >= 0: an error."""
@@ -281,43 +257,32 @@ class SurfaceContact(SoilContact):
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
-        if not self.active:
-            return np.zeros(3)
-        pressed = self.evaluate(state).pressed
-        return self.sum_on_riser(pressed, pressed.gradient)
+        return self.within_line(self.evaluate(state).pressed.on_riser.sum(axis=0)) if self.active else np.zeros(3)
 
-    def sum_on_riser(self, pressed: ActivePairs, gradient: Array) -> Array:
-        """Sum of forces on the riser (3,) [N], global axes, of those on the pairs, minus `gradient` (m, nz)."""
-        return np.asarray(-self.line.basis @ self._on_line(pressed, gradient)[:, ::2].sum(axis=(0, 1)))
+    def within_line(self, force: Array) -> Array:
+        """The share of a force (3,) that a line in a plane feels."""
+        return np.asarray(self._basis @ (force @ self._basis))
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the contact forces on the soil (3,) [N], global axes."""
-        return self.sum_on_soil(self.evaluate(state).pressed.gradient) if self.active else np.zeros(3)
-
-    def sum_on_soil(self, gradient: Array) -> Array:
-        """Sum of forces on the soil (3,) [N], global axes, of those on the pairs, minus `gradient` (m, nz)."""
-        return np.asarray(-self._on_facets(gradient).reshape(-1, 3).sum(axis=0))
+        return np.asarray(-self.evaluate(state).pressed.on_riser.sum(axis=0)) if self.active else np.zeros(3)
 
     def force_on_soil_per_length(self, state: State) -> Array:
         """The points' forces on the nodes of their facets (nn, 3) [N/m], shared linearly by two nodes of the riser."""
         if not self.active:
             return np.zeros((self.line.nodes, 3))
         pressed = self.evaluate(state).pressed
-        return self.soil_per_length(pressed, pressed.force[:, None] * pressed.forms[:, 0])
+        return self.soil_per_length(pressed.points, pressed.on_riser)
 
-    def soil_per_length(self, pressed: ActivePairs, by_z: Array) -> Array:
-        """By length of the riser (nn, 3) [N/m]: the facets' share of the points' forces by_z (n, nz) [N, N.m]."""
-        on_soil = self._on_facets(by_z).reshape(len(by_z), self._soil.facets.shape[1], 3).sum(axis=1)
-        total, points = np.zeros((self.line.nodes, 3)), pressed.points
-        np.add.at(total, points.element, (1.0 - points.along)[:, None] * on_soil)
-        np.add.at(total, points.element + 1, points.along[:, None] * on_soil)
-        return np.asarray(total / self.line.tributary_length[:, None])
+    def soil_per_length(self, points: NearPoints, f: Array) -> Array:
+        """By length of the riser (nn, 3) [N/m]: of forces f (n, 3) on the pipe at the points."""
+        return np.asarray(-self.at_nodes(points, f) / self.line.tributary_length[:, None])
 
     def stretch(self, state: State) -> float:
         if not self.active:
             return 1.0
-        found = self.evaluate(state)
-        return self._soil.stretch(found.deformed, found.pressed.facet)
+        pressed = self.evaluate(state).pressed
+        return self._soil.stretch(pressed.surface.deformed, pressed.points.facet)
 
     def gaps(self, points: Array, state: State) -> Array:
         """Between the pipe at a state and points (n, 3) [m]."""

@@ -1,7 +1,7 @@
 """Contact of the pipe's cylinder with the surface of condensed soil in the compiled loop, see `solve.soil_border`.
 
-The same formulas as in `surface_contact`, called for all points at once; the law has no history. The soil's reached
-dofs are the loop's border: what it adds there are the facets' shares.
+The formulas are those of `pressed_points`; the law has no history. The soil's reached dofs are the loop's border: what
+it adds there are the facets' shares.
 """
 
 from __future__ import annotations
@@ -10,19 +10,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.active_pairs import add_products, by_curvature, in_dofs, paired
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.cylinder_gap import FORMS, away_from_axis, put_gap_forms
-from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of, point_on
+from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of
+from riser_soil.contact.pressed_points import pair_tangents, paired, press, put_axis, put_on_riser, spread, work_of
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration
-from riser_soil.riser.hermite import shape as axis_shape
 from riser_soil.riser.part_kernels import LineForces
-from riser_soil.riser.vectors import Vec
-from riser_soil.seabed.compiled_law import answer
 
-HELD, BEYOND = -1, -2  # in place of the border's row: of dofs that are supported, and of those that are not reached
 POINTS, LEFT = range(2)  # in `TouchWorkspace.found`: how many points touch; whether something has left what is watched
 
 
@@ -74,13 +69,14 @@ class Border(NamedTuple):
 
 class TouchWorkspace(NamedTuple):
     """What was found last. near: the points, their force [N] and its derivative by the penetration [N/m] (n,), area
-    included; found (2,): see POINTS, LEFT; met (np,): nodes of the top that are not reached, and bear a force. energy
-    (1,): stored [J].
+    included; on_riser (n, 3): force on the pipe [N]; found (2,): see POINTS, LEFT; met (np,): nodes of the top that are
+    not reached, and bear a force; energy (1,): stored [J].
     """
 
     near: NearPoints
     force: Array
     slope: Array
+    on_riser: Array
     found: IntArray
     met: BoolArray
     energy: Array
@@ -106,32 +102,16 @@ def add_touch(
     workspace: TouchWorkspace,
 ) -> None:
     """Add the contact's residual to that of the line and to the border's."""
-    _put_axis(touch, at.q)
-    n = fill_near(touch.axis, touch.surface, watched.pairs, touch.reach, workspace.near)
-    workspace.energy[0], workspace.met[:] = 0.0, False
-    workspace.found[LEFT] = n > len(workspace.force) or _leaves(touch.axis, watched)
-    n = workspace.found[POINTS] = min(n, len(workspace.force))
-    nv, after = touch.surface.facets.shape[1], np.empty(0)
-    N, dN = np.empty(nv), np.empty((nv, 2))
-    for i in range(n):
-        force, slope, stored = answer(touch.law, -workspace.near.gap[i], after, after)
-        area = workspace.near.area[i]
-        workspace.force[i], workspace.slope[i] = area * force, area * slope
-        workspace.energy[0] += area * stored
-        _press(touch, top, i, N, dN, out.end_q, border.residual, workspace)
-
-
-@njit
-def _put_axis(touch: TouchData, q: Array) -> None:
-    """Write q (ne, 4, d) of a line in global axes."""
-    axis, basis = touch.axis.q, touch.basis
-    for e in range(q.shape[0]):
-        for a in range(4):
-            for i in range(3):
-                value = touch.origin[i] if a % 2 == 0 else 0.0
-                for j in range(q.shape[2]):
-                    value += basis[i, j] * q[e, a, j]
-                axis[e, a, i] = value
+    axis, surface, near, force = touch.axis, touch.surface, workspace.near, workspace.force
+    put_axis(touch.origin, touch.basis, at.q, axis.q)
+    n = fill_near(axis, surface, watched.pairs, touch.reach, near)
+    workspace.met[:] = False
+    workspace.found[LEFT] = n > len(force) or _leaves(axis, watched)
+    n = workspace.found[POINTS] = min(n, len(force))
+    nothing, given = np.empty((n, 0)), (axis, surface, touch.basis, near, n, workspace.on_riser)
+    workspace.energy[0] = press(touch.law, near, n, nothing, nothing, force, workspace.slope)
+    put_on_riser(axis, surface, near, n, force, workspace.on_riser)
+    spread(*given, out.end_q, top.rows, border.residual, workspace.met)
 
 
 @njit
@@ -148,60 +128,16 @@ def _leaves(axis: Axis, watched: Watched) -> bool:
 
 
 @njit
-def _normal(touch: TouchData, near: NearPoints, i: int, N: Array, dN: Array) -> Vec:
-    """Away from the axis at a point; writes the facet's shape functions."""
-    e, axis = near.element[i], touch.axis
-    p = point_on(touch.surface.deformed, touch.surface.facets[near.facet[i]], near.xi[i, 0], near.xi[i, 1], N, dN)
-    _, n = away_from_axis(axis.q[e], axis.length[e], axis.radius[e], near.along[i], p)
-    return n
-
-
-@njit
-def _press(
-    touch: TouchData,
-    top: TopMotion,
-    i: int,
-    N: Array,
-    dN: Array,
-    end_q: Array,
-    residual: Array,
-    workspace: TouchWorkspace,
-) -> None:
-    """Add minus the force of a point on the element, and on the facet's nodes: dψ = -force n·(δp - N δq)."""
-    near, basis = workspace.near, touch.basis
-    n, e = _normal(touch, near, i, N, dN), near.element[i]
-    shares = axis_shape(near.along[i], touch.axis.length[e])
-    for j in range(basis.shape[1]):
-        along = workspace.force[i] * (basis[0, j] * n[0] + basis[1, j] * n[1] + basis[2, j] * n[2])
-        for a in range(4):
-            end_q[e, a, j] += along * shares[a]
-    nodes = touch.surface.facets[near.facet[i]]
-    for a in range(nodes.size):
-        for j in range(3):
-            row = top.rows[nodes[a], j]
-            if row >= 0:
-                residual[row] -= workspace.force[i] * N[a] * n[j]
-            elif row == BEYOND and workspace.force[i] != 0.0:
-                workspace.met[nodes[a]] = True
-
-
-@njit
 def add_touch_tangent(
     touch: TouchData, top: TopMotion, at: Configuration, K: Array, border: Border, workspace: TouchWorkspace
 ) -> None:
     """Add the derivative of the contact's residual, found last, to K (ne, n, n) and to the border's."""
     n, facets = workspace.found[POINTS], touch.surface.facets
-    near = first_of(workspace.near, n)
-    nq = 4 * touch.basis.shape[1]
-    nz = nq + 3 * facets.shape[1]
-    forms, C = np.empty((n, FORMS, nz)), np.zeros((n, FORMS, FORMS))
-    put_gap_forms(touch.axis, touch.surface, near, touch.basis, forms, C)
-    pair, element, facet = paired(near.element, near.facet, K.shape[0])
-    by_z = np.zeros((element.size, nz, nz))
-    add_products(by_z, pair, forms, by_curvature(forms, C, workspace.force[:n], workspace.slope[:n]))
-    by_dofs = in_dofs(by_z, element, at.P)
-    for k in range(element.size):
-        _spread(by_dofs[k], element[k], top.rows, facets[facet[k]], K, border)
+    near, force, slope = first_of(workspace.near, n), workspace.force[:n], workspace.slope[:n]
+    pairs = paired(near, K.shape[0])
+    by_dofs = pair_tangents(touch.axis, touch.surface, touch.basis, near, force, slope, pairs, at.P)
+    for k in range(pairs.element.size):
+        _spread(by_dofs[k], pairs.element[k], top.rows, facets[pairs.facet[k]], K, border)
 
 
 @njit
@@ -226,22 +162,10 @@ def _spread(block: Array, e: int, rows: IntArray, nodes: IntArray, K: Array, bor
 
 @njit
 def put_touch_work(
-    touch: TouchData, top: TopMotion, first: Configuration, last: Configuration, workspace: TouchWorkspace, work: Array
+    touch: TouchData, top: TopMotion, first: Configuration, workspace: TouchWorkspace, work: Array
 ) -> None:
-    """Write to work (1,) what the force at a step's end, found last, takes along the step [J]: see
-    `SurfaceContact.work`.
-    """
-    near, nv, taken = workspace.near, touch.surface.facets.shape[1], 0.0
-    N, dN = np.empty(nv), np.empty((nv, 2))
-    for i in range(workspace.found[POINTS]):
-        n, e = _normal(touch, near, i, N, dN), near.element[i]
-        nodes, shares, moved = touch.surface.facets[near.facet[i]], axis_shape(near.along[i], touch.axis.length[e]), 0.0
-        for j in range(3):
-            for a in range(nv):
-                was = top.accepted[nodes[a], j]
-                moved += n[j] * N[a] * (touch.surface.deformed[nodes[a], j] - was)
-            for a in range(4):
-                for k in range(touch.basis.shape[1]):
-                    moved -= n[j] * shares[a] * touch.basis[j, k] * (last.q[e, a, k] - first.q[e, a, k])
-        taken -= workspace.force[i] * moved
-    work[0] = taken
+    """Write to work (1,) what the force at a step's end, found last, takes along the step [J], see `SurfaceContact`."""
+    before = np.empty(touch.axis.q.shape)
+    put_axis(touch.origin, touch.basis, first.q, before)
+    given = touch.axis, touch.surface, workspace.near, workspace.found[POINTS], workspace.on_riser
+    work[0] = work_of(*given, before, top.accepted)

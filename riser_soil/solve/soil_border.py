@@ -21,10 +21,9 @@ import numpy as np
 
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.near_points import FEW, PairsByFacet, points_workspace
+from riser_soil.contact.pressed_points import BEYOND, HELD
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.contact.surface_loop import (
-    BEYOND,
-    HELD,
     LEFT,
     POINTS,
     Border,
@@ -235,7 +234,7 @@ class SoilBorder(LoopBorder):
 
     def account(self, then: Packed, now: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
-        return [Bound(put_touch_work, self._numbers, self._motion, then, now, self._workspace, Packed(self._taken))]
+        return [Bound(put_touch_work, self._numbers, self._motion, then, self._workspace, Packed(self._taken))]
 
     def begin(self, before: State, guess: Array) -> None:
         """Begin a step with a first guess (size,) of all local increments."""
@@ -324,4 +323,5 @@ class SoilBorder(LoopBorder):
 def _workspace(count: int, nodes: int) -> TouchWorkspace:
     """Workspace for so many points that touch, on a top of so many nodes."""
     found, met = np.zeros(2, dtype=np.int64), np.zeros(nodes, dtype=np.bool_)
-    return TouchWorkspace(points_workspace(count), np.zeros(count), np.zeros(count), found, met, np.zeros(1))
+    forces = np.zeros(count), np.zeros(count), np.zeros((count, 3))
+    return TouchWorkspace(points_workspace(count), *forces, found, met, np.zeros(1))

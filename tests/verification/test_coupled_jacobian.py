@@ -70,8 +70,8 @@ class Case:
             touched = contact.detect(state).touching.rows
         else:
             assert isinstance(contact, SurfaceContact)
-            pressed = contact.evaluate(state).pressed
-            touched = contact.pair_dofs(pressed.element, pressed.facet)
+            pairs = contact.evaluate(state).pressed.pairs
+            touched = contact.pair_dofs(pairs.element, pairs.facet)
         rows = self.step.rows(touched.ravel())
         return {
             "touched riser": np.intersect1d(rows, self.riser),
