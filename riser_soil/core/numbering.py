@@ -9,13 +9,12 @@ this rank owns.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.communicator import Communicator, largest_of
-from riser_soil.core.part import Field, MirroredField
+from riser_soil.core.part import Field
 
 
 class Numbering:
@@ -78,7 +77,8 @@ class Numbering:
 
 
 def _sign(field: Field) -> Array:
-    return cast(MirroredField, field).sign if hasattr(field, "sign") else np.ones(field.size)
+    found: Array = getattr(field, "sign", np.ones(field.size))
+    return found
 
 
 def _set_offsets(fields: Sequence[Field]) -> int:

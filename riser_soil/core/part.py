@@ -193,7 +193,8 @@ class Part(Protocol):
 class Field(Protocol):
     """Owner of dofs. Fields of one `space` share a numbering (the soil and its surface as seen by contact).
 
-    A field may view dofs in a mirror, see `MirroredField`.
+    One some of whose entries view others in a mirror has a sign (size,), too: -1. of those that are minus the dof that
+    they view, else 1.
     """
 
     name: str
@@ -202,7 +203,11 @@ class Field(Protocol):
     offset: int
     global_index: IntArray
     owned: BoolArray
-    prescribed: BoolArray
+
+    @property
+    def prescribed(self) -> BoolArray:
+        """Which entries (size,) are not free."""
+        ...
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         """Write increment, rate and acceleration of the prescribed entries into these views of the field's slice."""
@@ -229,14 +234,6 @@ class Field(Protocol):
     def describe(self, entry: int) -> str:
         """Description of a local entry's place, for messages."""
         ...
-
-
-class MirroredField(Field, Protocol):
-    """A field some of whose entries view others in a mirror. sign (size,): -1. of those that are minus the dof that
-    they view, else 1.
-    """
-
-    sign: Array
 
 
 class LineField(Field, Protocol):

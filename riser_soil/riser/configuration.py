@@ -15,8 +15,9 @@ from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import directors, hermite, spatial_directors
 from riser_soil.riser.directors import PlanarFrames
+from riser_soil.riser.folding import MOST_SWING
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.line import MOST_SWING, Line
+from riser_soil.riser.line import Line
 from riser_soil.riser.line_kernels import first_folded, first_swung
 
 

@@ -6,9 +6,8 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeVar
@@ -20,18 +19,18 @@ from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.errors import SceneError
-from riser_soil.riser import hermite
+from riser_soil.riser import folding, hermite
 from riser_soil.riser.directors import Frames, PlanarFrames
-from riser_soil.riser.ends import End, Motion, SupportRotation
+from riser_soil.riser.ends import End
+from riser_soil.riser.folding import MOST_SWING
 from riser_soil.riser.free_turns import free_turns, unit_lengths
-from riser_soil.riser.line_kernels import after_increments, first_folded, first_swung, motion_in_axes, spread_motion
+from riser_soil.riser.line_ends import LineEnds
+from riser_soil.riser.line_kernels import after_increments, first_folded, first_swung
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
 
 UP = np.array([0.0, 0.0, 1.0])
-MOST_SWING = 0.2  # rad by which an element's end may turn against its chord in a time step
 Made = TypeVar("Made")
-BENT_DOUBLE = 1.2  # rad from its chord, beyond which an end was on its way to be folded
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,10 +88,8 @@ class Line:
         )
         self.x: Array = (layout.position - self.origin) @ self.basis
         self.chord: Array = np.diff(self.x, axis=0)
-        unturned = self.frames.turn(np.zeros((self.arc.size, self.frames.dofs)))
-        self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
+        self._ends = LineEnds(start, end, self.arc.size, self.frames, self.origin, self.basis, self.turning_axes)
         self.offset = 0
-        self._moved_ends: dict[int, tuple[Motion, float, Array, Array]] = {}
         self._made: dict[Callable[[Line], Any], Any] = {}
         self._trials = IdentityCache[State, Trial](first=1, latest=2)
         self._number()
@@ -118,30 +115,22 @@ class Line:
     def _number(self) -> None:
         self.ndof = self.dimension + self.frames.dofs
         self.nodes = self.arc.size
-        self._ends = ((0, self.start), (self.nodes - 1, self.end))
         self.size = self.nodes * self.ndof
         self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
         self.owned: BoolArray = np.full(self.size, self.active)
 
     def prescribe_spin(self, spin: bool) -> None:
         """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
-        prescribed = np.zeros((self.nodes, self.ndof), dtype=bool)
-        for node, end in ((0, self.start), (-1, self.end)):
-            prescribed[node, : end.held(self.dimension)] = True
-            prescribed[node, self.dimension :] = end.rotation_fixed
-        prescribed[0, self.dimension] |= spin and self.dimension == 3
-        self.prescribed: BoolArray = prescribed.ravel()
-        self._prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
+        self._ends.prescribe_spin(spin)
 
-    @contextmanager
-    def held(self) -> Iterator[None]:
+    @property
+    def prescribed(self) -> BoolArray:
+        """Which dofs (size,) are prescribed."""
+        return self._ends.prescribed
+
+    def held(self) -> AbstractContextManager[None]:
         """As long as this lasts all dofs are prescribed not to move."""
-        free = self.prescribed, self._prescribed_dofs
-        self.prescribed, self._prescribed_dofs = np.ones(self.size, dtype=bool), np.arange(self.size)
-        try:
-            yield
-        finally:
-            self.prescribed, self._prescribed_dofs = free
+        return self._ends.held()
 
     @property
     def part(self) -> slice:
@@ -238,43 +227,32 @@ class Line:
         trial = self.trial(state)
         self.x, self.chord = trial.x, trial.chord
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
-        turned = {node: self.support(node, state.t) for node, end in self._ends if end.turning is not None}
-        if turned:
-            self._supports = self._supports | turned
+        self._ends.commit(state.t)
         self.forget()
 
     def state(self) -> Saved:
         """Positions, chords and frames; where the supports have turned to, and from where."""
-        ends = tuple(self._supports)
-        supports, bases = (np.stack([at[node] for node in ends]) for at in (self._supports, self._bases))
-        kept = {"x": self.x, "chord": self.chord, "supports": supports, "bases": bases}
-        return kept | under("frames", self.frames.state())
+        return {"x": self.x, "chord": self.chord} | self._ends.state() | under("frames", self.frames.state())
 
     def restore(self, saved: Saved) -> None:
         self.forget()
         self.x, self.chord = saved["x"], saved["chord"]
         self.frames.restore(within(saved, "frames"))
-        ends = tuple(self._supports)
-        self._supports, self._bases = (dict(zip(ends, saved[name], strict=True)) for name in ("supports", "bases"))
+        self._ends.restore(saved)
 
     def begin_stage(self) -> None:
         """Supports turn from where they are now."""
-        self._bases = self._supports
+        self._ends.begin_stage()
 
     def turn_support(self, node: int, rotation: Array) -> None:
         """Turn the support of the first or last node (0, -1) by a rotation vector (3,) in global axes, before anything
         moves.
         """
-        node %= self.nodes
-        self._supports[node] = self.frames.turned(self._supports[node], rotation @ self.turning_axes)
+        self._ends.turn_support(node % self.nodes, rotation)
 
     def support(self, node: int, t: float) -> Array:
-        """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the node's
-        own at first, then turned by the support's rotation.
-        """
-        turning = (self.end if node else self.start).turning
-        base = self._bases[node]
-        return base if turning is None else self.frames.turned(base, turning(t).rotation @ self.turning_axes)
+        """Orientation of the support of the first or last node, see `LineEnds`."""
+        return self._ends.support(node, t)
 
     def predict(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, with the rest of the ends' motion spread along the line.
@@ -283,11 +261,7 @@ class Line:
         iteration. The cube of the distance from the other end keeps the far part, often on the seabed, where it is.
         """
         predicted = guess.u.copy()
-        moved = self.nodal(predicted)
-        for node, end in self._ends:
-            if end.prescribed and end.motion is not None:
-                to = self._moved_end(node, guess.t)[0]
-                spread_motion(moved, node, to, end.held(self.dimension), self._reach[node])
+        self._ends.spread(guess.t, self.x, self.nodal(predicted), self._reach)
         return predicted
 
     @cached_property
@@ -295,17 +269,6 @@ class Line:
         """Share of an end's motion that each node follows in a first guess (nn,)."""
         along = self.arc / self.arc[-1]
         return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
-
-    def _moved_end(self, node: int, t: float) -> Array:
-        """Increment, velocity and acceleration (3, d) by which an end's motion moves its node; kept until the next time
-        or commit.
-        """
-        motion, kept = (self.end if node else self.start).motion, self._moved_ends.get(node)
-        assert motion is not None
-        if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not self.x:
-            moved = motion_in_axes(np.array(motion(t)), self.origin, self.basis, self.x[node])
-            kept = self._moved_ends[node] = motion, t, self.x, moved
-        return kept[3]
 
     def free_turns(self, state: State) -> Array:
         """Rigid motions (k, size) that the supports leave free, see `free_turns`."""
@@ -337,38 +300,10 @@ class Line:
         nothing where there is none, the number of elements.
         """
         if folded < self.length.size:
-            return self._folded(folded)
-        if swung < self.length.size:
-            return f"the element at arc {self.arc[swung]:.6g} m bends by more than {MOST_SWING:g} rad in the step"
-        return ""
-
-    def _folded(self, element: int) -> str:
-        """Of an element that was bent double before, its bend is told, which no shorter step prevents."""
-        folded = (
-            f"the riser is folded at arc {self.arc[element]:.6g} m, where an element's end turns by more than "
-            "90 degrees from its chord"
-        )
-        first, second = self._swings(element)
-        swing = max(abs(first), abs(second))
-        if swing < BENT_DOUBLE:
-            return f"{folded}; start nearer to the shape sought, or take shorter elements or steps"
-        length, radius = self.length[element], self.length[element] / abs(first - second)
-        return (
-            f"{folded}; it had come to {math.degrees(swing):.0f} degrees before: loads or motion close a bend there, "
-            f"whose radius is down to {radius:.3g} m, {radius / self.outer_diameter[element]:.2g} diameters, on an "
-            f"element of {length:.3g} m; much shorter elements follow it further, and tell whether it becomes a kink"
-        )
-
-    def _swings(self, element: int) -> tuple[float, float]:
-        """Angles [rad] from the chord of an element, where it is accepted, to the tangents at its ends; of the second
-        with the sign by which it turns to the first's side.
-        """
-        ends = self.frames.turn(np.zeros((self.nodes, self.frames.dofs))).tangent[element]
-        chord = self.chord[element] / np.linalg.norm(self.chord[element])
-        along = ends @ chord
-        across = ends - np.outer(along, chord)
-        first, second = np.arctan2(np.linalg.norm(across, axis=1), along)
-        return float(first), math.copysign(second, float(across[0] @ across[1]))
+            ends = self.frames.turn(np.zeros((self.nodes, self.frames.dofs))).tangent[folded]
+            sizes = self.arc[folded], self.length[folded], self.outer_diameter[folded]
+            return folding.folded(*sizes, ends, self.chord[folded])
+        return folding.swinging(self.arc[swung]) if swung < self.length.size else ""
 
     def to_global(self, x: Array) -> Array:
         """Global positions (…, 3) of in-plane (or global) coordinates (…, d)."""
@@ -380,23 +315,7 @@ class Line:
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         """Write the increments, rates and accelerations of the prescribed ends into views of the field's slice."""
-        for values in (u, v, a):
-            values[self._prescribed_dofs] = 0.0
-        for node, end in self._ends:
-            if end.prescribed and end.motion is not None:
-                held = end.held(self.dimension)
-                at = slice(node * self.ndof, node * self.ndof + held)
-                u[at], v[at], a[at] = (each[:held] for each in self._moved_end(node, t))
-            if end.rotation_fixed and end.turning is not None:
-                self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
-
-    def _turn(self, node: int, turning: SupportRotation, support: Array, values: tuple[Array, Array, Array]) -> None:
-        """Write the increment, rate and acceleration of a rotation that follows its support."""
-        at = slice(node * self.ndof + self.dimension, (node + 1) * self.ndof)
-        u, v, a = values
-        u[at] = self.frames.increment(node, support)
-        v[at] = self.frames.in_body_axes(support, turning.angular_velocity @ self.turning_axes)
-        a[at] = self.frames.in_body_axes(support, turning.angular_acceleration @ self.turning_axes)
+        self._ends.prescribe(t, self.x, u, v, a)
 
     def describe(self, entry: int) -> str:
         """ "riser node at arc 24 m, vertical force"."""

@@ -31,7 +31,7 @@ class SoilTop:
 
     points (np, 3) [m]: undeformed. facets (nf, nv): indexes into points, counter-clockwise from above, of 4 corners or
     of 3 and then the midpoints of the sides 12, 23, 31. global_index, sign, prescribed (3 np,): of its dofs, x, y, z of
-    each point; see `MirroredField`. volume (nf,): number of the named volume below each facet. committed (np, 3) [m]:
+    each point; see `core.part.Field`. volume (nf,): number of the named volume below each facet. committed (np, 3) [m]:
     displacement since the geostatic start at the last accepted step. moves: whether the geometry follows that, as at
     large strain.
     """

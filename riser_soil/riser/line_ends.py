@@ -1,0 +1,124 @@
+"""What a line's ends hold: which dofs, where their supports have turned to, and the motion that they prescribe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.saved_state import Saved
+from riser_soil.riser.directors import Frames
+from riser_soil.riser.ends import End, Motion, SupportRotation
+from riser_soil.riser.line_kernels import motion_in_axes, spread_motion
+
+
+class LineEnds:
+    """The ends of a line of some nodes, whose axes are constant: origin (3,), basis (3, d), turning_axes (3, r).
+
+    prescribed (size,): of the line's dofs. Supports turn from where they were at the stage's beginning.
+    """
+
+    def __init__(
+        self, start: End, end: End, nodes: int, frames: Frames, origin: Array, basis: Array, turning_axes: Array
+    ) -> None:
+        self._ends, self._nodes, self._frames = ((0, start), (nodes - 1, end)), nodes, frames
+        self._origin, self._basis, self._turning_axes = origin, basis, turning_axes
+        self._dimension = basis.shape[1]
+        self._ndof = self._dimension + frames.dofs
+        unturned = frames.turn(np.zeros((nodes, frames.dofs)))
+        self._supports = self._bases = {node: unturned.at(node).copy() for node, _ in self._ends}
+        self._moved: dict[int, tuple[Motion, float, Array, Array]] = {}
+        self.prescribe_spin(False)
+
+    def prescribe_spin(self, spin: bool) -> None:
+        """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
+        prescribed, d = np.zeros((self._nodes, self._ndof), dtype=bool), self._dimension
+        for node, end in self._ends:
+            prescribed[node, : end.held(d)] = True
+            prescribed[node, d:] = end.rotation_fixed
+        prescribed[0, d] |= spin and d == 3
+        self.prescribed: BoolArray = prescribed.ravel()
+        self._dofs: IntArray = np.flatnonzero(self.prescribed)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """As long as this lasts all dofs are prescribed not to move."""
+        free = self.prescribed, self._dofs
+        self.prescribed, self._dofs = np.ones(free[0].size, dtype=bool), np.arange(free[0].size)
+        try:
+            yield
+        finally:
+            self.prescribed, self._dofs = free
+
+    def begin_stage(self) -> None:
+        """Supports turn from where they are now."""
+        self._bases = self._supports
+
+    def turn_support(self, node: int, rotation: Array) -> None:
+        """Turn the support of a node by a rotation vector (3,) in global axes, before anything moves."""
+        self._supports[node] = self._frames.turned(self._supports[node], rotation @ self._turning_axes)
+
+    def support(self, node: int, t: float) -> Array:
+        """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the node's
+        own at first, then turned by the support's rotation.
+        """
+        turning, base = dict(self._ends)[node].turning, self._bases[node]
+        return base if turning is None else self._frames.turned(base, turning(t).rotation @ self._turning_axes)
+
+    def spread(self, t: float, x: Array, moved: Array, reach: dict[int, Array]) -> None:
+        """Add what is missing of the ends' motion to increments (nn, ndof) of nodes at x (nn, d).
+
+        reach: by end, the share (nn,) that each node takes.
+        """
+        for node, motion, held in self._moving():
+            spread_motion(moved, node, self._motion(node, motion, t, x)[0], held, reach[node])
+
+    def prescribe(self, t: float, x: Array, u: Array, v: Array, a: Array) -> None:
+        """Write increments, rates and accelerations of prescribed dofs into the field's slices; nodes at x (nn, d)."""
+        for values in (u, v, a):
+            values[self._dofs] = 0.0
+        for node, motion, held in self._moving():
+            at = slice(node * self._ndof, node * self._ndof + held)
+            u[at], v[at], a[at] = (each[:held] for each in self._motion(node, motion, t, x))
+        for node, end in self._ends:
+            if end.rotation_fixed and end.turning is not None:
+                self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
+
+    def _moving(self) -> Iterator[tuple[int, Motion, int]]:
+        """Nodes whose place is prescribed, with their motion and how many of their coordinates are."""
+        for node, end in self._ends:
+            if end.prescribed and end.motion is not None:
+                yield node, end.motion, end.held(self._dimension)
+
+    def _motion(self, node: int, motion: Motion, t: float, x: Array) -> Array:
+        """Increment, velocity and acceleration (3, d) by which a motion moves its node; kept for its time and place."""
+        kept = self._moved.get(node)
+        if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not x:
+            moved = motion_in_axes(np.array(motion(t)), self._origin, self._basis, x[node])
+            kept = self._moved[node] = motion, t, x, moved
+        return kept[3]
+
+    def _turn(self, node: int, turning: SupportRotation, support: Array, values: tuple[Array, Array, Array]) -> None:
+        """Write the increment, rate and acceleration of a rotation that follows its support."""
+        at = slice(node * self._ndof + self._dimension, (node + 1) * self._ndof)
+        u, v, a = values
+        u[at] = self._frames.increment(node, support)
+        v[at] = self._frames.in_body_axes(support, turning.angular_velocity @ self._turning_axes)
+        a[at] = self._frames.in_body_axes(support, turning.angular_acceleration @ self._turning_axes)
+
+    def commit(self, t: float) -> None:
+        """Supports are where they have turned to."""
+        turned = {node: self.support(node, t) for node, end in self._ends if end.turning is not None}
+        if turned:
+            self._supports = self._supports | turned
+
+    def state(self) -> Saved:
+        """Where the supports have turned to, and from where."""
+        supports, bases = (np.stack([at[node] for node, _ in self._ends]) for at in (self._supports, self._bases))
+        return {"supports": supports, "bases": bases}
+
+    def restore(self, saved: Saved) -> None:
+        nodes = [node for node, _ in self._ends]
+        self._supports, self._bases = (dict(zip(nodes, saved[name], strict=True)) for name in ("supports", "bases"))
