@@ -25,7 +25,7 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
     alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
     system = System(assembly.comm, alone, clock)
     newton = Newton(system, replace(settings, line_search=False))
-    with destroyed_together(assembly.comm, newton, system):
+    with destroyed_together(assembly.comm, newton.destroy, system.destroy):
         try:
             size = system.numbering.size
             solution = newton.solve(Step(Static(), State.at_rest(0.0, size), 0.0, 1.0, None, np.zeros(size)))

@@ -25,8 +25,9 @@ from riser_soil.seating import seat
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.solution import NewtonSettings
+from riser_soil.solve.solver import StepSolver
 from riser_soil.solve.step_control import AutoSteps, Control, PathSteps, StepControl
-from riser_soil.solve.step_solver import StepSolver, solver_of
+from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 LAID_IN = 8  # load steps on soil, at least
@@ -37,13 +38,10 @@ MOST_RELAXED = 1  # times in a static stage on clay
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
-class CheckpointWriter(Protocol):
-    """Called between steps with a function that gives the saved state, from which the stage can be resumed.
-
-    last: whether it is the stage's last step; leaving: whether the run ends here before its time.
-    """
-
-    def __call__(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None: ...
+CheckpointWriter = Callable[[Callable[[], Saved], bool, bool], None]
+"""Called between steps with a function that gives the saved state, from which the stage can be resumed; whether it is
+the stage's last step; and whether the run ends here before its time.
+"""
 
 
 class StageObserver(Stateful, Protocol):
@@ -143,7 +141,7 @@ def _take(
     if not isinstance(begin, State):
         _restore(system, begin)
     newton = solver_of(system, scheme_of(stage), _settings_in(assembly, stage))
-    with destroyed_together(assembly.comm, newton, system):
+    with destroyed_together(assembly.comm, newton.destroy, system.destroy):
         try:
             run = _begin_run(assembly, stage, system, newton, begin, observer)
             return _walk(run, checkpoint)

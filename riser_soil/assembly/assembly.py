@@ -31,7 +31,7 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage,
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.contact.contact import LoadsSoil, RiserContact
+    from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.mesh_renewal import MeshRenewal
     from riser_soil.contact.seabed_contact import Cushion, SeabedContact
@@ -120,10 +120,9 @@ class Assembly:
         return self.soil if self.condensed is None else self.condensed.recover()
 
     @property
-    def on_soil(self) -> list[LoadsSoil]:
+    def on_soil(self) -> list[SoilContact | SoilFriction]:
         """Parts by which the riser loads the soil."""
-        both: tuple[LoadsSoil | None, LoadsSoil | None] = (self.soil_contact, self.soil_friction)
-        return [part for part in both if part is not None]
+        return [part for part in (self.soil_contact, self.soil_friction) if part is not None]
 
     @property
     def size(self) -> int:

@@ -1,85 +1,41 @@
-"""Interface of the riser's contact with any ground, base class of its contacts, and what results tell of them."""
+"""Base class of the riser's contacts with any ground, and what results tell of them."""
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 from riser_soil.contact.touchdown import ContactInterval, PointsAlong, contact_intervals, touchdown
 from riser_soil.core.arrays import Array, views
 from riser_soil.core.by_type import bound_by_type
-from riser_soil.core.part import Part, State
+from riser_soil.core.part import Forces, State, Traits, Weights
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.seabed.law import NormalLaw
 
 
-@runtime_checkable
-class RiserContact(Part, Protocol):
-    """Normal contact of the riser, nn nodes, with a ground; friction is a part of its own.
+class RiserContact(LinePart, ABC):
+    """Normal contact of the riser, nn nodes, with a ground, by a law of the force per length; friction is a part of its
+    own.
 
     A rank that is not active tells of a riser that touches nothing: zeros, nan for the touchdown point, no contact
     intervals.
     """
 
-    @property
-    def along(self) -> PointsAlong:
-        """Where contact forces and gaps are told along the line."""
-        ...
-
-    def results(self, state: State) -> Array:
-        """All that results tell of it, see `ContactResults.within`; on the rank that evaluates contact."""
-        ...
-
-    def force_per_length(self, state: State) -> Array:
-        """Contact force per length at the nodes (nn,) [N/m], > 0 where it pushes the riser away, < 0 where it sucks."""
-        ...
-
-    def penetration(self, state: State) -> Array:
-        """Penetration (nn,) [m] of the nodes' undersides into the ground as it is now, 0 above it."""
-        ...
-
-    def depth(self, state: State) -> Array:
-        """Depth (nn,) [m] of the nodes' undersides below the ground before the riser came, 0 above it."""
-        ...
-
-    def max_penetration(self, state: State) -> float:
-        """Deepest penetration [m] of what the contact looks at, nodes or stations between them; >= 0."""
-        ...
-
-    def force_on_riser(self, state: State) -> Array:
-        """Sum of the contact forces on the riser (3,) [N], global axes."""
-        ...
-
-    def touchdown_arc(self, state: State) -> float:
-        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
-        ...
-
-    def contact_intervals(self, state: State) -> list[ContactInterval]:
-        """Intervals of contact along the riser, from its start on."""
-        ...
-
-    def predict(self, guess: State) -> Array:
-        """Increments (all local dofs) of a first guess of a step in which the riser lands, see `along_step`."""
-        ...
-
-
-class LoadsSoil(Protocol):
-    """A part by which the riser loads the soil: contact with it, or friction there."""
-
-    def force_on_soil_per_length(self, state: State) -> Array:
-        """Force on the soil by length of the riser at its nodes (nn, 3) [N/m], global axes."""
-        ...
-
-
-class LineContact(LinePart, ABC):
-    """Base of the contacts of a line with a ground, by a law of the force per length. A `RiserContact`."""
+    name: str
+    traits: Traits
 
     def __init__(self, line: Line, law: NormalLaw) -> None:
         super().__init__(line)
         self.law = law
+
+    @abstractmethod
+    def residual(self, state: State, forces: Forces) -> None: ...
+
+    @abstractmethod
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None: ...
 
     @property
     @abstractmethod
@@ -91,6 +47,34 @@ class LineContact(LinePart, ABC):
         """Gaps (n,) there, less that at which the force begins [m], and forces (n,) per length [N/m]; called only on
         the rank that evaluates contact.
         """
+
+    @abstractmethod
+    def results(self, state: State) -> Array:
+        """All that results tell of it, see `ContactResults.within`; on the rank that evaluates contact."""
+
+    @abstractmethod
+    def force_per_length(self, state: State) -> Array:
+        """Contact force per length at the nodes (nn,) [N/m], > 0 where it pushes the riser away, < 0 where it sucks."""
+
+    @abstractmethod
+    def penetration(self, state: State) -> Array:
+        """Penetration (nn,) [m] of the nodes' undersides into the ground as it is now, 0 above it."""
+
+    @abstractmethod
+    def depth(self, state: State) -> Array:
+        """Depth (nn,) [m] of the nodes' undersides below the ground before the riser came, 0 above it."""
+
+    @abstractmethod
+    def max_penetration(self, state: State) -> float:
+        """Deepest penetration [m] of what the contact looks at, nodes or stations between them; >= 0."""
+
+    @abstractmethod
+    def force_on_riser(self, state: State) -> Array:
+        """Sum of the contact forces on the riser (3,) [N], global axes."""
+
+    @abstractmethod
+    def predict(self, guess: State) -> Array:
+        """Increments (all local dofs) of a first guess of a step in which the riser lands, see `along_step`."""
 
     def touchdown_arc(self, state: State) -> float:
         """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from riser_soil.contact.contact import ContactResults, LineContact, put_results, size_of
+from riser_soil.contact.contact import ContactResults, RiserContact, put_results, size_of
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_kernels import UNKNOWN, OverNodes, SeabedData, at_nodes, covered_by, land, seabed_data
 from riser_soil.contact.touchdown import PointsAlong
@@ -23,8 +23,8 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import bound
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.vectors import Vec
-from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.law import NormalLaw
+from riser_soil.seabed.grounds import Ground, Plane
 
 
 class Covering(Protocol):
@@ -39,7 +39,7 @@ class Covering(Protocol):
         ...
 
 
-class SeabedContact(LineContact, CompiledPart):
+class SeabedContact(CompiledPart, RiserContact):
     """Part "seabed": force per length of riser by its penetration into the ground, in group E.
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.

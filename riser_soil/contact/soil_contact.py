@@ -9,14 +9,14 @@ import numpy as np
 
 from riser_soil.contact.along_step import landing_predictor
 from riser_soil.contact.candidates import CandidatePairs
-from riser_soil.contact.contact import LineContact
+from riser_soil.contact.contact import RiserContact
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
+from riser_soil.core.part import MatrixBlock, State, Traits
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
@@ -34,7 +34,7 @@ class CandidateRange:
     around: float = 0.0
 
 
-class SoilContact(LineContact):
+class SoilContact(RiserContact):
     """Base of the frictionless penalty contacts between riser and soil, in group E.
 
     Their tangent has a block for each pair of a node or element of the riser and a facet of the soil's surface. Its
@@ -65,32 +65,10 @@ class SoilContact(LineContact):
         """Local dofs (m, nr) of pairs of a node or element and a facet, (m,) each."""
 
     @abstractmethod
-    def residual(self, state: State, forces: Forces) -> None: ...
-
-    @abstractmethod
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None: ...
-
-    @abstractmethod
-    def force_per_length(self, state: State) -> Array:
-        """Contact force per length at the nodes (nn,) [N/m], >= 0."""
-
-    @abstractmethod
     def clearance(self, state: State) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m], inf far away; called only on the rank that
         evaluates contact.
         """
-
-    @abstractmethod
-    def depth(self, state: State) -> Array:
-        """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
-
-    @abstractmethod
-    def max_penetration(self, state: State) -> float:
-        """Deepest penetration [m], >= 0: an error."""
-
-    @abstractmethod
-    def force_on_riser(self, state: State) -> Array:
-        """Sum of the contact forces on the riser (3,) [N], global axes."""
 
     @abstractmethod
     def force_on_soil(self, state: State) -> Array:

@@ -10,7 +10,7 @@ import importlib
 import importlib.util
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -47,12 +47,6 @@ class Communicator(Protocol):
 
     def exscan(self, value: Any) -> Any:
         """The sum over the ranks before; None on the first one."""
-        ...
-
-
-class Destroyable(Protocol):
-    def destroy(self) -> None:
-        """Give back what the ranks hold together; collective."""
         ...
 
 
@@ -117,8 +111,8 @@ def all_of(comm: Communicator, here: bool) -> bool:
 
 
 @contextmanager
-def destroyed_together(comm: Communicator, *owners: Destroyable) -> Iterator[None]:
-    """Destroy what the ranks hold together, as the block ends; collective.
+def destroyed_together(comm: Communicator, *destroy: Callable[[], None]) -> Iterator[None]:
+    """Call what gives back what the ranks hold together, as the block ends; collective.
 
     Not after an error that is not known to be all ranks': the one that met it would wait for the others, which are in
     the middle of their work, and never tell.
@@ -132,8 +126,8 @@ def destroyed_together(comm: Communicator, *owners: Destroyable) -> Iterator[Non
         together = comm.size == 1 or (isinstance(err, Interruption) and err.together)
         raise
     finally:
-        for owner in owners if together else ():
-            owner.destroy()
+        for each in destroy if together else ():
+            each()
 
 
 def sum_of(comm: Communicator, values: Sequence[float]) -> list[float]:

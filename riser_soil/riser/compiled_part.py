@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -39,24 +39,18 @@ from riser_soil.riser.part_kernels import (
 from riser_soil.riser.placed_line import LineBase, PlacedTrial
 
 
-class Turning(NamedTuple):
-    """A `TurningWorkspace`."""
-
-    conjugate: Array
-    turning: Array
-
-
 class LineTrials:
     """A line at a trial state, `now`, and where a step begins, `then`: what its parts share.
 
-    maps, weights: of the tangent asked for last; turning: workspace.
+    maps, weights: of the tangent asked for last. conjugate (ne, 2, d), turning (ne, 2, r, r): workspace for what is
+    conjugate to the tangents of the elements' ends, and its turning.
     """
 
     def __init__(self, line: Line) -> None:
         base, (ne, d, r) = LineBase(line), (line.length.size, line.dimension, line.frames.dofs)
         self.now, self.then = PlacedTrial(line, base), PlacedTrial(line, base)
         self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
-        self.turning = Turning(np.empty((ne, 2, d)), np.empty((ne, 2, r, r)))
+        self.conjugate, self.turning = Packed(np.empty((ne, 2, d))), Packed(np.empty((ne, 2, r, r)))
         self._put_maps = bound(put_maps, self.now.at, self.maps)
         self._mapped = -1  # the count of `now` for which they hold
         self._start = self._end = math.nan
@@ -110,13 +104,13 @@ class BoundPart:
     @cached_property
     def add_tangent(self) -> Bound:
         """Adds to K what the forces found last change by."""
-        trials, workspace, (conjugate, turning) = self._trials, Packed(self._trials.turning), self._trials.turning
+        trials = self._trials
         return in_turn(
             *self._find_water,
             bound(add_tangent, self._numbers, self._now, trials.maps, trials.weights, self.K),
-            Bound(weigh, self._forces, trials.weights, workspace),
-            bound(put_turning, trials.now.at, Packed(conjugate), Packed(turning)),
-            Bound(turn, workspace, self.K),
+            Bound(weigh, self._forces, trials.weights, trials.conjugate),
+            bound(put_turning, trials.now.at, trials.conjugate, trials.turning),
+            Bound(turn, self._now, trials.turning, self.K),
         )
 
     @cached_property

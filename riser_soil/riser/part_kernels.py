@@ -6,7 +6,7 @@ calls them, and so does `CompiledPart`, by which a part has a system's methods.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,18 +40,6 @@ class LineWeights(NamedTuple):
 
     inertia: float
     force: float
-
-
-class TurningWorkspace(Protocol):
-    """Workspace for what is conjugate to the tangents of the elements' ends (ne, 2, d), and its turning (ne, 2, r,
-    r).
-    """
-
-    @property
-    def conjugate(self) -> Array: ...
-
-    @property
-    def turning(self) -> Array: ...
 
 
 def forces_of(line: Line) -> LineForces:
@@ -121,17 +109,17 @@ def collect(at: Configuration, forces: LineForces) -> None:
 
 
 @njit
-def weigh(forces: LineForces, weights: LineWeights, workspace: TurningWorkspace) -> None:
-    """Write what is conjugate to the tangents of the elements' ends, groups weighted."""
-    for e in range(workspace.conjugate.shape[0]):
+def weigh(forces: LineForces, weights: LineWeights, conjugate: Array) -> None:
+    """Write what is conjugate to the tangents of the elements' ends (ne, 2, d), groups weighted."""
+    for e in range(conjugate.shape[0]):
         for side in range(2):
             k = 2 * side + 1
-            for i in range(workspace.conjugate.shape[2]):
+            for i in range(conjugate.shape[2]):
                 bulk = weights.inertia * forces.inertia_q[e, k, i] + weights.force * forces.force_q[e, k, i]
-                workspace.conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
+                conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
 
 
 @njit
-def turn(workspace: TurningWorkspace, K: Array) -> None:
-    """Add what the turning of the tangents gives to the element matrices."""
-    add_geometric(K, 1.0, workspace.turning, workspace.conjugate.shape[2])
+def turn(at: Configuration, turning: Array, K: Array) -> None:
+    """Add what the turning (ne, 2, r, r) of the tangents gives to the element matrices."""
+    add_geometric(K, 1.0, turning, len(at.D))

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import time
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.placed_line import PlacedLine
-from riser_soil.riser.sections import Elements
 from riser_soil.soil.condensed import CondensedSoil
 from riser_soil.solve import riser_loop
 from riser_soil.solve.compiled_mass import CompiledMass, mass_of
@@ -28,9 +26,7 @@ from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
-
-if TYPE_CHECKING:
-    from riser_soil.contact.contact import RiserContact
+from riser_soil.solve.solver import StepSolver
 
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
 
@@ -50,7 +46,7 @@ def condensed_newton(system: System, settings: NewtonSettings) -> CondensedNewto
     return CondensedNewton(system, settings, KernelParts(numbered), contact, soil, border)
 
 
-class CondensedNewton:
+class CondensedNewton(StepSolver):
     """Solver of time steps of a riser on condensed soil. Create once a stage, by `condensed_newton`; see `Newton`."""
 
     def __init__(
@@ -62,8 +58,8 @@ class CondensedNewton:
         soil: CondensedSoil,
         border: SoilBorder,
     ) -> None:
-        self.system, self.settings, self._newton = system, settings, Newton(system, settings)
-        self.iterations, self.rests = 0, False
+        super().__init__(system, settings)
+        self._newton = Newton(system, settings)
         self._contact, self._soil, self._border, self._parts = contact, soil, border, parts
         (line,) = system.model.lines
         assert isinstance(line, Line)
@@ -126,10 +122,6 @@ class CondensedNewton:
         finally:
             self.iterations += self._newton.iterations - before
 
-    def commit(self, state: State) -> None:
-        """Accept the state of the step solved last."""
-        self.system.commit(state)
-
     def _state(self, step: Step, still: State) -> State:
         """The state found."""
         line, weights = self._riser.solved(step.t, step.dt), step.scheme.weights(step.dt)
@@ -170,18 +162,6 @@ class CondensedNewton:
         found = self._mass_of_line.bulk_forces(of_line(state, self._at))
         return self._padded(found.inertia, found.force, found.end)
 
-    def element_residual(self, line: Line, state: State) -> Array:
-        return self._newton.element_residual(line, state)
-
-    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
-        return self._newton.section_forces(line, elements, state)
-
-    def contact_results(self, contact: RiserContact, state: State) -> Array:
-        return self._newton.contact_results(contact, state)
-
-    def nodal_residual(self, line: Line, state: State) -> Array | None:
-        return self._newton.nodal_residual(line, state)
-
     def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         if solution.state is not self._solved:
@@ -212,9 +192,6 @@ class CondensedNewton:
 
     def restore(self, saved: Saved) -> None:
         self._stored = dict(zip(listed(saved["times"]), listed(saved["stored"]), strict=True))
-
-    def require_stable(self, solution: Solution) -> None:
-        """Time steps need not be stable equilibria."""
 
     def renew(self) -> None:
         self._newton.renew()

@@ -54,7 +54,7 @@ def relax(
     part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
     system = System(comm, replace(model, parts=[*model.parts, part]), clock)
     newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
-    with destroyed_together(comm, newton, system):
+    with destroyed_together(comm, newton.destroy, system.destroy):
         return _descend(system, newton, part, line, t)
 
 

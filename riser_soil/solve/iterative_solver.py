@@ -10,17 +10,20 @@ take as many iterations on clay that hardly changes its volume, and three times 
 
 from __future__ import annotations
 
-from typing import ClassVar, Protocol, cast
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Field, local
+from riser_soil.core.part import local
 from riser_soil.core.system import System
 from riser_soil.solve.banded_solvers import PythonContext
 from riser_soil.solve.linear_solver import PREFIX, LinearSystems, defaults
+
+if TYPE_CHECKING:
+    from riser_soil.soil.field import SoilField
 
 TOLERANCE, MOST_ITERATIONS, RESTART = 1e-4, 500, 100  # share of the residual that may be left
 MULTIGRID = {  # read when it is made and, of its levels, when it is set up
@@ -31,15 +34,9 @@ MULTIGRID = {  # read when it is made and, of its levels, when it is set up
 }
 
 
-class Solid(Field, Protocol):
-    """A field of three displacements at each of its points (n, 3) [m]."""
-
-    points: Array
-
-
-def solid_of(system: System) -> Solid | None:
+def solid_of(system: System) -> SoilField | None:
     """The soil, where it is solved for as a whole."""
-    return cast(Solid | None, system.whole_soil)
+    return cast("SoilField | None", system.whole_soil)
 
 
 class IterativeSolver(PythonContext, LinearSystems):
@@ -47,7 +44,7 @@ class IterativeSolver(PythonContext, LinearSystems):
 
     factorises: ClassVar[bool] = False
 
-    def __init__(self, system: System, solid: Solid) -> None:
+    def __init__(self, system: System, solid: SoilField) -> None:
         self._system, self._solid = system, solid
         self._corrections: _Corrections | None = None
 

@@ -125,7 +125,7 @@ def exact_solver(system: System) -> Iterator[Callable[[Array], Array]]:
             vector.destroy()
         return answer
 
-    with destroyed_together(system.comm, solver):
+    with destroyed_together(system.comm, solver.destroy):
         yield solve
 
 

@@ -4,22 +4,15 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
-from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
-from riser_soil.core.part import Energy, Forces, State, Work, local
+from riser_soil.core.part import Forces, State, local
 from riser_soil.core.roles import Adaptive, Limited, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
-from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import element_residual, nodal_residual, section_vector, viscous_residual
-from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import (
     CONVERGED,
     DIVERGED,
@@ -33,7 +26,6 @@ from riser_soil.solve.chain import (
     is_chain,
 )
 from riser_soil.solve.newton_progress import ROUND_OFF, stays, step_length
-from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.solution import (
     NewtonSettings,
     NotConvergedError,
@@ -43,11 +35,10 @@ from riser_soil.solve.solution import (
     place_of_largest,
     reported,
 )
+from riser_soil.solve.solver import StepSolver
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
+from riser_soil.solve.step_trials import StepTrials
 from riser_soil.solve.time_scheme import Static
-
-if TYPE_CHECKING:
-    from riser_soil.contact.contact import RiserContact
 
 TIGHT = 1e-10  # least share of the residual that a linear system solved by iterations may leave, LOOSE the largest
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
@@ -57,18 +48,12 @@ FLOWS = 4.0  # residual that a guess may leave over that of the linear response,
 PATIENCE, LONGEST = 10, 4  # iterations in which a static residual halves that goes on; times as many at most
 
 
-class Newton:
-    """Solver of a system's steps. Create once a stage; the symbolic factorisation is reused throughout.
-
-    iterations: of all its steps, those that failed included. rests: whether the next step starts from the equilibrium
-    of its own loads, so that a residual within round-off needs no iteration.
-    """
+class Newton(StepSolver):
+    """Solver by Newton's method. Create once a stage; the symbolic factorisation is reused throughout."""
 
     def __init__(self, system: System, settings: NewtonSettings) -> None:
-        self.system, self.settings = system, settings
-        self.iterations, self.rests = 0, False
-        self._state: State | None = None
-        self._known: State | None = None  # whose forces are known
+        super().__init__(system, settings)
+        self._trials: StepTrials | None = None
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self._limited: list[Limited] = with_role(system.model.parts, Limited)
         self.loop = self._new_loop()
@@ -90,51 +75,27 @@ class Newton:
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError; collective."""
         self._begin(step)
-        if self.settings.linear_start and self._weights.inertia == 0.0 and not self._continues():
+        if self.settings.linear_start and self._step.weights.inertia == 0.0 and not self._continues():
             self._start_linearly()
         if failure := self._iterate():
             raise NotConvergedError(failure)
-        state = self._trial(self._x)
+        state = self._step.of(self._x)
         self.require_admissible(state)
-        return Solution(state, self._forces, self._norms)
+        return Solution(state, self._step.forces, self._norms)
 
-    def commit(self, state: State) -> None:
-        """Accept the state of the step solved last."""
-        self.system.commit(state)
-
-    @cached_property
-    def mass(self) -> RiserMass:
-        """Inverse of the lines' mass."""
-        return RiserMass(self.system)
-
-    def bulk_forces(self, state: State) -> Forces:
-        """Forces of groups I and F at an accepted state, those of group E zero; collective."""
-        return self.system.forces(state, "IF")
-
-    def element_residual(self, line: Line, state: State) -> Array:
-        """Of a line's elements (ne, 2 ndof) at an accepted state; on the rank that has it."""
-        return element_residual(line, acting_on(line, self.system.model.parts), state)
-
-    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
-        """Of a line at an accepted state; on the rank that has it."""
-        viscous = viscous_residual(line, acting_on(line, self.system.model.parts), state)
-        return section_vector(line, elements, state, self.element_residual(line, state), viscous)
-
-    def contact_results(self, contact: RiserContact, state: State) -> Array:
-        """Of a contact at an accepted state; on the rank that evaluates it."""
-        return contact.results(state)
-
-    def nodal_residual(self, line: Line, state: State) -> Array | None:
-        """Of what acts on a line's nodes (nn, ndof) without holding them; on the rank that has it."""
-        return nodal_residual(line, acting_on(line, self.system.model.parts), state)
+    @property
+    def _step(self) -> StepTrials:
+        """The step that is being solved."""
+        assert self._trials is not None
+        return self._trials
 
     def _continues(self) -> bool:
         """Whether a static step goes on as those before: its guess leaves less out of balance than its loads put there.
 
         A motion that is prescribed puts nothing there but through the stretch of the elements beside it.
         """
-        still = np.zeros_like(self._step.guess)
-        return self._out_of_balance(self._with_prescribed(self._step.guess)) < self._out_of_balance(still)
+        guess = self._step.step.guess
+        return self._out_of_balance(self._step.with_prescribed(guess)) < self._out_of_balance(np.zeros_like(guess))
 
     def _start_linearly(self) -> None:
         """First iteration of a static step, by the tangent where it starts: the linear response to its loads and
@@ -142,26 +103,26 @@ class Newton:
 
         An end that is moved alone stretches the element beside it by far, and its false tension spoils what follows.
         """
-        still = np.zeros_like(self._step.guess)
-        _, probed = self._balance(PROBE * self._with_prescribed(still))
-        start, residual = self._balance(still)
+        guess = self._step.step.guess
+        still = np.zeros_like(guess)
+        _, probed = self._step.residual_of(PROBE * self._step.with_prescribed(still))
+        start, residual = self._step.residual_of(still)
         self._assemble(start)
         while self._outgrown():
             self._renew(start)
             self._assemble(start)
         self._first = 1
         self._norms.append(self._respond_to(residual + (probed - residual) / PROBE, still))
-        if any_of(self.system.comm, bool(self._step.guess.any())):
-            self._prefer_guess()
+        if any_of(self.system.comm, bool(guess.any())):
+            self._prefer_guess(self._step.with_prescribed(guess))
 
-    def _prefer_guess(self) -> None:
+    def _prefer_guess(self, guess: Array) -> None:
         """Take the guess, with the tangent's response, where it is about as near to balance as the linear response
         alone: in what flows on as before, it knows which points yield.
         """
         linear = self._x
         left = self._norm_at(linear)
-        guess = self._with_prescribed(self._step.guess)
-        norm = self._respond_to(self._balance(guess)[1], guess)
+        norm = self._respond_to(self._step.residual_of(guess)[1], guess)
         if self._norm_at(self._x) < FLOWS * left:
             self._norms[-1] = norm
         else:
@@ -189,22 +150,10 @@ class Newton:
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         return failure
 
-    def _with_prescribed(self, u: Array) -> Array:
-        """Increments with those that are prescribed in the step."""
-        out = u.copy()
-        out[self.system.prescribed_dofs] = self._prescribed.u[self.system.prescribed_dofs]
-        return out
-
     def _out_of_balance(self, u: Array) -> float:
         """Norm of the residual of increments [N]; collective."""
-        self._f = self.system.numbering.add_to_global(self._balance(u)[1])
+        self._f = self.system.numbering.add_to_global(self._step.residual_of(u)[1])
         return self._norm()
-
-    def _balance(self, u: Array) -> tuple[State, Array]:
-        """State of the increments u, those of the prescribed dofs included, and its residual."""
-        state = replace(self._still, u=u)
-        self._forces, self._known = self.system.forces(state), state
-        return state, self._step.scheme.combine(self._forces, self._past)
 
     def _iterate(self) -> str:
         """Iterate, from wherever the pattern was outgrown with a wider one, from wherever factors found too little
@@ -213,7 +162,7 @@ class Newton:
         while True:
             ending = self._run()
             if ending == OUTGROWN:
-                self._renew(self._balanced)
+                self._renew(self._step.balanced)
             elif ending == TOO_MANY and self._still_falls():
                 self._most += self.settings.max_iterations
             elif not self.loop.again:
@@ -232,22 +181,17 @@ class Newton:
         """Whether a static step nears its end, if slowly, as where stiff ground opens and closes point after point."""
         before, lately = self._norms[:-PATIENCE], self._norms[-PATIENCE:]
         limit = LONGEST * self.settings.max_iterations
-        return self._weights.inertia == 0.0 and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
+        return self._step.weights.inertia == 0.0 and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
 
     @property
     def _taken(self) -> int:
         """Iterations of the step so far; a residual that is not finite at its start is none."""
         return max(len(self._norms) - 1, 0)
 
-    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
-        """Energy stored at the end of a step solved from an accepted state, and what each part turned over in it;
-        collective.
-        """
-        return self.system.energy(solution.state), self.system.work(before, solution.state)
-
     def require_admissible(self, state: State) -> None:
         """Raise NotConvergedError where a state in balance is none of a line's or of a part's; collective."""
-        before = self._step.before if self._step.scheme.dynamic else None
+        step = self._step.step
+        before = step.before if step.scheme.dynamic else None
         for line in self.system.model.lines:
             if reason := line.inadmissible(state, before):
                 raise NotConvergedError(reason)
@@ -296,50 +240,21 @@ class Newton:
         self.loop.release()
         self.system.renew_pattern()
         self._make_vectors()
-        if self._state is not None:
-            self._x = self.system.numbering.to_global(self._state.u)
-            self.system.prescribe(self._prescribed)
-            self._state = None
+        if self._trials is not None and (x := self._trials.renumbered()) is not None:
+            self._x = x
         self.loop.renew()
 
     def _begin(self, step: Step) -> None:
-        self._step, self._norms, self._first = step, list[float](), 0
+        self._trials, self._norms, self._first = StepTrials(self.system, step), list[float](), 0
         self._most = self.settings.max_iterations
-        self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
-        self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
-        still = self._still
-        self._prescribed = replace(still, u=step.guess.copy(), v=still.v.copy(), a=still.a.copy())
-        self.system.prescribe(self._prescribed)
-        self._state = None
         self._x = self.system.numbering.to_global(step.guess)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         self._answers_load = self.rests or guessed  # one like round-off has an answer, too
         self.rests = False
 
-    def _trial(self, x: Array) -> State:
-        """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
-        found = np.zeros(self.system.numbering.size)
-        self.system.numbering.to_local(x, found)
-        u = self._with_prescribed(found)
-        if self._state is None or (u != self._state.u).any():
-            self._state = self._follow(u)
-            self._balanced = self._step.scheme.balanced_at(self._step.before, self._state, self._step.dt)
-        return self._state
-
-    def _follow(self, u: Array) -> State:
-        """State of the increments u: rates follow them by the scheme's shifts, but for the prescribed ones."""
-        v = self._still.v + self._weights.shift_v * u
-        a = self._still.a + self._weights.shift_a * u
-        at = self.system.prescribed_dofs
-        v[at], a[at] = self._prescribed.v[at], self._prescribed.a[at]
-        return State(self._step.t, u, v, a, dt=self._still.dt)
-
     def residual(self, x: Array) -> Array:
         """Residual of the unknowns, both (owned,); collective."""
-        self._trial(x)
-        if self._balanced is not self._known:
-            self._forces, self._known = self.system.forces(self._balanced), self._balanced
-        return self.system.numbering.add_to_global(self._step.scheme.combine(self._forces, self._past))
+        return self._step.residual(x)
 
     def shortened(self, x: Array, y: Array) -> Array:
         """The step -y from x, whose residual is known, to the length that the line search finds: a part of y."""
@@ -352,9 +267,9 @@ class Newton:
         return step_length(along(self._f), lambda part: along(self.residual(x - part * y))) * y
 
     def _assemble(self, state: State) -> None:
-        self.system.assemble(state, self._weights)
-        if self._weights.inertia == 0.0:
-            prescribe_free_turns(self.system, state, self.settings.tolerance * self._scale(self._forces))
+        self.system.assemble(state, self._step.weights)
+        if self._step.weights.inertia == 0.0:
+            prescribe_free_turns(self.system, state, self.settings.tolerance * self._scale(self._step.forces))
 
     def _outgrown(self) -> bool:
         """Whether something in the tangent assembled last had no place in the pattern; collective."""
@@ -376,7 +291,7 @@ class Newton:
     @property
     def _starts_near(self) -> bool:
         """Whether the guess continues a smooth motion: time steps without contact."""
-        return self.system.smooth and self._weights.inertia > 0.0
+        return self.system.smooth and self._step.weights.inertia > 0.0
 
     def judge(self, x: Array, f: Array) -> str:
         """Whether unknowns with the residual f are to be iterated further, and if so with which tangent: how it ends,
@@ -393,7 +308,7 @@ class Newton:
             return NOT_FINITE
         if self._taken < self._least_iterations:
             return self._next_tangent()
-        if norm <= self.settings.tolerance * self._scale(self._forces):
+        if norm <= self.settings.tolerance * self._scale(self._step.forces):
             return CONVERGED
         if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
             return CONVERGED
@@ -405,16 +320,17 @@ class Newton:
 
     def _at_round_off(self) -> bool:
         """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
-        self._trial(self._x)
-        sizes = self.system.numbering.sizes_to_global(self.system.magnitudes(self._balanced, self._weights))
+        self._step.of(self._x)
+        magnitudes = self.system.magnitudes(self._step.balanced, self._step.weights)
+        sizes = self.system.numbering.sizes_to_global(magnitudes)
         return not any_of(self.system.comm, bool((np.abs(self._f) > ROUND_OFF * sizes).any()))
 
     def _next_tangent(self) -> str:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
         if self._taken >= self._most or self._reusable():
             return ITERATING
-        self._trial(self._x)
-        self._assemble(self._balanced)
+        self._step.of(self._x)
+        self._assemble(self._step.balanced)
         return OUTGROWN if self._outgrown() else ITERATING
 
     def linear_tolerance(self) -> float:
@@ -426,12 +342,12 @@ class Newton:
         norm, before = self._norms[-1], self._norms[-2] if self._taken > self._first else 0.0
         if not 0.0 < norm < before:
             return LOOSE
-        enough = self.settings.tolerance * self._scale(self._forces) / norm
+        enough = self.settings.tolerance * self._scale(self._step.forces) / norm
         return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSE)
 
     def negligible(self) -> float:
         """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
-        return BELOW * self.settings.tolerance * self._scale(self._forces)
+        return BELOW * self.settings.tolerance * self._scale(self._step.forces)
 
     def _norm(self) -> float:
         """Norm of the residual [N]; collective."""

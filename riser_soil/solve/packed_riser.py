@@ -83,6 +83,7 @@ class PackedRiser:
         self.at = at
         written = self.step, self.forces, self.dofs, self.workspace, self.progress
         now, step, forces, dofs, workspace, progress = map(Packed, (at, *written))
+        conjugate, turning = Packed(self.workspace.conjugate), Packed(self.workspace.turning)
         maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.workspace.K)
         evaluate = [
             Bound(loop.follow, step, maps, dofs),
@@ -104,9 +105,9 @@ class PackedRiser:
                 bound(put_maps, at, maps),
                 Bound(loop.clear_tangent, bulk),
                 *(bound(add_tangent, each, now, maps, weights, bulk) for each in others),
-                Bound(weigh, forces, weights, workspace),
-                bound(put_turning, at, Packed(self.workspace.conjugate), Packed(self.workspace.turning)),
-                Bound(turn, workspace, bulk),
+                Bound(weigh, forces, weights, conjugate),
+                bound(put_turning, at, conjugate, turning),
+                Bound(turn, now, turning, bulk),
             ]
 
         def contact_tangent(maps: Packed) -> list[Bound]:

@@ -32,6 +32,7 @@ from riser_soil.solve.solution import (
     largest_at,
     reported,
 )
+from riser_soil.solve.solver import StepSolver
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -53,12 +54,11 @@ def riser_newton(system: System, settings: NewtonSettings) -> RiserNewton | None
     return RiserNewton(system, settings, numbered) if len(numbered) == len(system.model.parts) else None
 
 
-class RiserNewton:
+class RiserNewton(StepSolver):
     """Solver of a riser's time steps. Create once a stage, by `riser_newton`; see `Newton`."""
 
     def __init__(self, system: System, settings: NewtonSettings, parts: Numbered) -> None:
-        self.system, self.settings = system, settings
-        self.iterations, self.rests = 0, False
+        super().__init__(system, settings)
         (line,) = system.model.lines
         assert isinstance(line, Line)
         self._line, most = line, settings.max_iterations
@@ -200,15 +200,6 @@ class RiserNewton:
             return "the residual is not finite"
         k = int(np.argmax(np.abs(residual)))
         return largest_at(abs(residual[k]), self._line.describe(k))
-
-    def require_stable(self, solution: Solution) -> None:
-        """Time steps need not be stable equilibria."""
-
-    def renew(self) -> None:
-        """The matrix has places for all that a riser's tangent can hold."""
-
-    def destroy(self) -> None:
-        """There is nothing to give back."""
 
 
 @lru_cache(maxsize=8)

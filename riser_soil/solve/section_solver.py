@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from petsc4py import PETSc
@@ -19,33 +19,30 @@ from scipy.sparse.linalg import SuperLU, splu
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.communicator import Communicator, all_of, largest_of
 from riser_soil.core.factor_memory import Workspace
-from riser_soil.core.part import Field, local
+from riser_soil.core.part import local
 from riser_soil.core.system import System
 from riser_soil.solve.banded_solvers import PythonContext
 from riser_soil.solve.chain import SingularError
 from riser_soil.solve.linear_solver import LinearSystems, factorise_directly
 from riser_soil.solve.section_factors import Csr, SectionFactors, coupled_apart
 
+if TYPE_CHECKING:
+    from riser_soil.soil.field import SoilField
+
 THRESHOLD = 0.1  # of the largest entry of its column, that a pivot on the diagonal may have
 Entries = tuple[IntArray, IntArray, Array]
 
 
-class InSections(Field, Protocol):
-    """A field of independent sections. section (size,): number of the one that each entry lies in."""
-
-    section: IntArray
-
-
-def sections_of(system: System) -> InSections | None:
+def sections_of(system: System) -> SoilField | None:
     """The soil, where it is solved for as a whole and falls apart into sections."""
     soil = system.whole_soil
-    return None if getattr(soil, "section", None) is None else cast(InSections, soil)
+    return None if getattr(soil, "section", None) is None else cast("SoilField", soil)
 
 
 class SectionSolver(PythonContext, LinearSystems):
     """Linear solver of a system with soil in sections, and the context of its preconditioner; collective."""
 
-    def __init__(self, system: System, soil: InSections, workspace: Workspace) -> None:
+    def __init__(self, system: System, soil: SoilField, workspace: Workspace) -> None:
         self._system, self._soil, self._workspace = system, soil, workspace
         self._by_rows_exchanged = False
         self._section: IntArray | None = None  # of each row of the system, on all ranks or none
@@ -135,9 +132,10 @@ def _factorised(matrix: coo_matrix) -> SuperLU | None:
         return None
 
 
-def _section_of_rows(system: System, soil: InSections) -> IntArray:
+def _section_of_rows(system: System, soil: SoilField) -> IntArray:
     """Number (n,) of the section of each row of the system, one after the other; -1 for the others; collective."""
     numbering = system.numbering
+    assert soil.section is not None
     index, found = numbering.index[local(soil)], np.full(numbering.free, -1)
     mine = soil.owned & (index >= 0)
     found[index[mine]] = soil.section[mine]

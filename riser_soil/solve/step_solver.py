@@ -3,81 +3,19 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator, destroyed_together
-from riser_soil.core.part import Energy, Forces, Model, State, Work
+from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
-from riser_soil.riser.line import Line
-from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.riser_mass import InverseMass
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.solver import StepSolver
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme, Static
 
-if TYPE_CHECKING:
-    from riser_soil.contact.contact import RiserContact
-
 INSTANT = Static(seconds=0.0)  # what flows under rate keeps its stress
-
-
-class StepSolver(Protocol):
-    """Newton's method for the steps of a stage; see `Newton`."""
-
-    settings: NewtonSettings
-    iterations: int
-    rests: bool
-
-    def solve(self, step: Step) -> Solution: ...
-
-    def commit(self, state: State) -> None:
-        """Accept the state of the step solved last."""
-        ...
-
-    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
-        """Energy stored at the end of the step solved last, from the accepted state `before`, and what each part turned
-        over in it, those of one name together; collective.
-        """
-        ...
-
-    @property
-    def mass(self) -> InverseMass:
-        """Inverse of the lines' mass."""
-        ...
-
-    def bulk_forces(self, state: State) -> Forces:
-        """Forces of groups I and F at an accepted state, those of group E zero; collective."""
-        ...
-
-    def element_residual(self, line: Line, state: State) -> Array:
-        """Of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has it, until
-        the next call.
-        """
-        ...
-
-    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
-        """Of a line at an accepted state, see `SectionForces.within`; on the rank that has it."""
-        ...
-
-    def contact_results(self, contact: RiserContact, state: State) -> Array:
-        """Of a contact at an accepted state, see `ContactResults.within`; on the rank that evaluates it."""
-        ...
-
-    def nodal_residual(self, line: Line, state: State) -> Array | None:
-        """Of what acts on a line's nodes (nn, ndof) without holding them at an accepted state, if anything; the
-        same.
-        """
-        ...
-
-    def require_stable(self, solution: Solution) -> None: ...
-
-    def renew(self) -> None: ...
-
-    def destroy(self) -> None: ...
 
 
 def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepSolver:
@@ -107,7 +45,7 @@ def balance_held(comm: Communicator, model: Model, t: float, settings: NewtonSet
             stack.enter_context(line.held())
         system = System(comm, Model(model.lines, parts, model.others), clock)
         newton = Newton(system, settings)
-        with destroyed_together(comm, newton, system):
+        with destroyed_together(comm, newton.destroy, system.destroy):
             size = system.numbering.size
             try:
                 found = newton.solve(Step(INSTANT, State.at_rest(t, size), t, 0.0, None, np.zeros(size))).state

@@ -27,8 +27,9 @@ from riser_soil.solve.local_error import (
 )
 from riser_soil.solve.riser_mass import CommittedStep
 from riser_soil.solve.solution import NotConvergedError, Solution, Step
+from riser_soil.solve.solver import StepSolver
 from riser_soil.solve.step_control import Control
-from riser_soil.solve.step_solver import StepSolver, balance_held
+from riser_soil.solve.step_solver import balance_held
 from riser_soil.solve.time_scheme import Scheme
 
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away

@@ -38,7 +38,7 @@ class Solver:
 
     def __init__(self, entries: Array) -> None:
         self._pattern = csr_matrix(entries != 0.0)
-        soil = SimpleNamespace(
+        soil: Any = SimpleNamespace(
             section=np.repeat(np.arange(SECTIONS), EACH),
             owned=np.ones(SECTIONS * EACH, dtype=bool),
             offset=RISER,
