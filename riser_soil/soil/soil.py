@@ -5,30 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Limited
 from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
-from riser_soil.soil.families import Gradients, cell_gradients, skewness
+from riser_soil.soil.families import skewness
 from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
-from riser_soil.soil.grid import DistributedMesh, on_all_ranks
+from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.large_strain import carried_rows, moved_on, nearest_rows
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
 from riser_soil.soil.slices import slabs, top_of_slices
+from riser_soil.soil.soil_cells import SoilCells
 
 FOLDS = 0.1  # skewness of a cell
 SLOPE = ("slope_x", "slope_y", "slope_z")
 NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
-STRAINED = 1e-4  # of its size, that a cell's nodes move against each other before its gradients are made anew
 
 
 class Soil:
@@ -63,48 +62,31 @@ class Soil:
         self.field = SoilField(grid)
         self.mesh: GatheredMesh = gather(grid)
         self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
-        self._cells, self._shares = np.ascontiguousarray(grid.nodes.cells), grid.shares()
-        self._gradients = on_all_ranks(grid.nodes.comm, lambda: self._gradients_of(grid.nodes.points[self._cells]))
-        self._shape = self._gradients.weights.shape
+        self.cells = SoilCells(grid)
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
         self._ground = _Ground(law, weight, K0, start == "geostatic")
         depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
         self._take_material()
         self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful))
-        self._check_start(self._initial, self._at_points(self._depth), K0)
+        self._check_start(self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
         self._last: _Answer | None = None
         self._unloads = False
-        self._volumes = self._gradients.weights.ravel()
+        self._volumes = self.cells.gradients.weights.ravel()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
-        self._made_at, self._mesh_at = self._corners(grid.nodes.points), grid.nodes.points
-        self._spans = np.ptp(self._made_at, axis=1).min(axis=1)
+        self._mesh_at = grid.nodes.points
         self._stored = self._lifted = 0.0
 
     def _take_material(self) -> None:
         """Law, unit weight and initial stress at the points, of the depths that their material had at first."""
-        depth = self._at_points(self._depth)
+        depth = self.cells.at_points(self._depth)
         self._initial, self._unit_weight = self._ground.stress(depth), self._ground.weight.at(depth)
         self.law = self._ground.law(depth, self._initial)
 
-    def _gradients_of(self, corners: Array, cells: IntArray | slice = slice(None)) -> Gradients:
-        """Of some cells, all by default, with their nodes at corners (nc, nn, 3)."""
-        nc, nn, _ = corners.shape
-        apart = np.arange(nc * nn).reshape(nc, nn)
-        found = cell_gradients(self.grid.family, corners.reshape(-1, 3), apart)
-        found.weights[:] *= self._shares[cells][:, None]
-        return found
-
-    def _at_points(self, nodal: Array) -> Array:
-        """Values (n, ...) at quadrature points of those (nodes, ...) at nodes."""
-        shape = self.grid.family.values(self.grid.family.quadrature()[0])
-        found = np.einsum("qa,ca...->cq...", shape, nodal[self._cells])
-        return np.asarray(found.reshape(-1, *nodal.shape[1:]))
-
     def blocks(self) -> dict[str, MatrixBlock]:
-        rows = self.field.offset + components(self._cells)
+        rows = self.field.offset + components(self.cells.nodes)
         return {"soil": MatrixBlock(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -114,17 +96,10 @@ class Soil:
         """From now on the tangent is that of unloading, which is elastic, as in small vibrations about rest."""
         self._unloads = True
 
-    @cached_property
-    def _stiffness(self) -> _Stiffness:
-        """There from the first tangent on."""
-        return _Stiffness.unknown(self._gradients)
-
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         found = self._answer(state).found
         by_strain = mandel.stiffness(self.law.bulk, self.law.shear) if self._unloads else found.tangent
-        g, moduli = self._gradients, by_strain.reshape(*self._shape, 6, 6)
-        kernels.renew_stiffness(g.full, g.volume, g.weights, moduli, *self._stiffness)
-        values["soil"] += self._stiffness.matrices
+        values["soil"] += self.cells.stiffness(by_strain)
 
     def energy(self, state: State) -> Energy:
         """Strain energy by the law since the start, and potential of the unbalanced weight.
@@ -148,8 +123,8 @@ class Soil:
         product of the changes of their own stress and strain.
         """
         _, _, strain, found, _ = self._answer(after)
-        taken = self._integral(found.stress, strain)
-        by_scheme = 0.5 * self._integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
+        taken = self.cells.integral(found.stress, strain)
+        by_scheme = 0.5 * self.cells.integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
         return Work(dissipated=taken - self._stores(found) + self._stored, by_scheme=by_scheme)
 
     def _stores(self, found: StressUpdate) -> float:
@@ -168,25 +143,10 @@ class Soil:
 
     def _move(self, u: Array, dt: float) -> StressUpdate:
         """Let the nodes move by u within dt [s]; the law's answer to that."""
-        found = moved_on(self.grid.family, self.points, self._cells, u, self.law, self._found.history, dt)
-        self._renew_gradients(self.points + u.reshape(-1, 3))
+        found = moved_on(self.grid.family, self.points, self.cells.nodes, u, self.law, self._found.history, dt)
+        self.cells.renew(self.points + u.reshape(-1, 3))
         self._load = self._held + self._weight()
         return found
-
-    def _renew_gradients(self, points: Array) -> None:
-        """Of the cells that have strained since theirs were made; nodes at points (n, 3)."""
-        at = self._corners(points)
-        moved = at - self._made_at
-        moved -= moved.mean(axis=1, keepdims=True)
-        strained = np.flatnonzero(np.abs(moved).max(axis=(1, 2)) > STRAINED * self._spans)
-        if not strained.size:
-            return
-        self._made_at[strained] = at[strained]
-        made = self._gradients_of(at[strained], strained)
-        for name, values in vars(made).items():
-            vars(self._gradients)[name][strained] = values
-        if "_stiffness" in vars(self):
-            self._stiffness.moduli[strained] = np.nan
 
     @property
     def points(self) -> Array:
@@ -200,14 +160,14 @@ class Soil:
     @property
     def worn(self) -> float:
         """Largest strain of this rank's cells since they were made."""
-        return float(kernels.largest_strain(self._mesh_at, self.points, self._cells))
+        return float(kernels.largest_strain(self._mesh_at, self.points, self.cells.nodes))
 
     def inadmissible(self, state: State) -> str:
         """Where a step would fold a cell; collective."""
         moved = self.points + self.field.own(state.u).reshape(-1, 3)
-        found = skewness(self.grid.family, moved, self._cells) if self.moves else np.ones(1)
+        found = skewness(self.grid.family, moved, self.cells.nodes) if self.moves else np.ones(1)
         worst = int(found.argmin()) if found.size else 0
-        mine = (float(found[worst]), moved[self._cells[worst]].mean(axis=0).tolist()) if found.size else (1.0, [])
+        mine = (float(found[worst]), moved[self.cells.nodes[worst]].mean(axis=0).tolist()) if found.size else (1.0, [])
         least, at = min(self.grid.nodes.comm.allgather(mine))
         if least > FOLDS:
             return ""
@@ -227,19 +187,18 @@ class Soil:
     def _move_to(self, before: Array, after: Array) -> None:
         self._depth = self._depth_at(before, after)
         history, columns = self._history_beyond_weight(before), self.law.columns
-        history = carried_rows(self.grid, self._at_points(before), self._at_points(after), history, columns)
-        self._made_at, self._mesh_at = self._corners(after), after
-        self._gradients = self._gradients_of(self._made_at)
-        self._volumes = self._gradients.weights.ravel()
-        vars(self).pop("_stiffness", None)
+        history = carried_rows(self.grid, self.cells.at_points(before), self.cells.at_points(after), history, columns)
+        self._mesh_at = after
+        self.cells.make_anew(after[self.cells.nodes])
+        self._volumes = self.cells.gradients.weights.ravel()
         self._take_material()
         self._load, self._last = self._held + self._weight(), None
         self._found = self._balanced_history(history)
 
     def _depth_at(self, before: Array, after: Array) -> Array:
         """Depths that the nodes' material had at first, once they lie at points (n, 3) after."""
-        slope = np.einsum("cqni,cn->cqi", self._gradients.full, self._depth[self._cells]).reshape(-1, 3)
-        slope, _ = nearest_rows(self.grid, self._at_points(before), after, slope, SLOPE)
+        slope = self.cells.slopes(self._depth)
+        slope, _ = nearest_rows(self.grid, self.cells.at_points(before), after, slope, SLOPE)
         own = slice(self.grid.nodes.owned)
         depth, way = nearest_rows(self.grid, before[own], after, self._depth[own, None], ("depth",))
         moved = (np.abs(after - before).max(axis=1) > self._none) & (self._depth > 0.0)
@@ -255,7 +214,7 @@ class Soil:
         """The law's answer to a history of stress beyond the weight's: its mean is one for all points of a cell."""
         stress = self._stress_in(history)
         beyond = mandel.mean(stress)
-        stress += (np.repeat(self._cell_mean(beyond), self._shape[1]) - beyond)[:, None] * mandel.UNIT
+        stress += (np.repeat(self.cells.mean(beyond), self.cells.shape[1]) - beyond)[:, None] * mandel.UNIT
         stress += self._by_height(self.points)
         return self.law.update(np.zeros_like(stress), history, dt=0.0)._replace(tangent=np.empty(0))
 
@@ -265,11 +224,7 @@ class Soil:
 
     def _by_height(self, points: Array) -> Array:
         """Stress by the weight (n, 6) at heights counted from z = 0, nodes at points (n, 3)."""
-        return (self._unit_weight * self._at_points(points)[:, 2])[:, None] * self._ground.ratios
-
-    def _corners(self, points: Array) -> Array:
-        """Nodes (nc, nn, 3) of the cells, at points (n, 3)."""
-        return points[self._cells]
+        return (self._unit_weight * self.cells.at_points(points)[:, 2])[:, None] * self._ground.ratios
 
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""
@@ -284,12 +239,12 @@ class Soil:
         moved = all_of.vectors(gather_rows(self.grid, owned))
         return SoilSnapshot(
             np.concatenate([moved, moved]) if self.grid.family.plane else moved,
-            *(all_of.of_cells(gather_rows(self.grid, self._cell_mean(values))) for values in self._invariants()),
+            *(all_of.of_cells(gather_rows(self.grid, self.cells.mean(values))) for values in self._invariants()),
         )
 
     def stress_change(self) -> Array:
         """Equivalent stress of the change since the start, mean of each of this rank's cells [Pa]."""
-        return self._cell_mean(mandel.von_mises(self._found.stress - self._initial))
+        return self.cells.mean(mandel.von_mises(self._found.stress - self._initial))
 
     def _invariants(self) -> tuple[Array, Array, Array, Array]:
         """Of the committed stress, (n,) each, in the order of `SoilSnapshot`."""
@@ -307,7 +262,7 @@ class Soil:
         return self._last
 
     def _new_answer(self, u: Array, dt: float) -> _Answer:
-        strain = self._strain(u)
+        strain = self.cells.strain(u)
         found = self.law.update(strain, self._found.history, dt)
         return _Answer(u, dt, strain, found, self._internal(found.stress) - self._load)
 
@@ -316,32 +271,12 @@ class Soil:
         history, columns = self._found.history, self.law.columns
         return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
 
-    def _strain(self, u: Array) -> Array:
-        g, out = self._gradients, np.empty((*self._shape, 6))
-        kernels.strain(g.full, g.volume, self._cells, u, out)
-        return out.reshape(-1, 6)
-
     def _internal(self, stress: Array) -> Array:
-        g, out = self._gradients, np.zeros(self.field.size)
-        points = stress.reshape(*self._shape, 6)
-        kernels.add_internal_force(g.full, g.volume, g.weights, self._cells, points, out)
-        return out
+        return self.cells.internal_force(stress, self.field.size)
 
     def _weight(self) -> Array:
         """Nodal forces [N] of the submerged weight, this rank's cells."""
-        shape = self.grid.family.values(self.grid.family.quadrature()[0])
-        down = -np.einsum("cq,cq,qa->ca", self._unit_weight.reshape(self._shape), self._gradients.weights, shape)
-        out = np.zeros(self.field.size)
-        out[2::3] = np.bincount(self._cells.ravel(), down.ravel(), minlength=self.field.size // 3)
-        return out
-
-    def _integral(self, a: Array, b: Array) -> float:
-        return float(np.einsum("n,ni,ni->", self._gradients.weights.ravel(), a, b))
-
-    def _cell_mean(self, values: Array) -> Array:
-        w = self._gradients.weights
-        result: Array = np.einsum("cq,cq->c", w, values.reshape(self._shape)) / w.sum(axis=1)
-        return result
+        return self.cells.weight(self._unit_weight, self.field.size)
 
     def _check_start(self, stress: Array, depth: Array, K0: float) -> None:
         over = self.law.overstress(stress)
@@ -364,23 +299,18 @@ class Soil:
         """What the gradients are made of, and the last mesh, where cells move."""
         if not self.moves:
             return {}
-        kept = {"made_at": self._made_at, "mesh_at": self._mesh_at, "depth": self._depth, "volumes": self._volumes}
+        kept = {"made_at": self.cells.made_at, "mesh_at": self._mesh_at, "depth": self._depth, "volumes": self._volumes}
         return {name: values.copy() for name, values in kept.items()}
 
     def restore(self, saved: Saved) -> None:
         self._found, self._last = self._found._replace(**within(saved, "law")), None
         self._stored, self._lifted = (float(joules) for joules in saved["energy"])
         if self.moves:
-            self._restore_geometry(saved["made_at"])
+            self.cells.make_anew(saved["made_at"].copy())
             self._depth, self._volumes = saved["depth"].copy(), saved["volumes"].copy()
             self._mesh_at = saved["mesh_at"].copy()
             self._take_material()
             self._load = self._held + self._weight()
-
-    def _restore_geometry(self, made_at: Array) -> None:
-        self._made_at = made_at.copy()
-        self._gradients = self._gradients_of(self._made_at)
-        vars(self).pop("_stiffness", None)
 
 
 class _Answer(NamedTuple):
@@ -391,18 +321,6 @@ class _Answer(NamedTuple):
     strain: Array
     found: StressUpdate
     force: Array
-
-
-class _Stiffness(NamedTuple):
-    """Cell matrices (nc, 3nn, 3nn) [N/m] and the moduli (nc, nq, 6, 6) [Pa] that they are of: most keep them."""
-
-    moduli: Array
-    matrices: Array
-
-    @classmethod
-    def unknown(cls, gradients: Gradients) -> _Stiffness:
-        nc, nq, nn, _ = gradients.full.shape
-        return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, 3 * nn, 3 * nn)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -166,11 +166,11 @@ def test_stress_by_weight_and_strength_by_depth_are_those_of_the_new_places() ->
     soil = Soil(small_block("hex", 0.25), CLAY, level=0.0, unit_weight=5.0e3, moves=True)
     for amount in (0.04, -0.03, 0.05):
         soil.take_mesh(waved(soil, amount)[np.argsort(soil.grid.nodes.number)])
-    depth = -soil._at_points(soil.points)[:, 2]
+    depth = -soil.cells.at_points(soil.points)[:, 2]
     limit = np.sqrt(3.0) * (4.0e3 + 1.5e3 * depth)
     np.testing.assert_allclose(vars(soil.law)["limit"], limit, rtol=1e-10)
-    of_cell = soil._cell_mean(5.0e3 * depth)
-    np.testing.assert_allclose(-soil._cell_mean(stress(soil)[:, 2]), of_cell, rtol=1e-10)
+    of_cell = soil.cells.mean(5.0e3 * depth)
+    np.testing.assert_allclose(-soil.cells.mean(stress(soil)[:, 2]), of_cell, rtol=1e-10)
 
 
 def test_a_stress_that_varies_goes_along_with_the_way() -> None:
@@ -178,9 +178,9 @@ def test_a_stress_that_varies_goes_along_with_the_way() -> None:
     soil = Soil(small_block("hex", 0.125), LAWS[0].at_points, level=0.0, unit_weight=0.0, moves=True)
     x, strained = soil.points, 1e-5
     move(soil, x + strained * np.stack([x[:, 0] * x[:, 2], 0.0 * x[:, 0], -0.5 * x[:, 2] ** 2], axis=1))
-    before = soil._at_points(soil.points)
+    before = soil.cells.at_points(soil.points)
     soil.take_mesh(waved(soil, 0.02)[np.argsort(soil.grid.nodes.number)])
-    at = soil._at_points(soil.points)
+    at = soil.cells.at_points(soil.points)
     inside = ((at > soil.grid.low + 0.2) & (at < soil.grid.high - 0.2)).all(axis=1)
     slope = soil.law.shear[0] * strained
     missed = stress(soil)[:, 4] / ROOT - slope * at[:, 0]

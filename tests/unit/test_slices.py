@@ -36,7 +36,7 @@ def soil_of(along: int, law: Any = ELASTIC) -> Soil:
 @ALONG
 def test_slices_fill_the_block(along: int) -> None:
     soil = soil_of(along)
-    assert soil._gradients.weights.sum() == pytest.approx(2.0 * 2.0 * 1.0, rel=1e-12)
+    assert soil.cells.gradients.weights.sum() == pytest.approx(2.0 * 2.0 * 1.0, rel=1e-12)
     places = np.unique(soil.grid.nodes.points[:, along])
     np.testing.assert_allclose(places, [0.25, 0.75, 1.25, 1.75])
     mesh = soil.output_mesh()
