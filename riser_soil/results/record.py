@@ -9,7 +9,7 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
@@ -20,15 +20,15 @@ from riser_soil.core.snapshot import Instant, RunFacts, SoilMesh, SoilSnapshot, 
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
-from riser_soil.results.figures import pack, places, with_largest
+from riser_soil.results.figures import pack
 from riser_soil.results.folder import FolderLock
 from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
-from riser_soil.results.record_rows import series_rows, soil_frame, step_rows
+from riser_soil.results.record_rows import series_rows, step_rows
+from riser_soil.results.run_frames import RunFrames
 from riser_soil.results.schedule import DueOutputs, SimulatedTime
 from riser_soil.results.summary import StageTally, Summary
-from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
 _FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.02
@@ -82,12 +82,8 @@ class Recorder:
         self._ledger = ledger_variables(facts.dissipating, facts.working)
         made_of = facts.title, facts.version, left_out, self._ledger, facts.sections, facts.offsets, keeping.goes_on
         self._series = SeriesFile(folder / run_folder.SERIES, arc, *made_of)
-        self._riser_frames = XdmfFile(
-            folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True, goes_on=keeping.goes_on
-        )
-        self._soil_frames = _soil_file(folder, soil_mesh, keeping.goes_on)
+        self._frames = RunFrames(folder, arc.size, soil_mesh, fields, keeping.goes_on)
         self._lasting, self._resumable, self._untouched = False, keeping.goes_on, keeping.goes_on
-        self._soil_places = None if soil_mesh is None else places(soil_mesh)
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
         self._latest: Array | None = None
@@ -230,7 +226,7 @@ class Recorder:
         if last is None or self._closed:
             return
         soil = last.soil or soil
-        drawable = self._soil_frames is None or soil is not None
+        drawable = self._frames.drawable(soil)
         if not last.written.series:
             self._record(last.seen, [DueOutputs(series=True, pictures=drawable)], [self._time.stamp()], soil)
         elif drawable and not last.written.pictures:
@@ -250,8 +246,7 @@ class Recorder:
             return
         start = time.monotonic()
         with self._reported_when_full():
-            for frames in self._pictures:
-                frames.flush()
+            self._frames.flush()
             self._series.flush(self.summary.finished)
             self.summary.write(self._folder / run_folder.SUMMARY, self._lasting)
         self._waiting = 0
@@ -273,8 +268,7 @@ class Recorder:
         if not self._lasting:
             self._lasting = True
             with self._reported_when_full():
-                for frames in self._pictures:
-                    frames.outlast_power()
+                self._frames.outlast_power()
                 self._series.outlast_power()
                 run_folder.synchronise(self._folder / run_folder.SCENE)
 
@@ -304,14 +298,9 @@ class Recorder:
         if self._closed:
             return
         self._closed = True
-        for frames in self._pictures:
-            frames.close()
+        self._frames.close()
         self._series.close()
         self._lock.release()
-
-    @property
-    def _pictures(self) -> list[XdmfFile]:
-        return [frames for frames in (self._riser_frames, self._soil_frames) if frames is not None]
 
     def _tally(self, steps: Sequence[StepRecord], times: Sequence[float], seen: Instant) -> None:
         stage, rows = self.summary.stages[-1], pack(seen)
@@ -345,20 +334,9 @@ class Recorder:
                 self._picture(stamps[row], rows, row, soil)
 
     def _picture(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> None:
-        wanted = [output.name for output in outputs.ALONG_RISER if output.chosen and output.name in self._fields]
-        on_points = {name: rows[name][row] for name in (*wanted, "position")}
-        self._waiting += _size(on_points)
-        self._riser_frames.add(Frame(stamp, on_points, geometry="position"))
-        if self._soil_frames is not None:
-            if soil is None:
-                raise ValueError(
-                    "pictures are due, so the soil's snapshot is needed too: both files share one time axis"
-                )
-            self._waiting += _size(vars(soil))
-            self._soil_frames.add(soil_frame(stamp, soil, self._fields))
-            if self._soil_places is not None and self.summary.stages:
-                stage = self.summary.stages[-1]
-                stage.soil = with_largest(stage.soil, self._soil_places, self.now, soil)
+        self._waiting += self._frames.add(stamp, rows, row, soil)
+        if self.summary.stages:
+            self._frames.tally(self.summary.stages[-1], self.now, soil)
 
     def state(self) -> Saved:
         """What is gathered on the way; what is written stays in the folder."""
@@ -376,8 +354,7 @@ class Recorder:
     @property
     def _owners(self) -> dict[str, Stateful]:
         found: dict[str, Stateful] = {"summary": self.summary, "time": self._time, "series": self._series}
-        found["riser_frames"] = self._riser_frames
-        return found if self._soil_frames is None else found | {"soil_frames": self._soil_frames}
+        return found | self._frames.owners
 
 
 @contextmanager
@@ -394,23 +371,12 @@ def _reported_when_full(folder: Path, then: Callable[[], None] | None = None, wa
         ) from err
 
 
-def _size(values: Mapping[str, Any]) -> int:
-    """Bytes of the arrays among the values."""
-    return sum(value.nbytes for value in values.values() if isinstance(value, np.ndarray))
-
-
 def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
     allowed = outputs.choices()
     unknown = [name for name in fields if name not in (*allowed, "position")]
     if unknown:
         raise SceneError(f'output.fields: "{unknown[0]}" is not a field; allowed: {", ".join(allowed)}')
     return fields
-
-
-def _soil_file(folder: Path, mesh: SoilMesh | None, goes_on: bool) -> XdmfFile | None:
-    if mesh is None:
-        return None
-    return XdmfFile(folder / run_folder.SOIL_XDMF, "soil", mesh.cells, mesh.points, goes_on=goes_on)
 
 
 def _place(stage: StageTally) -> str:

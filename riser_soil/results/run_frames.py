@@ -1,0 +1,82 @@
+"""Frames of riser and soil for ParaView, which share one time axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core import outputs
+from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Stateful
+from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
+from riser_soil.results import folder as run_folder
+from riser_soil.results.figures import places, with_largest
+from riser_soil.results.record_rows import soil_frame
+from riser_soil.results.summary import StageTally
+from riser_soil.results.xdmf import Frame, XdmfFile, polyline
+
+
+class RunFrames:
+    """The files of a run. fields: names of the outputs that are wanted; goes_on: from frames that are there."""
+
+    def __init__(
+        self, folder: Path, nodes: int, soil_mesh: SoilMesh | None, fields: tuple[str, ...], goes_on: bool
+    ) -> None:
+        self._fields = fields
+        riser = folder / run_folder.RISER_XDMF
+        self._riser = XdmfFile(riser, "riser", polyline(nodes), polyline=True, goes_on=goes_on)
+        self._files, self._soil = [self._riser], None
+        if soil_mesh is not None:
+            soil = folder / run_folder.SOIL_XDMF
+            self._soil = XdmfFile(soil, "soil", soil_mesh.cells, soil_mesh.points, goes_on=goes_on)
+            self._places = places(soil_mesh)
+            self._files.append(self._soil)
+
+    def drawable(self, soil: SoilSnapshot | None) -> bool:
+        """Whether a frame needs no more than this of the soil."""
+        return self._soil is None or soil is not None
+
+    def add(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> int:
+        """Add a frame; how many bytes wait for their turn on disk."""
+        wanted = [output.name for output in outputs.ALONG_RISER if output.chosen and output.name in self._fields]
+        on_points = {name: rows[name][row] for name in (*wanted, "position")}
+        self._riser.add(Frame(stamp, on_points, geometry="position"))
+        if self._soil is None:
+            return _size(on_points)
+        if soil is None:
+            raise ValueError("pictures are due, so the soil's snapshot is needed too: both files share one time axis")
+        self._soil.add(soil_frame(stamp, soil, self._fields))
+        return _size(on_points) + _size(vars(soil))
+
+    def tally(self, stage: StageTally, now: float, soil: SoilSnapshot | None) -> None:
+        """Take note of the soil's largest values in a stage."""
+        if self._soil is not None and soil is not None:
+            stage.soil = with_largest(stage.soil, self._places, now, soil)
+
+    def flush(self) -> None:
+        """Write all frames so far to disk."""
+        for each in self._files:
+            each.flush()
+
+    def outlast_power(self) -> None:
+        """From now on what is written outlasts a power loss."""
+        for each in self._files:
+            each.outlast_power()
+
+    def close(self) -> None:
+        for each in self._files:
+            each.close()
+
+    @property
+    def owners(self) -> dict[str, Stateful]:
+        """Of what is kept on the way."""
+        riser: dict[str, Stateful] = {"riser_frames": self._riser}
+        return riser if self._soil is None else riser | {"soil_frames": self._soil}
+
+
+def _size(values: Mapping[str, Any]) -> int:
+    """Bytes of the arrays among the values."""
+    return sum(value.nbytes for value in values.values() if isinstance(value, np.ndarray))
