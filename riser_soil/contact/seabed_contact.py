@@ -23,8 +23,8 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import bound
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.vectors import Vec
-from riser_soil.seabed.law import NormalLaw
 from riser_soil.seabed.grounds import Ground, Plane
+from riser_soil.seabed.law import NormalLaw
 
 
 class Covering(Protocol):

@@ -102,41 +102,40 @@ class Balance(Protocol):
         ...
 
 
-class Loop(Protocol):
-    """factorises: whether pivots may be counted, too. again: whether what failed last may be tried once more."""
+class Loop:
+    """Base of the loops of Newton's method. factorises: whether pivots may be counted, too. again: whether what failed
+    last may be tried once more.
+    """
 
-    factorises: bool
-    again: bool
+    factorises, again = True, False
 
     def iterate(self, x: Array, most: int) -> str:
         """Iterate from x, at most so often: how it ends; what was judged last is what was found; collective."""
-        ...
+        raise NotImplementedError
 
     def respond(self, f: Array) -> tuple[str, Array]:
         """What the present tangent answers to a residual; "", or why it has no answer; collective."""
-        ...
+        raise NotImplementedError
 
     def release(self) -> None:
         """Let go of the matrix, in whose place another is to come."""
-        ...
 
     def renew(self) -> None:
         """Take the matrix that the system has now."""
-        ...
 
     def state(self) -> Saved:
         """What is kept of linear systems."""
-        ...
+        return {}
 
-    def restore(self, saved: Saved) -> None: ...
+    def restore(self, saved: Saved) -> None:
+        """Go on with what was kept."""
 
-    def destroy(self) -> None: ...
+    def destroy(self) -> None:
+        """Give back what the ranks hold together; collective."""
 
 
-class ChainLoop:
+class ChainLoop(Loop):
     """Newton's iteration with banded factors."""
-
-    factorises, again = True, False
 
     def __init__(self, system: System, balance: Balance) -> None:
         self._system, self._balance = system, balance
@@ -163,17 +162,5 @@ class ChainLoop:
         except SingularError:
             return NOT_SOLVED, f
 
-    def release(self) -> None:
-        """Nothing but this loop's own arrays is held."""
-
     def renew(self) -> None:
         self._factors = ChainFactors(self._system.matrix)
-
-    def state(self) -> Saved:
-        return {}
-
-    def restore(self, saved: Saved) -> None:
-        """Nothing is kept."""
-
-    def destroy(self) -> None:
-        """There is nothing to give back."""

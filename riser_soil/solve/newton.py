@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import time
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
-from riser_soil.core.part import Forces, State, local
+from riser_soil.core.part import Forces, State
 from riser_soil.core.roles import Adaptive, Limited, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
@@ -26,13 +25,13 @@ from riser_soil.solve.chain import (
     is_chain,
 )
 from riser_soil.solve.newton_progress import ROUND_OFF, stays, step_length
+from riser_soil.solve.residual_norm import ResidualNorm
 from riser_soil.solve.solution import (
     NewtonSettings,
     NotConvergedError,
     Solution,
     Step,
     UnstableError,
-    place_of_largest,
     reported,
 )
 from riser_soil.solve.solver import StepSolver
@@ -69,8 +68,7 @@ class Newton(StepSolver):
 
     def _make_vectors(self) -> None:
         numbering = self.system.numbering
-        self._x, self._f = numbering.zeros(), numbering.zeros()
-        self._levers = numbering.to_global(self.system.levers)
+        self._x, self._f, self._norm = numbering.zeros(), numbering.zeros(), ResidualNorm(self.system)
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError; collective."""
@@ -80,7 +78,7 @@ class Newton(StepSolver):
         if failure := self._iterate():
             raise NotConvergedError(failure)
         state = self._step.of(self._x)
-        self.require_admissible(state)
+        self._step.require_admissible(self._limited)
         return Solution(state, self._step.forces, self._norms)
 
     @property
@@ -94,8 +92,10 @@ class Newton(StepSolver):
 
         A motion that is prescribed puts nothing there but through the stretch of the elements beside it.
         """
-        guess = self._step.step.guess
-        return self._out_of_balance(self._step.with_prescribed(guess)) < self._out_of_balance(np.zeros_like(guess))
+        guess, add = self._step.step.guess, self.system.numbering.add_to_global
+        tried = self._step.with_prescribed(guess), np.zeros_like(guess)
+        going_on, still = (self._norm_of(add(self._step.residual_of(u)[1])) for u in tried)
+        return going_on < still
 
     def _start_linearly(self) -> None:
         """First iteration of a static step, by the tangent where it starts: the linear response to its loads and
@@ -121,26 +121,25 @@ class Newton(StepSolver):
         alone: in what flows on as before, it knows which points yield.
         """
         linear = self._x
-        left = self._norm_at(linear)
+        left = self._norm_of(self.residual(linear))
         norm = self._respond_to(self._step.residual_of(guess)[1], guess)
-        if self._norm_at(self._x) < FLOWS * left:
+        if self._norm_of(self.residual(self._x)) < FLOWS * left:
             self._norms[-1] = norm
         else:
             self._x = linear
 
     def _respond_to(self, residual: Array, at: Array) -> float:
         """Take the tangent's response to a residual at increments; the residual's norm [N]."""
-        self._f = self.system.numbering.add_to_global(residual)
-        norm = self._norm()
+        norm = self._norm_of(self.system.numbering.add_to_global(residual))
         while failure := self._timed_respond(self.system.numbering.to_global(at)):
             if not self.loop.again:
                 raise NotConvergedError(self._reason(failure))
         return norm
 
-    def _norm_at(self, x: Array) -> float:
-        """Norm of the residual of unknowns [N]; collective."""
-        self._f = self.residual(x)
-        return self._norm()
+    def _norm_of(self, f: Array) -> float:
+        """Norm of a residual (owned,) [N], which is looked at from now on; collective."""
+        self._f = f
+        return self._norm.of(f)
 
     def _timed_respond(self, at: Array) -> str:
         """Take the response of the tangent to the residual at unknowns: "", or why there is none."""
@@ -149,11 +148,6 @@ class Newton(StepSolver):
         self._x = at - response
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         return failure
-
-    def _out_of_balance(self, u: Array) -> float:
-        """Norm of the residual of increments [N]; collective."""
-        self._f = self.system.numbering.add_to_global(self._step.residual_of(u)[1])
-        return self._norm()
 
     def _iterate(self) -> str:
         """Iterate, from wherever the pattern was outgrown with a wider one, from wherever factors found too little
@@ -188,17 +182,6 @@ class Newton(StepSolver):
         """Iterations of the step so far; a residual that is not finite at its start is none."""
         return max(len(self._norms) - 1, 0)
 
-    def require_admissible(self, state: State) -> None:
-        """Raise NotConvergedError where a state in balance is none of a line's or of a part's; collective."""
-        step = self._step.step
-        before = step.before if step.scheme.dynamic else None
-        for line in self.system.model.lines:
-            if reason := line.inadmissible(state, before):
-                raise NotConvergedError(reason)
-        for part in self._limited:
-            if reason := part.inadmissible(state):
-                raise NotConvergedError(reason)
-
     def require_stable(self, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
 
@@ -219,7 +202,7 @@ class Newton(StepSolver):
         """
         if not self.loop.factorises:
             return 0
-        scale = self._scale(self.system.forces(state) if forces is None else forces)
+        scale = self._norm.in_play(self.system.forces(state) if forces is None else forces)
         negative = unstable_modes(self._pivots, state, STATIC, scale, doubtful)
         while self._outgrown():
             self._renew(state)
@@ -269,7 +252,7 @@ class Newton(StepSolver):
     def _assemble(self, state: State) -> None:
         self.system.assemble(state, self._step.weights)
         if self._step.weights.inertia == 0.0:
-            prescribe_free_turns(self.system, state, self.settings.tolerance * self._scale(self._step.forces))
+            prescribe_free_turns(self.system, state, self.settings.tolerance * self._norm.in_play(self._step.forces))
 
     def _outgrown(self) -> bool:
         """Whether something in the tangent assembled last had no place in the pattern; collective."""
@@ -302,13 +285,13 @@ class Newton(StepSolver):
         return OUTGROWN if ending == CONVERGED and self._outgrown() else ending
 
     def _judged(self) -> str:
-        norm = self._norm()
+        norm = self._norm.of(self._f)
         self._norms.append(norm)
         if not np.isfinite(norm):
             return NOT_FINITE
         if self._taken < self._least_iterations:
             return self._next_tangent()
-        if norm <= self.settings.tolerance * self._scale(self._step.forces):
+        if norm <= self.settings.tolerance * self._norm.in_play(self._step.forces):
             return CONVERGED
         if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
             return CONVERGED
@@ -342,34 +325,16 @@ class Newton(StepSolver):
         norm, before = self._norms[-1], self._norms[-2] if self._taken > self._first else 0.0
         if not 0.0 < norm < before:
             return LOOSE
-        enough = self.settings.tolerance * self._scale(self._step.forces) / norm
+        enough = self.settings.tolerance * self._norm.in_play(self._step.forces) / norm
         return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSE)
 
     def negligible(self) -> float:
         """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
-        return BELOW * self.settings.tolerance * self._scale(self._step.forces)
-
-    def _norm(self) -> float:
-        """Norm of the residual [N]; collective."""
-        return math.sqrt(self.system.sum([float(np.sum(self._weighed() ** 2))])[0])
-
-    def _scale(self, forces: Forces) -> float:
-        """Norm of the forces in play: reactions, inertia, contact on the lines."""
-        system = self.system
-        reactions = system.reactions(forces) / system.levers[system.prescribed_dofs]
-        inertia = forces.inertia / system.levers
-        contact = np.concatenate([(forces.end / system.levers)[local(line)] for line in system.model.lines])
-        mine = [float(f @ f) for f in (reactions, inertia, contact)]
-        return math.sqrt(max(system.sum(mine)))
+        return BELOW * self.settings.tolerance * self._norm.in_play(self._step.forces)
 
     def _reason(self, why: str) -> str:
         """Why the step did not converge, with where it is out of balance."""
-        place = place_of_largest(self.system, self._weighed(), self.system.numbering.first)
-        return reported(why, self._norms, place)
-
-    def _weighed(self) -> Array:
-        """This rank's residual [N], moments over the lever."""
-        return self._f / self._levers
+        return reported(why, self._norms, self._norm.largest(self._f))
 
     def state(self) -> Saved:
         """What is kept of linear systems."""

@@ -22,6 +22,7 @@ from riser_soil.solve.chain import (
     NOT_SOLVED,
     OUTGROWN,
     Balance,
+    Loop,
 )
 from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
@@ -39,7 +40,7 @@ REASONS = {
 }
 
 
-class SnesLoop:
+class SnesLoop(Loop):
     """SNES with the project's tests and linear solvers. Its symbolic factorisation is reused throughout."""
 
     def __init__(self, system: System, settings: NewtonSettings, balance: Balance) -> None:

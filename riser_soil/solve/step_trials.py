@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
+from riser_soil.core.roles import Limited
 from riser_soil.core.system import System
-from riser_soil.solve.solution import Step
+from riser_soil.solve.solution import NotConvergedError, Step
 
 
 class StepTrials:
@@ -78,3 +80,12 @@ class StepTrials:
         self._system.prescribe(self._prescribed)
         self.state = None
         return x
+
+    def require_admissible(self, limited: Sequence[Limited]) -> None:
+        """Raise NotConvergedError where the state that was tried last is none of a line's or of these parts'."""
+        assert self.state is not None
+        before = self.step.before if self.step.scheme.dynamic else None
+        reasons = [line.inadmissible(self.state, before) for line in self._system.model.lines]
+        reasons += [part.inadmissible(self.state) for part in limited]
+        for reason in filter(None, reasons):
+            raise NotConvergedError(reason)
