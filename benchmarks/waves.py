@@ -69,7 +69,8 @@ def taken(stage: TimedStage, *seas: Sea) -> list[float]:
     line, before = stage.assembly.line, stage.iterations
     step = timed(lambda: stage.walk(1))
     trials, state = stage.iterations - before + 1, stage.stepper.now
-    x = line.to_global(stations.interpolate(stations.stations(line.length), line.trial(state).q)).reshape(-1, 3)
+    N = stations.stations(line.length).N
+    x = line.to_global(np.einsum("ega,eai->egi", N, line.trial(state).q)).reshape(-1, 3)
 
     def ask(sea: Sea) -> None:
         for k in range(trials):

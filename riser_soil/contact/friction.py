@@ -243,7 +243,8 @@ def put_start(part: FrictionData, at: Configuration) -> None:
     contact = part.contact
     for e in range(part.stiffness.size):
         for g in range(part.slid.shape[1]):
-            stations.put_unit_tangent(contact.at.dN[e, g], at.chord[e], at.tangent[e], contact.f, at.D)
-            put_along(directions_at(padded(contact.f), padded(contact.found.normal[e, g])), part.along[e, g])
+            p = e * part.slid.shape[1] + g
+            tau, _ = stations.unit_tangent_at(contact.at.dN, p, at.chord, at.tangent, e, at.D)
             for i in range(len(at.D)):
-                part.position[e, g, i] = contact.found.position[e, g, i]
+                contact.f[i], part.position[e, g, i] = tau[i], contact.found.position[e, g, i]
+            put_along(directions_at(padded(contact.f), padded(contact.found.normal[e, g])), part.along[e, g])

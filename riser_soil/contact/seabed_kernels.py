@@ -274,7 +274,9 @@ def _contact_work(part: SeabedData, first: Configuration, last: Configuration, w
     for e in range(part.radius.size):
         touched = False
         for g in range(ng):
-            stations.put_value(part.at.N[e, g], first.q[e], began[g], last.D)
+            x = stations.value_at(part.at.N, e * ng + g, first.q, e, last.D)
+            for i in range(len(last.D)):
+                began[g, i] = x[i]
             value, _, _ = distance_in(part.frame, part.ground, padded(began[g]))
             before[g] = part.radius[e] - value
             if may_act(part.law, before[g], part.memory[e, g]):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.rows import add_pulled_back, add_weighed
+from riser_soil.core.rows import add_pulled_back, add_weighed, held
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.part_kernels import (
@@ -84,7 +84,8 @@ def _station_forces(part: DryStationData, at: Configuration, out: LineForces) ->
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
             part.f[len(at.D) - 1] = _lost(part, part.seen.end, m, g)
-            stations.add_integrand(part.at.weighted[m, g], part.f, out.force_q[part.element[m]], at.D)
+            p = m * part.share.shape[1] + g
+            stations.add_integrand_at(part.at.weighted, p, held(part.f, at.D), out.force_q, part.element[m], at.D)
 
 
 @add_tangent.of(DryStationData)

@@ -113,11 +113,10 @@ def see_end(stream: Stream, q: Array) -> None:
 @njit
 def _place(stream: Stream, q: Array) -> None:
     """Write the stations' places in global axes."""
-    inside = np.empty(len(stream.D))
     for m in range(stream.N.shape[0]):
         for g in range(stream.N.shape[1]):
-            stations.put_value(stream.N[m, g], q[stream.element[m]], inside, stream.D)
             p = m * stream.N.shape[1] + g
+            inside = stations.value_at(stream.N, p, q, stream.element[m], stream.D)
             for i in range(3):
                 x = stream.origin[i]
                 for a in range(len(stream.D)):

@@ -11,7 +11,6 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.errors import SceneError
-from riser_soil.riser import stations
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import vortex_law as law
 from riser_soil.sea.moving_water import FlowAtStations, through
@@ -183,8 +182,9 @@ def test_a_stage_begins_with_the_rate_of_its_motion() -> None:
     rest = State(0.0, 0.0 * state.u, 0.0 * state.v, 0.0 * state.a)
     part.begin_stage(rest)
     trial, stations_at = at.line.trial(rest), Pipe(at.line).at
-    tau, _ = stations.unit_tangents(stations_at, trial.chord, trial.turn.tangent)
-    u = sample_water.water(0.0, stations.interpolate(stations_at, trial.q).reshape(-1, 3)).velocity
+    tau = np.einsum("ega,eai->egi", stations_at.dN, trial.q)
+    tau /= np.linalg.norm(tau, axis=-1, keepdims=True)
+    u = sample_water.water(0.0, np.einsum("ega,eai->egi", stations_at.N, trial.q).reshape(-1, 3)).velocity
     speed = np.linalg.norm(np.cross(u.reshape(tau.shape), tau), axis=-1)
     np.testing.assert_allclose(part.state()["rate"], 2.0 * np.pi * MIDDLE * speed / D, rtol=1e-12)
     part.begin_stage(state)
