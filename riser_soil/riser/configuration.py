@@ -18,7 +18,7 @@ from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.folding import MOST_SWING
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_kernels import first_folded, first_swung
+from riser_soil.riser.line_kernels import first_folded, first_swung, put_moved
 
 
 class PlanarBase(NamedTuple):
@@ -180,7 +180,7 @@ def put_folded(at: Configuration, base: Base, out: IntArray) -> None:
 
 @place.of(PlanarConfiguration)
 def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Array, a: Array) -> None:
-    _move(at, base, u)
+    put_moved(base.x, base.chord, u, at.x, at.chord)
     for n in range(u.shape[0]):
         at.angle[n] = base.angle[n] + u[n, 2]
     normal = at.P.reshape((at.P.shape[0], 2, 2))
@@ -191,7 +191,7 @@ def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Arra
 
 @place.of(SpatialConfiguration)
 def _place_in_space(at: SpatialConfiguration, base: SpatialBase, u: Array, v: Array, a: Array) -> None:
-    _move(at, base, u)
+    put_moved(base.x, base.chord, u, at.x, at.chord)
     for n in range(u.shape[0]):
         for i in range(3):
             at.Theta[n, i] = u[n, 3 + i]
@@ -200,17 +200,6 @@ def _place_in_space(at: SpatialConfiguration, base: SpatialBase, u: Array, v: Ar
     spatial_directors.orient(base.R, at.Theta, base.T0, at.frames, at.H, at.frame1, at.frame2, at.tangent, at.P)
     hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
     put_rates(at, v, a)
-
-
-@njit
-def _move(at: Configuration, base: Base, u: Array) -> None:
-    nn, d = at.x.shape
-    for n in range(nn):
-        for i in range(d):
-            at.x[n, i] = base.x[n, i] + u[n, i]
-    for e in range(nn - 1):
-        for i in range(d):
-            at.chord[e, i] = base.chord[e, i] + (u[e + 1, i] - u[e, i])
 
 
 @put_rates.of(PlanarConfiguration)

@@ -36,16 +36,21 @@ def motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> 
 
 @njit
 def after_increments(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
-    """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof); chords add theirs, see `Line.commit`."""
-    nn, d = x.shape
-    place, along = np.empty((nn, d)), np.empty((nn - 1, d))
-    for n in range(nn):
-        for i in range(d):
-            place[n, i] = x[n, i] + u[n, i]
-    for e in range(nn - 1):
-        for i in range(d):
-            along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
+    """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof)."""
+    place, along = np.empty(x.shape), np.empty(chord.shape)
+    put_moved(x, chord, u, place, along)
     return place, along
+
+
+@njit
+def put_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> None:
+    """Write what `after_increments` returns; chords add theirs, see `Line.commit`."""
+    for n in range(x.shape[0]):
+        for i in range(x.shape[1]):
+            place[n, i] = x[n, i] + u[n, i]
+    for e in range(chord.shape[0]):
+        for i in range(x.shape[1]):
+            along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
 
 
 @njit

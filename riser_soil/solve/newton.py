@@ -295,7 +295,7 @@ class Newton(StepSolver):
             return CONVERGED
         if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
             return CONVERGED
-        if stays(self._norms) and self._at_round_off():
+        if stays(np.array(self._norms)) and self._at_round_off():
             return CONVERGED
         if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
             return DIVERGED

@@ -22,10 +22,12 @@ is solved as far as it can be told; a larger floor for the residual would hide s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from itertools import pairwise
+from collections.abc import Callable
 
 import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 
 FAR = 0.5  # of the slope at the start: up to this slope beyond the zero the full step is taken
 NEAR = 0.25  # of the slope at the start: near enough to zero
@@ -65,6 +67,9 @@ def _between(low: float, high: float, below: float, above: float) -> float:
     return min(max(part, low + edge), high - edge)
 
 
-def stays(norms: Sequence[float]) -> bool:
-    """Whether the last two iterations have left the residual's norm as it is, of all its norms so far."""
-    return len(norms) > 2 and all(after > STALLED * before for before, after in pairwise(norms[-3:]))
+@njit
+def stays(norms: Array) -> bool:
+    """Whether the last two iterations have left the residual's norm as it is, of all its norms so far (n,)."""
+    if norms.size < 3:
+        return False
+    return norms[-1] > STALLED * norms[-2] and norms[-2] > STALLED * norms[-3]

@@ -18,7 +18,7 @@ from riser_soil.core.rows import add_multiple
 from riser_soil.riser.configuration import Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights
-from riser_soil.solve.newton_progress import ROUND_OFF, STALLED
+from riser_soil.solve.newton_progress import ROUND_OFF, STALLED, stays
 
 GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY, OUTGROWN = range(7)
 DIVERGES = 1e6  # times the first norm
@@ -107,7 +107,7 @@ def solve_step(
     while True:
         call_each(evaluate)
         taken = ending[1]
-        if ending[0] == GOING_ON and taken >= limits.least and _stays(norms, taken):
+        if ending[0] == GOING_ON and taken >= limits.least and stays(norms[: taken + 1]):
             call_each(probe)
         if ending[0] == GOING_ON:
             ending[0] = _given_up(norms, taken, limits)
@@ -117,14 +117,6 @@ def solve_step(
             return
         call_each(improve)
         ending[1] += 1
-
-
-@njit
-def _stays(norms: Array, taken: int) -> bool:
-    """See `newton_progress.stays`."""
-    if taken < 2:
-        return False
-    return norms[taken] > STALLED * norms[taken - 1] and norms[taken - 1] > STALLED * norms[taken - 2]
 
 
 @njit

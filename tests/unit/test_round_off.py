@@ -30,7 +30,7 @@ from tests.support.turned_bar import turned_bar
     ],
 )
 def test_norms_that_stay_in_two_iterations(norms: list[float], expected: bool) -> None:
-    assert stays(norms) == expected
+    assert stays(np.array(norms)) == expected
 
 
 K, HIGH = 1e6, 1e6  # N/m, m: an eps of the height is 1e-4 N in a spring, where 4e-8 N are allowed
