@@ -160,8 +160,8 @@ def draw(png: Path, storms: Storms) -> None:
     across.set(xlabel="offset across the riser at 204 m [m]", ylabel="soil's surface [mm]")
     time.set(xlabel="time [s]", ylabel="deepest settlement [mm]")
     damage.set(xlabel="arc length [m]", ylabel="damage in an hour [1e-6]")
-    for axis in (along, across, time, damage):
-        axis.legend()
+    for axis, place in ((along, "upper left"), (across, "lower left"), (time, "lower right"), (damage, "upper right")):
+        axis.legend(loc=place)
     save(figure, png)
 
 

@@ -1,8 +1,8 @@
 """A riser comes down on soft clay while the floater moves: compute the scene beside this file, then draw it.
 
 Usage, in the project's folder: python -m demos.touchdown_clay.run [FOLDER] [--page]
-FOLDER is by default `results` beside this file; the run's files, figures.md and touchdown.png are left there. --page
-writes the figures into README.md and the picture where README.md shows it.
+FOLDER is by default `results` beside this file; the run's files, tables and touchdown.png are left there. --page writes
+the tables into README.md and the picture where README.md shows it.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ ARCS = (22.0, 24.0, 26.0)  # m, of the stiffness
 
 
 def main(folder: Path, page: bool) -> None:
-    run(read_scene(HERE / "scene.yaml"), folder, force=True)
-    pictures = PICTURES if page else folder
-    publish({"figures": figures(Run(folder)), "stiffness": stiffness(Run(folder))}, folder, PAGE if page else None)
+    run(read_scene(HERE / "scene.yaml", ["error_bars=true"]), folder, force=True)
+    pictures, done = PICTURES if page else folder, Run(folder)
+    tables = {"figures": figures(done), "bars": bars(done), "stiffness": stiffness(done)}
+    publish(tables, folder, PAGE if page else None)
     picture(folder, pictures / "touchdown.png")
     print(f"\nresults are in {folder}, touchdown.png in {pictures}; open riser.vtkhdf and soil.vtkhdf in ParaView")
 
@@ -53,6 +54,27 @@ def figures(done: Run) -> str:
     lost = motion["energy"]["dissipated_by"]["soil_plasticity"]
     rows.append(["dissipated by the clay's plasticity [J]", "", f"{lost:.1f}"])
     return table(["", "laid", "in heave and surge"], rows)
+
+
+def bars(done: Run) -> str:
+    """How far key results may be off, by runs with other steps, elements and cells."""
+    found = {(each["stage"], each["name"]): each for each in done.summary["error_bars"]["quantities"]}
+    rows = []
+    for stage, name, unit, scale, digits in (
+        ("lay", "touchdown arc", "m", 1.0, 2),
+        ("lay", "largest bending moment", "kN m", 1e-3, 3),
+        ("lay", "soil settlement", "mm", 1e3, 1),
+        ("heave", "least touchdown arc", "m", 1.0, 1),
+        ("heave", "largest touchdown arc", "m", 1.0, 1),
+        ("heave", "largest bending moment", "kN m", 1e-3, 2),
+        ("heave", "soil settlement", "mm", 1e3, 0),
+    ):
+        each = found[stage, name]
+        value, bar = (f"{scale * each[key]:.{digits}f}" for key in ("value", "bar"))
+        rows.append([f"{stage}: {name} [{unit}]", f"{value} ± {bar}"])
+    seconds = done.summary["error_bars"]["seconds"]
+    rows.append(["time of the other runs, over that of the run", f"{seconds['companions'] / seconds['run']:.2f}"])
+    return table(["key result", "with its error bar"], rows)
 
 
 def stiffness(done: Run) -> str:
