@@ -17,8 +17,7 @@ from tests.support.coupled_scenes import LAY, Mapping, heave, lying_pipe, touchd
 from tests.support.on_ranks import HANGS, Job, mpirun
 from tests.support.vtk_reading import read_by_vtk
 
-RANKS = pytest.mark.parametrize("ranks", [1, 2])
-TWO_RANKS = pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.verify), 2])  # one is what others test
+RANKS = pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.verify), 2])  # one is what others test
 FAILED, REFUSED = 3, 2
 FILES = {"scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.vtkhdf", "soil.xdmf", "soil.vtkhdf"}
 
@@ -99,7 +98,7 @@ def test_soil_loaded_below_its_capacity_is_none(tmp_path: Path) -> None:
     assert Run(tmp_path / "out").finished
 
 
-@TWO_RANKS
+@RANKS
 def test_killed_run_leaves_what_it_has_accepted(ranks: int, tmp_path: Path) -> None:
     (tmp_path / "scene.yaml").write_text(json.dumps(touchdown(LAY, heave(1000.0))), encoding="utf-8")
     launch = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []
@@ -132,7 +131,7 @@ def wait_for_steps(folder: Path, steps: int) -> None:
     raise TimeoutError("the run has not come that far")
 
 
-@TWO_RANKS
+@RANKS
 def test_finished_run_is_replaced_by_force_alone(ranks: int, tmp_path: Path) -> None:
     first, second = touchdown(LAY), touchdown(LAY, su=2000.0)
     assert command(tmp_path, ranks, first).returncode == 0

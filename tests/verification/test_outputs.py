@@ -190,7 +190,7 @@ def assert_beside(run: Run, largest: Any, at_nodes: Array) -> None:
 
 def test_resolved_scene_computes_the_same_again(tmp_path: Path) -> None:
     """Bit by bit: nothing that matters is missing from scene.yaml or depends on chance."""
-    given: Mapping = touchdown(LAY, heave(0.5), su=300.0, dimension=3)
+    given: Mapping = touchdown(LAY, heave(0.5), su=400.0, dimension=3)
     (tmp_path / "given.yaml").write_text(json.dumps(given), encoding="utf-8")
     for scene, out in (("given.yaml", "first"), ("first/scene.yaml", "second")):
         done = mpirun(1, "-m", "riser_soil", "run", scene, "-o", out, folder=tmp_path)

@@ -151,7 +151,7 @@ def assert_same_summary(other: Any, one: Any, place: str = "summary") -> None:
 
 
 @pytest.mark.parametrize("ranks", [2, pytest.param(4, marks=pytest.mark.verify)])
-@pytest.mark.parametrize("name", ["hex", "tet", "riser"])
+@pytest.mark.parametrize("name", ["hex", pytest.param("tet", marks=pytest.mark.verify), "riser"])
 def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
     assert_same(name, ranks)
 
@@ -160,6 +160,7 @@ def test_surface_contact_agrees_on_two_ranks() -> None:
     assert_same("surface", 2)
 
 
+@pytest.mark.verify
 def test_kept_factors_agree_on_two_ranks() -> None:
     """On clay that yields."""
     assert_same("kept", 2)

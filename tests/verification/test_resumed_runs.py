@@ -96,7 +96,7 @@ SHORT = {
 }
 
 
-LONG = "waves", "plastic clay in space"  # whose kernels take long to compile
+LONG = "waves", "plastic clay in space", "touchdown in sections", "kept factors"  # to compute, or to compile
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 
 

@@ -21,9 +21,8 @@ CLAYS: dict[str, Mapping] = {
 }
 
 
-@pytest.mark.parametrize(
-    "clay", [pytest.param(name, marks=[] if name == "soft" else pytest.mark.verify) for name in CLAYS]
-)
+@pytest.mark.verify
+@pytest.mark.parametrize("clay", CLAYS)
 def test_settlement_is_foretold_within_half_of_it(clay: str) -> None:
     """0.90 to 1.36 times what was found: on cells of D/16, pushed to 0.15 D in 60 steps."""
     scene = sinking(16, 0.15, 60, CLAYS[clay] | {"su": SU})
