@@ -54,7 +54,8 @@ def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections
     from riser_soil.riser.additions import Growth, with_growth
 
     growth, attachments, grown = Growth(*given.T), attachments_of(scene), bare
-    unstressed, before = unstressed_shape(scene.riser, bare.arc), np.full(bare.arc.size, np.inf)
+    unstressed = unstressed_shape(scene.riser, bare.arc)
+    before: Array = np.full(bare.arc.size, np.inf)
     for _ in range(MOST_SHAPES):
         z = initial_shape(scene, grown, attachments, unstressed)[1].position[:, 2]
         if np.abs(z - before).max() < SETTLED * bare.arc[-1]:

@@ -36,7 +36,8 @@ class Inertia(CompiledPart):
 
     def __init__(self, line: Line, mass: Array, attached: Masses | None = None) -> None:
         super().__init__(line)
-        along, ends = consistent_mass(line.length, mass), np.zeros(2)
+        along = consistent_mass(line.length, mass)
+        ends: Array = np.zeros(2)
         if attached is not None:
             along, ends = along + attached.along, attached.ends
         self._mass = Mass(along, ends)

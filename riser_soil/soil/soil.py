@@ -73,7 +73,7 @@ class Soil:
         self._found = _at_rest(self.law, self._initial)
         self._last: _Answer | None = None
         self._unloads = False
-        self._volumes = self.cells.gradients.weights.ravel()
+        self._volumes: Array = self.cells.gradients.weights.ravel()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
         self._mesh_at = grid.nodes.points

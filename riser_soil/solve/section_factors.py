@@ -33,7 +33,8 @@ class SectionFactors:
     def __init__(self, csr: Csr, at: slice, before: int) -> None:
         self.at, self._before = at, before
         self._width = int(_bandwidth(*csr[:2], at.start, at.stop, before))
-        self._known, self._outside = np.empty(0), np.empty(0, dtype=bool)
+        self._known: Array = np.empty(0)
+        self._outside: BoolArray = np.empty(0, dtype=bool)
 
     def take(self, csr: Csr, coupled: BoolArray) -> bool:
         """Factorise the matrix of the values in these rows, where they have changed; whether that can be done.
@@ -42,7 +43,7 @@ class SectionFactors:
         place, outside = (*csr[:2], self.at.start, self._before), coupled[self.at]
         if np.array_equal(outside, self._outside) and _same(*place, csr[2], self._known, outside):
             return True
-        number = np.where(outside, -np.cumsum(outside), np.cumsum(~outside) - 1)
+        number = np.where(outside, -np.cumsum(outside, dtype=np.int64), np.cumsum(~outside, dtype=np.int64) - 1)
         self._inner, self.border = (self.at.start + np.flatnonzero(which) for which in (~outside, outside))
         n, m = len(self._inner), len(self.border)
         self._band = np.zeros((n + self._width, 1 + self._width + _filled_up(self._width)))

@@ -106,7 +106,8 @@ def test_images_view_minus_the_displacement_across_the_plane() -> None:
     """Unknowns come to local arrays with the sign turned, and forces on images go to their twins with it."""
     soil = pair(block_grid, 0, 0.6)[0]
     numbering, field = Numbering(MPI.COMM_SELF, [soil.field]), soil.field
-    x, u = np.random.default_rng(1).normal(size=numbering.free), np.zeros(field.size)
+    x = np.random.default_rng(1).normal(size=numbering.free)
+    u: Array = np.zeros(field.size)
     numbering.to_local(x, u)
     points, u = field.points, u.reshape(-1, 3)
     images = np.flatnonzero(points[:, 1] < 3.0)
