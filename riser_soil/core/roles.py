@@ -55,6 +55,8 @@ class MomentumCorrecting(Protocol):
 class Renewing(Protocol):
     """A part that may change the discretisation between two steps."""
 
+    name: str
+
     def renew(self, state: State) -> bool:
         """Look whether that is due after a step that left an accepted state, and do it; whether it was, the same on all
         ranks. Collective.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -262,15 +263,17 @@ class TimeStepper:
         """Go on with another discretisation of what is not a line, where a part asks for one. In statics the step takes
         up what that lacks of balance; lines that move would feel it.
         """
+        system, clock = self.system, self.system.clock
         for part in self._renewing:
+            since = time.perf_counter() - clock.total
             if not part.renew(self.before):
                 continue
-            system = self.system
             if self.scheme.dynamic:
                 balance_held(system.comm, system.model, self.before.t, self.newton.settings, system.clock)
                 self.newton.renew()  # the balance has chosen patterns of its own
             part.lose(self.energy.total - system.energy(self.before).total)
             self._forces = system.forces(self.before)
+            clock.add(part.name, since + clock.total)  # beside what others have counted meanwhile
 
     def _rates_after(self, step: AcceptedStep) -> tuple[State, State]:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
