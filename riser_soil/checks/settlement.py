@@ -8,8 +8,8 @@ below is shortened as a half space without change of volume under that strip, fr
 for a uniform plane strain modulus E* that is q/(pi E*) (2 ln(4 z/width) - 1) (K. L. Johnson, Contact Mechanics, 1985,
 from memory); of soil that yields E* is that of the secant modulus at half of the strength. Cells wider than what
 touches spread the load over LIKE_CONTACT times their size. A firmer layer stops the pipe that sinks through the one
-above. Where the riser comes down it lies deepest, by the overshoot
-of `riser.touchdown_bend` on ground as stiff as a secant through that.
+above. Where the riser comes down it lies deepest, by the overshoot of `riser.touchdown_bend` on ground as stiff as a
+secant through that.
 """
 
 from __future__ import annotations
