@@ -13,6 +13,8 @@ from riser_soil.core.part import State
 from riser_soil.seabed.compiled_law import answer
 from riser_soil.seabed.law import NormalLaw
 
+#: How little of the force may be bent along the way, by its slopes and by its rise, for both ends to tell the work.
+STEADY = 1e-3
 #: Panels of the way within the ground, where the laws are smooth, and of that above it, where suction has corners.
 WITHIN, ABOVE = 2, 4
 #: Gauss points of a panel, by places and weights in 0..1.
@@ -42,7 +44,7 @@ def work_at(law: Any, reach: float, before: float, after: float, history: Array,
     """Work per length [N] at one point, whose history is (nh,); workspace (nh,) is written to.
 
     Without a history the force has a potential and the work is its change, so that such ground dissipates nothing.
-    Else the law is integrated by Gauss points, in panels within the ground and above it, as far as there is a force.
+    Else the law is integrated within the ground and above it, as far as there is a force.
     """
     if history.size == 0:
         return answer(law, after, history, workspace)[2] - answer(law, before, history, workspace)[2]
@@ -55,14 +57,20 @@ def work_at(law: Any, reach: float, before: float, after: float, history: Array,
 
 @njit
 def _between(law: Any, first: float, last: float, history: Array, workspace: Array, panels: int) -> float:
+    """By force and slope at both ends, where the force is all but straight between them; else by Gauss points."""
     if first == last:
         return 0.0
+    (f, slope, _), (g, then, _) = answer(law, first, history, workspace), answer(law, last, history, workspace)
+    way, small = last - first, STEADY * min(abs(f), abs(g))
+    bent = way * (slope - then) / 12.0
+    if abs(bent) < small and abs(g - f - 0.5 * way * (slope + then)) < small:
+        return way * (0.5 * (f + g) + bent)
     mean = 0.0
     for panel in range(panels):
         for place, weight in _GAUSS:
-            z = first + (panel + place) / panels * (last - first)
+            z = first + (panel + place) / panels * way
             mean += weight / panels * answer(law, z, history, workspace)[0]
-    return mean * (last - first)
+    return mean * way
 
 
 def landing_predictor(guess: State, heights: IntArray, present: Array, guessed: Array, start: float) -> Array:

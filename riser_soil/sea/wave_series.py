@@ -17,6 +17,8 @@ Of the factors at a place only exp(i theta), which all places share, changes in 
 The places are the middles of squares. At the surface their side is such that k |x| < RADIUS for the shortest wave: the
 remainder is below RADIUS^ORDER/ORDER! = 5e-15 of each component. With depth their sides double, where NEAREST of the
 larger ones fit in above: the remainder exp(k z) (k |x|)^ORDER/ORDER!, largest for k z = -ORDER, is then below 2e-15.
+The surface is asked for above all points, however deep: its strips are wider, with SURFACE_RADIUS and SURFACE_ORDER, so
+that there are few of them. Their remainder is below 1e-16, their round-off that of exp(SURFACE_RADIUS), 1e-14.
 
 A series hangs on its place and the time alone. It is computed when a point is seen there, and again at another time; so
 nothing hangs on what was evaluated before, and there is nothing to save.
@@ -36,11 +38,12 @@ from riser_soil.sea.components import Components
 
 ORDER = 20
 RADIUS = 1.6
+SURFACE_ORDER, SURFACE_RADIUS = 32, 4.0
 NEAREST = 3
 DEEPEST = 30.0  # k d beyond which a component is left out at depth d: it has decayed to 1e-13 of what it is above
 LEVELS = 64
 MOST, MEMORY = 8192, 1 << 25  # places kept at most, and bytes for the components' motion there
-HALF = ORDER // 2
+HALF = SURFACE_ORDER // 2
 WHOLE, EVEN, FOUR = fixed(ORDER), fixed(HALF), fixed(4)
 _SPREAD = 0x1E3779B97F4A7C15  # a large odd number, by which neighbouring keys are scattered over the table
 
@@ -58,8 +61,8 @@ class SeriesAt(NamedTuple):
 
 
 class WaveSeries(NamedTuple):
-    """Series of waves. side: of the squares at the surface [m]; powers: (m, ORDER) (k side)^n/n!; split: (m, 2, HALF)
-    the even and the odd ones times i^n, without the i of the odd ones.
+    """Series of waves. side: of the squares at the surface [m]; powers: (m, ORDER) (k side)^n/n!. strip: width of the
+    surface's strips [m]; split: (m, 2, HALF) even and odd (k strip)^n/n! times i^n, without the i of the odd ones.
 
     columns: of the surface, one for each strip of the sea, c (workspace, 2, HALF) even and odd. cells: of the flow; two
     sums, V and M, c (workspace, 2, ORDER, 4) real and imaginary part of velocity and of acceleration.
@@ -67,6 +70,7 @@ class WaveSeries(NamedTuple):
 
     side: float
     powers: Array
+    strip: float
     split: Array
     columns: SeriesAt
     cells: SeriesAt
@@ -90,11 +94,17 @@ class Cell(NamedTuple):
 
 def wave_series(waves: WaveTrain) -> WaveSeries:
     """Series of a train's waves, none computed yet."""
-    m, side = waves.k.size, sqrt(2.0) * RADIUS / float(waves.k.max())
-    steps = side * waves.k[:, None] / np.arange(1.0, ORDER)
-    powers = np.concatenate([np.ones((m, 1)), np.cumprod(steps, axis=1)], axis=1)
-    split = np.stack([powers[:, ::2], powers[:, 1::2]], axis=1) * (-1.0) ** np.arange(HALF)
-    return WaveSeries(side, powers, split, columns=_workspace(m, 1, (2, HALF)), cells=_workspace(m, 2, (2, ORDER, 4)))
+    m, shortest = waves.k.size, float(waves.k.max())
+    side, strip = sqrt(2.0) * RADIUS / shortest, 2.0 * SURFACE_RADIUS / shortest
+    along = _powers(strip * waves.k, SURFACE_ORDER)
+    split = np.stack([along[:, ::2], along[:, 1::2]], axis=1) * (-1.0) ** np.arange(HALF)
+    columns, cells = _workspace(m, 1, (2, HALF)), _workspace(m, 2, (2, ORDER, 4))
+    return WaveSeries(side, _powers(side * waves.k, ORDER), strip, split, columns, cells)
+
+
+def _powers(x: Array, count: int) -> Array:
+    """x^n/n! (m, count) of x (m,)."""
+    return np.concatenate([np.ones((x.size, 1)), np.cumprod(x[:, None] / np.arange(1.0, count), axis=1)], axis=1)
 
 
 def _workspace(m: int, sums: int, series: tuple[int, ...]) -> SeriesAt:
@@ -108,15 +118,15 @@ def surface(of: WaveSeries, waves: WaveTrain, t: float, g: int, s: Array) -> tup
     """Rise of the surface by the waves of direction g at s (n,) [m], and its slope along s; the train's time is t."""
     rise, slope, last, place = np.empty(s.size), np.empty(s.size), 0, -1
     for p in range(s.size):
-        column = int(np.floor(s[p] / of.side))
-        s0 = (column + 0.5) * of.side
+        column = int(np.floor(s[p] / of.strip))
+        s0 = (column + 0.5) * of.strip
         if place < 0 or column != last:
             last, place = column, number(of.columns.places, column * len(waves.toward) + g)
             if of.columns.places.time[place] != t:
                 _sum_surface(of, waves, g, place, s0)
                 of.columns.places.time[place] = t
-        value, by_x = _at_surface(of.columns.c, place, (s[p] - s0) / of.side)
-        rise[p], slope[p] = value, by_x / of.side
+        value, by_x = _at_surface(of.columns.c, place, (s[p] - s0) / of.strip)
+        rise[p], slope[p] = value, by_x / of.strip
     return rise, slope
 
 

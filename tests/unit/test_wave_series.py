@@ -128,8 +128,8 @@ def test_stations_of_a_riser_share_few_places() -> None:
     field = WaveField(sea(120.0, 13.0, 200, 1), 120.0, 120.0)
     Sea(120.0, [field])(3.0, x)
     taken = [int(at.places.taken[0]) for at in (field.kernel_data.series.columns, field.kernel_data.series.cells)]
-    assert min(taken) > 10
-    assert sum(taken) < 120
+    assert min(taken) > 5
+    assert sum(taken) < 100
 
 
 def test_long_and_short_waves_of_any_unit_of_length() -> None:
