@@ -14,7 +14,7 @@ from riser_soil.core.system import System
 from riser_soil.solve.time_scheme import Scheme
 
 REUSE = 0.1
-BESIDE_CLAY = 0.01  # the same of the tangent of all else beside clay, whose curves take most of the iterations
+BESIDE_CLAY = 0.02  # the same of the tangent of all else beside clay, whose curves take most of the iterations
 
 
 class NotConvergedError(Exception):
