@@ -17,6 +17,7 @@ from riser_soil.soil.sections import Sections, refilled, spread
 from riser_soil.soil.soil import Soil
 
 WORN = 0.02  # strain of a cell since its mesh was made: stretched ones bear more, and lose that on the next mesh
+SOON = 0.5  # of that strain: sections that have it are renewed along with those that must be
 CLEAR = 0.01  # radii of the pipe that a node is away from it, to be free
 
 
@@ -54,13 +55,13 @@ class MeshRenewal:
 
     def renew(self, state: State) -> bool:
         """Go on on a new mesh if need be; whether so. state: accepted, increments zero. Collective."""
-        comm = self._soil.grid.nodes.comm
-        if max(comm.allgather(self._soil.worn)) < WORN:
+        comm, worn = self._soil.grid.nodes.comm, self._soil.worn
+        if max(comm.allgather(worn.max(initial=0.0))) < WORN:
             return False
-        points = self._soil.gathered_points()
-        made = self._renewed(points, state) if comm.rank == 0 else None
+        points, wear = self._soil.gathered_points(), self._soil.gathered_wear(worn)
+        made = self._renewed(points, wear, state) if comm.rank == 0 else None
         surface = self._soil.surface.points + self._soil.surface.committed
-        self._soil.take_mesh(comm.bcast(made))
+        self._soil.take_mesh(*comm.bcast(made))
         if self._contact.active:
             self._contact.surface_renewed(surface, [self._friction.anew()] if self._friction else [])
         self.count += 1
@@ -69,11 +70,14 @@ class MeshRenewal:
     def lose(self, energy: float) -> None:
         self._lost = energy if self._soil.grid.nodes.comm.rank == 0 else 0.0
 
-    def _renewed(self, points: Array, state: State) -> Array:
+    def _renewed(self, points: Array, wear: Array, state: State) -> tuple[Array, BoolArray]:
+        """All nodes (n, 3), and which of them (n,) are those of new sections; wear (n,): strain around the nodes."""
         assert self._sections is not None
-        lines = points[self._sections.surface]
-        tops = np.stack([self._renewed_line(line, self._sections, state) for line in lines])
-        return self._sections.renewed(points, tops)
+        tops, made = points[self._sections.surface], np.zeros(len(points), dtype=bool)
+        for k, section in enumerate(self._sections.nodes):
+            if wear[section].max() >= SOON * WORN:
+                tops[k], made[section] = self._renewed_line(tops[k], self._sections, state), True
+        return self._sections.renewed(points, tops), made
 
     def _renewed_line(self, line: Array, sections: Sections, state: State) -> Array:
         top, gaps = spread(line, sections.columns, self._contact.gaps(line, state))

@@ -7,7 +7,7 @@ first and sends what belongs to others in one exchange (`shared_matrix`).
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -52,20 +52,22 @@ class StoredMatrix(Protocol):
 class Matrix:
     """Matrix over the numbering's rows, with one value array of shape (m, nr, nc) for each block.
 
+    known: patterns of a matrix before this one, which gets those of this one; None where there will be no other.
     stored: the sums. changes: how often they have changed, for those who keep factors.
     """
 
-    def __init__(self, numbering: Numbering, blocks: Mapping[str, MatrixBlock], symmetric: bool) -> None:
+    def __init__(
+        self, numbering: Numbering, blocks: Mapping[str, MatrixBlock], symmetric: bool, known: Patterns | None = None
+    ) -> None:
         self.values = {key: block.zeros() for key, block in blocks.items()}
-        self._blocks, self._size = blocks, numbering.size
-        rows = {key: _in_system(numbering, block.rows) for key, block in blocks.items()}
-        cols = {key: _in_system(numbering, block.cols) for key, block in blocks.items()}
-        keys, n = _merge(_keys(rows[k], cols[k], numbering.free) for k in blocks), numbering.free
-        if numbering.comm.size == 1:
-            keys = np.union1d(keys, np.arange(n) * (n + 1))
+        self._blocks, self._size, n = blocks, numbering.size, numbering.free
+        patterns = {} if known is None else known
+        for key, block in blocks.items():
+            patterns[key] = _pattern(numbering, block, patterns.get(key))
+        diagonal = np.arange(n if numbering.comm.size == 1 else 0) * (n + 1)
+        keys = np.unique(np.concatenate([diagonal, *(patterns[key].keys for key in blocks)]))
         self._data, self.changes = np.zeros(len(keys) + 1), 0
-        minus = {key: _is_minus(numbering, block) for key, block in blocks.items()}
-        self._places = {key: _places(keys, rows[key], cols[key], n, minus[key]) for key in self.values}
+        self._places = {key: patterns[key].places(keys) for key in blocks}
         self.stored = _store(numbering, keys, symmetric, self._data[:-1])
 
     @property
@@ -124,6 +126,40 @@ def _store(numbering: Numbering, keys: IntArray, symmetric: bool, data: Array) -
     return SharedMatrix(numbering, keys, symmetric)
 
 
+class BlockPattern:
+    """Entries row n + col that a batch of blocks has in a system of n unknowns.
+
+    rows (m, nr), cols (m, nc): of the system, -1 for none; minus: which of them are minus what the system has. keys:
+    the distinct entries, sorted.
+    """
+
+    def __init__(self, rows: IntArray, cols: IntArray, minus: tuple[BoolArray, BoolArray], n: int) -> None:
+        self._rows, self._cols, self._minus, self._n = rows, cols, minus, n
+        self.keys = _keys(rows, cols, n)
+        self._numbers = _numbers(self.keys, rows, cols, n, minus)
+
+    def is_of(self, rows: IntArray, cols: IntArray, minus: tuple[BoolArray, BoolArray], n: int) -> bool:
+        mine, others = (self._rows, self._cols, *self._minus), (rows, cols, *minus)
+        return n == self._n and all(np.array_equal(a, b) for a, b in zip(mine, others, strict=True))
+
+    def places(self, keys: IntArray) -> IntArray:
+        """Position of every entry of the blocks among the system's entries, -1 less it where it is minus that; absent
+        ones go to a slot behind the last.
+        """
+        at = np.append(np.searchsorted(keys, self.keys), len(keys)).astype(np.int32)
+        return np.where(self._numbers < 0, -1 - at[-1 - self._numbers], at[self._numbers])
+
+
+Patterns = dict[str, BlockPattern]
+
+
+def _pattern(numbering: Numbering, block: MatrixBlock, known: BlockPattern | None) -> BlockPattern:
+    """That of a batch, which may be the one that is known."""
+    rows, cols = (_in_system(numbering, dofs) for dofs in (block.rows, block.cols))
+    given = rows, cols, _is_minus(numbering, block), numbering.free
+    return known if known is not None and known.is_of(*given) else BlockPattern(*given)
+
+
 def _in_system(numbering: Numbering, local: IntArray) -> IntArray:
     """System rows of local dof numbers; -1 for absent and prescribed ones."""
     rows = np.append(numbering.index, -1)[local]
@@ -157,23 +193,16 @@ def _some_at_a_time(blocks: int) -> Iterator[slice]:
     yield from (slice(first, first + AT_ONCE) for first in range(0, blocks, AT_ONCE))
 
 
-def _merge(parts: Iterable[IntArray]) -> IntArray:
-    merged: IntArray = np.empty(0, dtype=np.int64)
-    for keys in parts:
-        merged = np.union1d(merged, keys)
-    return merged
-
-
-def _places(
+def _numbers(
     keys: IntArray, rows: IntArray, cols: IntArray, n: int, minus: tuple[BoolArray, BoolArray]
 ) -> IntArray:
-    """Position of every block entry in the CSR values, -1 less it where the entry is minus that; absent entries go to a
-    slot behind the last.
+    """Number of every block entry among the keys, -1 less it where the entry is minus that; absent ones get that behind
+    the last.
     """
-    places = np.empty((*rows.shape, cols.shape[1]), dtype=np.int32)
+    numbers = np.empty((*rows.shape, cols.shape[1]), dtype=np.int32)
     for some in _some_at_a_time(len(rows)):
         wanted, there = _entries(rows[some], cols[some], n)
-        places[some] = np.where(there, np.searchsorted(keys, wanted), len(keys))
+        numbers[some] = np.where(there, np.searchsorted(keys, wanted), len(keys))
         turned = minus[0][some][:, :, None] != minus[1][some][:, None, :]
-        places[some] = np.where(turned, -1 - places[some], places[some])
-    return places.reshape(-1)
+        numbers[some] = np.where(turned, -1 - numbers[some], numbers[some])
+    return numbers.reshape(-1)

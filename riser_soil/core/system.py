@@ -12,10 +12,10 @@ import numpy as np
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.communicator import Communicator, all_of, any_of, sum_of
 from riser_soil.core.compiled import njit
-from riser_soil.core.matrix import Matrix
+from riser_soil.core.matrix import Matrix, Patterns
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import GROUPS, Energy, Field, Forces, MatrixBlock, Model, Part, State, Weights, Work, local
-from riser_soil.core.roles import require_roles
+from riser_soil.core.roles import Adaptive, require_roles, with_role
 from riser_soil.core.saved_state import Saved
 
 Groups = tuple[Array, Array, Array]
@@ -52,13 +52,15 @@ class Timer:
 class System:
     """Residual and matrix over the free dofs of the model's fields; collective over `comm`.
 
+    patterns: of the matrix of a system before this one, see `Matrix`.
     smooth: whether no forces are taken at the end of the step alone, so that none may jump, as contact's do. gradual:
     whether those that there are grow along curves, see `Traits`.
     lever: the longest one of a line, see `LineField`; levers (size,): of each local dof, 1 for translations.
     """
 
-    def __init__(self, comm: Communicator, model: Model, clock: Timer) -> None:
+    def __init__(self, comm: Communicator, model: Model, clock: Timer, patterns: Patterns | None = None) -> None:
         self.comm, self.model, self.clock = comm, model, clock
+        self._patterns = {} if patterns is None and with_role(model.parts, Adaptive) else patterns
         require_roles(model)
         self._active = [part for part in model.parts if part.active]
         self._number()
@@ -87,7 +89,7 @@ class System:
         for part in self._active:
             blocks.update(part.blocks())
         self._couplings = [key for key, block in blocks.items() if _couples(block, self.end_of_lines)]
-        return Matrix(self.numbering, blocks, self.symmetric)
+        return Matrix(self.numbering, blocks, self.symmetric, self._patterns)
 
     @property
     def end_of_lines(self) -> int:

@@ -182,12 +182,12 @@ def return_elements(
 
 
 @njit
-def largest_strain(before: Array, after: Array, cells: IntArray) -> float:
-    """Largest strain, half of the change of squared lengths over these, of lines between two nodes of a cell; nodes at
-    points (n, 3) before and after.
+def put_largest_strains(before: Array, after: Array, cells: IntArray, out: Array) -> None:
+    """Write the largest strain (nc,) of each cell, half of the change of squared lengths over these, of lines between
+    two of its nodes at points (n, 3) before and after.
     """
-    most = 0.0
     for c in range(cells.shape[0]):
+        most = 0.0
         for a in range(cells.shape[1]):
             for b in range(a):
                 was = now = 0.0
@@ -195,4 +195,4 @@ def largest_strain(before: Array, after: Array, cells: IntArray) -> float:
                     was += (before[cells[c, a], i] - before[cells[c, b], i]) ** 2
                     now += (after[cells[c, a], i] - after[cells[c, b], i]) ** 2
                 most = max(most, abs(now - was) / was)
-    return 0.5 * most
+        out[c] = 0.5 * most

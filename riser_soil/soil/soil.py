@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Limited
 from riser_soil.core.saved_state import Saved, Stateful, within
@@ -73,7 +73,7 @@ class Soil:
         self._found = _at_rest(self.law, self._initial)
         self._last: _Answer | None = None
         self._unloads = False
-        self._volumes: Array = self.cells.gradients.weights.ravel()
+        self._volumes: Array = self.cells.gradients.weights.flatten()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
         self._mesh_at = grid.nodes.points
@@ -158,9 +158,18 @@ class Soil:
         return self.mesh.unfolding.points(gather_rows(self.grid, self.points[: self.grid.nodes.owned]))
 
     @property
-    def worn(self) -> float:
-        """Largest strain of this rank's cells since they were made."""
-        return float(kernels.largest_strain(self._mesh_at, self.points, self.cells.nodes))
+    def worn(self) -> Array:
+        """Largest strain (nc,) of each of this rank's cells since they were made."""
+        strain = np.empty(len(self.cells.nodes))
+        kernels.put_largest_strains(self._mesh_at, self.points, self.cells.nodes, strain)
+        return strain
+
+    def gathered_wear(self, worn: Array) -> Array:
+        """Largest of the ranks' values (nc,) for the cells around each node (n,), on rank 0; collective."""
+        gathered = gather_rows(self.grid, self.grid.nodes.number[self.cells.nodes])
+        out = np.zeros(len(self.mesh.points))
+        np.maximum.at(out, gathered, gather_rows(self.grid, worn)[:, None])
+        return out
 
     def inadmissible(self, state: State) -> str:
         """Where a step would fold a cell; collective."""
@@ -173,36 +182,45 @@ class Soil:
             return ""
         return "a cell of the soil at ({:.4g}, {:.4g}, {:.4g}) m would fold".format(*at)
 
-    def take_mesh(self, points: Array) -> None:
-        """Go on with all nodes at points (n, 3) [m]; collective."""
-        before = self.points
-        after, number = points[self.grid.nodes.number], self.surface.global_index[::3] // 3
+    def take_mesh(self, points: Array, made: BoolArray | None = None) -> None:
+        """Go on with all nodes at points (n, 3) [m]; made (n,): those of new cells, all by default. Collective."""
+        before, number = self.points, self.grid.nodes.number
+        after, top = points[number], self.surface.global_index[::3] // 3
         self.field.total = (after - self.grid.nodes.points).ravel()
-        self._move_to(before, after)
-        if len(number):
-            moved = points[number] - self.mesh.points[number]
+        self._move_to(before, after, np.ones(len(number), dtype=bool) if made is None else made[number])
+        if len(top):
+            moved = points[top] - self.mesh.points[top]
             self.surface.committed = self.surface.sign.reshape(-1, 3) * moved
         self._stored = self._stores(self._found)
 
-    def _move_to(self, before: Array, after: Array) -> None:
+    def _move_to(self, before: Array, after: Array, made: BoolArray) -> None:
+        """made (n,): this rank's nodes of new cells."""
+        new = made[self.cells.nodes].any(axis=1)
+        here, new_points = self.cells.at_points(before), np.repeat(new, self.cells.shape[1])
+        there = self.cells.at_points(after)[new_points]
         self._depth = self._depth_at(before, after)
-        history, columns = self._history_beyond_weight(before), self.law.columns
-        history = carried_rows(self.grid, self.cells.at_points(before), self.cells.at_points(after), history, columns)
-        self._mesh_at = after
-        self.cells.make_anew(after[self.cells.nodes])
-        self._volumes = self.cells.gradients.weights.ravel()
+        history = self._history_beyond_weight(before)
+        history[new_points] = carried_rows(self.grid, here, there, history, self.law.columns)
+        self._mesh_at = np.where(made[:, None], after, self._mesh_at)
+        self.cells.make_anew(np.flatnonzero(new), after[self.cells.nodes[new]])
+        self._volumes[new_points] = self.cells.gradients.weights.ravel()[new_points]
         self._take_material()
         self._load, self._last = self._held + self._weight(), None
-        self._found = self._balanced_history(history)
+        found = self.law.update(np.zeros((len(history), 6)), self._balanced(history), dt=0.0)
+        for now, kept in zip(found, self._found._replace(tangent=found.tangent), strict=True):
+            now[~new_points] = kept[~new_points]
+        self._found = found._replace(tangent=np.empty(0))
 
     def _depth_at(self, before: Array, after: Array) -> Array:
         """Depths that the nodes' material had at first, once they lie at points (n, 3) after."""
-        slope = self.cells.slopes(self._depth)
-        slope, _ = nearest_rows(self.grid, self.cells.at_points(before), after, slope, SLOPE)
-        own = slice(self.grid.nodes.owned)
-        depth, way = nearest_rows(self.grid, before[own], after, self._depth[own, None], ("depth",))
         moved = (np.abs(after - before).max(axis=1) > self._none) & (self._depth > 0.0)
-        return np.where(moved, np.maximum(depth[:, 0] + np.einsum("ni,ni->n", slope, way), 0.0), self._depth)
+        slope, asked = self.cells.slopes(self._depth), after[moved]
+        slope, _ = nearest_rows(self.grid, self.cells.at_points(before), asked, slope, SLOPE)
+        own = slice(self.grid.nodes.owned)
+        depth, way = nearest_rows(self.grid, before[own], asked, self._depth[own, None], ("depth",))
+        out = self._depth.copy()
+        out[moved] = np.maximum(depth[:, 0] + np.einsum("ni,ni->n", slope, way), 0.0)
+        return out
 
     def _history_beyond_weight(self, points: Array) -> Array:
         """The history with the stress beyond what the weight makes of it by height, nodes at points (n, 3)."""
@@ -210,13 +228,13 @@ class Soil:
         self._stress_in(history)[:] -= self._by_height(points)
         return history
 
-    def _balanced_history(self, history: Array) -> StressUpdate:
-        """The law's answer to a history of stress beyond the weight's: its mean is one for all points of a cell."""
+    def _balanced(self, history: Array) -> Array:
+        """A history of stress beyond the weight's with all of it: its mean beyond is one for all points of a cell."""
         stress = self._stress_in(history)
         beyond = mandel.mean(stress)
         stress += (np.repeat(self.cells.mean(beyond), self.cells.shape[1]) - beyond)[:, None] * mandel.UNIT
         stress += self._by_height(self.points)
-        return self.law.update(np.zeros_like(stress), history, dt=0.0)._replace(tangent=np.empty(0))
+        return history
 
     def _stress_in(self, history: Array) -> Array:
         first = self.law.columns.index(STRESS[0])
@@ -306,7 +324,7 @@ class Soil:
         self._found, self._last = self._found._replace(**within(saved, "law")), None
         self._stored, self._lifted = (float(joules) for joules in saved["energy"])
         if self.moves:
-            self.cells.make_anew(saved["made_at"].copy())
+            self.cells.make_anew(np.arange(len(self.cells.nodes)), saved["made_at"])
             self._depth, self._volumes = saved["depth"].copy(), saved["volumes"].copy()
             self._mesh_at = saved["mesh_at"].copy()
             self._take_material()

@@ -38,10 +38,14 @@ class SoilCells:
         found.weights[:] *= self._shares[cells][:, None]
         return found
 
-    def make_anew(self, made_at: Array) -> None:
-        """Make all gradients anew, of nodes at (nc, nn, 3)."""
-        self.made_at, self._stiffness = made_at, None
-        self.gradients = self._gradients_of(made_at)
+    def make_anew(self, cells: IntArray, at: Array) -> None:
+        """Make the gradients of some cells anew, with their nodes at (n, nn, 3)."""
+        self.made_at[cells] = at
+        made = self._gradients_of(at, cells)
+        for name, values in vars(made).items():
+            vars(self.gradients)[name][cells] = values
+        if self._stiffness is not None:
+            self._stiffness.moduli[cells] = np.nan
 
     def renew(self, points: Array) -> None:
         """Make the gradients anew of the cells that have strained since theirs were made; nodes at points (n, 3)."""
@@ -49,14 +53,8 @@ class SoilCells:
         moved = at - self.made_at
         moved -= moved.mean(axis=1, keepdims=True)
         strained = np.flatnonzero(np.abs(moved).max(axis=(1, 2)) > STRAINED * self._spans)
-        if not strained.size:
-            return
-        self.made_at[strained] = at[strained]
-        made = self._gradients_of(at[strained], strained)
-        for name, values in vars(made).items():
-            vars(self.gradients)[name][strained] = values
-        if self._stiffness is not None:
-            self._stiffness.moduli[strained] = np.nan
+        if strained.size:
+            self.make_anew(strained, at[strained])
 
     def stiffness(self, moduli: Array) -> Array:
         """Matrices (nc, 3 nn, 3 nn) [N/m] of the cells by the moduli (n, 6, 6) [Pa] at their points."""

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 import numpy as np
 
 from riser_soil.core.communicator import Communicator, destroyed_together
+from riser_soil.core.matrix import Patterns
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.chain import is_chain
@@ -35,15 +36,17 @@ def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepS
     return Newton(system, settings)
 
 
-def balance_held(comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer) -> None:
+def balance_held(
+    comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer, known: Patterns | None = None
+) -> None:
     """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it. Where that fails
-    it is left to the next step. Collective.
+    it is left to the next step. known: see `Matrix`. Collective.
     """
     parts = [part for part in model.parts if part.traits.groups == "E"]
     with ExitStack() as stack:
         for line in model.lines:
             stack.enter_context(line.held())
-        system = System(comm, Model(model.lines, parts, model.others), clock)
+        system = System(comm, Model(model.lines, parts, model.others), clock, known)
         newton = Newton(system, settings)
         with destroyed_together(comm, newton.destroy, system.destroy):
             size = system.numbering.size

@@ -11,6 +11,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
+from riser_soil.core.matrix import Patterns
 from riser_soil.core.part import Energy, Forces, LineField, State, Work, local
 from riser_soil.core.roles import MomentumCorrecting, Predictor, Renewing, Starting, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
@@ -98,6 +99,7 @@ class TimeStepper:
         self._predictors: list[Predictor] = [*system.model.lines, *with_role(parts, Predictor)]
         self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
         self._renewing: list[Renewing] = with_role(parts, Renewing)
+        self._patterns_held: Patterns = {}  # of the matrix in which lines are held
         if isinstance(before, State):
             self._begin(before)
         else:
@@ -269,7 +271,8 @@ class TimeStepper:
             if not part.renew(self.before):
                 continue
             if self.scheme.dynamic:
-                balance_held(system.comm, system.model, self.before.t, self.newton.settings, system.clock)
+                given = system.comm, system.model, self.before.t, self.newton.settings, system.clock
+                balance_held(*given, self._patterns_held)
                 self.newton.renew()  # the balance has chosen patterns of its own
             part.lose(self.energy.total - system.energy(self.before).total)
             self._forces = system.forces(self.before)

@@ -188,12 +188,31 @@ def test_a_stress_that_varies_goes_along_with_the_way() -> None:
     assert np.sqrt(np.mean(missed[inside] ** 2)) < 0.05 * np.sqrt(np.mean(changed[inside] ** 2))
 
 
+def test_cells_beside_new_ones_stay_as_they_are() -> None:
+    """A strained block gets new nodes where x < 1: cells beyond keep stress, wear and gradients to the last bit."""
+    soil = Soil(small_block("hex", 0.25), CLAY, level=0.0, unit_weight=5.0e3, moves=True)
+    x = soil.points
+    move(soil, x + 0.01 * np.stack([x[:, 0] * x[:, 2], 0.0 * x[:, 0], -0.5 * x[:, 2] ** 2], axis=1))
+    made, order = x[:, 0] < 1.0 - 1e-9, np.argsort(soil.grid.nodes.number)
+    there = np.where(made[:, None], waved(soil, 0.02), soil.points)
+    beside = ~made[soil.cells.nodes].any(axis=1)
+    held = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.gradients.full.copy()
+    assert np.allclose(soil.gathered_wear(soil.worn)[order].max(), soil.worn.max())
+    soil.take_mesh(there[order], made[order])
+    now = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.gradients.full
+    assert 0 < beside.sum() < len(beside)
+    for before, after in zip(held, now, strict=True):
+        assert np.array_equal(before[beside], after[beside])
+        assert not np.array_equal(before[~beside], after[~beside])
+    assert soil.worn[made[soil.cells.nodes].all(axis=1)].max() == 0.0
+
+
 def test_cells_wear_by_strain_and_not_by_turns() -> None:
     soil = moving("hex")
     first, turn_of = soil.points, Rotation.from_rotvec([0.1, 0.2, 0.3])
     soil.field.total = (turn_of.apply(first) - first).ravel()
-    assert soil.worn == pytest.approx(0.0, abs=1e-12)
+    assert soil.worn.max() == pytest.approx(0.0, abs=1e-12)
     soil.field.total = (turn_of.apply(first * [1.0, 1.0, 1.1]) - first).ravel()
-    assert soil.worn == pytest.approx(0.5 * (1.1**2 - 1.0), rel=0.05)
+    assert soil.worn.max() == pytest.approx(0.5 * (1.1**2 - 1.0), rel=0.05)
     soil.take_mesh(soil.gathered_points())
-    assert soil.worn == 0.0
+    assert soil.worn.max() == 0.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.core.matrix import Matrix
+from riser_soil.core.matrix import Matrix, Patterns
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import MatrixBlock
 from tests.support.on_ranks import mpirun
@@ -68,6 +68,27 @@ def test_a_batch_with_marks_may_be_empty() -> None:
     assert matrix.mat.norm() == 0.0
     matrix.destroy()
     numbering.destroy()
+
+
+def test_patterns_known_from_before_serve_as_long_as_they_are_of_the_same_entries() -> None:
+    """Other candidates beside the same elements, then other free dofs: the matrix is as without what was known."""
+    known: Patterns = {}
+    for fixed, columns in ((True, [3, -1]), (True, [1, 2]), (False, [1, 2])):
+        chain = Chain(np.arange(4.0), prescribed=fixed)
+        numbering = Numbering(MPI.COMM_SELF, [chain])
+        blocks = {"riser": chain.pairs(), "extra": MatrixBlock(np.array([[3, 1]]), np.array([columns]))}
+        before, found = known.get("riser"), []
+        for patterns in (known, None):
+            matrix = Matrix(numbering, blocks, False, patterns)
+            matrix.values["riser"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]])
+            matrix.values["extra"][...] = [[5.0, 6.0], [7.0, 8.0]]
+            matrix.assemble()
+            found.append([each.copy() for each in matrix.stored.csr()])
+            matrix.destroy()
+        for one, other in zip(*found, strict=True):
+            assert np.array_equal(one, other)
+        assert (known["riser"] is before) == (columns == [1, 2] and fixed)
+        numbering.destroy()
 
 
 def test_magnitudes_are_sums_of_absolute_values_over_the_blocks() -> None:
