@@ -13,8 +13,8 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Renewing
 from riser_soil.core.saved_state import Saved, Stateful
-from riser_soil.soil.sections import Sections, refilled, spread
-from riser_soil.soil.soil import Soil
+from riser_soil.soil.sections import Sections, at_columns, refilled, spread
+from riser_soil.soil.soil import FOLDS, Soil
 
 WORN = 0.02  # strain of a cell since its mesh was made: stretched ones bear more, and lose that on the next mesh
 SOON = 0.5  # of that strain: sections that have it are renewed along with those that must be
@@ -73,17 +73,27 @@ class MeshRenewal:
     def _renewed(self, points: Array, wear: Array, state: State) -> tuple[Array, BoolArray]:
         """All nodes (n, 3), and which of them (n,) are those of new sections; wear (n,): strain around the nodes."""
         assert self._sections is not None
-        tops, made = points[self._sections.surface], np.zeros(len(points), dtype=bool)
-        for k, section in enumerate(self._sections.nodes):
+        out, made = points.copy(), np.zeros(len(points), dtype=bool)
+        for section in self._sections.nodes:
+            new = None
             if wear[section].max() >= SOON * WORN:
-                tops[k], made[section] = self._renewed_line(tops[k], self._sections, state), True
-        return self._sections.renewed(points, tops), made
+                new = self._renewed_section(points[section], self._sections, state)
+            if new is not None:
+                out[section], made[section] = new, True
+        return out, made
 
-    def _renewed_line(self, line: Array, sections: Sections, state: State) -> Array:
-        top, gaps = spread(line, sections.columns, self._contact.gaps(line, state))
-        brought = self._contact.brought_to(top, gaps, state)
-        clear = CLEAR * self._contact.radius
-        return self._refilled(line, brought, gaps > clear, sections.across, clear, state)
+    def _renewed_section(self, at: Array, sections: Sections, state: State) -> Array | None:
+        """New nodes of a section (nc, nl, 3), none of whose cells is folded; None where there is no such way."""
+        line, across = at[:, -1], sections.across
+        gaps = self._contact.gaps(line, state)
+        tops = spread(line, sections.columns, gaps), at_columns(line, sections.columns, gaps, across)
+        for top, beside in tops:
+            brought, clear = self._contact.brought_to(top, beside, state), CLEAR * self._contact.radius
+            free = beside > clear
+            new = sections.renewed(at, self._refilled(line, brought, free, across, clear, state))
+            if sections.skewness(new) > FOLDS:
+                return new
+        return None
 
     def _refilled(
         self, line: Array, top: Array, free: BoolArray, across: int, clear: float, state: State

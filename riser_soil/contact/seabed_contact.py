@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.contact.contact import ContactResults, RiserContact, put_results, size_of
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.seabed_kernels import UNKNOWN, OverNodes, SeabedData, at_nodes, covered_by, land, seabed_data
+from riser_soil.contact.seabed_kernels import UNKNOWN, OverNodes, SeabedData, covered_by, land, put_at_nodes, seabed_data
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound
@@ -121,10 +121,9 @@ class SeabedContact(CompiledPart, RiserContact):
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
         return self._results(state).force_per_length
 
-    def at_nodes(self, values: Array) -> Array:
-        """Means at the nodes (nn,) of values at the stations (ne, ng), which count with their share of arc length."""
-        found: Array = at_nodes(self._nodes, self.share, values)
-        return found
+    def put_at_nodes(self, values: Array, out: Array) -> Bound:
+        """What writes means at the nodes (nn,) of values at the stations (ne, ng), by their share of arc length."""
+        return Bound(put_at_nodes, *map(Packed, (self._nodes, self.share, values, out)))
 
     def penetration(self, state: State) -> Array:
         """Penetration (nn,) [m] of the nodes' undersides, 0 above the ground."""

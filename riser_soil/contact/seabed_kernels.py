@@ -338,15 +338,14 @@ def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -
 
 
 @njit
-def at_nodes(nodes: OverNodes, share: Array, values: Array) -> Array:
-    """Means at the nodes (nn,) of values at the stations (ne, ng), which count with their share (ne, ng) of arc
+def put_at_nodes(nodes: OverNodes, share: Array, values: Array, out: Array) -> None:
+    """Write means at the nodes (nn,) of values at the stations (ne, ng), which count with their share (ne, ng) of arc
     length.
     """
-    out = np.zeros(nodes.length.size)
+    out[:] = 0.0
     for e in range(values.shape[0]):
         for g in range(values.shape[1]):
             for side in range(2):
                 out[e + side] += nodes.linear[side, g] * share[e, g] * values[e, g]
     for n in range(out.size):
         out[n] /= nodes.length[n]
-    return out

@@ -9,7 +9,7 @@ equation in a nonuniform triangle mesh, J. Comput. Phys. 1 (1966).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -17,6 +17,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.soil.families import QUAD4, skewness
 
 SAME = 1e-6  # of the block's size: coordinates nearer to each other are those of one plane of the grid
 MOST_PASSES, SETTLED = 30, 1e-6  # of Winslow's equations; movement of a pass over the smallest cell
@@ -38,17 +39,16 @@ class Sections:
         """Nodes (ns, nc) of the top."""
         return self.nodes[:, :, -1]
 
-    def renewed(self, points: Array, surface: Array) -> Array:
-        """Points (n, 3) of the block's nodes: those of the surface at (ns, nc, 3), the inner ones as these ask."""
-        out = points.copy()
-        for section, top in zip(self.nodes, surface, strict=True):
-            at = points[section]
-            if np.array_equal(at[:, -1], top):
-                continue
-            at = at.copy()
-            at[:, -1] = top
-            out[section] = smoothed(at, self.columns, self.layers, self.across)
-        return out
+    def renewed(self, at: Array, top: Array) -> Array:
+        """A section's nodes (nc, nl, 3): those of the surface at (nc, 3), the inner ones as these ask."""
+        at = at.copy()
+        at[:, -1] = top
+        return smoothed(at, self.columns, self.layers, self.across)
+
+    def skewness(self, at: Array) -> float:
+        """Least of a section's cells with nodes at (nc, nl, 3), see `families.skewness`."""
+        cells = grid_cells(*at.shape[:2])
+        return float(skewness(replace(QUAD4, axes=(self.across, 2)), at.reshape(-1, 3), cells).min())
 
 
 def sections_of(points: Array, along: int) -> Sections | None:
@@ -61,6 +61,13 @@ def sections_of(points: Array, along: int) -> Sections | None:
     nodes = np.empty(counts, dtype=np.int64)
     nodes[tuple(place)] = np.arange(len(points))
     return Sections(nodes, points[nodes[0, :, 0], 1 - along], points[nodes[0, 0, :], 2], 1 - along)
+
+
+def grid_cells(columns: int, layers: int) -> IntArray:
+    """Nodes (nc, 4) of a section's cells, in lexicographic order; nodes are numbered column by column, upwards."""
+    number = np.arange(columns * layers).reshape(columns, layers)
+    corners = number[:-1, :-1], number[1:, :-1], number[:-1, 1:], number[1:, 1:]
+    return np.stack([corner.ravel() for corner in corners], axis=1)
 
 
 def _planes(x: Array, near: float) -> IntArray:
@@ -78,6 +85,14 @@ def spread(line: Array, places: Array, beside: Array) -> tuple[Array, Array]:
     arc = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1)))
     now = (places - places[0]) / (places[-1] - places[0]) * arc[-1]
     return np.asarray(PchipInterpolator(arc, line)(now)), np.interp(now, arc, beside)
+
+
+def at_columns(line: Array, places: Array, beside: Array, across: int) -> tuple[Array, Array]:
+    """The same for nodes that go back to their places (nc,) across, where a lip leans over: it is cut off there."""
+    x = np.maximum.accumulate(line[:, across])
+    top = np.stack([np.interp(places, x, each) for each in line.T], axis=1)
+    top[:, across] = places
+    return top, np.interp(places, x, beside)
 
 
 def refilled(line: Array, top: Array, free: BoolArray, across: int) -> Array:

@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.core.arrays import IntArray
 from riser_soil.core.snapshot import SoilMesh
 from riser_soil.errors import MeshError
 from riser_soil.soil.dolfinx_compat import Nodes
@@ -21,6 +20,7 @@ from riser_soil.soil.field import GatheredMesh, views
 from riser_soil.soil.grading import BlockSpec
 from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.mirror import mirror_of
+from riser_soil.soil.sections import grid_cells
 from riser_soil.soil.surface import SoilTop
 
 
@@ -41,7 +41,7 @@ def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     points = np.zeros((len(mine), len(columns), len(layers), 3))
     points[..., along] = (low + (mine + 0.5) * thickness)[:, None, None]
     points[..., across], points[..., 2] = columns[None, :, None], layers
-    cells = _cells(len(columns), len(layers))
+    cells = grid_cells(len(columns), len(layers))
     local = (per_slice * np.arange(len(mine))[:, None, None] + cells).reshape(-1, 4)
     number = per_slice * before + np.arange(len(mine) * per_slice)
     nodes = Nodes(comm, local, points.reshape(-1, 3), number, len(number))
@@ -49,13 +49,6 @@ def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     volume = np.zeros(len(local), dtype=np.int64)
     section = np.repeat(mine, per_slice)
     return DistributedMesh(family, nodes, corners[:, 0], corners[:, 1], volume, mirror_of(spec), section)
-
-
-def _cells(columns: int, layers: int) -> IntArray:
-    """Nodes (nc, 4) of a slice's cells, in lexicographic order; nodes are numbered column by column, upwards."""
-    number = np.arange(columns * layers).reshape(columns, layers)
-    corners = number[:-1, :-1], number[1:, :-1], number[:-1, 1:], number[1:, 1:]
-    return np.stack([corner.ravel() for corner in corners], axis=1)
 
 
 def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:

@@ -7,7 +7,7 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.soil.large_strain import carried
-from riser_soil.soil.sections import refilled, spread
+from riser_soil.soil.sections import at_columns, refilled, sections_of, spread
 
 
 def scattered(rng: np.random.Generator, n: int = 12) -> Array:
@@ -67,3 +67,22 @@ def test_a_new_surface_keeps_the_area_below_it() -> None:
     assert abs(area(found) - area(line)) < 0.005 * lost
     np.testing.assert_array_equal(found[~free], top[~free])
     np.testing.assert_array_equal(found[[0, -1]], top[[0, -1]])
+
+
+def test_a_lip_that_leans_over_is_cut_where_cells_along_it_would_fold() -> None:
+    """Soft clay squeezed out of a thin layer: spread along the surface its cells fold, at their columns they do not."""
+    y, z = np.linspace(0.0, 0.3, 21), np.linspace(-0.06, 0.0, 5)
+    grid = np.stack(np.meshgrid([0.0, 1.0], y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    sections = sections_of(grid, along=0)
+    assert sections is not None
+    at = grid[sections.nodes[0]]
+    at[6:10, -1, 1:] = [[0.100, 0.016], [0.119, 0.027], [0.112, 0.006], [0.126, 0.002]]
+    at[4:6, -1, 1:] = [[0.070, -0.004], [0.088, 0.010]]
+    along, _ = spread(at[:, -1], sections.columns, 0.0 * y)
+    back, beside = at_columns(at[:, -1], sections.columns, y, across=1)
+    assert sections.skewness(sections.renewed(at, along)) < 0.1
+    assert sections.skewness(sections.renewed(at, back)) > 0.1
+    np.testing.assert_array_equal(back[:, 1], y)
+    assert back[:, 2].max() > 0.015
+    np.testing.assert_allclose(beside[10:], y[10:], atol=1e-12)
+    assert sections.skewness(grid[sections.nodes[0]]) == pytest.approx(1.0)
