@@ -72,3 +72,16 @@ def add_at(data: Array, places: IntArray, values: Array) -> None:
             data[places[k]] += values[k]
         else:
             data[-1 - places[k]] -= values[k]
+
+
+@njit
+def add_magnitudes(values: Array, rows: IntArray, cols: IntArray, sizes: Array, out: Array) -> None:
+    """Add to each row the absolute values of its entries in blocks (m, nr, nc), times the sizes of their columns.
+
+    rows (m, nr), cols (m, nc): see `MatrixBlock`.
+    """
+    for e in range(values.shape[0]):
+        for i in range(values.shape[1]):
+            for j in range(values.shape[2]):
+                if rows[e, i] >= 0 and cols[e, j] >= 0:
+                    out[rows[e, i]] += abs(values[e, i, j]) * sizes[cols[e, j]]

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.csr_matrix import CsrMatrix, add_at
+from riser_soil.core.csr_matrix import CsrMatrix, add_at, add_magnitudes
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import MatrixBlock
 
@@ -108,10 +108,10 @@ class Matrix:
 
     def magnitudes(self, sizes: Array) -> Array:
         """Sums (size,) over this rank's blocks of the entries' absolute values times sizes (size,) of their columns."""
-        found, known = np.zeros(self._size + 1), np.append(sizes, 0.0)
+        found = np.zeros(self._size)
         for key, block in self._blocks.items():
-            np.add.at(found, block.rows, (np.abs(self.values[key]) @ known[block.cols][..., None])[..., 0])
-        return found[:-1]
+            add_magnitudes(self.values[key], block.rows, block.cols, sizes, found)
+        return found
 
     def destroy(self) -> None:
         self.stored.destroy()

@@ -12,11 +12,10 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
+from riser_soil.solve.newton_progress import NAMES
 
-# How a loop ends, failures by PETSc's names.
-ITERATING, CONVERGED, OUTGROWN = "iterating", "converged", "outgrown"  # the last where the matrix lacks places
-DIVERGED, NOT_FINITE = "diverged_dtol", "diverged_fnorm_nan"
-NOT_SOLVED, TOO_MANY = "diverged_linear_solve", "diverged_max_it"
+# How a loop ends; OUTGROWN where the matrix lacks places.
+ITERATING, CONVERGED, NOT_FINITE, NOT_SOLVED, DIVERGED, TOO_MANY, OUTGROWN = NAMES
 
 LOOSE = 1e-5  # share of the residual that a linear system solved by iterations may leave
 

@@ -19,13 +19,12 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.soil.condensed import CondensedSoil
-from riser_soil.solve import riser_loop
 from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton_progress import CONVERGED, OUTGROWN
 from riser_soil.solve.packed_riser import KernelParts, PackedRiser
-from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
-from riser_soil.solve.solution import NewtonSettings, Solution, Step
+from riser_soil.solve.solution import NewtonSettings, Solution, Step, limits_of
 from riser_soil.solve.solver import StepSolver
 
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
@@ -67,7 +66,6 @@ class CondensedNewton(StepSolver):
         given = system.prescribed[self._at], system.levers[self._at], most
         self._placed = PlacedLine(line)
         self._riser = PackedRiser(line, self._placed, parts, *given, border)
-        self._limits = StopLimits(settings.tolerance, settings.floor, 0.0, most, settings.least_iterations, False)
         self._nothing = np.zeros(system.numbering.size)
         self._reached = soil.top.reached  # as the system has it
         self._solved: State | None = None  # by the compiled loop
@@ -92,16 +90,16 @@ class CondensedNewton(StepSolver):
         guess = State(step.t, step.guess[at].copy(), still.v[at], still.a[at])
         self._line.prescribe(step.t, guess.u, guess.v, guess.a)
         guessed = bool(step.guess[~self.system.prescribed].any())
-        limits = self._limits._replace(answers_load=self.rests or guessed)  # as in `Newton`
+        limits = limits_of(self.settings, False, False, self.rests or guessed)  # as in `Newton`
         for _ in range(MOST_STARTS):
             self._border.begin(step.before, step.guess)
             self._prescribe_anew()
             self._riser.begin(guess, None if past is None else past[at], scheme.weights(step.dt), limits)
             outcome, taken = self._riser.solve()
             self.iterations += taken
-            if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.folding(*self._riser.folding):
+            if outcome == CONVERGED and self._border.holds and not self._line.folding(*self._riser.folding):
                 return listed(self._riser.progress.norms[: taken + 1])
-            if outcome != riser_loop.OUTGROWN:
+            if outcome != OUTGROWN:
                 return None
             self._border.widen()
         return None

@@ -17,21 +17,29 @@ from riser_soil.solve.chain import (
     DIVERGED,
     ITERATING,
     LOOSE,
-    NOT_FINITE,
     OUTGROWN,
     TOO_MANY,
     ChainLoop,
     Loop,
     is_chain,
 )
-from riser_soil.solve.newton_progress import ROUND_OFF, stays, step_length
-from riser_soil.solve.residual_norm import ResidualNorm
+from riser_soil.solve.newton_progress import (
+    NAMES,
+    ResidualNorm,
+    above_round_off,
+    diverges,
+    leaves_tangent,
+    stays,
+    step_length,
+    verdict,
+)
 from riser_soil.solve.solution import (
     NewtonSettings,
     NotConvergedError,
     Solution,
     Step,
     UnstableError,
+    limits_of,
     reported,
 )
 from riser_soil.solve.solver import StepSolver
@@ -232,7 +240,8 @@ class Newton(StepSolver):
         self._most = self.settings.max_iterations
         self._x = self.system.numbering.to_global(step.guess)
         guessed = any_of(self.system.comm, bool(self._x.any()))
-        self._answers_load = self.rests or guessed  # one like round-off has an answer, too
+        near = self.system.smooth and self._step.weights.inertia > 0.0
+        self._limits = limits_of(self.settings, near, False, self.rests or guessed)  # one like round-off has an answer
         self.rests = False
 
     def residual(self, x: Array) -> Array:
@@ -262,19 +271,10 @@ class Newton(StepSolver):
 
     def _reusable(self) -> bool:
         """Whether the tangent of the previous iteration can be reused."""
-        if not self._starts_near or len(self._norms) < 2:
+        if len(self._norms) < 2:
             return False
-        return self._norms[-1] < self.settings.reuse * self._norms[-2]
-
-    @property
-    def _least_iterations(self) -> int:
-        """A motion that continues by its first guess alone would keep its errors."""
-        return max(self.settings.least_iterations, int(self._starts_near))
-
-    @property
-    def _starts_near(self) -> bool:
-        """Whether the guess continues a smooth motion: time steps without contact."""
-        return self.system.smooth and self._step.weights.inertia > 0.0
+        before, norm = self._norms[-2:]
+        return bool(leaves_tangent(norm, before, norm, self._limits.reuse))
 
     def judge(self, x: Array, f: Array) -> str:
         """Whether unknowns with the residual f are to be iterated further, and if so with which tangent: how it ends,
@@ -285,19 +285,14 @@ class Newton(StepSolver):
         return OUTGROWN if ending == CONVERGED and self._outgrown() else ending
 
     def _judged(self) -> str:
-        norm = self._norm.of(self._f)
+        norm, limits = self._norm.of(self._f), self._limits
         self._norms.append(norm)
-        if not np.isfinite(norm):
-            return NOT_FINITE
-        if self._taken < self._least_iterations:
-            return self._next_tangent()
-        if norm <= self.settings.tolerance * self._norm.in_play(self._step.forces):
+        ending = NAMES[verdict(norm, self._norm.in_play(self._step.forces), self._taken, limits)]
+        if ending != ITERATING:
+            return ending
+        if self._taken >= limits.least and stays(np.array(self._norms)) and self._at_round_off():
             return CONVERGED
-        if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
-            return CONVERGED
-        if stays(np.array(self._norms)) and self._at_round_off():
-            return CONVERGED
-        if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
+        if diverges(norm, self._norms[self._first], self._taken, limits):
             return DIVERGED
         return self._next_tangent()
 
@@ -306,7 +301,7 @@ class Newton(StepSolver):
         self._step.of(self._x)
         magnitudes = self.system.magnitudes(self._step.balanced, self._step.weights)
         sizes = self.system.numbering.sizes_to_global(magnitudes)
-        return not any_of(self.system.comm, bool((np.abs(self._f) > ROUND_OFF * sizes).any()))
+        return not any_of(self.system.comm, bool(above_round_off(self._f, sizes)))
 
     def _next_tangent(self) -> str:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""

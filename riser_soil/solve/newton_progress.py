@@ -1,4 +1,4 @@
-"""Progress of Newton's method: line search along a step, and round-off of the residual, where nothing improves.
+"""Progress of Newton's method: norms, tests of an iteration, line search along a step, round-off of the residual.
 
 Where contact opens or soil is near its limit, a Newton step may lead far beyond the equilibrium. With the residual r as
 the slope of an energy, g(a) = r(x + a d)·d falls to zero where the energy is least along the step d; g(0) < 0. A full
@@ -23,11 +23,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.communicator import all_of
 from riser_soil.core.compiled import njit
+from riser_soil.core.part import Forces
+from riser_soil.core.system import System
+
+GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY, OUTGROWN = range(7)
+NAMES = (  # of these outcomes, failures by PETSc's names
+    "iterating",
+    "converged",
+    "diverged_fnorm_nan",
+    "diverged_linear_solve",
+    "diverged_dtol",
+    "diverged_max_it",
+    "outgrown",
+)
+DIVERGES = 1e6  # times the first norm
 
 FAR = 0.5  # of the slope at the start: up to this slope beyond the zero the full step is taken
 NEAR = 0.25  # of the slope at the start: near enough to zero
@@ -67,9 +83,126 @@ def _between(low: float, high: float, below: float, above: float) -> float:
     return min(max(part, low + edge), high - edge)
 
 
+class StopLimits(NamedTuple):
+    """When to stop, see `NewtonSettings`.
+
+    reuse: an iteration that leaves less than this share of the residual leaves its tangent to the next, but contact's
+    share, which is found anew, as contact has corners. most, least: iterations; answers_load: whether a residual below
+    the floor counts as small before the first one.
+    """
+
+    tolerance: float
+    floor: float
+    reuse: float
+    most: int
+    least: int
+    answers_load: bool
+
+
+@njit
+def verdict(norm: float, in_play: float, taken: int, limits: StopLimits) -> int:
+    """What the norm [N] of the residual after so many iterations tells, beside that of the forces in play."""
+    if not math.isfinite(norm):
+        return NOT_FINITE
+    if taken < limits.least:
+        return GOING_ON
+    small = norm <= limits.floor and (taken > 0 or limits.answers_load)
+    return CONVERGED if small or norm <= limits.tolerance * in_play else GOING_ON
+
+
+@njit
+def diverges(norm: float, first: float, taken: int, limits: StopLimits) -> bool:
+    """Whether a step that goes on does so in vain. first: its first norm [N]."""
+    return taken >= max(4, limits.least) and norm > DIVERGES * first
+
+
+@njit
+def leaves_tangent(norm: float, before: float, apart: float, reuse: float) -> bool:
+    """Whether an iteration leaves its tangent, but contact's share, to the next: where it has left little of the
+    residual's norm before, or little of it where nothing touches, `apart` [N].
+    """
+    return norm < STALLED * before and min(norm / before, apart / norm) < reuse
+
+
+@njit
+def square_of(residual: Array, levers: Array, first: int, last: int) -> float:
+    """Square of the norm [N] of some rows of a residual, moments over the lever."""
+    found = 0.0
+    for k in range(first, last):
+        found += (residual[k] / levers[k]) ** 2
+    return found
+
+
+@njit
+def squares_in_play(
+    inertia: Array, force: Array, end: Array, levers: Array, fixed: BoolArray, lines: int
+) -> tuple[float, float, float]:
+    """Squares of the norms [N] of the forces in play: reactions, inertia, and contact on the lines, whose dofs are the
+    first ones. Forces by group (n,), see `Forces`; fixed: what is prescribed.
+    """
+    reactions, moving, contact = 0.0, 0.0, 0.0
+    for k in range(fixed.size):
+        own, pressed = inertia[k] / levers[k], end[k] / levers[k]
+        moving += own**2
+        if k < lines:
+            contact += pressed**2
+        if fixed[k]:
+            reactions += (own + force[k] / levers[k] + pressed) ** 2
+    return reactions, moving, contact
+
+
+class ResidualNorm:
+    """Norms of a system's residuals and of the forces in play [N], as its dofs are numbered now; collective."""
+
+    def __init__(self, system: System) -> None:
+        self._system, self._levers = system, system.numbering.to_global(system.levers)
+
+    def of(self, f: Array) -> float:
+        """Norm of a residual, of this rank's rows (owned,)."""
+        return math.sqrt(self._system.sum([square_of(f, self._levers, 0, f.size)])[0])
+
+    def largest(self, f: Array) -> str:
+        """Where it is largest, in words."""
+        return place_of_largest(self._system, f / self._levers, self._system.numbering.first)
+
+    def in_play(self, forces: Forces) -> float:
+        """Norm of the forces in play."""
+        system, groups = self._system, (forces.inertia, forces.force, forces.end)
+        mine = squares_in_play(*groups, system.levers, system.prescribed, system.end_of_lines)
+        return math.sqrt(max(system.sum([*mine])))
+
+
+def largest_at(residual: float, place: str) -> str:
+    """The largest residual [N] and its place, in words."""
+    return f"the largest residual, {residual:.3g} N, sits at the {place}"
+
+
+def place_of_largest(system: System, residual: Array, first: int) -> str:
+    """The row with the largest residual, in words; collective.
+
+    residual: this rank's [N], moments over the lever; its rows begin with `first`.
+    """
+    values = np.abs(residual)
+    if not all_of(system.comm, bool(np.isfinite(values).all())):
+        return "the residual is not finite"
+    k = int(np.argmax(values)) if len(values) else -1
+    mine = (float(values[k]), first + k) if k >= 0 else (-1.0, -1)
+    worst, row = max(system.comm.allgather(mine))
+    return largest_at(worst, system.describe(row))
+
+
 @njit
 def stays(norms: Array) -> bool:
     """Whether the last two iterations have left the residual's norm as it is, of all its norms so far (n,)."""
     if norms.size < 3:
         return False
     return norms[-1] > STALLED * norms[-2] and norms[-2] > STALLED * norms[-3]
+
+
+@njit
+def above_round_off(residual: Array, terms: Array) -> bool:
+    """Whether something in a residual can be told from its round-off. terms: sizes [N] of what it is the sum of."""
+    above = False
+    for k in range(residual.size):
+        above |= abs(residual[k]) > ROUND_OFF * terms[k]
+    return above

@@ -41,7 +41,8 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData, StopLimits
+from riser_soil.solve.newton_progress import StopLimits
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData
 
 KernelData = tuple[Any, ...]
 
@@ -194,6 +195,7 @@ def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspa
     matrix, band = banded.workspace(size, 2 * ndof - 1)
     return MatrixWorkspace(
         np.empty((ne, 2 * ndof, 2 * ndof)),
+        ndof * np.arange(ne)[:, None] + np.arange(2 * ndof),
         np.empty((ne, 2, dimension)),
         np.empty((ne, 2, r, r)),
         matrix,

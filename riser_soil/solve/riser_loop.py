@@ -14,14 +14,27 @@ from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Calls, call_each
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.csr_matrix import add_magnitudes
 from riser_soil.core.rows import add_multiple
 from riser_soil.riser.configuration import Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights
-from riser_soil.solve.newton_progress import ROUND_OFF, STALLED, stays
+from riser_soil.solve.newton_progress import (
+    CONVERGED,
+    DIVERGED,
+    GOING_ON,
+    SINGULAR,
+    TOO_MANY,
+    StopLimits,
+    above_round_off,
+    diverges,
+    leaves_tangent,
+    square_of,
+    squares_in_play,
+    stays,
+    verdict,
+)
 
-GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY, OUTGROWN = range(7)
-DIVERGES = 1e6  # times the first norm
 ONE = fixed(1)
 
 
@@ -40,7 +53,7 @@ class StepData(NamedTuple):
 
 class Dofs(NamedTuple):
     """What is known of the dofs, (nn, ndof): whether they are fixed; levers [m] of moments; residual [N] of the last
-    trial; sizes of the coordinates, and of the terms [N] that the residual is made of.
+    trial, zero where they are; sizes of the coordinates, and of the terms [N] that the residual is made of.
     """
 
     fixed: BoolArray
@@ -51,32 +64,17 @@ class Dofs(NamedTuple):
 
 
 class MatrixWorkspace(NamedTuple):
-    """Workspace for the tangent: element matrices K (ne, n, n); what is conjugate to the tangents (ne, 2, d), and its
-    turning (ne, 2, r, r); the matrix as in `banded`, its pivots and its band.
+    """Workspace for the tangent: element matrices K (ne, n, n), and their rows (ne, n); what is conjugate to the
+    tangents (ne, 2, d), and its turning (ne, 2, r, r); the matrix as in `banded`, its pivots and its band.
     """
 
     K: Array
+    rows: IntArray
     conjugate: Array
     turning: Array
     ab: Array
     pivots: IntArray
     band: Size
-
-
-class StopLimits(NamedTuple):
-    """When to stop, see `NewtonSettings` and `Newton`.
-
-    reuse: an iteration that leaves less than this share of the residual leaves its tangent to the next, but contact's
-    share, which is found anew, as contact has corners. Where the residual does not even fall to STALLED, so that it may
-    be probed, in the tangent's workspace, all is.
-    """
-
-    tolerance: float
-    floor: float
-    reuse: float
-    most: int
-    least: int
-    answers_load: bool
 
 
 class NewtonProgress(NamedTuple):
@@ -121,20 +119,18 @@ def solve_step(
 
 @njit
 def keeps(progress: NewtonProgress, limits: StopLimits) -> bool:
-    """Whether the last iteration leaves its tangent, but contact's share, to the next: where it has left little of the
-    residual, or little of it where nothing touches.
+    """Whether the last iteration leaves its tangent to the next, see `leaves_tangent`. The tangent's workspace still
+    holds it: a residual that may have been probed there has not even fallen to STALLED.
     """
     norms, apart, ending = progress
     taken = ending[1]
-    if taken == 0 or not norms[taken] < STALLED * norms[taken - 1]:
-        return False
-    return min(norms[taken] / norms[taken - 1], apart[taken] / norms[taken]) < limits.reuse
+    return taken > 0 and leaves_tangent(norms[taken], norms[taken - 1], apart[taken], limits.reuse)
 
 
 @njit
 def _given_up(norms: Array, taken: int, limits: StopLimits) -> int:
     """Whether a step that goes on does so in vain."""
-    if taken >= max(4, limits.least) and norms[taken] > DIVERGES * norms[0]:
+    if diverges(norms[taken], norms[0], taken, limits):
         return DIVERGED
     return TOO_MANY if taken >= limits.most else GOING_ON
 
@@ -151,11 +147,11 @@ def follow(step: StepData, maps: Maps, dofs: Dofs) -> None:
 
 @njit
 def combine(forces: LineForces, step: StepData, weights: LineWeights, dofs: Dofs) -> None:
-    """Write the residual of the weighted groups."""
+    """Write the residual of the weighted groups, zero where dofs are fixed."""
     for n in range(dofs.residual.shape[0]):
         for i in range(dofs.residual.shape[1]):
             bulk = weights.inertia * forces.inertia[n, i] + weights.force * forces.force[n, i]
-            dofs.residual[n, i] = bulk + forces.end[n, i] + step.past[n, i]
+            dofs.residual[n, i] = 0.0 if dofs.fixed[n, i] else bulk + forces.end[n, i] + step.past[n, i]
 
 
 @njit
@@ -170,44 +166,31 @@ def decide(
     norm: float, apart: float, forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress
 ) -> None:
     """The same of norms [N]."""
-    norms, _, ending = progress
-    taken = ending[1]
-    norms[taken], progress.apart[taken] = norm, apart
-    if not math.isfinite(norm):
-        ending[0] = NOT_FINITE
-    elif taken >= limits.least:
-        small = norm <= limits.floor and (taken > 0 or limits.answers_load)
-        if small or norm <= limits.tolerance * _scale(forces, dofs):
-            ending[0] = CONVERGED
+    taken = progress.ending[1]
+    progress.norms[taken], progress.apart[taken] = norm, apart
+    progress.ending[0] = verdict(norm, _in_play(forces, dofs), taken, limits)
 
 
 @njit
 def line_norms(forces: LineForces, dofs: Dofs) -> tuple[float, float]:
     """Norm [N] of the residual of what is free, moments over the lever; and of its share where nothing touches."""
-    square, apart = 0.0, 0.0
-    for n in range(dofs.fixed.shape[0]):
-        own, touched = 0.0, False
-        for i in range(dofs.fixed.shape[1]):
+    square, apart, (nodes, ndof) = 0.0, 0.0, dofs.fixed.shape
+    residual, levers = dofs.residual.reshape(nodes * ndof), dofs.levers.reshape(nodes * ndof)
+    for n in range(nodes):
+        own, touched = square_of(residual, levers, n * ndof, (n + 1) * ndof), False
+        for i in range(ndof):
             touched |= forces.end[n, i] != 0.0
-            if not dofs.fixed[n, i]:
-                own += (dofs.residual[n, i] / dofs.levers[n, i]) ** 2
         square += own
         apart += 0.0 if touched else own
     return math.sqrt(square), math.sqrt(apart)
 
 
 @njit
-def _scale(forces: LineForces, dofs: Dofs) -> float:
-    """Norm of the forces in play: reactions, inertia, contact."""
-    reactions, moving, contact = 0.0, 0.0, 0.0
-    for n in range(dofs.fixed.shape[0]):
-        for i in range(dofs.fixed.shape[1]):
-            inertia, end = forces.inertia[n, i] / dofs.levers[n, i], forces.end[n, i] / dofs.levers[n, i]
-            moving += inertia**2
-            contact += end**2
-            if dofs.fixed[n, i]:
-                reactions += (inertia + forces.force[n, i] / dofs.levers[n, i] + end) ** 2
-    return math.sqrt(max(reactions, moving, contact))
+def _in_play(forces: LineForces, dofs: Dofs) -> float:
+    """Norm of the forces in play."""
+    n = dofs.fixed.size
+    inertia, force, end = forces.inertia.reshape(n), forces.force.reshape(n), forces.end.reshape(n)
+    return math.sqrt(max(squares_in_play(inertia, force, end, dofs.levers.reshape(n), dofs.fixed.reshape(n), n)))
 
 
 @njit
@@ -225,18 +208,12 @@ def begin_with(bulk: Array, K: Array) -> None:
 @njit
 def judge_round_off(workspace: MatrixWorkspace, dofs: Dofs, progress: NewtonProgress) -> None:
     """Whether nothing in the residual can be told from its round-off, see `newton_progress`; K: at held rates."""
-    K, sizes, terms = workspace.K, dofs.sizes, dofs.terms
-    ndof = sizes.shape[1]
+    n, rows = dofs.terms.size, workspace.rows
+    terms = dofs.terms.reshape(n)
     terms[:] = 0.0
-    for e in range(K.shape[0]):
-        for i in range(2 * ndof):
-            for j in range(2 * ndof):
-                terms[e + i // ndof, i % ndof] += abs(K[e, i, j]) * sizes[e + j // ndof, j % ndof]
-    for n in range(terms.shape[0]):
-        for i in range(ndof):
-            if not dofs.fixed[n, i] and abs(dofs.residual[n, i]) > ROUND_OFF * terms[n, i]:
-                return
-    progress.ending[0] = CONVERGED
+    add_magnitudes(workspace.K, rows, rows, dofs.sizes.reshape(n), terms)
+    if not above_round_off(dofs.residual.reshape(n), terms):
+        progress.ending[0] = CONVERGED
 
 
 @njit
@@ -268,8 +245,6 @@ def improve(workspace: MatrixWorkspace, step: StepData, dofs: Dofs) -> None:
     """Take what the factorised tangent answers to the residual off the increments."""
     size = dofs.residual.size
     fixed, change, u = dofs.fixed.reshape(size), dofs.residual.reshape(size), step.u.reshape(size)
-    for k in range(size):
-        change[k] = 0.0 if fixed[k] else change[k]
     banded.solve(workspace.ab, workspace.pivots, change, workspace.band)
     for k in range(size):
         u[k] -= 0.0 if fixed[k] else change[k]

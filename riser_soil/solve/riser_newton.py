@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,29 +20,21 @@ from riser_soil.riser.part_kernels import bound
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import nodal_residual
 from riser_soil.riser.sections import Elements
-from riser_soil.solve import riser_loop
 from riser_soil.solve.compiled_mass import AcceptedForces, CompiledMass, ElementForces, mass_of
+from riser_soil.solve.newton_progress import CONVERGED, NAMES, StopLimits, largest_at
 from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.solution import (
-    BESIDE_CLAY,
     NewtonSettings,
     NotConvergedError,
     Solution,
     Step,
-    largest_at,
+    limits_of,
     reported,
 )
 from riser_soil.solve.solver import StepSolver
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
-
-WHY = {
-    riser_loop.NOT_FINITE: "diverged_fnorm_nan",
-    riser_loop.SINGULAR: "diverged_linear_solve",
-    riser_loop.DIVERGED: "diverged_dtol",
-    riser_loop.TOO_MANY: "diverged_max_it",
-}
 
 Numbered = Sequence[tuple[Any, tuple[Any, ...]]]  # parts of a line
 
@@ -85,7 +77,7 @@ class RiserNewton(StepSolver):
         self.iterations += taken
         norms: list[float] = listed(self._riser.progress.norms[: taken + 1])
         self.system.clock.add("riser alone", since)
-        if outcome != riser_loop.CONVERGED:
+        if outcome != CONVERGED:
             raise NotConvergedError(self._reason(outcome, norms))
         if reason := self._line.folding(*self._riser.folding):
             raise NotConvergedError(reason)
@@ -180,10 +172,10 @@ class RiserNewton(StepSolver):
         self._line.prescribe(step.t, state.u, state.v, state.a)
         return state
 
-    def _limits(self, step: Step) -> riser_loop.StopLimits:
+    def _limits(self, step: Step) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
         smooth, moves = self.system.smooth, bool(step.guess[self._free].any())
-        return _limits(self.settings, smooth, self.system.gradual, smooth or self.rests or moves)
+        return limits_of(self.settings, smooth, self.system.gradual, smooth or self.rests or moves)
 
     def _found(self) -> Forces:
         """The forces of the last trial."""
@@ -191,8 +183,8 @@ class RiserNewton(StepSolver):
         return Forces(forces.inertia.flatten(), forces.force.flatten(), forces.end.flatten())
 
     def _reason(self, outcome: int, norms: list[float]) -> str:
-        residual = np.where(self.system.prescribed, 0.0, self._riser.dofs.residual.ravel()) / self.system.levers
-        return reported(WHY[outcome], norms, self._place(residual))
+        residual = self._riser.dofs.residual.ravel() / self.system.levers
+        return reported(NAMES[outcome], norms, self._place(residual))
 
     def _place(self, residual: Array) -> str:
         """The largest residual, in words."""
@@ -200,19 +192,3 @@ class RiserNewton(StepSolver):
             return "the residual is not finite"
         k = int(np.argmax(np.abs(residual)))
         return largest_at(abs(residual[k]), self._line.describe(k))
-
-
-@lru_cache(maxsize=8)
-def _limits(
-    settings: NewtonSettings, smooth: bool, gradual: bool, answers_load: bool
-) -> riser_loop.StopLimits:
-    """As in `Newton`: without contact the guess continues a smooth motion, whose factors can be reused."""
-    beside = BESIDE_CLAY if gradual else 0.0
-    return riser_loop.StopLimits(
-        settings.tolerance,
-        settings.floor,
-        settings.reuse if smooth else beside,
-        settings.max_iterations,
-        max(settings.least_iterations, int(smooth)),
-        answers_load,
-    )

@@ -46,19 +46,9 @@ from riser_soil.core.part import State
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces
 from riser_soil.soil.condensed import CondensedSoil, Reached
+from riser_soil.solve.newton_progress import GOING_ON, OUTGROWN, SINGULAR, StopLimits
 from riser_soil.solve.packed_riser import LoopBorder
-from riser_soil.solve.riser_loop import (
-    GOING_ON,
-    OUTGROWN,
-    SINGULAR,
-    Dofs,
-    MatrixWorkspace,
-    NewtonProgress,
-    StepData,
-    StopLimits,
-    decide,
-    line_norms,
-)
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData, decide, line_norms
 
 SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
 NONE: IntArray = np.empty(0, dtype=np.int64)
@@ -154,9 +144,6 @@ def improve_with_border(
 ) -> None:
     """Take what the factorised tangent answers to the residual off the increments."""
     residual, fixed = dofs.residual.reshape(dofs.residual.size), dofs.fixed.reshape(dofs.fixed.size)
-    for k in range(fixed.size):
-        if fixed[k]:
-            residual[k] = 0.0
     rows, answer = factors.rows[: factors.filled[0]], border.residual
     inner = residual.copy()
     banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)

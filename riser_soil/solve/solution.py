@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Literal
 
-import numpy as np
-
 from riser_soil.core.arrays import Array
-from riser_soil.core.communicator import all_of
 from riser_soil.core.part import Forces, State
-from riser_soil.core.system import System
+from riser_soil.solve.newton_progress import StopLimits
 from riser_soil.solve.time_scheme import Scheme
 
 REUSE = 0.1
@@ -35,11 +33,6 @@ def reported(why: str, norms: list[float], place: str) -> str:
     return f"{why} after {max(len(norms) - 1, 0)} iterations (last residual norms {last} N); {place}"
 
 
-def largest_at(residual: float, place: str) -> str:
-    """The largest residual [N] and its place, in words."""
-    return f"the largest residual, {residual:.3g} N, sits at the {place}"
-
-
 @dataclass(frozen=True)
 class NewtonSettings:
     """tolerance: of the residual's norm, relative to the norm of the forces in play, moments over the
@@ -50,7 +43,7 @@ class NewtonSettings:
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away. Beside clay the compiled loop reuses the tangent of all else, see
-    `riser_loop.StopLimits`. least_iterations: before a residual counts as small.
+    `newton_progress.StopLimits`. least_iterations: before a residual counts as small.
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
     step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
     factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,
@@ -66,6 +59,23 @@ class NewtonSettings:
     linear_start: bool = False
     linear: Literal["auto", "kept", "direct", "iterative"] = "auto"
     snes: bool = False
+
+
+@lru_cache(maxsize=8)
+def limits_of(settings: NewtonSettings, starts_near: bool, gradual: bool, answers_load: bool) -> StopLimits:
+    """starts_near: whether the guess continues a smooth motion, as in time steps without contact. The tangent can be
+    reused, and one iteration is a must: a motion that continues by its first guess alone would keep its errors.
+    gradual: see `System`.
+    """
+    beside = BESIDE_CLAY if gradual else 0.0
+    return StopLimits(
+        settings.tolerance,
+        settings.floor,
+        settings.reuse if starts_near else beside,
+        settings.max_iterations,
+        max(settings.least_iterations, int(starts_near)),
+        answers_load,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,17 +101,3 @@ class Solution:
     @property
     def iterations(self) -> int:
         return len(self.norms) - 1
-
-
-def place_of_largest(system: System, residual: Array, first: int) -> str:
-    """The row with the largest residual, in words; collective.
-
-    residual: this rank's [N], moments over the lever; its rows begin with `first`.
-    """
-    values = np.abs(residual)
-    if not all_of(system.comm, bool(np.isfinite(values).all())):
-        return "the residual is not finite"
-    k = int(np.argmax(values)) if len(values) else -1
-    mine = (float(values[k]), first + k) if k >= 0 else (-1.0, -1)
-    worst, row = max(system.comm.allgather(mine))
-    return largest_at(worst, system.describe(row))

@@ -22,8 +22,8 @@ from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton_progress import CONVERGED, StopLimits
 from riser_soil.solve.packed_riser import KernelParts, PackedRiser
-from riser_soil.solve.riser_loop import CONVERGED, StopLimits
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.riser_newton import RiserNewton, riser_newton
 from riser_soil.solve.solution import NewtonSettings

@@ -21,8 +21,9 @@ from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.seabed.grounds import Plane
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton_progress import GOING_ON, StopLimits
 from riser_soil.solve.packed_riser import PackedRiser
-from riser_soil.solve.riser_loop import GOING_ON, NewtonProgress, StopLimits, keeps
+from riser_soil.solve.riser_loop import NewtonProgress, keeps
 from riser_soil.solve.solution import NotConvergedError
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
