@@ -112,10 +112,10 @@ class SoilFriction(LinePart):
             self._at_start = found.axis, found.surface
         return self._at_start
 
-    def element_forces(self, state: State) -> tuple[None, Array]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+    def element_forces(self, state: State) -> Array:
+        """Element residual (ne, 2 ndof)."""
         sliding = self.evaluate(state)
-        return None, sliding.found.on_elements(sliding.found.pressed.spread(sliding.on_riser)[0])
+        return sliding.found.on_elements(sliding.found.pressed.spread(sliding.on_riser)[0])
 
     def residual(self, state: State, forces: Forces) -> None:
         sliding = self.evaluate(state)

@@ -168,10 +168,10 @@ class SurfaceContact(SoilContact):
         pairs = self._pairs(axis, self._soil.deformed(state), self._reach)
         return CandidatePairs.of(len(self._soil.facets), *pairs)
 
-    def element_forces(self, state: State) -> tuple[None, Array]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+    def element_forces(self, state: State) -> Array:
+        """Element residual (ne, 2 ndof)."""
         found = self.evaluate(state)
-        return None, found.on_elements(found.pressed.spread(found.pressed.on_riser)[0])
+        return found.on_elements(found.pressed.spread(found.pressed.on_riser)[0])
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""

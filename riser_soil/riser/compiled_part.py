@@ -17,7 +17,6 @@ from riser_soil.core.arrays import Array, listed
 from riser_soil.core.bound import Bound, in_turn
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
-from riser_soil.riser import hermite
 from riser_soil.riser.configuration import maps_for, put_maps, put_turning
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
@@ -33,6 +32,7 @@ from riser_soil.riser.part_kernels import (
     find_water,
     forces_of,
     keep,
+    put_residual,
     turn,
     weigh,
 )
@@ -91,10 +91,16 @@ class BoundPart:
         self._numbers, self._trials, self.found = numbers, trials, -1
         n, self.forces = 2 * line.ndof, forces_of(line)
         self.energy, self.turned_over = np.zeros(3), np.zeros(4)
+        self.residual = np.zeros((line.length.size, n))
         self.K = Packed(np.zeros((line.length.size, n, n)))
         self._now, self._forces = Packed(trials.now.at), Packed(self.forces)
         self.find = in_turn(Bound(clear, self._forces), bound(add_forces, numbers, self._now, self._forces))
         self.collect = Bound(collect, self._now, self._forces)
+
+    @cached_property
+    def put_residual(self) -> Bound:
+        """Writes the residual of the elements in the forces found last."""
+        return Bound(put_residual, self._now, self._forces, Packed(self.residual))
 
     @cached_property
     def _find_water(self) -> list[Bound]:
@@ -229,12 +235,10 @@ class CompiledPart(LinePart, ABC):
         mean = 0.5 * (forces.inertia + forces.force)
         return float(mean[part] @ (after.u - before.u)[part])
 
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
-        forces, P, groups = self._found(state).forces, self._trials.now.at.P, self.traits.groups
-        return (
-            hermite.pull_back(forces.inertia_q, P) + forces.inertia_e if "I" in groups else None,
-            hermite.pull_back(forces.force_q + forces.end_q, P) + forces.force_e if groups != "I" else None,
-        )
+    def element_forces(self, state: State) -> Array:
+        found = self._found(state)
+        found.put_residual()
+        return found.residual.copy()
 
     def forces_on_nodes(self, state: State) -> Array:
         """Residual (nn, ndof) of what acts on nodes themselves."""

@@ -13,12 +13,11 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.riser import directors, hermite, spatial_directors
+from riser_soil.riser import directors, hermite, line_kernels, spatial_directors
 from riser_soil.riser.directors import PlanarFrames
-from riser_soil.riser.folding import MOST_SWING
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_kernels import first_folded, first_swung, put_moved
+from riser_soil.riser.line_kernels import put_moved
 
 
 class PlanarBase(NamedTuple):
@@ -173,9 +172,7 @@ def put_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
 
 @bound_by_type
 def put_folded(at: Configuration, base: Base, out: IntArray) -> None:
-    """Write the numbers (2,) of the first element that is folded or wound up, and of the first that swings too far from
-    the accepted configuration, see `Line.inadmissible`; ne without any.
-    """
+    """Write what `line_kernels.put_folded` writes, of a step from the accepted configuration."""
 
 
 @place.of(PlanarConfiguration)
@@ -224,16 +221,12 @@ def _keep(at: Configuration, v: Array, a: Array) -> None:
 
 @put_magnitudes.of(PlanarConfiguration)
 def _put_magnitudes_in_plane(at: PlanarConfiguration, out: Array) -> None:
-    for n in range(out.shape[0]):
-        out[n, 0], out[n, 1] = abs(at.x[n, 0]), abs(at.x[n, 1])
-        out[n, 2] = max(abs(at.angle[n]), 1.0)
+    line_kernels.put_magnitudes(at.x, at.angle.reshape((at.angle.size, 1)), out)
 
 
 @put_magnitudes.of(SpatialConfiguration)
 def _put_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
-    for n in range(out.shape[0]):
-        for i in range(3):
-            out[n, i], out[n, 3 + i] = abs(at.x[n, i]), 1.0
+    line_kernels.put_magnitudes(at.x, at.Theta, out)
 
 
 @put_maps.of(PlanarConfiguration)
@@ -272,9 +265,7 @@ def _put_turning_in_space(at: SpatialConfiguration, F: Array, G: Array) -> None:
 
 @put_moment_maps.of(PlanarConfiguration)
 def _put_moment_maps_in_plane(at: PlanarConfiguration, axes: Array, maps: Array) -> None:
-    for n in range(maps.shape[0]):
-        for i in range(3):
-            maps[n, i, 0] = axes[i, 0]
+    directors.put_moment_maps(axes, maps)
 
 
 @put_moment_maps.of(SpatialConfiguration)
@@ -286,13 +277,11 @@ def _put_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array
 def _put_folded_in_plane(at: PlanarConfiguration, base: PlanarBase, out: IntArray) -> None:
     tangent, normal = np.empty(at.tangent.shape), np.empty(at.tangent.shape)
     directors.put_ends(base.angle, base.alpha0, np.empty(base.alpha0.shape), tangent, normal)
-    out[1] = first_swung(base.chord, tangent, at.chord, at.tangent, MOST_SWING)
-    out[0] = min(first_folded(at.chord, at.tangent), directors.first_wound(at.end_angle))
+    line_kernels.put_folded(base.chord, tangent, at.chord, at.tangent, directors.first_wound(at.end_angle), out)
 
 
 @put_folded.of(SpatialConfiguration)
 def _put_folded_in_space(at: SpatialConfiguration, base: SpatialBase, out: IntArray) -> None:
     tangent, first, second = np.empty(at.tangent.shape), np.empty(at.frame1.shape), np.empty(at.frame2.shape)
     spatial_directors.put_end_frames(base.R, base.T0, first, second, tangent)
-    out[1] = first_swung(base.chord, tangent, at.chord, at.tangent, MOST_SWING)
-    out[0] = min(first_folded(at.chord, at.tangent), spatial_directors.first_wound(at.Theta))
+    line_kernels.put_folded(base.chord, tangent, at.chord, at.tangent, spatial_directors.first_wound(at.Theta), out)

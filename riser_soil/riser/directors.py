@@ -41,9 +41,9 @@ class PlanarOrientation:
         return self.normal[..., None]
 
     @property
-    def magnitudes(self) -> Array:
-        """Sizes (nn, 1) of the angles, at least a radian: cosines and sines of less are no more exact."""
-        return np.maximum(np.abs(self.angle), 1.0)[:, None]
+    def turned(self) -> Array:
+        """What the dofs have turned by (nn, 1): the angles."""
+        return self.angle[:, None]
 
     @property
     def first_wound(self) -> int:
@@ -58,7 +58,9 @@ class PlanarOrientation:
 
     def moment_maps(self, axes: Array) -> Array:
         """Maps (nn, 3, 1) of moments conjugate to angles to those in global axes; axes (3, 1): its normal."""
-        return np.repeat(axes[None], len(self.angle), axis=0)
+        maps = np.empty((len(self.angle), 3, 1))
+        put_moment_maps(np.ascontiguousarray(axes), maps)
+        return maps
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
@@ -167,6 +169,14 @@ def put_maps(
                 t, n = tangent[e, side, i], normal[e, side, i]
                 first[e, side, i, 0] = shift_v * n - w * t
                 second[e, side, i, 0] = (shift_a - w**2) * n - (alpha + 2.0 * shift_v * w) * t
+
+
+@njit
+def put_moment_maps(axes: Array, maps: Array) -> None:
+    """Write the axis (3, 1) of each node."""
+    for n in range(maps.shape[0]):
+        for i in range(3):
+            maps[n, i, 0] = axes[i, 0]
 
 
 @njit

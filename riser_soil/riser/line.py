@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray, listed
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
@@ -22,10 +22,9 @@ from riser_soil.errors import SceneError
 from riser_soil.riser import folding, hermite
 from riser_soil.riser.directors import Frames, PlanarFrames
 from riser_soil.riser.ends import End
-from riser_soil.riser.folding import MOST_SWING
 from riser_soil.riser.free_turns import free_turns, unit_lengths
 from riser_soil.riser.line_ends import LineEnds
-from riser_soil.riser.line_kernels import after_increments, first_folded, first_swung
+from riser_soil.riser.line_kernels import after_increments, put_folded, put_magnitudes
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
 
@@ -217,8 +216,9 @@ class Line:
         return out.ravel()
 
     def magnitudes(self, state: State) -> Array:
-        trial = self.trial(state)
-        return np.hstack([np.abs(trial.x), trial.turn.magnitudes]).ravel()
+        trial, out = self.trial(state), np.empty((self.nodes, self.ndof))
+        put_magnitudes(trial.x, trial.turn.turned, out)
+        return out.ravel()
 
     def commit(self, state: State) -> None:
         """Accept the increments of a state; chords sum theirs, so their round-off is not that of far
@@ -287,13 +287,11 @@ class Line:
         not physical for a pipe, and an end spring would count the turns. A slack wire that is let go snaps into waves
         of its elements: steps that jump over these turn the tension's energy into a motion that there is not.
         """
-        trial = self.trial(state)
-        folded = min(first_folded(trial.chord, trial.turn.tangent), trial.turn.first_wound)
-        swung = self.length.size
-        if before is not None:
-            left = self.trial(before)
-            swung = first_swung(left.chord, left.turn.tangent, trial.chord, trial.turn.tangent, MOST_SWING)
-        return self.folding(folded, swung)
+        trial, found = self.trial(state), np.zeros(2, dtype=np.int64)
+        left = trial if before is None else self.trial(before)
+        first, last = (left.chord, left.turn.tangent), (trial.chord, trial.turn.tangent)
+        put_folded(*first, *last, trial.turn.first_wound, found)
+        return self.folding(*listed(found))
 
     def folding(self, folded: int, swung: int) -> str:
         """What to say of the first element that is folded or wound up, and of the first that swings too far in a step;

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.riser.folding import MOST_SWING
 
 
 @njit
@@ -51,6 +52,28 @@ def put_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> N
     for e in range(chord.shape[0]):
         for i in range(x.shape[1]):
             along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
+
+
+@njit
+def put_magnitudes(x: Array, turned: Array, out: Array) -> None:
+    """Write the sizes (nn, ndof) of the coordinates: of places x (nn, d), and of turns (nn, r) [rad], at least one,
+    as cosines and sines of less are no more exact.
+    """
+    d = x.shape[1]
+    for n in range(x.shape[0]):
+        for i in range(d):
+            out[n, i] = abs(x[n, i])
+        for i in range(turned.shape[1]):
+            out[n, d + i] = max(abs(turned[n, i]), 1.0)
+
+
+@njit
+def put_folded(chord0: Array, tangent0: Array, chord: Array, tangent: Array, wound: int, out: IntArray) -> None:
+    """Write the numbers (2,) of the first element that is folded or wound up, and of the first that swings too far from
+    one configuration to another, see `Line.inadmissible`; ne without any.
+    """
+    out[0] = min(first_folded(chord, tangent), wound)
+    out[1] = first_swung(chord0, tangent0, chord, tangent, MOST_SWING)
 
 
 @njit

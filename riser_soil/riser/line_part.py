@@ -45,9 +45,9 @@ class LinePart:
     def commit(self, state: State) -> None:
         """Nothing is kept."""
 
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof), of what acts within the elements; None for nothing."""
-        return None, None
+    def element_forces(self, state: State) -> Array | None:
+        """Element residual (ne, 2 ndof) of all groups, of what acts within the elements; None for nothing."""
+        return None
 
     def viscous_forces(self, state: State) -> Array | None:
         """The share of `element_forces` (ne, 2 ndof) that follows from strain rates; None for nothing."""

@@ -96,8 +96,8 @@ class MidpointInertia(LinePart):
             excess = hermite.weigh(self.instant.M, self.q_rate(state) - trial.q_rate)
             self.line.scatter(trial.pull_back(excess), out)
 
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""
+    def element_forces(self, state: State) -> Array | None:
+        """Element residual (ne, 2 ndof) at an accepted state."""
         return self.instant.element_forces(state)
 
     def nodal_forces(self, state: State) -> Array | None:
@@ -184,8 +184,8 @@ class MidpointRotaryInertia(LinePart):
                 block += director.geometric(secant, middle, F)
                 hermite.add_geometric(values[self.line.name], weights.inertia, block, self.line.dimension)
 
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""
+    def element_forces(self, state: State) -> Array | None:
+        """Element residual (ne, 2 ndof) at an accepted state."""
         return self.instant.element_forces(state)
 
     def energy(self, state: State) -> Energy:

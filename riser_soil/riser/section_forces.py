@@ -12,9 +12,14 @@ from collections.abc import Iterable
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.bound import Bound, in_turn
+from riser_soil.core.packed import Packed
 from riser_soil.core.part import State
+from riser_soil.riser.compiled_part import LineTrials
+from riser_soil.riser.configuration import Configuration, PlanarConfiguration, put_moment_maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
+from riser_soil.riser.part_kernels import bound
 from riser_soil.riser.section_kernels import SectionForces, SectionInput, put_end_forces, put_section_forces, size_of
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation
@@ -24,9 +29,8 @@ NOTHING, NO_FRAMES = np.empty((0, 0)), np.empty((0, 3, 3))
 
 
 def element_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array:
-    """Sum over parts and groups (ne, 2 ndof)."""
-    groups = (group for part in parts for group in part.element_forces(state))
-    return _total(groups, (line.length.size, 2 * line.ndof))
+    """Sum over parts (ne, 2 ndof)."""
+    return _total((part.element_forces(state) for part in parts), (line.length.size, 2 * line.ndof))
 
 
 def viscous_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array | None:
@@ -65,28 +69,32 @@ def section_vector(
     line: Line, elements: Elements, state: State, residual: Array, viscous: Array | None = None
 ) -> Array:
     """The same as one vector, see `SectionForces.within`."""
-    trial, out = line.trial(state), np.empty(size_of(line.nodes))
-    at = trial.x, _moment_maps(line, trial), trial.turn.tangent, *section_frames(trial)
-    given = section_input(line, elements, residual, viscous, *at)
-    put_section_forces(given, SectionForces.within(out, line.nodes))
-    return out
+    now = line.once(LineTrials).now
+    now.move(state)
+    return BoundSections(line, elements, now.at, residual, viscous).found()
 
 
-def section_input(
-    line: Line,
-    elements: Elements,
-    residual: Array,
-    viscous: Array | None,
-    x: Array,
-    maps: Array,
-    tangent: Array,
-    first: Array,
-    second: Array,
-) -> SectionInput:
-    """What section forces follow from, with what is constant; the rest as in `SectionInput`."""
-    given = residual, NOTHING if viscous is None else viscous, x, maps, tangent, first, second
-    constant = line.basis, line.origin, line.arc, elements.bends_beside, *elements.flexibility
-    return SectionInput(*(np.ascontiguousarray(values) for values in (*given, *constant)))
+class BoundSections:
+    """Section forces of a line in a configuration by residuals (ne, 2 ndof) in arrays that may be written to anew."""
+
+    def __init__(
+        self, line: Line, elements: Elements, at: Configuration, residual: Array, viscous: Array | None
+    ) -> None:
+        maps = np.empty((line.nodes, 3, line.frames.dofs))
+        frames = (NO_FRAMES, NO_FRAMES) if isinstance(at, PlanarConfiguration) else (at.frame1, at.frame2)
+        given = residual, NOTHING if viscous is None else viscous, at.x, maps, at.tangent, *frames
+        constant = line.basis, line.origin, line.arc, elements.bends_beside, *elements.flexibility
+        needed = SectionInput(*given, *(np.ascontiguousarray(values) for values in constant))
+        self._out = np.empty(size_of(line.nodes))
+        self._put = in_turn(
+            bound(put_moment_maps, at, Packed(np.ascontiguousarray(line.turning_axes)), Packed(maps)),
+            Bound(put_section_forces, Packed(needed), Packed(SectionForces.within(self._out, line.nodes))),
+        )
+
+    def found(self) -> Array:
+        """See `SectionForces.within`."""
+        self._put()
+        return self._out.copy()
 
 
 def section_frames(trial: Trial) -> tuple[Array, Array]:

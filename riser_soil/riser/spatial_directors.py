@@ -48,9 +48,9 @@ class SpatialOrientation:
         return self.R[node]
 
     @property
-    def magnitudes(self) -> Array:
-        """Sizes (nn, 3) of the angles, all a radian: frames are as exact after any number of turns."""
-        return np.ones(self.Theta.shape)
+    def turned(self) -> Array:
+        """What the dofs have turned by (nn, 3): the increments, as frames are exact after any number of turns."""
+        return self.Theta
 
     @property
     def first_wound(self) -> int:

@@ -60,8 +60,8 @@ class StructuralDamping(CompiledPart):
         viscosity = beam3d.SpatialSection(*(beta * D for D in spatial))
         return SpatialViscosity(bent, viscosity, np.empty((ne, 3)), np.empty((ne + 1, 3)))
 
-    def viscous_forces(self, state: State) -> Array | None:
-        return self.element_forces(state)[1]
+    def viscous_forces(self, state: State) -> Array:
+        return self.element_forces(state)
 
     def work(self, before: State, after: State) -> Work:
         """Energy that the mean forces take out over the step."""

@@ -2,9 +2,7 @@
 
 With contact they are asked for once a step, at the accepted configuration; see `riser_mass` and `time_scheme`.
 
-What acts within a riser's elements, and its section forces, by the kernels of its parts; see `part_kernels`.
-
-As `riser.section_forces`, which asks the parts' methods one by one. At an accepted state of a riser alone.
+What acts within a riser's elements is found for all parts at once, where `riser.section_forces` asks one by one.
 """
 
 from __future__ import annotations
@@ -16,18 +14,10 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Bound, in_turn
-from riser_soil.core.compiled import njit
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
-from riser_soil.riser.configuration import (
-    Configuration,
-    PlanarConfiguration,
-    maps_for,
-    put_maps,
-    put_moment_maps,
-)
-from riser_soil.riser.hermite import put_pulled_back
+from riser_soil.riser.configuration import Configuration, maps_for, put_maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import (
@@ -41,10 +31,10 @@ from riser_soil.riser.part_kernels import (
     collect,
     find_water,
     forces_of,
+    put_residual,
 )
 from riser_soil.riser.placed_line import PlacedLine
-from riser_soil.riser.section_forces import NO_FRAMES, section_input, viscous_residual
-from riser_soil.riser.section_kernels import SectionForces, put_section_forces, size_of
+from riser_soil.riser.section_forces import BoundSections, viscous_residual
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.line_mass import LineMass
@@ -145,7 +135,8 @@ class ElementForces:
         self._damped = [part for part in parts if overrides(part, "viscous_forces")]
         self._at, self._residual = at, np.zeros((line.length.size, 2 * line.ndof))
         self._put = Bound(put_residual, Packed(at), Packed(forces), Packed(self._residual))
-        self._elements: Elements | None = None
+        self._viscous = np.zeros_like(self._residual) if self._damped else None
+        self._sections: dict[Elements, BoundSections] = {}
 
     def residual(self) -> Array:
         """Sum over parts and groups (ne, 2 ndof); the same array each time."""
@@ -154,25 +145,13 @@ class ElementForces:
 
     def section_forces(self, elements: Elements, state: State) -> Array:
         """Of the line whose elements these are, see `SectionForces.within`."""
-        if self._elements is not elements:
-            self._bind_sections(elements)
+        if elements not in self._sections:
+            given = self._residual, self._viscous
+            self._sections[elements] = BoundSections(self._line, elements, self._at, *given)
         self.residual()
-        if self._damped:
+        if self._viscous is not None:
             self._viscous[...] = viscous_residual(self._line, self._damped, state)
-        self._put_sections()
-        return self._sections.copy()
-
-    def _bind_sections(self, elements: Elements) -> None:
-        line, at, self._elements = self._line, self._at, elements
-        maps = np.empty((line.nodes, 3, line.frames.dofs))
-        frames = (NO_FRAMES, NO_FRAMES) if isinstance(at, PlanarConfiguration) else (at.frame1, at.frame2)
-        viscous = np.zeros_like(self._residual) if self._damped else None
-        given = section_input(line, elements, self._residual, viscous, at.x, maps, at.tangent, *frames)
-        self._viscous, self._sections = given.viscous, np.empty(size_of(line.nodes))
-        self._put_sections = in_turn(
-            bound(put_moment_maps, at, Packed(np.ascontiguousarray(line.turning_axes)), Packed(maps)),
-            Bound(put_section_forces, Packed(given), Packed(SectionForces.within(self._sections, line.nodes))),
-        )
+        return self._sections[elements].found()
 
 
 class AcceptedForces:
@@ -200,13 +179,3 @@ class AcceptedForces:
         self._placed.move(state)
         self._find()
         return self.forces
-
-
-@njit
-def put_residual(at: Configuration, forces: LineForces, out: Array) -> None:
-    """Write the sum of all groups within the elements."""
-    q = forces.inertia_q + forces.force_q + forces.end_q
-    put_pulled_back(q, at.P, out, at.D, at.R)
-    for e in range(out.shape[0]):
-        for i in range(out.shape[1]):
-            out[e, i] += forces.inertia_e[e, i] + forces.force_e[e, i]

@@ -223,7 +223,7 @@ def test_element_forces_add_up_to_the_residual() -> None:
     at = sample(3)
     part, state, total = behind(at), at.state(6), Forces.zeros(at.line.size)
     part.residual(state, total)
-    _, force = part.element_forces(state)
+    force = part.element_forces(state)
     assert force is not None
     collected = np.zeros(at.line.size)
     at.line.scatter(force, collected)
