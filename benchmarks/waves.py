@@ -54,9 +54,10 @@ def measure(count: int) -> tuple[Cost, Cost]:
     stage = last_stage(SCENE, (f"water.waves.jonswap.components={count}",), Timer.new())
     series = water_of(stage.assembly.scene, stage.stage)
     with patch("riser_soil.sea.waves.WaveField", PlainSums):
-        sums = water_of(stage.assembly.scene, stage.stage)
+        summed = water_of(stage.assembly.scene, stage.stage)
     assert series is not None
-    assert sums is not None
+    assert summed is not None
+    sums = next(flow for flow in summed.flows if isinstance(flow, PlainSums))
     stage.walk(RAMP)
     found = [taken(stage, series, sums) for _ in range(STEPS)]
     stage.destroy()
@@ -64,7 +65,7 @@ def measure(count: int) -> tuple[Cost, Cost]:
     return Cost(step, seconds[0]), Cost(step - seconds[0] + seconds[1], seconds[1])
 
 
-def taken(stage: TimedStage, *seas: Sea) -> list[float]:
+def taken(stage: TimedStage, *seas: Sea | PlainSums) -> list[float]:
     """Seconds of a step, and of the water's motion by each of the seas at its trials, whose places differ a little."""
     line, before = stage.assembly.line, stage.iterations
     step = timed(lambda: stage.walk(1))
@@ -72,7 +73,7 @@ def taken(stage: TimedStage, *seas: Sea) -> list[float]:
     N = stations.stations(line.length).N
     x = line.to_global(np.einsum("ega,eai->egi", N, line.trial(state).q)).reshape(-1, 3)
 
-    def ask(sea: Sea) -> None:
+    def ask(sea: Sea | PlainSums) -> None:
         for k in range(trials):
             sea(state.t, x + 1e-6 * k)
 

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from riser_soil.contact.surface_contact import SurfaceContact
     from riser_soil.seabed.grounds import Ground
     from riser_soil.seabed.law import NormalLaw
+    from riser_soil.soil.condensed import SoilSurface
     from riser_soil.soil.grid import DistributedMesh
     from riser_soil.soil.soil import Soil
-    from riser_soil.soil.surface import SoilSurface
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
 # Integration points across the width that touches at rest, as parts of the diameter, and how much farther apart along.
@@ -166,7 +166,7 @@ def seabed_contact_of(
         _ground(scene, scene.seabed),
         law,
         ENDS if settings.at_nodes else gauss(GAUSS_POINTS),
-        covering=beside,
+        covering=None if beside is None else beside.covering,
     )
 
 
@@ -189,7 +189,7 @@ def cushion_of(
         scene.seabed_level,
         scales.weight,
         CUSHION * scales.diameter,
-        contact,
+        contact.covering,
     )
 
 

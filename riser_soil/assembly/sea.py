@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from riser_soil.sea.changing_current import ChangingCurrent
     from riser_soil.sea.components import Components
     from riser_soil.sea.current import SteadyCurrent
-    from riser_soil.sea.flows import FlowComponent, Sea
+    from riser_soil.sea.flows import Sea
     from riser_soil.sea.steady_flow import SteadyFlow
     from riser_soil.sea.steady_wave import SteadyWave
     from riser_soil.sea.waves import WaveField
@@ -129,7 +129,7 @@ def current_times(scene: Scene, stage: Stage) -> list[float]:
     return [t for t in times if 0.0 < t < stage.duration]
 
 
-def _flows(scene: Scene, stage: Stage) -> Iterator[FlowComponent]:
+def _flows(scene: Scene, stage: Stage) -> Iterator[SteadyCurrent | ChangingCurrent | WaveField | SteadyFlow]:
     assert scene.water is not None
     if scene.water.current is not None:
         yield _current(scene, scene.water.current, stage)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +15,9 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
-from riser_soil.soil.surface import SoilSurface
+
+if TYPE_CHECKING:
+    from riser_soil.soil.condensed import SoilSurface
 
 ASPECT = (
     1.618  # the golden ratio: sides of facets, also diagonals of simple grids, miss all four points of a node

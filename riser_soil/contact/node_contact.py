@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from riser_soil.contact.candidates import CandidatePairs, pairs_around
@@ -22,7 +24,9 @@ from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import Energy, Forces, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.line import Line
-from riser_soil.soil.surface import SoilSurface
+
+if TYPE_CHECKING:
+    from riser_soil.soil.condensed import SoilSurface
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 

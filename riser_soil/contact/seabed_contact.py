@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,16 +28,14 @@ from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.law import NormalLaw
 
 
-class Covering(Protocol):
-    """What lies on the seabed in places, such as a block of soil; the seabed does not act there."""
+class Covering(NamedTuple):
+    """What lies on the seabed in places, such as a block of soil; the seabed does not act there.
 
-    def cover(self) -> Any:
-        """Its numbers, of a type with a kernel of `covered_by`."""
-        ...
+    make: makes its kernel data, of a type with a kernel of `covered_by`; renew: makes that of the present place of it.
+    """
 
-    def renew_cover(self, cover: Any) -> None:
-        """Let it be that of the present place."""
-        ...
+    make: Callable[[], Any]
+    renew: Callable[[Any], None]
 
 
 class SeabedContact(CompiledPart, RiserContact):
@@ -76,7 +75,7 @@ class SeabedContact(CompiledPart, RiserContact):
 
     def make_numbers(self) -> SeabedData:
         stations = self.at, self.share, self._radius, self.memory, self._nodes
-        cover = None if self._covering is None else self._covering.cover()
+        cover = None if self._covering is None else self._covering.make()
         return seabed_data(self.line, *stations, self.ground.kernel_data, self.law, cover)
 
     def kernel_data(self) -> SeabedData:
@@ -89,7 +88,7 @@ class SeabedContact(CompiledPart, RiserContact):
     def _renew_cover(self) -> None:
         """What covers the ground moves as the line does: when a step is accepted."""
         if self._covering is not None and self._covered_from is not self.line.x:
-            self._covering.renew_cover(self._numbers.cover)
+            self._covering.renew(self._numbers.cover)
             self._covered_from = self.line.x
 
     def find(self, state: State) -> None:
@@ -187,7 +186,7 @@ class Cushion(SeabedContact):
 
     def __init__(self, line: Line, radius: Array, level: float, weight: float, depth: float, soil: Covering) -> None:
         law, ground = Penalty(weight / depth, 0.25 * depth), Plane.level(level + depth)
-        super().__init__(line, radius, ground, law, stations.THREE_POINTS, Beside(soil))
+        super().__init__(line, radius, ground, law, stations.THREE_POINTS, beside(soil))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         super().renew_kernel_data(start, end)
@@ -195,22 +194,14 @@ class Cushion(SeabedContact):
 
 
 class BesideData(NamedTuple):
-    """As of `Beside`. soil: the numbers of what lies there."""
+    """All places beside a soil. soil: the kernel data of what lies there."""
 
     soil: Any
 
 
-class Beside:
+def beside(soil: Covering) -> Covering:
     """All places beside a soil."""
-
-    def __init__(self, soil: Covering) -> None:
-        self._soil = soil
-
-    def cover(self) -> BesideData:
-        return BesideData(self._soil.cover())
-
-    def renew_cover(self, cover: BesideData) -> None:
-        self._soil.renew_cover(cover.soil)
+    return Covering(lambda: BesideData(soil.make()), lambda data: soil.renew(data.soil))
 
 
 @covered_by.of(BesideData)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from riser_soil.contact.contact import RiserContact
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.pairing import Cover, facet_below
+from riser_soil.contact.seabed_contact import Covering
 from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array, IntArray
@@ -21,7 +23,9 @@ from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
 from riser_soil.riser.vectors import Vec
-from riser_soil.soil.surface import SoilSurface
+
+if TYPE_CHECKING:
+    from riser_soil.soil.condensed import SoilSurface
 
 SOIL = "contact.soil"
 
@@ -122,13 +126,10 @@ class SoilContact(RiserContact):
             self._patch = self.candidates(State.at_rest(0.0, max(ends)))
         return self._patch
 
-    def cover(self) -> Cover:
-        """What lies over the soil as it is now, for a seabed beside it."""
-        return self._soil.cover()
-
-    def renew_cover(self, cover: Cover) -> None:
-        """Let it be that of the soil as it is now."""
-        cover.renew(self._soil.settled)
+    @property
+    def covering(self) -> Covering:
+        """What covers a seabed beside it: the soil as it is now."""
+        return Covering(self._soil.cover, lambda cover: cover.renew(self._soil.settled))
 
     def settlement(self, xy: Array, state: State) -> Array:
         """Settlement (n,) [m] of the soil's surface at horizontal positions (n, 2) [m] since before the riser came.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,7 +34,9 @@ from riser_soil.core.saved_state import Saved, gathered, within
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
-from riser_soil.soil.surface import SoilSurface
+
+if TYPE_CHECKING:
+    from riser_soil.soil.condensed import SoilSurface
 
 AROUND = 0.25  # radii around the pipe in which facets are candidates: each of them couples its nodes to the element
 

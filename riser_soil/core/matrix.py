@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,36 +17,10 @@ from riser_soil.core.csr_matrix import CsrMatrix, add_at, add_magnitudes
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import MatrixBlock
 
+if TYPE_CHECKING:
+    from riser_soil.core.shared_matrix import SharedMatrix
+
 AT_ONCE = 2048  # blocks whose entries are looked up together: all at once take several times the matrix' own memory
-
-
-class StoredMatrix(Protocol):
-    """Where the sums are stored: the rows that this rank owns, over all columns."""
-
-    @property
-    def mat(self) -> Any:
-        """The same matrix as PETSc has it."""
-        ...
-
-    def put(self, data: Array) -> None:
-        """Take over the sums of this rank's blocks, in the order of the keys that it was made for; collective."""
-        ...
-
-    def csr(self) -> tuple[IntArray, IntArray, Array]:
-        """Starts of rows, columns, values."""
-        ...
-
-    def diagonal(self) -> Array:
-        """A copy (owned,)."""
-        ...
-
-    def set_diagonal(self, values: Array) -> None: ...
-
-    def times(self, x: Array) -> Array:
-        """Product (owned,) with the unknowns (owned,); collective."""
-        ...
-
-    def destroy(self) -> None: ...
 
 
 class Matrix:
@@ -117,7 +91,7 @@ class Matrix:
         self.stored.destroy()
 
 
-def _store(numbering: Numbering, keys: IntArray, symmetric: bool, data: Array) -> StoredMatrix:
+def _store(numbering: Numbering, keys: IntArray, symmetric: bool, data: Array) -> CsrMatrix | SharedMatrix:
     """data: the sums, which one rank alone stores in place."""
     if numbering.comm.size == 1:
         return CsrMatrix(keys, numbering.free, data, symmetric)

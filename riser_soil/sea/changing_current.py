@@ -46,9 +46,6 @@ class ChangingCurrent:
     runs: bool = True
     grows: bool = False
 
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))
-
     @cached_property
     def kernel_data(self) -> ChangingCurrentData:
         rate = spline_rates(self.time, self.velocity)
@@ -71,12 +68,12 @@ def spline_rates(time: Array, value: Array) -> Array:
     return rates
 
 
-@njit
-def _add_to(motion: WaterMotion, current: ChangingCurrentData, t: float, x: Array) -> None:
-    velocity, rate = _at_time(current, current.clock + t if current.runs else current.clock)
+@add_flow.of(ChangingCurrentData)
+def _add_changing(current: ChangingCurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
+    velocity, rate = _at_time(current, current.clock + t[0] if current.runs else current.clock)
     u, shear = at_heights(x[:, 2], current.level, velocity)
     du, shear_rate = at_heights(x[:, 2], current.level, rate)
-    factor, moves = t if current.grows else 1.0, 1.0 if current.runs else 0.0
+    factor, moves = t[0] if current.grows else 1.0, 1.0 if current.runs else 0.0
     for p in range(x.shape[0]):
         for i in range(2):
             motion.velocity[p, i] += factor * u[p, i]
@@ -101,8 +98,3 @@ def _at_time(current: ChangingCurrentData, t: float) -> tuple[Array, Array]:
             velocity[m, i] = current.velocity[a, m, i] + s * (first + s * (bow + s * turn))
             rate[m, i] = (first + s * (2.0 * bow + 3.0 * s * turn)) / h
     return velocity, rate
-
-
-@add_flow.of(ChangingCurrentData)
-def _add_changing(flow: ChangingCurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
-    _add_to(motion, flow, t[0], x)

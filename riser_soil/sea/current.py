@@ -50,24 +50,16 @@ class SteadyCurrent:
     velocity: Array
     grows: bool = False
 
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, self.kernel_data, t, x)
-
     @property
     def kernel_data(self) -> CurrentData:
         return CurrentData(self.level, self.velocity, self.grows)
 
 
-@njit
-def _add_to(motion: WaterMotion, current: CurrentData, t: float, x: Array) -> None:
+@add_flow.of(CurrentData)
+def _add_current(current: CurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
     values, slopes = at_heights(x[:, 2], current.level, current.velocity)
-    factor = t if current.grows else 1.0
+    factor = t[0] if current.grows else 1.0
     for p in range(x.shape[0]):
         for i in range(2):
             motion.velocity[p, i] += factor * values[p, i]
             motion.velocity_gradient[p, i, 2] += factor * slopes[p, i]
-
-
-@add_flow.of(CurrentData)
-def _add_current(flow: CurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
-    _add_to(motion, flow, t[0], x)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -45,7 +45,7 @@ class SeaData(NamedTuple):
 
 @bound_by_type
 def add_flow(flow: tuple, motion: WaterMotion, t: Array, x: Array) -> None:
-    """Add a flow at time t (1,) to the motion of points x (n, 3)."""
+    """Add a flow at time t (1,) to the motion of points x (n, 3), whose immersion so far is that under calm water."""
 
 
 def motion_of(sea: SeaData, motion: WaterMotion, t: Array, x: Array) -> list[Bound]:
@@ -105,36 +105,23 @@ def _project_twice(G: Array, basis: Array, out: Array) -> None:
             out[a, b] = total
 
 
-class FlowComponent(Protocol):
-    """A component of the flow: current or waves."""
-
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        """Add the flow at time t to the motion of points x (n, 3), whose immersion so far is that under calm water."""
-        ...
-
-    @property
-    def kernel_data(self) -> tuple[Any, ...]:
-        """The flow in numbers, whose type has a kernel of `add_flow`."""
-        ...
-
-
 class Sea:
     """A `Water`: the sum of its flows under a surface whose mean level is z = surface_level [m]; None: no surface.
 
     Flows don't act on each other: waves run as in still water, and the current isn't stretched with the surface.
     """
 
-    def __init__(self, surface_level: float | None, flows: Sequence[FlowComponent] = ()) -> None:
-        self._level, self._flows = math.inf if surface_level is None else surface_level, tuple(flows)
+    def __init__(self, surface_level: float | None, flows: Sequence[Any] = ()) -> None:
+        """flows: current or waves, each with `kernel_data` of a type with a kernel of `add_flow`."""
+        self._level, self.flows = math.inf if surface_level is None else surface_level, tuple(flows)
 
     def __call__(self, t: float, x: Array) -> WaterMotion:
-        motion = motion_workspace(len(x), 3)
-        put_at_rest(motion, self._level, x)
-        for flow in self._flows:
-            flow.add(t, x, motion)
+        motion, places = motion_workspace(len(x), 3), np.array(x, dtype=float, order="C")
+        for kernel in motion_of(self.kernel_data, motion, np.array([float(t)]), places):
+            kernel()
         return motion
 
     @property
     def kernel_data(self) -> SeaData:
         """The same for compiled code."""
-        return SeaData(self._level, tuple(flow.kernel_data for flow in self._flows))
+        return SeaData(self._level, tuple(flow.kernel_data for flow in self.flows))

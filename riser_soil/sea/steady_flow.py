@@ -40,7 +40,7 @@ class SteadyFlowData(NamedTuple):
 
 
 class SteadyFlow:
-    """A `FlowComponent`: a wave that grows smoothly. direction, phase [rad]: of the crest at x = y = 0 and clock 0."""
+    """A wave that grows smoothly. direction, phase [rad]: of the crest at x = y = 0 and clock 0."""
 
     def __init__(
         self, wave: SteadyWave, direction: float, phase: float, level: float, ramp: float, clock: float, since: float
@@ -49,20 +49,12 @@ class SteadyFlow:
         toward = math.cos(direction), math.sin(direction)
         self.kernel_data = SteadyFlowData(*of_wave, toward, phase, level, ramp, clock, since)
 
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))
-
 
 @add_flow.of(SteadyFlowData)
-def _add_steady(flow: SteadyFlowData, motion: WaterMotion, t: Array, x: Array) -> None:
-    _add_to(motion, flow, t[0], x)
-
-
-@njit
-def _add_to(motion: WaterMotion, wave: SteadyFlowData, t: float, x: Array) -> None:
+def _add_steady(wave: SteadyFlowData, motion: WaterMotion, t: Array, x: Array) -> None:
     cx, cy = wave.toward
-    factor, rate, _ = _ramped(wave.since + t, wave.ramp)
-    turned = wave.phase - np.remainder(wave.w * (wave.clock + t), 2.0 * np.pi)
+    factor, rate, _ = _ramped(wave.since + t[0], wave.ramp)
+    turned = wave.phase - np.remainder(wave.w * (wave.clock + t[0]), 2.0 * np.pi)
     for p in range(x.shape[0]):
         theta = wave.k * (cx * x[p, 0] + cy * x[p, 1]) + turned
         around = complex(math.cos(theta), math.sin(theta))

@@ -64,10 +64,9 @@ def waves(
     return WaveData(prepared, series.wave_series(prepared), level, wheeler, ramp, clock, since, now)
 
 
-@njit
-def add_to(motion: WaterMotion, sea: WaveData, t: float, x: Array) -> None:
-    """Add the waves at a time of the stage [s] and points x (n, 3) to the water's motion there."""
-    _update(sea, t)
+@add_flow.of(WaveData)
+def _add_waves(sea: WaveData, motion: WaterMotion, t: Array, x: Array) -> None:
+    _update(sea, t[0])
     rise, slope = _surface(sea, x)
     z = x[:, 2] - sea.level
     at = wheeler(z, rise, slope, sea.train.depth) if sea.wheeler else vertical(z, sea.train.depth)
@@ -164,11 +163,6 @@ def _add(v: Array, dv: Array, p: int, value: complex, by_z: complex, cx: float, 
         dv[p, i, 2] += rows[i][2] * gradient[p, 2]
 
 
-@add_flow.of(WaveData)
-def _add_waves(flow: WaveData, motion: WaterMotion, t: Array, x: Array) -> None:
-    add_to(motion, flow, t[0], x)
-
-
 class WaveField:
     """Linear waves that grow smoothly, with surface, velocity and acceleration ramped alike.
 
@@ -190,6 +184,3 @@ class WaveField:
     ) -> None:
         times = ramp, clock, clock if since is None else since
         self.kernel_data = waves(components, depth, surface_level, stretching == "wheeler", *times)
-
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))

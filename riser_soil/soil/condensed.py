@@ -22,6 +22,7 @@ from riser_soil.core.roles import Adaptive
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.soil.compliance import Compliance
 from riser_soil.soil.soil import Soil
+from riser_soil.soil.surface import SoilTop
 
 SPARE, FEW = 1.5, 20  # times the nodes that must be reached, and more: up to so many are kept that were reached before
 NO_FORCE = 1e-11  # of the largest force on a dof of the top: round-off where nothing presses
@@ -138,6 +139,9 @@ class CondensedTop:
 
     def describe(self, entry: int) -> str:
         return self._soil.surface.describe(entry)
+
+
+SoilSurface = SoilTop | CondensedTop  # as contact sees it
 
 
 class CondensedSoil:

@@ -2,28 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State, local
 from riser_soil.core.saved_state import Saved
-
-
-class SoilSurface(Protocol):
-    """The top as contact sees it; see `SoilTop`."""
-
-    points: Array
-    facets: IntArray
-    committed: Array
-    moves: bool
-    size: int
-    offset: int
-
-    def displacement(self, state: State) -> Array:
-        """Of all points (np, 3) since the geostatic start [m], at a state."""
-        ...
 
 
 class SoilTop:

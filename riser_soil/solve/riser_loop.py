@@ -137,21 +137,39 @@ def _given_up(norms: Array, taken: int, limits: StopLimits) -> int:
 
 @njit
 def follow(step: StepData, maps: Maps, dofs: Dofs) -> None:
-    """Write the rates that follow the increments, but for those of fixed dofs."""
-    for n in range(step.u.shape[0]):
-        for i in range(step.u.shape[1]):
-            moved = 0.0 if dofs.fixed[n, i] else step.u[n, i]
-            step.v[n, i] = step.v0[n, i] + maps.shift_v * moved
-            step.a[n, i] = step.a0[n, i] + maps.shift_a * moved
+    """Write the rates that follow the increments."""
+    n = step.u.size
+    u, fixed = step.u.reshape(n), dofs.fixed.reshape(n)
+    put_rates(u, fixed, step.v0.reshape(n), maps.shift_v, step.v.reshape(n))
+    put_rates(u, fixed, step.a0.reshape(n), maps.shift_a, step.a.reshape(n))
+
+
+@njit
+def put_rates(u: Array, fixed: BoolArray, start: Array, shift: float, out: Array) -> None:
+    """Write rates (n,) that follow the increments u by a shift, but for those of fixed dofs; start: without increments.
+    """
+    for k in range(u.size):
+        out[k] = start[k] + (0.0 if fixed[k] else shift * u[k])
 
 
 @njit
 def combine(forces: LineForces, step: StepData, weights: LineWeights, dofs: Dofs) -> None:
     """Write the residual of the weighted groups, zero where dofs are fixed."""
-    for n in range(dofs.residual.shape[0]):
-        for i in range(dofs.residual.shape[1]):
-            bulk = weights.inertia * forces.inertia[n, i] + weights.force * forces.force[n, i]
-            dofs.residual[n, i] = 0.0 if dofs.fixed[n, i] else bulk + forces.end[n, i] + step.past[n, i]
+    n = dofs.residual.size
+    groups = forces.inertia.reshape(n), forces.force.reshape(n), forces.end.reshape(n)
+    residual, fixed = dofs.residual.reshape(n), dofs.fixed.reshape(n)
+    put_balance(groups, weights.inertia, weights.force, step.past.reshape(n), residual)
+    for k in range(n):
+        residual[k] = 0.0 if fixed[k] else residual[k]
+
+
+@njit
+def put_balance(
+    groups: tuple[Array, Array, Array], inertia: float, force: float, past: Array, out: Array
+) -> None:
+    """Write the residual (n,) of forces by group, see `Forces`, two of them weighted, with the share of the past."""
+    for k in range(out.size):
+        out[k] = inertia * groups[0][k] + force * groups[1][k] + groups[2][k] + past[k]
 
 
 @njit

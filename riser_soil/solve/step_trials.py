@@ -8,10 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State
+from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import Limited
 from riser_soil.core.system import System
+from riser_soil.solve.riser_loop import put_balance, put_rates
 from riser_soil.solve.solution import NotConvergedError, Step
+from riser_soil.solve.time_scheme import Scheme
 
 
 class StepTrials:
@@ -23,7 +25,8 @@ class StepTrials:
 
     def __init__(self, system: System, step: Step) -> None:
         self._system, self.step, scheme = system, step, step.scheme
-        self.weights, self._past = scheme.weights(step.dt), scheme.past(step.start)
+        self.weights, past = scheme.weights(step.dt), scheme.past(step.start)
+        self._past = np.zeros_like(step.guess) if past is None else past
         self._still = still = scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
         self._prescribed = replace(still, u=step.guess.copy(), v=still.v.copy(), a=still.a.copy())
         system.prescribe(self._prescribed)
@@ -42,10 +45,9 @@ class StepTrials:
 
     def _follow(self, u: Array) -> State:
         """State of the increments u: rates follow them by the scheme's shifts, but for the prescribed ones."""
-        v = self._still.v + self.weights.shift_v * u
-        a = self._still.a + self.weights.shift_a * u
-        at = self._system.prescribed_dofs
-        v[at], a[at] = self._prescribed.v[at], self._prescribed.a[at]
+        fixed, v, a, shifts = self._system.prescribed, np.empty_like(u), np.empty_like(u), self.weights
+        put_rates(u, fixed, np.where(fixed, self._prescribed.v, self._still.v), shifts.shift_v, v)
+        put_rates(u, fixed, np.where(fixed, self._prescribed.a, self._still.a), shifts.shift_a, a)
         return State(self.step.t, u, v, a, dt=self._still.dt)
 
     def with_prescribed(self, u: Array) -> Array:
@@ -70,7 +72,7 @@ class StepTrials:
         if state is not self._known:
             self.forces: Forces = self._system.forces(state)
             self._known = state
-        return self.step.scheme.combine(self.forces, self._past)
+        return balance_of(self.step.scheme, self.weights, self.forces, self._past)
 
     def renumbered(self) -> Array | None:
         """Unknowns of the state that was tried last, as the system numbers its dofs now; None where none was."""
@@ -89,3 +91,12 @@ class StepTrials:
         reasons += [part.inadmissible(self.state) for part in limited]
         for reason in filter(None, reasons):
             raise NotConvergedError(reason)
+
+
+def balance_of(scheme: Scheme, weights: Weights, forces: Forces, past: Array) -> Array:
+    """Local residual of forces where they are in balance, as the increments of the step change it. past (n,): see
+    `Scheme.past`.
+    """
+    out = np.empty_like(past)
+    put_balance((forces.inertia, forces.force, forces.end), weights.inertia, weights.force, past, out)
+    return out if scheme.moves == 1.0 else scheme.moves * out

@@ -27,9 +27,12 @@ from riser_soil.solve.riser_mass import CommittedStep
 
 
 class Scheme(Protocol):
-    """Interface of the time integration schemes. dynamic: whether there are rates and inertia."""
+    """Interface of the time integration schemes. dynamic: whether there are rates and inertia. moves: how much a step's
+    increments are of those to the state that is balanced, by which the parts differentiate.
+    """
 
     dynamic: bool
+    moves: float
 
     @property
     def lag(self) -> float:
@@ -75,10 +78,6 @@ class Scheme(Protocol):
         """Contribution of the forces at the start of the step to the local residual."""
         ...
 
-    def combine(self, forces: Forces, past: Array | None) -> Array:
-        """Local residual from the forces there and from `past`."""
-        ...
-
     @property
     def start_share(self) -> float:
         """Share of what there is at the step's start in its mean, of second order; the rest: where it is balanced."""
@@ -90,7 +89,7 @@ class Static:
     """Equilibrium: no rates, no inertia. seconds: that a step takes; 0 is an instant, in which nothing flows."""
 
     seconds: float = math.inf
-    dynamic = False
+    dynamic, moves = False, 1.0
     lag = stiff_lag = error_constant = 0.0
     start_share = 0.5
 
@@ -116,9 +115,6 @@ class Static:
     def past(self, start: Forces | None) -> Array | None:
         return None
 
-    def combine(self, forces: Forces, past: Array | None) -> Array:
-        return forces.force + forces.end
-
 
 @dataclass(frozen=True)
 class GeneralizedAlpha:
@@ -128,7 +124,7 @@ class GeneralizedAlpha:
     alpha_f: float
     beta: float
     gamma: float
-    dynamic = True
+    dynamic, moves = True, 1.0
     start_share = 0.5
 
     @classmethod
@@ -182,15 +178,6 @@ class GeneralizedAlpha:
             return None
         return np.asarray(_past(self.bulk_weight, self.alpha_m, start.inertia, self.alpha_f, start.force))
 
-    def combine(self, forces: Forces, past: Array | None) -> Array:
-        bulk = self.bulk_weight
-        out = bulk * (1.0 - self.alpha_m) * forces.inertia
-        out += bulk * (1.0 - self.alpha_f) * forces.force
-        out += forces.end
-        if past is not None:
-            out += past
-        return out
-
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
         a = state.a - contact / (2.0 * self.beta)
         v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
@@ -231,7 +218,7 @@ class Midpoint:
     quasi-static soil, whose forces belong to the end.
     """
 
-    dynamic = True
+    dynamic, moves = True, 2.0
     lag = stiff_lag = 0.0
     error_constant = 1.0 / 12.0
     start_share = 0.0
@@ -259,7 +246,3 @@ class Midpoint:
 
     def past(self, start: Forces | None) -> Array | None:
         return None
-
-    def combine(self, forces: Forces, past: Array | None) -> Array:
-        """Twice the balance, as the parts differentiate by half the increment."""
-        return 2.0 * (forces.inertia + forces.force + forces.end)

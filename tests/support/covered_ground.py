@@ -3,32 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from riser_soil.contact.seabed_contact import Covering
 from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.riser.vectors import Vec
 
 
 class BeyondData(NamedTuple):
-    """As of `Beyond`."""
+    """As of `beyond`."""
 
     x: float
     until: float
 
 
-@dataclass(frozen=True)
-class Beyond:
+def beyond(x: float, until: float = math.inf) -> Covering:
     """Covers all beyond an x up to another one [m], never moves."""
-
-    x: float
-    until: float = math.inf
-
-    def cover(self) -> BeyondData:
-        return BeyondData(self.x, self.until)
-
-    def renew_cover(self, cover: BeyondData) -> None:
-        """It stays."""
+    return Covering(lambda: BeyondData(x, until), lambda cover: None)
 
 
 @covered_by.of(BeyondData)

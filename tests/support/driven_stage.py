@@ -24,6 +24,7 @@ from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.step_control import Control
+from riser_soil.solve.step_trials import balance_of
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
@@ -115,7 +116,9 @@ class FirstStep:
         return state
 
     def residual(self, x: Array) -> Array:
-        local = self.scheme.combine(self.system.forces(self.state(x)), self.scheme.past(self._start))
+        forces, past = self.system.forces(self.state(x)), self.scheme.past(self._start)
+        nothing, weights = np.zeros(self.assembly.size), self.scheme.weights(self._dt)
+        local = balance_of(self.scheme, weights, forces, nothing if past is None else past)
         return self.system.numbering.add_to_global(local)
 
     def slope(self, x: Array, direction: Array, h: float) -> Array:

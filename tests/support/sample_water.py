@@ -49,15 +49,12 @@ class GeneralData(NamedTuple):
 
 
 class General:
-    """A `FlowComponent` whose fields have nothing to do with each other, so that each counts by itself; as it is seen
+    """A flow whose fields have nothing to do with each other, so that each counts by itself; as it is seen
     from a ship under way (3,) [m/s].
     """
 
     def __init__(self, ship: Array | None = None) -> None:
         self.kernel_data = GeneralData(VELOCITY, ACCELERATION, np.zeros(3) if ship is None else ship)
-
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        add_to(motion, self.kernel_data, t, np.ascontiguousarray(x))
 
 
 @njit

@@ -10,7 +10,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.soil.surface import SoilSurface
+from riser_soil.soil.condensed import SoilSurface
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping

@@ -4,8 +4,6 @@ for, and what they are timed against.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -13,14 +11,14 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.smooth_step import smooth_step
 from riser_soil.sea import waves
 from riser_soil.sea.components import Components
-from riser_soil.sea.flows import WaterMotion
+from riser_soil.sea.flows import Sea, WaterMotion
 from riser_soil.sea.waves import Stretching
 
 KernelData = tuple[float, ...]
 
 
 class SummedWaves:
-    """A `FlowComponent` as `WaveField`. deepest: k d beyond which components are left out at depth d."""
+    """The sea with waves as of `WaveField`. deepest: k d beyond which components are left out at depth d."""
 
     deepest = 700.0
 
@@ -38,11 +36,8 @@ class SummedWaves:
         self._depth, self._level = depth, level
         self._stretching, self._ramp, self._clock, self._since = stretching, ramp, clock, since
 
-    @property
-    def kernel_data(self) -> tuple[Any, ...]:
-        raise NotImplementedError("plain sums are not compiled")
-
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+    def __call__(self, t: float, x: Array) -> WaterMotion:
+        motion = Sea(self._level)(t, x)
         (r, rate, _), t = smooth_step(self._since + t, self._ramp), self._clock + t
         a, w, k, d, phase = self._waves
         toward = np.stack([np.cos(d), np.sin(d)], axis=-1)
@@ -62,6 +57,7 @@ class SummedWaves:
         motion.acceleration_gradient[:] += r * dv_rate + rate * dv
         motion.immersion[:] += rise
         motion.immersion_gradient[:, :2] += slope
+        return motion
 
 
 @njit

@@ -233,7 +233,7 @@ def test_nothing_bears_nodes_beside_the_block() -> None:
     np.testing.assert_allclose(force, expected, rtol=1e-9)
     assert case.contact.force_on_soil(case.state())[2] == pytest.approx(-0.5 * 3.5 * LAW.force(np.array(0.002)))
     xy = case.riser.x[:, :2]
-    cover = case.contact.cover()
+    cover = case.contact.covering.make()
     np.testing.assert_array_equal([facet_below(cover, x, y, -1) >= 0 for x, y in xy], np.arange(8) < 4)
 
 

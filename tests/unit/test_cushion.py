@@ -11,7 +11,7 @@ from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
-from tests.support.covered_ground import Beyond
+from tests.support.covered_ground import beyond
 from tests.support.dense_chain import STATIC, residual, tangent
 from tests.support.differences import difference_tangent, error
 
@@ -23,7 +23,7 @@ def lying(dimension: int = 2, above: float = 0.0, covered: float = np.inf) -> tu
     arc = np.linspace(0.0, 10.0, 6)
     flat = shapes.straight(arc, (0.0, 0.0, LEVEL + RADIUS + above))
     line = Line(dimension, shapes.layout(arc, np.full(5, 0.3), flat, flat), End(False), End(False))
-    return line, Cushion(line, np.full(5, RADIUS), LEVEL, WEIGHT, DEPTH, Beyond(-1.0, covered))
+    return line, Cushion(line, np.full(5, RADIUS), LEVEL, WEIGHT, DEPTH, beyond(-1.0, covered))
 
 
 def at(line: Line, t: float, u: Array | None = None) -> State:

@@ -29,13 +29,10 @@ class CountedData(NamedTuple):
 
 
 class Counted:
-    """Uneven water that counts how often it is asked; a `FlowComponent`."""
+    """Uneven water that counts how often it is asked; a flow."""
 
     def __init__(self) -> None:
         self.kernel_data = CountedData(sample_water.General().kernel_data, np.zeros(20), np.zeros(1, dtype=np.int64))
-
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        raise AssertionError("not asked for")
 
     @property
     def times(self) -> list[float]:

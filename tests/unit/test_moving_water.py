@@ -128,13 +128,10 @@ class DriftData(NamedTuple):
 
 
 class Drift:
-    """A `FlowComponent`: the same everywhere."""
+    """A flow: the same everywhere."""
 
     def __init__(self, velocity: Array) -> None:
         self.kernel_data = DriftData(velocity)
-
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        raise AssertionError("not asked for")
 
 
 @add_flow.of(DriftData)

@@ -13,7 +13,7 @@ from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import HeightField, Profile
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from tests.support.covered_ground import Beyond
+from tests.support.covered_ground import beyond
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import DIRECTION, START, Sample, sample
@@ -67,7 +67,7 @@ def test_the_first_guess_lands_as_it_does_beside_soil(dimension: int) -> None:
     ground = Plane.sloping(START - np.array([0.0, 0.0, 0.1]), 0.1, 0.3)
     radius, guess = np.full(at.line.length.size, 0.1), at.state(1)
     alone = SeabedContact(at.line, radius, ground, ROUND)
-    beside, below = (SeabedContact(at.line, radius, ground, ROUND, covering=Beyond(x)) for x in (1e6, -1e6))
+    beside, below = (SeabedContact(at.line, radius, ground, ROUND, covering=beyond(x)) for x in (1e6, -1e6))
     found = alone.predict(guess)
     assert np.abs(found - guess.u).max() > 0.0
     np.testing.assert_array_equal(found, beside.predict(guess))

@@ -21,7 +21,7 @@ from riser_soil.seabed.compiled_law import CompiledLaw
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import Profile
 from riser_soil.seabed.law import NormalLaw
-from tests.support.covered_ground import Beyond
+from tests.support.covered_ground import beyond
 from tests.support.sample_line import START, sample
 from tests.support.soil_loops import after, aubeny_biscontin, randolph_quiggin
 
@@ -165,19 +165,19 @@ def test_covered_stations_feel_nothing_and_keep_their_history(dimension: int) ->
     middle = float(np.median(at.line.to_global(at.line.x)[:, 0]))
     ground, radius = Plane.level(START[2] + 5.0), np.zeros(at.line.length.size)
     free = SeabedContact(at.line, radius, ground, law)
-    part = SeabedContact(at.line, radius, ground, law, covering=Beyond(middle))
+    part = SeabedContact(at.line, radius, ground, law, covering=beyond(middle))
     state = at.state(1)
     seen, all_of_it = (contact.kernel_data().found for contact in (part, free))
     for contact in (part, free):
         contact.find(state)
-    beyond = at.line.to_global(seen.position)[..., 0] > middle
-    assert beyond.any()
-    assert not beyond.all()
-    assert np.all(seen.penetration[beyond] == -np.inf)
-    np.testing.assert_array_equal(seen.penetration[~beyond], all_of_it.penetration[~beyond])
+    covered = at.line.to_global(seen.position)[..., 0] > middle
+    assert covered.any()
+    assert not covered.all()
+    assert np.all(seen.penetration[covered] == -np.inf)
+    np.testing.assert_array_equal(seen.penetration[~covered], all_of_it.penetration[~covered])
     clear, force = part.contact_along_line(state)
-    assert np.isinf(clear[beyond.ravel()]).all()
-    assert not force[beyond.ravel()].any()
+    assert np.isinf(clear[covered.ravel()]).all()
+    assert not force[covered.ravel()].any()
     part.commit(state)
-    assert np.all(np.isinf(part.memory[beyond]))
-    assert np.all(part.memory[~beyond] == 0.0)
+    assert np.all(np.isinf(part.memory[covered]))
+    assert np.all(part.memory[~covered] == 0.0)

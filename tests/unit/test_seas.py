@@ -18,7 +18,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.wave_kinds import relative_directions
 from riser_soil.sea import spectra
 from riser_soil.sea.components import Components
-from riser_soil.sea.flows import motion_workspace
+from riser_soil.sea.flows import Sea
 from riser_soil.sea.waves import WaveField
 from tests.support.small_scene import BASE
 
@@ -133,12 +133,8 @@ def test_a_record_comes_back_where_it_was_taken(tmp_path: Path) -> None:
     (tmp_path / "eta.csv").write_text("t [s], elevation [m]\n" + rows)
     record = {"file": "eta.csv", "position": [12.0, -5.0], "direction_deg": 20.0}
     waves = sea({"record": record}, tmp_path)
-    field = WaveField(waves, DEPTH, 0.0)
-    place, found = np.array([[12.0, -5.0, -1.0]]), []
-    for time in t:
-        motion = motion_workspace(1, 3)
-        field.add(time, place, motion)
-        found.append(motion.immersion[0])
+    flow, place = Sea(0.0, [WaveField(waves, DEPTH, 0.0)]), np.array([[12.0, -5.0, 0.0]])
+    found = [flow(time, place).immersion[0] for time in t]
     nyquist = np.mean(eta * (-1.0) ** np.arange(64)) * (-1.0) ** np.arange(64)
     np.testing.assert_allclose(found, eta - eta.mean() - nyquist, atol=1e-9)
 

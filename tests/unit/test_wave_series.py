@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -18,7 +18,14 @@ from tests.support.summed_waves import SummedWaves
 G, LEVEL = 9.81, 7.0
 DEPTHS = [np.inf, 1000.0, 120.0, 30.0, 5.0]
 HOURS = 3.0 * 3600.0
-KINDS = WaveField, SummedWaves
+
+
+def in_waves(*given: Any) -> Sea:
+    """The sea with a `WaveField` of these arguments."""
+    return Sea(LEVEL, [WaveField(*given)])
+
+
+KINDS = in_waves, SummedWaves
 Stretching = Literal["wheeler", "vertical"]
 
 
@@ -58,7 +65,7 @@ def test_series_are_the_sums(seed: int, h: float, stretching: Stretching) -> Non
     waves, x = sea(h, Tp, count, seed, gamma, draw.uniform(-3.0, 3.0)), points(h, 100.0, seed)
     for ramp in (0.0, 80.0):
         t = draw.uniform(0.0, 80.0)
-        found, summed = (Sea(LEVEL, [kind(waves, h, LEVEL, stretching, ramp)])(t, x) for kind in KINDS)
+        found, summed = (kind(waves, h, LEVEL, stretching, ramp)(t, x) for kind in KINDS)
         assert errors(found, summed, sizes(waves, h)).max() < 1e-12
         assert np.abs(summed.velocity).max() > 1e-4 * sizes(waves, h).velocity
 
@@ -68,14 +75,14 @@ def test_crossing_waves_are_summed_by_direction(h: float) -> None:
     waves = sea(h, 8.0, 60, 5)
     waves = waves._replace(direction=np.random.default_rng(6).choice([-2.0, -0.1, 0.4, 1.7], 60))
     x = points(h, 100.0, 7)
-    found, summed = (Sea(LEVEL, [kind(waves, h, LEVEL)])(12.3, x) for kind in KINDS)
+    found, summed = (kind(waves, h, LEVEL)(12.3, x) for kind in KINDS)
     assert errors(found, summed, sizes(waves, h)).max() < 1e-12
 
 
 @pytest.mark.parametrize("h", DEPTHS)
 def test_far_away_and_after_hours_only_the_phases_round_off(h: float) -> None:
     waves, x = sea(h, 6.0, 200, 8), points(h, 5000.0, 9)
-    found, summed = (Sea(LEVEL, [kind(waves, h, LEVEL)])(HOURS, x) for kind in KINDS)
+    found, summed = (kind(waves, h, LEVEL)(HOURS, x) for kind in KINDS)
     assert errors(found, summed, sizes(waves, h)).max() < 1e-10
 
 

@@ -85,12 +85,9 @@ class RippleData(NamedTuple):
 
 
 class Ripple:
-    """A `FlowComponent`: a surface of 12 m long waves, of which an element holds a tenth."""
+    """A flow: a surface of 12 m long waves, of which an element holds a tenth."""
 
     kernel_data = RippleData(2.0 * np.pi / 12.0)
-
-    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        raise AssertionError("not asked for")
 
 
 @add_flow.of(RippleData)
