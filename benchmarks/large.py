@@ -18,8 +18,7 @@ from riser_soil.checks.estimate import size_of
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.scene.reader import read_scene
-from riser_soil.seating import seat
-from riser_soil.stages import settings_of
+from riser_soil.stages import seat, settings_of
 
 BLOCKS = {  # cells along and across the riser, and far from it [m], by thousands of unknowns
     5: (1.0, 0.075, 0.75),

@@ -20,7 +20,7 @@ from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
 from riser_soil.results.record import Recorder
-from riser_soil.solve.solution import NotConvergedError
+from riser_soil.solve.solver import NotConvergedError
 
 SCENES = Path(__file__).parent.parent / "tests" / "scenes"
 CATENARY, TANK, STORM = (SCENES / f"{name}.yaml" for name in ("catenary", "tank", "storm"))

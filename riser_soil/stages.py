@@ -1,4 +1,7 @@
-"""Analysis of one stage, from its assembled system to its end, with dynamic relaxation where statics need it."""
+"""Analysis of one stage, from its assembled system to its end, with dynamic relaxation where statics need it.
+
+A riser on soil first comes to rest on its cushion, before the soil is there to bear it.
+"""
 
 from __future__ import annotations
 
@@ -21,13 +24,13 @@ from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.interruption import asked_to_end, end_together, uninterrupted
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
-from riser_soil.seating import seat
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
-from riser_soil.solve.solution import NewtonSettings
-from riser_soil.solve.solver import StepSolver
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step, StepSolver
 from riser_soil.solve.step_control import AutoSteps, Control, PathSteps, StepControl
 from riser_soil.solve.step_solver import solver_of
+from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 LAID_IN = 8  # load steps on soil, at least
@@ -319,3 +322,22 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
         first = first_step(stepper.system, stepper.now, tolerance)
         return AutoSteps(stage.duration, tolerance, smallest, first, times_to_hit(assembly.scene, stage))
     return StepControl(stage.duration, stage.time_step, smallest)
+
+
+def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Timer) -> None:
+    """Find the riser's equilibrium on the cushion at the load factor 0 and commit it; collective.
+
+    By Newton's method, else by dynamic relaxation: SolveError where that finds none either.
+    """
+    absent = [*assembly.soil_parts, *assembly.on_soil]
+    alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
+    system = System(assembly.comm, alone, clock)
+    newton = Newton(system, replace(settings, line_search=False))
+    with destroyed_together(assembly.comm, newton.destroy, system.destroy):
+        try:
+            size = system.numbering.size
+            solution = newton.solve(Step(Static(), State.at_rest(0.0, size), 0.0, 1.0, None, np.zeros(size)))
+            newton.require_stable(solution)
+            system.commit(solution.state)
+        except NotConvergedError:
+            relax(assembly.comm, alone, assembly.line, assembly.scales.weight, settings, clock, 0.0)

@@ -141,7 +141,7 @@ class PipeInWater(Body):
         return self.pipe.span
 
     def dry(self, gravity: float) -> Dry:
-        from riser_soil.sea.dry_pipe import dry_pipe
+        from riser_soil.sea.buoyancy import dry_pipe
 
         return dry_pipe(gravity * self.displaced)
 
@@ -154,7 +154,7 @@ class ModulesInWater(Body):
 
     @cached_property
     def pipe(self) -> Pipe:
-        from riser_soil.sea.modules import pipe_at
+        from riser_soil.sea.pipe import pipe_at
 
         return pipe_at(self.line, self.modules)
 
@@ -168,14 +168,14 @@ class ModulesInWater(Body):
 
     @property
     def still(self) -> WaterLoads:
-        from riser_soil.sea.modules import alike
         from riser_soil.sea.moving_water import WaterLoads
+        from riser_soil.sea.pipe import alike
 
         return WaterLoads(self.pipe, alike(0.5 * self.rho * self._of("drag_area")), self.mass)
 
     @cached_property
     def mass(self) -> Array:
-        from riser_soil.sea.modules import alike
+        from riser_soil.sea.pipe import alike
 
         return alike(self._of("added_mass") * self.displaced)
 
@@ -185,7 +185,7 @@ class ModulesInWater(Body):
 
     @property
     def span(self) -> Array:
-        from riser_soil.sea.modules import diameters
+        from riser_soil.sea.pipe import diameters
 
         return diameters(self.modules)[:, None]
 

@@ -21,7 +21,7 @@ from riser_soil.core.part import State
 from riser_soil.riser.line import UP, Line
 from riser_soil.riser.touchdown_bend import TouchdownBend
 from riser_soil.seabed.grounds import Plane
-from riser_soil.seabed.rest import depth_at_rest
+from riser_soil.seabed.law import NormalLaw
 
 if TYPE_CHECKING:
     from riser_soil.contact.seabed_contact import SeabedContact
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.sections import Elements
     from riser_soil.scene.scene import Scene
+
 
 HANGS = 1e-6  # of the line's length: what is higher than this over its rest
 LEAST_BEND = 0.01  # of an element: the length of a bend, where a chain has none
@@ -152,3 +153,22 @@ def _increments(line: Line, before: ShapeInPlane, after: ShapeInPlane) -> Array:
     translation = (moved[:, :1] * line.direction + moved[:, 1:] * UP) @ line.basis
     spins = line.trial(State.at_rest(0.0, line.offset + line.size)).turn.moment_maps(line.turning_axes)
     return np.hstack([translation, np.einsum("nij,ni->nj", spins, turned)])
+
+
+DEEPEST = 10.0  # diameters, beyond which nothing is taken to rest
+HALVINGS = 60
+
+
+def depth_at_rest(law: NormalLaw, weight: Array, diameter: float) -> Array:
+    """Penetration (n,) [m] at which the law bears weights (n,) [N/m], > 0; inf where it does not."""
+    low, high = np.full(weight.shape, -law.reach), np.full(weight.shape, DEEPEST * diameter)
+    bears = _force(law, high) >= weight
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        holds = _force(law, middle) >= weight
+        low, high = np.where(holds, low, middle), np.where(holds, middle, high)
+    return np.where(bears, high, np.inf)
+
+
+def _force(law: NormalLaw, penetration: Array) -> Array:
+    return law.update(penetration, law.initial_history(penetration.shape)).force

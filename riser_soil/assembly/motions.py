@@ -73,14 +73,14 @@ def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessel
 
 def _move(end: End, origin: Array, target: Vector | None) -> None:
     if target is not None:
-        from riser_soil.motion.slow import SmoothMove
+        from riser_soil.motion.prescribed import SmoothMove
 
         end.motion = SmoothMove(origin, np.asarray(target))
 
 
 def _slow(end: End) -> None:
     """Without rates."""
-    from riser_soil.motion.slow import SlowMotion, SlowTurning
+    from riser_soil.motion.prescribed import SlowMotion, SlowTurning
 
     end.motion = SlowMotion(end.motion) if end.motion is not None else None
     end.turning = SlowTurning(end.turning) if end.turning is not None else None
@@ -108,27 +108,27 @@ def _set(end: End, name: str, origin: Array, stage: Stage, way: MotionKind, vess
 
 
 def _harmonic(origin: Array, given: Harmonic) -> Motion:
-    from riser_soil.motion.harmonic import HarmonicMotion
+    from riser_soil.motion.prescribed import HarmonicMotion
 
     return HarmonicMotion(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
 
 
 def _arc(origin: Array, given: ArcMotion) -> Motion:
-    from riser_soil.motion.harmonic import AngleOscillation, SwingingEnd
+    from riser_soil.motion.prescribed import AngleOscillation, SwingingEnd
 
     swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
     return SwingingEnd(origin, np.array(given.hub), np.array(given.axis), swing)
 
 
 def _rocking(given: Rotation) -> Callable[[float], SupportRotation]:
-    from riser_soil.motion.harmonic import AngleOscillation, RockingSupport
+    from riser_soil.motion.prescribed import AngleOscillation, RockingSupport
 
     swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
     return RockingSupport(np.array(given.axis) / np.linalg.norm(given.axis), swing)
 
 
 def _table(given: Table | VesselHistory, stage: Stage) -> SixDegreeMotion:
-    from riser_soil.motion.table import TabulatedMotion
+    from riser_soil.motion.prescribed import TabulatedMotion
 
     values = np.hstack([given.displacements, given.rotations])
     straight = isinstance(stage, QuasiStaticStage)

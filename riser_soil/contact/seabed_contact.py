@@ -13,8 +13,7 @@ from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_kernels import UNKNOWN, OverNodes, SeabedData, covered_by, land, put_at_nodes, seabed_data
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.part import State, Traits
 from riser_soil.core.roles import Predictor
 from riser_soil.core.saved_state import Saved, Stateful

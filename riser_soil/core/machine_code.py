@@ -1,7 +1,7 @@
 """Values in machine code as numba has them: arrays, tuples, nothing; for functions that `intrinsic` takes.
 
 An array is a record of two references that count its users, its numbers of items and of bytes an item, where its items
-lie, shape and strides: so `packed` lays it out in memory. A tuple of alike values is an array of LLVM's, another one a
+lie, shape and strides: so `bound` lays it out in memory. A tuple of alike values is an array of LLVM's, another one a
 record.
 """
 

@@ -131,7 +131,7 @@ def result_lines(found: YearlyDamage) -> list[str]:
 
 
 def _draw(png: Path, found: YearlyDamage) -> None:
-    from riser_soil.plots.damage import draw_damage
+    from riser_soil.plots.load_cases import draw_damage
 
     zone = np.array([each.touchdown for each in found.cases])
     reach = (np.nanmin(zone), np.nanmax(zone)) if np.isfinite(zone).any() else None

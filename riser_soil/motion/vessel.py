@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.motion.harmonic import ramped
+from riser_soil.motion.prescribed import ramped
 from riser_soil.riser.ends import Kinematics
 
 TURN = 2.0 * np.pi

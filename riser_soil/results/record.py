@@ -25,8 +25,7 @@ from riser_soil.results.folder import FolderLock
 from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
-from riser_soil.results.record_rows import series_rows, step_rows
-from riser_soil.results.run_frames import RunFrames
+from riser_soil.results.run_frames import RunFrames, series_rows, step_rows
 from riser_soil.results.schedule import DueOutputs, SimulatedTime
 from riser_soil.results.summary import StageTally, Summary
 

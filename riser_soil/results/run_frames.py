@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,47 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Stateful
-from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
+from riser_soil.core.snapshot import Instant, Ledger, SoilMesh, SoilSnapshot, StepRecord
+from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.results import folder as run_folder
 from riser_soil.results.figures import places, with_largest
-from riser_soil.results.record_rows import soil_frame
 from riser_soil.results.summary import StageTally
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
+
+
+def series_rows(stamps: Sequence[float], seen: Instant, fields: Collection[str]) -> dict[str, Any]:
+    """Of many instants, by the names of netcdf.SERIES, but for choices that are not among the fields."""
+    return {"time": np.array(stamps)} | {name: get(seen) for name, get in _wanted(tuple(fields))}
+
+
+@cache
+def _wanted(fields: tuple[str, ...]) -> list[tuple[str, Callable[[Instant], Any]]]:
+    """Names of what is recorded, and how each follows from what is seen."""
+    recorded = (output for output in outputs.of_instant() if output.where != "summary")
+    return [(output.name, output.get) for output in recorded if output.name in fields or not output.chosen]
+
+
+def step_rows(steps: Sequence[StepRecord], accounts: Collection[str]) -> dict[str, list[float]]:
+    """By the names of netcdf.HEALTH and the ledger's accounts; what a step has not booked is 0."""
+    booked = [_booked(step.ledger) for step in steps]
+    return {
+        **{output.name: [output.get(step) for step in steps] for output in OF_STEP},
+        **{name: [each.get(name, 0.0) for each in booked] for name in accounts},
+    }
+
+
+def _booked(ledger: Ledger) -> dict[str, float]:
+    lost = {f"dissipated_{name}": value for name, value in ledger.dissipated_by.items()}
+    return lost | {f"work_{name}": value for name, value in ledger.work_by.items()}
+
+
+def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Frame:
+    wanted = [output for output in outputs.OF_SOIL if output.name in fields]
+    return Frame(
+        stamp,
+        {output.name: output.get(soil) for output in wanted if output.where == "soil points"},
+        {output.name: output.get(soil) for output in wanted if output.where == "soil cells"},
+    )
 
 
 class RunFrames:

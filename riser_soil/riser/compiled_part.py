@@ -14,8 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from riser_soil.core.arrays import Array, listed
-from riser_soil.core.bound import Bound, in_turn
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.configuration import maps_for, put_maps, put_turning
 from riser_soil.riser.line import Line

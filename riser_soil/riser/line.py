@@ -19,11 +19,10 @@ from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.errors import SceneError
-from riser_soil.riser import folding, hermite
+from riser_soil.riser import hermite, line_kernels
 from riser_soil.riser.directors import Frames, PlanarFrames
 from riser_soil.riser.ends import End
-from riser_soil.riser.free_turns import free_turns, unit_lengths
-from riser_soil.riser.line_ends import LineEnds
+from riser_soil.riser.line_ends import LineEnds, free_turns, unit_lengths
 from riser_soil.riser.line_kernels import after_increments, put_folded, put_magnitudes
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
@@ -300,8 +299,8 @@ class Line:
         if folded < self.length.size:
             ends = self.frames.turn(np.zeros((self.nodes, self.frames.dofs))).tangent[folded]
             sizes = self.arc[folded], self.length[folded], self.outer_diameter[folded]
-            return folding.folded(*sizes, ends, self.chord[folded])
-        return folding.swinging(self.arc[swung]) if swung < self.length.size else ""
+            return line_kernels.folded(*sizes, ends, self.chord[folded])
+        return line_kernels.swinging(self.arc[swung]) if swung < self.length.size else ""
 
     def to_global(self, x: Array) -> Array:
         """Global positions (…, 3) of in-plane (or global) coordinates (…, d)."""

@@ -11,10 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
-from riser_soil.core.packed import Packed
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_geometric, collect_nodal, put_pulled_back, scatter
 from riser_soil.riser.line import Line

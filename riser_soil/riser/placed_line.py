@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Packed
 from riser_soil.core.part import State
 from riser_soil.riser.configuration import base_of, place, put_rates, workspace_for
 from riser_soil.riser.line import Line

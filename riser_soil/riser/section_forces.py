@@ -12,8 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound, in_turn
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import State
 from riser_soil.riser.compiled_part import LineTrials
 from riser_soil.riser.configuration import Configuration, PlanarConfiguration, put_moment_maps

@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import assert_never
 
 from riser_soil.core.quantities import Vector
-from riser_soil.scene.contents_checks import contents_conflicts
 from riser_soil.scene.end_checks import end_conflicts, hang_off_conflicts
 from riser_soil.scene.ground_checks import feature_conflicts, ground_conflicts
 from riser_soil.scene.layout import initial_ends
@@ -12,13 +13,15 @@ from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.problem import Path, Problem, dotted, hint
-from riser_soil.scene.riser import Support
+from riser_soil.scene.riser import Contents, Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed
 from riser_soil.scene.shapes import ArcShape, PointsShape
 from riser_soil.scene.soil import Block
 from riser_soil.scene.stage_checks import stage_conflicts
-from riser_soil.scene.water_checks import water_conflicts
+from riser_soil.scene.stages import DynamicStage
+from riser_soil.scene.water import Waves
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 
 # A given unstressed shape may differ from the segments' length by this part; points leave out the curve.
 _ARC_TOLERANCE = 1e-6
@@ -250,6 +253,109 @@ def _sections_across_soil(scene: Scene) -> Iterator[Problem]:
         if arc > length * (1.0 + 1e-9):
             allowed = f"must not exceed the riser's length ({length:.6g} m)"
             yield Problem((*path, "arcs", n), allowed, "correct the arc length")
+
+
+_CONTENTS: Path = ("riser", "contents")
+
+
+def contents_conflicts(scene: Scene) -> Iterator[Problem]:
+    """Conflicts of the contents with the line types, and of slugs with each other."""
+    given = scene.riser.contents
+    if given is None:
+        return
+    bores = {line.inner_diameter for line in scene.used_line_types.values()}
+    if not any(bores):
+        remedy = "give inner_diameter in line_types, or leave out contents"
+        yield Problem(_CONTENTS, "no line type of the riser has room for contents", remedy)
+    elif given.uneven_or_moving and len(bores) > 1:
+        sizes = ", ".join(f"{bore:g}" for bore in sorted(bores))
+        allowed = f"flow and slugs need one bore, and inner_diameter is {sizes} m"
+        yield Problem(_CONTENTS, allowed, "make them equal, or leave out speed and slugs")
+    yield from _somewhere(given)
+    yield from _apart(given, scene.riser.length)
+
+
+def _somewhere(given: Contents) -> Iterator[Problem]:
+    for n, slug in enumerate(given.slugs):
+        if given.speed == 0.0 and slug.front is None:
+            allowed = "slugs stand still without a speed, and nothing says where"
+            yield Problem((*_CONTENTS, "slugs", n, "front"), allowed, "give front [m], or riser.contents.speed [m/s]")
+
+
+def _apart(given: Contents, length: float) -> Iterator[Problem]:
+    if len(given.slugs) > 1 and any(slug.spacing for slug in given.slugs):
+        allowed = "slugs that follow each other at a spacing are the only ones in a scene"
+        yield Problem((*_CONTENTS, "slugs"), allowed, "give one slug with a spacing, or each one with its front")
+        return
+    placed = sorted((given.front_of(slug, length), n) for n, slug in enumerate(given.slugs))
+    for (behind, _), (front, n) in pairwise(placed):
+        if front - given.slugs[n].length < behind - 1e-9 * length:
+            allowed = f"lies over another one, whose front is at {_arc(given, behind, length):g} m"
+            yield Problem((*_CONTENTS, "slugs", n), allowed, "move its front, or shorten it")
+
+
+def _arc(given: Contents, front: float, length: float) -> float:
+    """Arc length of a front that is so far from where the flow comes in [m]."""
+    return front if given.speed >= 0.0 else length - front
+
+
+# A wave breaks at the latest at this height over its length, times tanh kh (Miche 1944).
+_BREAKING = 0.142
+_LOWER = "lower the waves or lengthen their period"
+_LATE = 1e-9  # part of a record's duration by which the stages may be longer
+
+
+def water_conflicts(scene: Scene) -> Iterator[Problem]:
+    """Conflicts of surface and waves with seabed and gravity."""
+    if scene.water is None or scene.water.surface_level is None:
+        return
+    if scene.has_ground and scene.water.surface_level <= scene.seabed_level:
+        allowed = f"must lie above the seabed (z = {scene.seabed_level:g} m)"
+        yield Problem(("water", "surface_level"), allowed, "raise it, lower the seabed, or leave out water")
+    elif scene.water.waves is not None:
+        yield from _possible(scene, scene.water.waves)
+
+
+def _possible(scene: Scene, waves: Waves) -> Iterator[Problem]:
+    """Waves that can't exist are no sea at all; steep ones are a doubt."""
+    if scene.gravity == 0.0:
+        yield Problem(("water", "waves"), "there are no waves without gravity", "give gravity, or leave out waves")
+        return
+    for path, train in waves.each:
+        if isinstance(train, Regular):  # solved for as it is; where there is none, that is told
+            continue
+        if train.height > (highest := _highest(scene.gravity, scene.water_depth, train.period)):
+            which = f"waves of {train.period:.4g} s{_where(scene.water_depth)}"
+            allowed = f"must not exceed {highest:.4g} m: higher {which} break"
+            yield Problem(("water", "waves", *path, *_height_key(train)), allowed, _LOWER)
+        if isinstance(train, Record) and train.record.duration * (1.0 + _LATE) < (acting := _acting(scene)):
+            allowed = f"{train.file} lasts {train.record.duration:.6g} s, but waves act for {acting:.6g} s in all"
+            yield Problem(("water", "waves", *path, "file"), allowed, "shorten the stages, or take a longer record")
+
+
+def _height_key(train: WaveKind) -> tuple[str, ...]:
+    match train:
+        case Airy() | Regular():
+            return ("height",)
+        case Jonswap() | PiersonMoskowitz():
+            return ("Hs",)
+        case GivenSpectrum() | Record():
+            return ("file",)
+    assert_never(train)
+
+
+def _acting(scene: Scene) -> float:
+    """Duration of all dynamic stages [s]."""
+    return math.fsum(stage.duration for stage in scene.stages if isinstance(stage, DynamicStage))
+
+
+def _highest(g: float, h: float, period: float) -> float:
+    """A bound of Miche's limit that needs no wave length L: L tanh kh = g T^2/2 pi tanh^2 kh, and is below 2 pi h."""
+    return _BREAKING * min(g * period**2 / (2.0 * math.pi), 2.0 * math.pi * h)
+
+
+def _where(h: float) -> str:
+    return f" in {h:g} m of water" if math.isfinite(h) else ""
 
 
 _CHECKS: tuple[_Check, ...] = (

@@ -2,18 +2,195 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import fixed
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.part import Traits
+from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.riser import stations
 from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.part_kernels import (
+    LineForces,
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    add_work,
+    find_water,
+)
 from riser_soil.riser.stations import element_workspace
-from riser_soil.sea.buoyancy_kernels import DryPipeData, DryStationData
+from riser_soil.sea import waterline
+from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.moving_water import FlowAtStations
-from riser_soil.sea.stream_kernels import update
+from riser_soil.sea.stream_kernels import SeenWater, Stream, see_end, see_start, update
+from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
+
+
+class DryStationData(NamedTuple):
+    """Lost buoyancy by the dry share at the stations of a pipe; element (ne,): of the line, in which its own lie. span
+    (ne, ng) [m]: widths of the sections; displaced (ne,): weight of the displaced water [N/m]; flat: see `Buoyancy`.
+    Workspace for one station and one element.
+    """
+
+    stream: Stream
+    seen: SeenWater
+    element: IntArray
+    at: stations.Stations
+    share: Array
+    span: Array
+    displaced: Array
+    flat: bool
+    f: Array
+    by_x: Array
+    change: Array
+
+
+class DryPipeData(NamedTuple):
+    """Lost buoyancy of the pipe, by its sections at many points of each element; displaced (ne,): weight of the water
+    in its place [N/m]. flat: see `Buoyancy`. Workspace for one element: its tangent, heights of its q (4,) and of its
+    stations (ng,), dry lengths and those before the step (4,).
+    """
+
+    stream: Stream
+    seen: SeenWater
+    points: waterline.FinePoints
+    at: stations.Stations
+    length: Array
+    width: Array
+    displaced: Array
+    flat: bool
+    workspace: waterline.TangentWorkspace
+    z: Array
+    heights: Array
+    dry: Array
+    before: Array
+
+
+@find_water.of(DryStationData)
+@find_water.of(DryPipeData)
+def _find_water(part: DryStationData | DryPipeData, at: Configuration) -> None:
+    see_end(part.stream, at.q)
+
+
+@njit
+def _lost(part: DryStationData, water: WaterMotion, m: int, g: int) -> float:
+    """Force per length on a station, downwards."""
+    h = water.immersion[m * part.share.shape[1] + g]
+    lost: float = part.displaced[m] * (1.0 - wet_share(h, part.span[m, g]))
+    return lost
+
+
+@add_forces.of(DryStationData)
+def _station_forces(part: DryStationData, at: Configuration, out: LineForces) -> None:
+    see_end(part.stream, at.q)
+    for m in range(part.element.size):
+        for g in range(part.share.shape[1]):
+            part.f[len(at.D) - 1] = _lost(part, part.seen.end, m, g)
+            p = m * part.share.shape[1] + g
+            stations.add_integrand_at(part.at.weighted, p, held(part.f, at.D), out.force_q, part.element[m], at.D)
+
+
+@add_tangent.of(DryStationData)
+def _station_tangent(part: DryStationData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    water, up = part.seen.end, len(at.D) - 1
+    for m in range(part.element.size):
+        e = part.element[m]
+        part.change[:] = 0.0
+        for g in range(part.share.shape[1]):
+            p = m * part.share.shape[1] + g
+            slope = -weights.force * part.displaced[m] * wet_slope(water.immersion[p], part.span[m, g])
+            for j in range(len(at.D)):
+                part.by_x[up, j] = slope * water.immersion_gradient[p, j]
+            sunk = part.at.N[m, g], part.by_x, maps.place_rows[e]
+            add_weighed(part.change, part.at.weighted[m, g], (sunk,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], part.change, at.D, at.R)
+
+
+@add_energy.of(DryStationData)
+def _station_energy(part: DryStationData, at: Configuration, energy: Array) -> None:
+    if not part.flat:
+        return
+    for m in range(part.element.size):
+        for g in range(part.share.shape[1]):
+            h = part.seen.end.immersion[m * part.share.shape[1] + g]
+            energy[2] += part.share[m, g] * part.displaced[m] * dry_height(h, part.span[m, g])
+
+
+@add_work.of(DryStationData)
+def _station_work(part: DryStationData, first: Configuration, last: Configuration, work: Array) -> None:
+    if part.flat:
+        return
+    see_start(part.stream, first.q)
+    up = len(last.D) - 1
+    for m in range(part.element.size):
+        e = part.element[m]
+        for g in range(part.share.shape[1]):
+            risen, lost = 0.0, _lost(part, part.seen.start, m, g) + _lost(part, part.seen.end, m, g)
+            for a in range(4):
+                risen += part.at.N[m, g, a] * (last.q[e, a, up] - first.q[e, a, up])
+            work[1] -= 0.5 * part.share[m, g] * lost * risen
+
+
+@njit
+def _element(part: DryPipeData, at: Configuration, water: WaterMotion, e: int) -> waterline.WetElement:
+    """An element, its heights in the workspace."""
+    up, ng = len(at.D) - 1, part.heights.size
+    for a in range(4):
+        part.z[a] = at.q[e, a, up]
+    for g in range(ng):
+        part.heights[g] = 0.0
+        for a in range(4):
+            part.heights[g] += part.at.N[e, g, a] * part.z[a]
+    h = water.immersion[e * ng : (e + 1) * ng]
+    return waterline.WetElement(part.z, h, part.heights, part.length[e], part.width[e])
+
+
+@add_forces.of(DryPipeData)
+def _pipe_forces(part: DryPipeData, at: Configuration, out: LineForces) -> None:
+    see_end(part.stream, at.q)
+    up = len(at.D) - 1
+    for e in range(part.length.size):
+        waterline.put_dry_lengths(part.points, _element(part, at, part.seen.end, e), part.dry)
+        for a in range(4):
+            out.force_q[e, a, up] += part.displaced[e] * part.dry[a]
+
+
+@add_tangent.of(DryPipeData)
+def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    ng = part.heights.size
+    for e in range(part.length.size):
+        weight, N = weights.force * part.displaced[e], part.at.N[e]
+        gradient = part.seen.end.immersion_gradient[e * ng : (e + 1) * ng]
+        wet = _element(part, at, part.seen.end, e)
+        waterline.add_element_tangent(K[e], part.points, wet, N, gradient, weight, at.P[e], part.workspace, at.D, at.R)
+
+
+@add_energy.of(DryPipeData)
+def _pipe_energy(part: DryPipeData, at: Configuration, energy: Array) -> None:
+    if part.flat:
+        for e in range(part.length.size):
+            energy[2] += part.displaced[e] * waterline.dry_potential(part.points, _element(part, at, part.seen.end, e))
+
+
+@add_work.of(DryPipeData)
+def _pipe_work(part: DryPipeData, first: Configuration, last: Configuration, work: Array) -> None:
+    if part.flat:
+        return
+    see_start(part.stream, first.q)
+    up = len(last.D) - 1
+    for e in range(part.length.size):
+        waterline.put_dry_lengths(part.points, _element(part, first, part.seen.start, e), part.before)
+        waterline.put_dry_lengths(part.points, _element(part, last, part.seen.end, e), part.dry)
+        for a in range(4):
+            risen = last.q[e, a, up] - first.q[e, a, up]
+            work[1] -= 0.5 * part.displaced[e] * (part.before[a] + part.dry[a]) * risen
+
 
 Dry = Callable[[FlowAtStations, bool], DryPipeData | DryStationData]
 """Buoyancy lost where a body is dry in water with a surface, the weight of the displaced water times the dry share
@@ -62,3 +239,38 @@ class Buoyancy(CompiledPart):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         update(self._water.in_loop.seen, start, end)
+
+
+# Fine points that a section's width holds at least, so that an upright pipe gets wet evenly; an element has no more
+# than MOST of them, and the width of its sections follows where its diameter is too small for that.
+WITHIN_WIDTH, MOST = 6, 200
+
+
+def dry_pipe(displaced: Array) -> Dry:
+    """Sections of the pipe at many points of each element, under the surface as its stations see it.
+
+    displaced: weight of the water in the pipe's place [N/m] (ne,).
+    """
+
+    def numbers(water: FlowAtStations, flat: bool) -> DryPipeData:
+        pipe, seen, ng = water.pipe, water.in_loop, water.pipe.share.shape[1]
+        L, D = pipe.line.length, pipe.line.outer_diameter
+        apart = 0.5 * np.pi * L  # times n, at most, between neighbours of n Gauss-Legendre points
+        n = min(MOST, max(4, math.ceil(WITHIN_WIDTH * float(np.max(apart / np.maximum(D, 1e-9 * apart))))))
+        return DryPipeData(
+            stream=seen.stream,
+            seen=seen.seen,
+            points=waterline.fine_points(n),
+            at=pipe.at,
+            length=L,
+            width=np.maximum(D, WITHIN_WIDTH * apart / n),
+            displaced=displaced,
+            flat=flat,
+            workspace=waterline.tangent_workspace(ng, 2 * pipe.line.ndof, fixed(pipe.line.dimension)),
+            z=np.zeros(4),
+            heights=np.zeros(ng),
+            dry=np.zeros(4),
+            before=np.zeros(4),
+        )
+
+    return numbers

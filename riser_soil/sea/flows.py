@@ -9,10 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
-from riser_soil.core.packed import Packed
 
 
 class WaterMotion(NamedTuple):

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.bound import Bound, Calls, call_each, calls
+from riser_soil.core.bound import Bound, Calls, Packed, call_each, calls
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.packed import Packed
 from riser_soil.riser import stations
 from riser_soil.riser.hermite import Size
 from riser_soil.sea.flows import SeaData, WaterMotion, motion_of, motion_workspace, put_in_plane

@@ -9,9 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Traits
 from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful

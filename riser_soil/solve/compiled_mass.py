@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.bound import Bound, in_turn
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.configuration import Configuration, maps_for, put_maps
@@ -37,8 +36,8 @@ from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import BoundSections, viscous_residual
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.line_mass import LineMass
 from riser_soil.solve.packed_riser import KernelParts
+from riser_soil.solve.riser_mass import LineMass
 
 KernelData = tuple[Any, ...]
 

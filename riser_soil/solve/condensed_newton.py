@@ -24,8 +24,7 @@ from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import CONVERGED, OUTGROWN
 from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.soil_border import SoilBorder
-from riser_soil.solve.solution import NewtonSettings, Solution, Step, limits_of
-from riser_soil.solve.solver import StepSolver
+from riser_soil.solve.solver import NewtonSettings, Solution, Step, StepSolver, limits_of
 
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
 

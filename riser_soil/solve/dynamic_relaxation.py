@@ -22,7 +22,7 @@ from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
+from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.stability import buckling_mode, stabilising_drag
 from riser_soil.solve.time_scheme import Static
 

@@ -37,7 +37,7 @@ from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.riser_mass import InverseMass
-from riser_soil.solve.solution import Solution
+from riser_soil.solve.solver import Solution
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
 CONTACT = GeneralizedAlpha.newmark(0.5, 1.0)

@@ -33,16 +33,16 @@ from riser_soil.solve.newton_progress import (
     step_length,
     verdict,
 )
-from riser_soil.solve.solution import (
+from riser_soil.solve.solver import (
     NewtonSettings,
     NotConvergedError,
     Solution,
     Step,
+    StepSolver,
     UnstableError,
     limits_of,
     reported,
 )
-from riser_soil.solve.solver import StepSolver
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
 from riser_soil.solve.step_trials import StepTrials
 from riser_soil.solve.time_scheme import Static

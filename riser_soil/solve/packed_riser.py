@@ -10,8 +10,7 @@ import numpy as np
 
 from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, listed
-from riser_soil.core.bound import Bound, calls, in_turn
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Bound, Packed, calls, in_turn
 from riser_soil.core.part import State, Weights, Work
 from riser_soil.riser.compiled_part import CompiledPart, LineTrials
 from riser_soil.riser.configuration import (

@@ -1,6 +1,7 @@
 """Inverse of the lines' mass, and what it answers at the end of a dynamic step: accelerations and momentum.
 
-Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme).
+Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme). A line's element matrices,
+projected onto what moves, are a banded matrix.
 """
 
 from __future__ import annotations
@@ -8,16 +9,157 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import Bound, Packed, in_turn
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces, LineField, Part, State, Weights, local
 from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System, total
-from riser_soil.solve.line_mass import LineMass
+from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.packed_riser import matrix_workspace
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData
+
+MASSLESS = 1e-12  # of a node's largest mass
+
+
+class MassData(NamedTuple):
+    """inverse (nn, ndof) [1/m] of the levers of moments; moving (nn, ndof, ndof): see `projectors`; whole
+    (nn,): where they change nothing.
+    """
+
+    inverse: Array
+    moving: Array
+    whole: BoolArray
+
+
+class LineMass:
+    """The mass of a line of some nodes, whose element matrices are written to K (ne, n, n) before each call.
+
+    prescribed, levers (size,): of its dofs.
+    """
+
+    def __init__(self, nodes: int, prescribed: BoolArray, levers: Array) -> None:
+        shape = nodes, levers.size // nodes
+        workspace = matrix_workspace(*shape)
+        self.K, self._free, self._known = workspace.K, ~prescribed, False
+        self._step = StepData(*(np.zeros(shape) for _ in range(6)))
+        self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
+        moving, whole = np.zeros((*shape, shape[1])), np.zeros(nodes, dtype=bool)
+        self._mass, none = MassData(1.0 / levers.reshape(shape), moving, whole), np.zeros(1)
+        written, dofs, mass = map(Packed, (workspace, self._dofs, self._mass))
+        progress = Packed(NewtonProgress(none, none, np.zeros(2, dtype=np.int64)))
+        self._weigh = Bound(weigh, written, mass)
+        self._solve = in_turn(
+            Bound(project, written, dofs, mass),
+            Bound(loop.fill, written, dofs),
+            Bound(loop.factorise, written, progress),
+            Bound(loop.improve, written, Packed(self._step), dofs),
+        )
+
+    def accelerations(self, force: Array) -> Array:
+        """a with M a = force (size,); K is lost.
+
+        What has no mass (as the twist of a line without inertia about its axis) and prescribed dofs get none.
+        """
+        self._weigh()
+        if not self._known:
+            self.restore(projectors(self.K, self._free))
+        self._step.u[...] = 0.0
+        np.negative(force, out=self._dofs.residual.ravel())
+        self._solve()
+        return self._step.u.ravel() * self._mass.inverse.ravel()
+
+    @property
+    def moving(self) -> Array | None:
+        """`projectors` of its nodes, once they are known: they hold for all configurations but to round-off."""
+        return self._mass.moving.copy() if self._known else None
+
+    def restore(self, moving: Array | None) -> None:
+        """Take over projectors that were saved; None where they are not known."""
+        self._known = moving is not None
+        if moving is not None:
+            self._mass.moving[...] = moving
+            self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))
+
+
+def projectors(blocks: Array, free: BoolArray) -> Array:
+    """Projectors (nn, dofs, dofs) of the nodes onto what is free and has mass.
+
+    A node without rotary inertia has none about its tangents where they agree. That axis need not be an axis of the
+    dofs, but it stays where it is in the body axes, so that the projectors hold for all configurations.
+    """
+    dofs = blocks.shape[1] // 2
+    mass = np.zeros((len(blocks) + 1, dofs, dofs))
+    mass[:-1] += blocks[:, :dofs, :dofs]
+    mass[1:] += blocks[:, dofs:, dofs:]
+    mask = free.reshape(-1, dofs)
+    masses, axes = np.linalg.eigh(mass * mask[:, :, None] * mask[:, None, :])
+    moves = masses > MASSLESS * masses[:, -1:]
+    kept = axes * moves[:, None, :]
+    found = kept @ np.swapaxes(kept, 1, 2)
+    found[moves.all(axis=1)] = np.eye(dofs)  # without round-off
+    return np.asarray(found)
+
+
+@njit
+def weigh(workspace: MatrixWorkspace, mass: MassData) -> None:
+    """Divide element matrices by the levers, so that all masses are in kg."""
+    n, inverse = workspace.K.shape[1], mass.inverse.reshape(mass.inverse.size)
+    for e in range(workspace.K.shape[0]):
+        K, of_ends = workspace.K[e], inverse[e * (n // 2) : e * (n // 2) + n]
+        for i in range(n):
+            for j in range(n):
+                K[i, j] *= of_ends[i] * of_ends[j]
+
+
+@njit
+def project(workspace: MatrixWorkspace, dofs: Dofs, mass: MassData) -> None:
+    """Project element matrices and forces over the levers onto what moves; what does not gets the largest mass, which
+    is on a diagonal.
+    """
+    K, ndof, largest = workspace.K, mass.inverse.shape[1], 0.0
+    left, own = np.zeros((ndof, ndof)), np.zeros(ndof)
+    for e in range(K.shape[0]):
+        for i in range(2 * ndof):
+            largest = max(largest, K[e, i, i])
+        if mass.whole[e] and mass.whole[e + 1]:
+            continue
+        for row in range(2):
+            for column in range(2):
+                block = K[e, row * ndof : (row + 1) * ndof, column * ndof : (column + 1) * ndof]
+                _multiply(mass.moving[e + row], block, left)
+                _multiply(left, mass.moving[e + column], block)
+    if largest == 0.0:
+        largest = 1.0
+    for n in range(dofs.residual.shape[0]):
+        e, first = max(n - 1, 0), ndof if n > 0 else 0
+        for i in range(ndof):
+            own[i] = dofs.residual[n, i] * mass.inverse[n, i]
+            dofs.residual[n, i] = own[i]
+        if mass.whole[n]:
+            continue
+        for i in range(ndof):
+            dofs.residual[n, i] = 0.0
+            for j in range(ndof):
+                dofs.residual[n, i] += mass.moving[n, i, j] * own[j]
+                K[e, first + i, first + j] += largest * ((1.0 if i == j else 0.0) - mass.moving[n, i, j])
+
+
+@njit
+def _multiply(left: Array, right: Array, out: Array) -> None:
+    """Write the product of two matrices, to another place."""
+    for i in range(left.shape[0]):
+        for j in range(right.shape[1]):
+            total = 0.0
+            for k in range(left.shape[1]):
+                total += left[i, k] * right[k, j]
+            out[i, j] = total
+
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 

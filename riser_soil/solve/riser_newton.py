@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from riser_soil.core.arrays import Array, listed
-from riser_soil.core.bound import Bound
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
@@ -23,15 +22,15 @@ from riser_soil.riser.sections import Elements
 from riser_soil.solve.compiled_mass import AcceptedForces, CompiledMass, ElementForces, mass_of
 from riser_soil.solve.newton_progress import CONVERGED, NAMES, StopLimits, largest_at
 from riser_soil.solve.packed_riser import KernelParts, PackedRiser
-from riser_soil.solve.solution import (
+from riser_soil.solve.solver import (
     NewtonSettings,
     NotConvergedError,
     Solution,
     Step,
+    StepSolver,
     limits_of,
     reported,
 )
-from riser_soil.solve.solver import StepSolver
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact

@@ -28,7 +28,7 @@ from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.linear_solver import PREFIX, LinearSystems, complaint, defaults, factorise_directly, keeps_factors
 from riser_soil.solve.section_solver import SectionSolver, sections_of
-from riser_soil.solve.solution import NewtonSettings
+from riser_soil.solve.solver import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
 REASONS = {

@@ -38,10 +38,9 @@ from riser_soil.contact.surface_loop import (
 )
 from riser_soil.core import banded, dense
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.bound import Bound
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.dense import PIVOT
-from riser_soil.core.packed import Packed
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces

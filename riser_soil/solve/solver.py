@@ -1,9 +1,10 @@
-"""Base class of the solvers of a stage's steps: what is asked of accepted states, by the methods of the parts."""
+"""A step for Newton's method and its solution, the method's settings, how it fails, the base class of its solvers."""
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Literal
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work
@@ -12,11 +13,104 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, nodal_residual, section_vector, viscous_residual
 from riser_soil.riser.sections import Elements
+from riser_soil.solve.newton_progress import StopLimits
 from riser_soil.solve.riser_mass import InverseMass, RiserMass
-from riser_soil.solve.solution import NewtonSettings, Solution, Step
+from riser_soil.solve.time_scheme import Scheme
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
+
+
+REUSE = 0.1
+BESIDE_CLAY = 0.02  # the same of the tangent of all else beside clay, whose curves take most of the iterations
+
+
+class NotConvergedError(Exception):
+    """A step that Newton could not solve; its text says why and where the residual sits."""
+
+
+class UnstableError(NotConvergedError):
+    """An unstable equilibrium, from which the riser would buckle or swing away: `solution`."""
+
+    def __init__(self, text: str, solution: Solution) -> None:
+        super().__init__(text)
+        self.solution = solution
+
+
+def reported(why: str, norms: list[float], place: str) -> str:
+    """Why a step failed, the last of its residual's norms [N], and where the residual sits."""
+    last = ", ".join(f"{norm:.3g}" for norm in norms[-3:])
+    return f"{why} after {max(len(norms) - 1, 0)} iterations (last residual norms {last} N); {place}"
+
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """tolerance: of the residual's norm, relative to the norm of the forces in play, moments over the
+    system's lever.
+
+    floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
+    reuse: an iteration that leaves less than this share of the residual leaves its factorised tangent to the next of
+    the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
+    less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
+    corners, and an equilibrium may be far away. Beside clay the compiled loop reuses the tangent of all else, see
+    `newton_progress.StopLimits`. least_iterations: before a residual counts as small.
+    line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
+    step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
+    factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,
+    "auto" keeps factors in large systems. snes: let PETSc's SNES solve a riser alone, too.
+    """
+
+    tolerance: float
+    max_iterations: int
+    floor: float
+    reuse: float = REUSE
+    least_iterations: int = 0
+    line_search: bool = False
+    linear_start: bool = False
+    linear: Literal["auto", "kept", "direct", "iterative"] = "auto"
+    snes: bool = False
+
+
+@lru_cache(maxsize=8)
+def limits_of(settings: NewtonSettings, starts_near: bool, gradual: bool, answers_load: bool) -> StopLimits:
+    """starts_near: whether the guess continues a smooth motion, as in time steps without contact. The tangent can be
+    reused, and one iteration is a must: a motion that continues by its first guess alone would keep its errors.
+    gradual: see `System`.
+    """
+    beside = BESIDE_CLAY if gradual else 0.0
+    return StopLimits(
+        settings.tolerance,
+        settings.floor,
+        settings.reuse if starts_near else beside,
+        settings.max_iterations,
+        max(settings.least_iterations, int(starts_near)),
+        answers_load,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One step to solve: from the accepted state `before` to time t."""
+
+    scheme: Scheme
+    before: State
+    t: float
+    dt: float
+    start: Forces | None
+    guess: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A converged step: the state at its end, the forces in balance by group, the residual norms [N]."""
+
+    state: State
+    forces: Forces
+    norms: list[float] = field(default_factory=list)
+
+    @property
+    def iterations(self) -> int:
+        return len(self.norms) - 1
 
 
 class StepSolver:

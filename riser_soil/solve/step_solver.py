@@ -12,8 +12,7 @@ from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
-from riser_soil.solve.solver import StepSolver
+from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step, StepSolver
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme, Static
 
 INSTANT = Static(seconds=0.0)  # what flows under rate keeps its stress

@@ -12,7 +12,7 @@ from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import Limited
 from riser_soil.core.system import System
 from riser_soil.solve.riser_loop import put_balance, put_rates
-from riser_soil.solve.solution import NotConvergedError, Step
+from riser_soil.solve.solver import NotConvergedError, Step
 from riser_soil.solve.time_scheme import Scheme
 
 

@@ -28,8 +28,7 @@ from riser_soil.solve.local_error import (
     committed_error,
 )
 from riser_soil.solve.riser_mass import CommittedStep
-from riser_soil.solve.solution import NotConvergedError, Solution, Step
-from riser_soil.solve.solver import StepSolver
+from riser_soil.solve.solver import NotConvergedError, Solution, Step, StepSolver
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_solver import balance_held
 from riser_soil.solve.time_scheme import Scheme

@@ -22,7 +22,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings
+from riser_soil.solve.solver import NewtonSettings
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_trials import balance_of
 from riser_soil.solve.time_scheme import Static

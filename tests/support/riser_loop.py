@@ -26,7 +26,7 @@ from riser_soil.solve.newton_progress import CONVERGED, StopLimits
 from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.riser_newton import RiserNewton, riser_newton
-from riser_soil.solve.solution import NewtonSettings
+from riser_soil.solve.solver import NewtonSettings
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error

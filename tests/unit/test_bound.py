@@ -8,8 +8,7 @@ import numba
 import numpy as np
 import pytest
 
-from riser_soil.core.bound import Bound, call_each, calls
-from riser_soil.core.packed import Packed
+from riser_soil.core.bound import Bound, Packed, call_each, calls
 
 
 class Inner(NamedTuple):

@@ -15,7 +15,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.condensed_newton import CondensedNewton, condensed_newton
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings, Solution, Step
+from riser_soil.solve.solver import NewtonSettings, Solution, Step
 from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import AcceptedStep

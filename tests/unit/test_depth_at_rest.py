@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from riser_soil.assembly.laid_guess import depth_at_rest
 from riser_soil.contact.law import Penalty
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from riser_soil.seabed.rest import depth_at_rest
 
 D, W = 0.3, np.array([50.0, 400.0, 1200.0])  # m, N/m
 CLAYS = (

@@ -10,8 +10,7 @@ import pytest
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
-from riser_soil.sea.buoyancy import Buoyancy
-from riser_soil.sea.dry_pipe import dry_pipe
+from riser_soil.sea.buoyancy import Buoyancy, dry_pipe
 from riser_soil.sea.flows import Sea, WaterMotion, add_flow
 from riser_soil.sea.morison import Morison
 from tests.support import sample_water

@@ -15,7 +15,7 @@ from riser_soil.core.system import System, Timer
 from riser_soil.riser.ends import End
 from riser_soil.solve import stability
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings
+from riser_soil.solve.solver import NewtonSettings
 from riser_soil.solve.time_scheme import Static
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take

@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from riser_soil.contact.coulomb import Adhesion, adhesion_at, traction
-from riser_soil.contact.friction import CoulombFriction, mobilised_within
-from riser_soil.contact.friction_stations import directions_at
+from riser_soil.contact.friction import CoulombFriction, directions_at, mobilised_within
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array

@@ -26,7 +26,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("assembly",),
     ("checks",),
     ("results",),
-    ("seating", "statistics", "imported_scene"),
+    ("statistics", "imported_scene"),
     ("stages", "plots"),
     ("whole_run", "material", "calibration", "modes", "hang_off", "moordyn", "orcaflex", "drafts", "fatigue"),
     ("accuracy",),

@@ -13,7 +13,7 @@ from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.linear_solver import complaint
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.on_ranks import mpirun
 from tests.support.toy_chain import Chain, Springs
@@ -26,7 +26,7 @@ from petsc4py import PETSc
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 
@@ -83,7 +83,7 @@ from mpi4py import MPI
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings, Step
+from riser_soil.solve.solver import NewtonSettings, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 

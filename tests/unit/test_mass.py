@@ -8,8 +8,7 @@ from mpi4py import MPI
 
 from riser_soil.core.part import Model
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.line_mass import projectors
-from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.riser_mass import RiserMass, projectors
 from tests.support.toy_chain import Chain, Inertia, Springs
 
 

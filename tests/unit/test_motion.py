@@ -10,10 +10,15 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.motion.harmonic import AngleOscillation, HarmonicMotion, RockingSupport, SwingingEnd
+from riser_soil.motion.prescribed import (
+    AngleOscillation,
+    HarmonicMotion,
+    RockingSupport,
+    SmoothMove,
+    SwingingEnd,
+    TabulatedMotion,
+)
 from riser_soil.motion.rigid_body import CarriedEnd, CarriedSupport
-from riser_soil.motion.slow import SmoothMove
-from riser_soil.motion.table import TabulatedMotion
 from riser_soil.riser import rotations
 from riser_soil.riser.ends import Motion, SupportRotation
 

@@ -24,7 +24,7 @@ from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import GOING_ON, StopLimits
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.riser_loop import NewtonProgress, keeps
-from riser_soil.solve.solution import NotConvergedError
+from riser_soil.solve.solver import NotConvergedError
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.riser_loop import (

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from numba.core.errors import TypingError
 
 from riser_soil.contact.coulomb import traction
-from riser_soil.contact.friction_stations import directions_at, elastic_guess, resistance_by_position, vector_of
+from riser_soil.contact.friction import directions_at, elastic_guess, resistance_by_position, vector_of
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array

@@ -13,7 +13,7 @@ from riser_soil.core.part import MatrixBlock, Model, State, Traits, Weights
 from riser_soil.core.roles import Adaptive
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solution import NewtonSettings, Solution, Step
+from riser_soil.solve.solver import NewtonSettings, Solution, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor, Springs
 

@@ -13,8 +13,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
-from riser_soil.sea.buoyancy import Buoyancy
-from riser_soil.sea.dry_pipe import dry_pipe
+from riser_soil.sea.buoyancy import Buoyancy, dry_pipe
 from riser_soil.sea.flows import Sea, WaterMotion, add_flow
 from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe

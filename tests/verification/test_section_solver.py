@@ -16,9 +16,8 @@ from scipy.sparse import csr_matrix
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 from riser_soil.results import Run
-from riser_soil.solve import section_factors, step_solver
-from riser_soil.solve.section_factors import SectionFactors
-from riser_soil.solve.section_solver import SectionSolver
+from riser_soil.solve import section_solver, step_solver
+from riser_soil.solve.section_solver import SectionFactors, SectionSolver
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built, take
@@ -67,7 +66,7 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
     Its backward error is that of a direct solver: clay that yields all through has tangents so nearly singular that
     two exact solvers find steps that differ by 1e-4.
     """
-    errors, usual, eliminate = list[float](), SectionSolver.apply, section_factors._eliminate
+    errors, usual, eliminate = list[float](), SectionSolver.apply, section_solver._eliminate
     made = count()
 
     def judge(solver: SectionSolver, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
@@ -75,7 +74,7 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
         errors.append(backward_error(solver._system, found.array_r, load.array_r))
 
     monkeypatch.setattr(SectionSolver, "apply", judge)
-    monkeypatch.setattr(section_factors, "_eliminate", lambda *given: next(made) >= 0 and eliminate(*given))
+    monkeypatch.setattr(section_solver, "_eliminate", lambda *given: next(made) >= 0 and eliminate(*given))
     steps(on_sections("auto", tolerance=1e-7, **contact))
     assert max(errors) < 1e-11
     assert len(errors) > 20

@@ -1,17 +1,21 @@
-"""Harmonic prescribed motion, swings on an arc about a hub, and the smooth ramp on any prescribed motion."""
+"""Prescribed motions of an end: harmonic, swinging on an arc about a hub, by a table, or without rates; smooth ramp."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.smooth_step import smooth_step
-from riser_soil.riser.ends import Kinematics, SupportRotation
+from riser_soil.riser.ends import Kinematics, Motion, SupportRotation
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Value = TypeVar("Value", float, Array)
 
@@ -113,3 +117,63 @@ class RockingSupport:
         """Turning at t [s]."""
         phi, rate, acceleration = self.swing(t)
         return SupportRotation(phi * self.axis, rate * self.axis, acceleration * self.axis)
+
+
+class TabulatedMotion:
+    """Cubic splines through rows, twice continuously differentiable, times a smooth step of t/ramp.
+
+    time: (n,) increasing [s]. values: (n, 6) displacement [m] and rotation vector [rad]. Not-a-knot at both ends, which
+    keeps the splines' fourth order there. straight: lines from row to row instead.
+    """
+
+    def __init__(self, time: Array, values: Array, ramp: float = 0.0, straight: bool = False) -> None:
+        from scipy.interpolate import CubicSpline  # takes time
+
+        self._spline = _lines(time, values) if straight else CubicSpline(time, values, bc_type="not-a-knot")
+        self._ramp = ramp
+
+    def __call__(self, t: float) -> Kinematics:
+        """Displacement and rotation vector (6,) at t [s], and their derivatives."""
+        x, v, a = (self._spline(t, order) for order in range(3))
+        return ramped(t, self._ramp, x, v, a)
+
+
+def _lines(time: Array, values: Array) -> PPoly:
+    from scipy.interpolate import PPoly
+
+    slopes = np.diff(values, axis=0) / np.diff(time)[:, None]
+    return PPoly(np.stack([slopes, values[:-1]]), time)
+
+
+@dataclass(frozen=True, eq=False)
+class SlowMotion:
+    """The places of a motion."""
+
+    motion: Motion
+
+    def __call__(self, t: float) -> Kinematics:
+        """Position [m] at t; nothing has a velocity."""
+        return self.motion(t)[0], np.zeros(3), np.zeros(3)
+
+
+@dataclass(frozen=True, eq=False)
+class SlowTurning:
+    """The rotations of a support."""
+
+    turning: Callable[[float], SupportRotation]
+
+    def __call__(self, t: float) -> SupportRotation:
+        """Turning at t; nothing has an angular velocity."""
+        return SupportRotation(self.turning(t).rotation, np.zeros(3), np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothMove:
+    """Straight from `origin` to `target` (3,) [m] as the load factor grows from 0 to 1."""
+
+    origin: Array
+    target: Array
+
+    def __call__(self, t: float) -> tuple[Array, Array, Array]:
+        """Position [m] at the load factor t; there are no rates in statics."""
+        return self.origin + t * (self.target - self.origin), np.zeros(3), np.zeros(3)
