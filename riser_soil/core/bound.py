@@ -12,18 +12,18 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Sequence
+from types import FunctionType
 from typing import Any, NamedTuple
 
 import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
 from riser_soil.core.arrays import IntArray
-from riser_soil.core.compiled import FOLDER, OPTIONS, njit
-from riser_soil.core.kernel_cache import EntryCache, caching_in, mark
+from riser_soil.core.compiled import entry, njit
+from riser_soil.core.kernel_cache import mark
 from riser_soil.core.machine_code import NOTHING, WORD, borrowed, made_tuple, stored
 
 FORMATS: dict[type, str] = {float: "d", np.float64: "d", int: "q", np.int64: "q", bool: "?", np.bool_: "?"}
@@ -137,16 +137,21 @@ def _entry(kernel: Any, *kinds: Any) -> Any:
 def _compiled(kernel: Any, kinds: Any) -> Any:
     """Its name tells it apart from all others, on disk and in the machine code."""
 
-    def calling(row: int) -> None:
-        kernel(*_arguments(row, kinds))
+    source, name = kernel.py_func.__code__, f"{kernel.py_func.__name__}_{mark(kinds)}"
+    code = _calling.__code__.replace(co_filename=source.co_filename, co_firstlineno=source.co_firstlineno)
+    given = {"_kernel": kernel, "_kinds": kinds, "_arguments": _arguments, "__name__": kernel.py_func.__module__}
+    calling = FunctionType(code, given, name)
+    calling.__qualname__ = name
+    return entry(calling)
 
-    calling.__module__ = kernel.py_func.__module__
-    calling.__qualname__ = calling.__name__ = f"{kernel.py_func.__name__}_{mark(kinds)}"
-    entry: Any = CFunc(calling, ((types.intp,), types.void), {}, OPTIONS)
-    with caching_in(str(FOLDER)):
-        entry._cache = EntryCache(calling)
-        entry.compile()
-    return entry
+
+_kernel: Any = None
+_kinds: Any = None
+
+
+def _calling(row: int) -> None:
+    """What an entry does, whose globals are its own: what a closure holds would be part of its key on disk."""
+    _kernel(*_arguments(row, _kinds))
 
 
 @intrinsic

@@ -22,6 +22,7 @@ import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from glob import glob
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -30,8 +31,7 @@ os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colora
 import numba
 from numba.core import event
 
-from riser_soil.core.kernel import Kernel
-from riser_soil.core.kernel_cache import PACKAGE, caching_in
+from riser_soil.core.kernel_cache import PACKAGE, CacheByTypes, caching_in
 
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
@@ -46,8 +46,22 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
 
     apart: not inlined where others call it, so that those that call many are compiled in a bearable time.
     """
+    # numba asks for the signature again and again, which takes a twentieth of a start where it is found anew.
+    vars(function)["__signature__"] = signature(function)
+    made = numba.njit(forceinline=not apart, no_cfunc_wrapper=True, **OPTIONS)(function)
     with caching_in(str(FOLDER)):
-        return Kernel(function, {**OPTIONS, "forceinline": not apart})
+        made._cache = CacheByTypes(function)
+    return made
+
+
+def entry(function: Callable[[int], None]) -> Any:
+    """Compile a function of one address, to be called by its own; its machine code stays on disk."""
+    since, counted = time.process_time(), _announcer.seconds
+    with caching_in(str(FOLDER)):
+        made = numba.cfunc(numba.types.void(numba.types.intp), cache=True, **OPTIONS)(function)
+    if _announcer.seconds > counted:  # it wasn't there
+        _announcer.seconds = counted + time.process_time() - since
+    return made
 
 
 def fixed(n: int) -> tuple[int, ...]:
@@ -204,7 +218,8 @@ def _first(marker: Path) -> bool:
 
 FOLDER = choose_folder(fingerprint(PACKAGE))
 _announcer = _Announcer()
-event.register("numba:compile", _announcer)
+for _kind in ("numba:compile", "numba:run_pass"):
+    event.register(_kind, _announcer)
 
 
 def seconds_compiling() -> float:
