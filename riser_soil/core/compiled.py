@@ -36,7 +36,7 @@ from riser_soil.core.kernel_cache import PACKAGE, CacheByTypes, caching_in
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
 IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
-ROOM = 1 << 25  # bytes that all kernels need, and some more
+ROOM = 1 << 26  # bytes that all kernels need, and some more
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
 ANNOUNCEMENT = "compiling kernels (once, about a minute)"
 

@@ -28,7 +28,7 @@ from tests.support.on_ranks import ROOT
 
 PUBLIC = {"numba", "numba.types", "numba.typed", "numba.experimental", "numba.extending", "numba.core.event"}  # modules
 DOCUMENTED = {"address", "ctypes", "py_func"}
-OTHERS = {"load", "args", "name", "register", "globals", "flush", "_replace"}  # words that LLVM's and Python's objects have, too
+OTHERS = {"load", "args", "name", "register", "globals", "flush", "_replace"}  # words that objects of others have, too
 OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline"}
 INSIDE: tuple[Any, ...] = (
     CPUDispatcher, dispatcher._DispatcherBase, caching.FunctionCache, caching.CompileResultCacheImpl,
