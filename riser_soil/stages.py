@@ -259,7 +259,7 @@ def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observe
     stepper.newton.renew()  # relaxation has chosen patterns of its own
     observer.relaxed(relaxed)
     stepper.restart()
-    stepper.newton.rests = True
+    stepper.newton.at_equilibrium = True
     return True
 
 

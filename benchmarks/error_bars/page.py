@@ -38,9 +38,9 @@ TEXT = """# Error bars: how they are found, and how often they are right
 Written by `make bars`: riser-soil {version}, {date}, Python {python}, {cores} cores.
 
 `riser-soil run SCENE --error-bars`, or `error_bars: true` in the scene, computes coarser and finer runs of the scene
-after the run, in the same process and without files. This page calls them companions.
+after the run, in the same process and without files. This page calls them coarser runs.
 
-| companion | elements, steps, penalty |
+| coarser run | elements, steps, penalty |
 | --- | --- |
 | 1 | steps two to four times as long, as long as the shortest period keeps 20 |
 | 2 | the same, twice the elements, on a rigid floor 16 times the penalty |
@@ -146,7 +146,7 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
 def publish(calibration: list[JudgedScene], out: list[JudgedScene]) -> None:
     """Write the page, and beside it the calibration scene by scene, and all bars that were missed."""
     PAGE.write_text(page(calibration, out), encoding="utf-8")
-    head = ["scene", "inside", "bar over true error, median", "companions over scene"]
+    head = ["scene", "inside", "bar over true error, median", "coarser runs over scene"]
     EVERY_SCENE.write_text(csv_table(head, map(_row, calibration)), encoding="utf-8")
     EVERY_MISSED.write_text(csv_table(MISSED, _missed([*out, *calibration])), encoding="utf-8")
 
@@ -161,8 +161,8 @@ def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
         [f"the same, of errors above {TELLING:g}", f"{median(ratios(judged, TELLING)):.2f}"],
         ["scenes that could not be computed", _failed(scenes, of)],
         ["left out, as the reference does not decide the side of the bar", str(len(judged) - len(reported))],
-        ["bars not given, as a companion failed", str(sum(len(scene.not_known) for scene in scenes))],
-        ["processor time of the companions over that of the scenes, without start-up and files",
+        ["bars not given, as a coarser run failed", str(sum(len(scene.not_known) for scene in scenes))],
+        ["processor time of the coarser runs over that of the scenes, without start-up and files",
          f"{seconds[1] / seconds[0]:.0%}"],
     ]  # fmt: skip
     return table([where, ""], rows)

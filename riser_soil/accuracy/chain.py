@@ -68,7 +68,7 @@ def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None
         chain.append(ComparisonRun("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
     for step in _steps(scene, variations(scene) if varying is None else varying):
         if any(before.extremes is None for before in chain):
-            chain.append(ComparisonRun(step.source, step.finer, None, "a companion before failed"))
+            chain.append(ComparisonRun(step.source, step.finer, None, "a coarser run before failed"))
         else:
             chain.append(_run(step, comm))
     return chain
@@ -157,7 +157,7 @@ def _run(step: NextScene, comm: Any) -> ComparisonRun:
         if isinstance(err, OF_ONE) and comm.size > 1:
             raise  # the others are within the comparison run still
         reason = str(err).partition("\n")[0]
-        return ComparisonRun(step.source, step.finer, None, f"its companion failed: {reason}")
+        return ComparisonRun(step.source, step.finer, None, f"its coarser run failed: {reason}")
 
 
 def _recording_all(scene: Scene) -> Scene:

@@ -117,7 +117,7 @@ def _bar(
             of_before = off / divisor(comparison_run, order[source], off / scale if scale > 0.0 else 0.0)
             found[source] = max(found.get(source, 0.0), of_before * so_far ** order[source])
         else:
-            unknown.append(f"{source}: {comparison_run.reason or 'a companion does not have it'}")
+            unknown.append(f"{source}: {comparison_run.reason or 'a coarser run does not have it'}")
         fineness[source] = so_far * comparison_run.finer
         before = comparison_run.extremes
     between = gaps(key_result, run)

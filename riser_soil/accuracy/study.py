@@ -91,7 +91,7 @@ def _chosen(scene: Scene, names: Sequence[str]) -> tuple[Setting, ...]:
     known = [setting.name for setting in there]
     for name in names:
         if name not in known:
-            raise ResultsError(f"--knob {name}: the scene has no such knob; choose among {', '.join(known)}")
+            raise ResultsError(f"--setting {name}: the scene has no such setting; choose among {', '.join(known)}")
     return tuple(setting for setting in there if not names or setting.name in names)
 
 

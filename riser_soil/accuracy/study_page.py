@@ -40,10 +40,10 @@ def page(study: Study, reported: Mapping[str, Any]) -> str:
             f"<h1>{escape(title)}</h1>",
             *_list(reported["words"]),
             _image(study, reported),
-            '<p class="note">Error: the largest relative error among the headline quantities, each line with one knob '
+            '<p class="note">Error: the largest relative error among the key results, each line with one setting '
             "turned and the others as in the scene. Below the dotted line errors are less than what the reference is "
             "known to. Hollow points ran beside others.</p>",
-            "<h2>Headline quantities</h2>",
+            "<h2>Key results</h2>",
             _quantities(reported),
             "<h2>Points</h2>",
             _points(reported),
@@ -172,7 +172,7 @@ def _unknown(quantities: Quantities) -> Iterator[str]:
     unknown = _doubtful(quantities, TELLING)
     if unknown:
         yield (
-            f"no error can be told of {unknown}, as the ladders do not close in on a value; they are left out of what "
+            f"no error can be told of {unknown}, as no refinement closes in on a value; they are left out of what "
             "follows"
         )
 
@@ -202,7 +202,7 @@ def _limiting(study: Study) -> Iterator[str]:
     largest = "; ".join(f"{setting} {percent(share)} ({key})" for share, key, setting in sorted(shares, reverse=True))
     most, key, setting = max(shares)
     if most <= quantities[key].doubt:
-        yield f"no knob limits the accuracy by more than the study can tell; largest shares of error: {largest}"
+        yield f"no setting limits the accuracy by more than the study can tell; largest shares of error: {largest}"
     else:
         yield f"what limits the accuracy is the {setting}; largest shares of error: {largest}"
 

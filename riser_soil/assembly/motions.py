@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from riser_soil.assembly.stage import times_to_hit
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.quantities import Vector
 from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.line import Line
@@ -185,7 +185,7 @@ def corners(scene: Scene, stage: QuasiStaticStage) -> list[float]:
     """
     parts = [np.arange(0.0, stage.duration, period / PER_PERIOD) for _, period in periods_of(scene, stage)]
     met = np.concatenate([times_to_hit(scene, stage), *_rows(stage), *parts])
-    return from_last_to_first(stage.duration, listed(met))[::-1]
+    return from_last_to_first(stage.duration, as_list(met))[::-1]
 
 
 def cycle_count(scene: Scene, stage: Stage) -> float:

@@ -8,10 +8,10 @@ from riser_soil import __version__
 from riser_soil.commands.cases import cases, stress, study
 from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.imports import export, import_, new
+from riser_soil.commands.logging import logged
 from riser_soil.commands.results import fatigue, film, plot, report, stiffness
 from riser_soil.commands.run import check, modes, run, schema
 from riser_soil.commands.statistics import histories, statistics
-from riser_soil.commands.telling import telling
 
 PRINTING = (schema, statistics, histories, stiffness)  # what they print is their result
 app = typer.Typer(
@@ -24,7 +24,7 @@ app = typer.Typer(
 OF_SCENES = (new, run, check, import_, export, cases, study, stress, modes, material, calibrate, schema)
 OF_RUNS = (statistics, histories, stiffness, fatigue, film, plot, report)
 for command in (*OF_SCENES, *OF_RUNS):
-    app.command(command.__name__.rstrip("_"))(command if command in PRINTING else telling(command))
+    app.command(command.__name__.rstrip("_"))(command if command in PRINTING else logged(command))
 
 
 def _print_version(wanted: bool) -> None:

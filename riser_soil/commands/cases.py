@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.commands.scenes import Overrides, SceneFile, placed, positive, read_solved
 from riser_soil.errors import ResultsError, SolveError
 
@@ -59,12 +59,13 @@ def study(
     setting: Annotated[
         list[str] | None,
         typer.Option(
-            "--knob",
+            "--setting",
+            "--knob",  # its former name
             metavar="NAME",
             help="vary only this one: elements, time_step, soil_mesh or penalty; may be repeated",
         ),
     ] = None,
-    levels: Annotated[int, typer.Option("--rungs", help="runs of each knob's ladder, 3 to 9")] = 5,
+    levels: Annotated[int, typer.Option("--levels", "--rungs", help="runs of each setting, 3 to 9")] = 5,
     jobs: Annotated[
         int, typer.Option("--jobs", help="processes at a time for the finest runs; the others are timed one at a time")
     ] = 1,
@@ -81,7 +82,7 @@ def study(
         from riser_soil.accuracy.study_page import words
 
         if not LEAST_LEVELS <= levels <= MOST_LEVELS:
-            raise ResultsError(f"--rungs {levels}: must be from {LEAST_LEVELS} to {MOST_LEVELS}")
+            raise ResultsError(f"--levels {levels}: must be from {LEAST_LEVELS} to {MOST_LEVELS}")
         if jobs < 1:
             raise ResultsError(f"--jobs {jobs}: must be 1 or more")
         folder = output or Path(f"{Path(scene).stem}-study")

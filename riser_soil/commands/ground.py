@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.commands.scenes import Overrides, SceneFile, placed, read
 
 

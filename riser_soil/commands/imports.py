@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.commands.scenes import placed, read, refuse_existing
 from riser_soil.errors import SceneError
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.commands.scenes import Period, RunFolder, StageName, positive
 from riser_soil.errors import ResultsError
 

@@ -5,15 +5,15 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.endings import expected_errors, rank, size
+from riser_soil.commands.exit_status import expected_errors, rank, size
 from riser_soil.commands.scenes import (
     Overrides,
     SceneFile,
     guessed,
     placed,
     read,
-    read_begun,
     read_solved,
+    read_start,
     result_folder,
 )
 from riser_soil.errors import SceneError
@@ -40,7 +40,7 @@ def run(
     error_bars: Annotated[
         bool,
         typer.Option(
-            "--error-bars", help="estimate by coarser companions how far its headline quantities may be off"
+            "--error-bars", help="estimate by coarser runs how far its key results may be off"
         ),
     ] = False,
     overrides: Overrides = None,
@@ -58,7 +58,7 @@ def run(
 def check(scene: SceneFile, overrides: Overrides = None) -> None:
     """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
     with expected_errors():
-        checked = guessed(read_begun(scene, overrides), scene, overrides)
+        checked = guessed(read_start(scene, overrides), scene, overrides)
         from riser_soil.checks.check import describe
 
         with placed(scene, overrides):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from riser_soil.commands.endings import rank
+from riser_soil.commands.exit_status import rank
 from riser_soil.errors import MeshError, ResultsError, SceneError
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
     return found
 
 
-def read_begun(scene: str, overrides: list[str] | None) -> "Scene":
+def read_start(scene: str, overrides: list[str] | None) -> "Scene":
     """As `read`; one that asks for an accuracy in the setting with which the search for it begins."""
     checked = read(scene, overrides)
     if checked.accuracy is None:
@@ -74,8 +74,8 @@ def read_begun(scene: str, overrides: list[str] | None) -> "Scene":
 
 
 def read_solved(scene: str, overrides: list[str] | None) -> "Scene":
-    """As `read_begun`, with the hang-off solved that the scene asks for."""
-    checked = read_begun(scene, overrides)
+    """As `read_start`, with the hang-off solved that the scene asks for."""
+    checked = read_start(scene, overrides)
     from riser_soil.accuracy.chosen_run import in_numbers
 
     with placed(scene, overrides):

@@ -120,4 +120,6 @@ def size_of(nodes: int, points: int) -> int:
 
 @bound_by_type
 def put_results(part: tuple, at: Configuration, out: ContactResults) -> None:
-    """Write the results of a contact in numbers, see `part_kernels`, in the configuration of the forces found last."""
+    """Write the results of a contact by its kernel data, see `part_kernels`, in the configuration of the forces found
+    last.
+    """

@@ -27,7 +27,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray, listed
+from riser_soil.core.arrays import Array, IntArray, as_list
 from riser_soil.core.compiled import njit
 
 QUAD = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))  # corners of quad4
@@ -37,7 +37,7 @@ AREA = ((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))  # gradients of the area coordinat
 def strips(corners: IntArray) -> IntArray:
     """strip8 (nf, 8) of facets of four nodes (nf, 4), whose eta runs across."""
     beyond: dict[frozenset[int], list[tuple[int, dict[int, int]]]] = {}
-    for f, (a, b, c, d) in enumerate(listed(corners)):
+    for f, (a, b, c, d) in enumerate(as_list(corners)):
         beyond.setdefault(frozenset((a, b)), []).append((f, {a: d, b: c}))
         beyond.setdefault(frozenset((c, d)), []).append((f, {d: a, c: b}))
 
@@ -48,7 +48,7 @@ def strips(corners: IntArray) -> IntArray:
     def around(f: int, a: int, b: int, c: int, d: int) -> tuple[int, int, int, int]:
         return follows(f, a, b), follows(f, b, a), follows(f, c, d), follows(f, d, c)
 
-    outer = [around(f, *nodes) for f, nodes in enumerate(listed(corners))]
+    outer = [around(f, *nodes) for f, nodes in enumerate(as_list(corners))]
     return np.hstack([corners, np.array(outer, dtype=np.int64).reshape(-1, 4)])
 
 

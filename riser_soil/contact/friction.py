@@ -19,7 +19,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits
-from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.compiled_part import BoundPart, CompiledPart
@@ -140,19 +140,19 @@ class CoulombFriction(CompiledPart):
         self._mu[:] = np.inf
         self._trials.forget()
 
-    def make_numbers(self) -> FrictionData:
+    def make_kernel_data(self) -> FrictionData:
         d, shape = self.line.dimension, self.contact.share.shape
         position, traction, resistance = (np.zeros((*shape, d)) for _ in range(3))
         given = self.contact.kernel_data(), self._mu, self._adhesion, self._stiffness
         return FrictionData(*given, position, np.zeros((*shape, d, d - 1)), traction, self._slid, resistance)
 
     def kernel_data(self) -> FrictionData:
-        found: FrictionData = self._numbers
+        found: FrictionData = self._data
         return found
 
     @cached_property
     def _put_start(self) -> Bound:
-        return Bound(put_start, Packed(self._numbers), Packed(self._trials.now.at))
+        return Bound(put_start, Packed(self._data), Packed(self._trials.now.at))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if not self._begun:
@@ -186,13 +186,13 @@ class CoulombFriction(CompiledPart):
 
     def state(self) -> Saved:
         """What the next step starts from, if there was one, and the slip of the stations."""
-        known = {name: getattr(self._numbers, name).copy() for name in AT_START} if self._begun else {}
+        known = {name: getattr(self._data, name).copy() for name in AT_START} if self._begun else {}
         return {"slid": self._slid.copy()} | known
 
     def restore(self, saved: Saved) -> None:
         self._slid[...], self._begun = saved["slid"], "position" in saved
         for name in AT_START if self._begun else ():
-            getattr(self._numbers, name)[...] = saved[name]
+            getattr(self._data, name)[...] = saved[name]
         self._trials.forget()
 
 
@@ -242,7 +242,7 @@ def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> 
             t, _, _ = return_map(_elastic(part, e, g), limit, rise)
             put(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
             p = e * contact.share.shape[1] + g
-            stations.add_integrand_at(contact.at.weighted, p, held(part.resistance[e, g], at.D), out.end_q, e, at.D)
+            stations.add_integrand_at(contact.at.weighted, p, as_tuple(part.resistance[e, g], at.D), out.end_q, e, at.D)
 
 
 @add_tangent.of(FrictionData)
@@ -279,8 +279,8 @@ def _friction_work(part: FrictionData, first: Configuration, last: Configuration
     contact = part.contact
     for e in range(part.stiffness.size):
         for g in range(contact.share.shape[1]):
-            share, begun = contact.share[e, g], padded(part.traction[e, g])
-            work[0] += 0.5 * share / part.stiffness[e] * dot(begun, begun)
+            share, before = contact.share[e, g], padded(part.traction[e, g])
+            work[0] += 0.5 * share / part.stiffness[e] * dot(before, before)
             if contact.found.touches[e]:
                 t: Vec = padded(part.resistance[e, g])
                 work[0] += share * dot(t, _moved(part, e, g)) - 0.5 * share / part.stiffness[e] * dot(t, t)

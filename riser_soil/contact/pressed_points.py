@@ -54,7 +54,7 @@ class PressedPoints:
     def of(
         cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, before: Array
     ) -> PressedPoints:
-        """By the law's numbers and its history (n, nh) at the points."""
+        """By the law's kernel data and its history (n, nh) at the points."""
         n = len(points.gap)
         force, slope, after = np.empty(n), np.empty(n), np.empty_like(before)
         potential = press(law, points, n, before, after, force, slope)

@@ -72,13 +72,13 @@ class SeabedContact(CompiledPart, RiserContact):
         self._covered_from: Array | None = None  # the line's places as they were when the cover was renewed
         self._reported = -1  # count of the trial whose results were written last
 
-    def make_numbers(self) -> SeabedData:
+    def make_kernel_data(self) -> SeabedData:
         stations = self.at, self.share, self._radius, self.memory, self._nodes
         cover = None if self._covering is None else self._covering.make()
         return seabed_data(self.line, *stations, self.ground.kernel_data, self.law, cover)
 
     def kernel_data(self) -> SeabedData:
-        found: SeabedData = self._numbers
+        found: SeabedData = self._data
         return found
 
     def renew_kernel_data(self, start: float, end: float) -> None:
@@ -87,7 +87,7 @@ class SeabedContact(CompiledPart, RiserContact):
     def _renew_cover(self) -> None:
         """What covers the ground moves as the line does: when a step is accepted."""
         if self._covering is not None and self._covered_from is not self.line.x:
-            self._covering.renew(self._numbers.cover)
+            self._covering.renew(self._data.cover)
             self._covered_from = self.line.x
 
     def find(self, state: State) -> None:
@@ -101,7 +101,7 @@ class SeabedContact(CompiledPart, RiserContact):
     @cached_property
     def _put_results(self) -> Bound:
         out = ContactResults.within(self._results_vector, self.line.nodes, self.share.size)
-        return bound(put_results, self._numbers, Packed(self._trials.now.at), Packed(out))
+        return bound(put_results, self._data, Packed(self._trials.now.at), Packed(out))
 
     def results(self, state: State) -> Array:
         """See `ContactResults.within`."""
@@ -162,7 +162,7 @@ class SeabedContact(CompiledPart, RiserContact):
     @cached_property
     def _landing(self) -> tuple[Array, Array, Bound]:
         place, moved = np.empty(self.line.x.shape), np.empty((self.line.nodes, self.line.ndof))
-        return place, moved, Bound(land, Packed(self._numbers), Packed(place), Packed(moved))
+        return place, moved, Bound(land, Packed(self._data), Packed(place), Packed(moved))
 
     def state(self) -> Saved:
         return {"memory": self.memory.copy()}
@@ -189,7 +189,7 @@ class Cushion(SeabedContact):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         super().renew_kernel_data(start, end)
-        self._numbers.acting[:] = [(1.0 - min(t, 1.0)) ** 2 for t in (start, end)]
+        self._data.acting[:] = [(1.0 - min(t, 1.0)) ** 2 for t in (start, end)]
 
 
 class BesideData(NamedTuple):

@@ -14,7 +14,7 @@ from riser_soil.contact.contact import ContactResults, put_results
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
@@ -88,7 +88,7 @@ class Bare(NamedTuple):
 
 class SeabedData(NamedTuple):
     """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), the
-    nodes, and the numbers of its ground and law; the law's start and reach; shares (2,) of the law that act where a
+    nodes, and the kernel data of its ground and law; the law's start and reach; shares (2,) of the law that act where a
     step starts and where it ends; what covers the ground in places; workspace for an element, for the force and its
     derivative at a station, and for a history (nh,).
     """
@@ -123,7 +123,8 @@ def seabed_data(
     law: NormalLaw,
     cover: Any,
 ) -> SeabedData:
-    """With the workspace that they need; ground: its numbers; cover: what lies on it in places, None for nothing."""
+    """With the workspace that they need; ground: its kernel data; cover: what lies on it in places, None for nothing.
+    """
     (ne, ng), d = share.shape, line.dimension
     position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
@@ -234,7 +235,7 @@ def _press(part: SeabedData, at: Configuration, e: int, out: LineForces) -> None
         found.force[e, g], found.slope[e, g], found.stored[e, g] = acting * force, acting * slope, acting * stored
         put(scale(-acting * force, padded(found.normal[e, g])), part.f)
         p = e * part.share.shape[1] + g
-        stations.add_integrand_at(part.at.weighted, p, held(part.f, at.D), out.end_q, e, at.D)
+        stations.add_integrand_at(part.at.weighted, p, as_tuple(part.f, at.D), out.end_q, e, at.D)
 
 
 @add_tangent.of(SeabedData)

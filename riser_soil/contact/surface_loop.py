@@ -23,7 +23,7 @@ POINTS, LEFT = range(2)  # in `TouchWorkspace.found`: how many points touch; whe
 
 class TouchData(NamedTuple):
     """The pipe and the surface. axis: workspace for q; surface: with workspace for its present points. basis (3, d),
-    origin (3,): of the line. law: its numbers, its force begins at a gap of `reach` [m].
+    origin (3,): of the line. law: its kernel data, its force begins at a gap of `reach` [m].
     """
 
     axis: Axis

@@ -34,7 +34,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray, listed
+from riser_soil.core.arrays import Array, IntArray, as_list
 from riser_soil.core.compiled import njit
 
 DEEP = 96.0  # rises of the force within a depth of 1: 43 l on stiff springs, of which f0 is read from the far half
@@ -85,7 +85,7 @@ def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) 
     runs, ends = _runs(clearance, force), np.empty((0, 2))
     if len(runs) > 0:
         ends = _ends_of(runs, arc, share, clearance, force)
-    return [ContactInterval(*between, *run) for run, between in zip(listed(runs), listed(ends), strict=True)]
+    return [ContactInterval(*between, *run) for run, between in zip(as_list(runs), as_list(ends), strict=True)]
 
 
 @njit

@@ -17,7 +17,7 @@ IntArray = npt.NDArray[np.signedinteger[Any]]
 BoolArray = npt.NDArray[np.bool_]
 
 
-def listed(values: npt.NDArray[Any]) -> list[Any]:
+def as_list(values: npt.NDArray[Any]) -> list[Any]:
     """Numbers of an array, which has axes, as Python's own: a list of them, or of lists."""
     return cast(list[Any], values.tolist())
 

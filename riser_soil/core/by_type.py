@@ -1,7 +1,7 @@
 """Functions of compiled code that are chosen by the type of their first argument, as methods are by their object.
 
-Each part of a riser, and each law that one calls, has its numbers in a NamedTuple of arrays, whose type chooses its own
-kernels while what calls them is compiled:
+Each part of a riser, and each law that one calls, has its kernel data in a NamedTuple of arrays, whose type chooses its
+own kernels while what calls them is compiled:
 
     @by_type
     def add_forces(part, at, out): "…"
@@ -36,9 +36,9 @@ def by_type(stub: Any, apart: bool = True) -> Any:
         kernel = kernels.get(_type_of(part))
         return None if kernel is None else _calling(stub, kernel)
 
-    def of(numbers: type) -> Callable[[Kernel], Kernel]:
+    def of(data: type) -> Callable[[Kernel], Kernel]:
         def keep(kernel: Kernel) -> Kernel:
-            kernels[numbers] = njit(kernel, apart=apart)
+            kernels[data] = njit(kernel, apart=apart)
             return kernel
 
         return keep

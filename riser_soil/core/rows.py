@@ -14,7 +14,7 @@ from numba import types
 from numba.extending import overload
 
 from riser_soil.core import row_code
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.row_code import Size
 
 Term = tuple[Array, Array, Array]
@@ -45,13 +45,13 @@ def _chosen(out: Any, at: Any, factor: Any, rows: Any, start: Any, N: Any) -> An
     return one_by_one
 
 
-def held(values: Vector, D: Size) -> tuple[float, ...]:
+def as_tuple(values: Vector, D: Size) -> tuple[float, ...]:
     """Two or three numbers, as D says, apart from the array: what is written later can't change them."""
     return tuple(values[: len(D)])
 
 
-@overload(held, inline="always", strict=False)
-def _held(values: Any, D: Any) -> Any:
+@overload(as_tuple, inline="always", strict=False)
+def _as_tuple(values: Any, D: Any) -> Any:
     if len(D) == 2:
         return lambda values, D: (values[0], values[1])
     return lambda values, D: (values[0], values[1], values[2])
@@ -71,7 +71,7 @@ def _times(factor: Any, vector: Any) -> Any:
 
 def numbers_at(values: Array, start: int, D: Size) -> tuple[float, ...]:
     """len(D) numbers of a contiguous array of any shape, from `start` on, counted in single numbers."""
-    return tuple(listed(values.reshape(-1)[start : start + len(D)]))
+    return tuple(as_list(values.reshape(-1)[start : start + len(D)]))
 
 
 @overload(numbers_at, inline="always", strict=False)
@@ -112,7 +112,7 @@ def two_polynomials(c: Array, start: int, x: float, y: float, N: Size) -> tuple[
     both = [np.polynomial.Polynomial(each) for each in (coefficients @ np.array([1.0, 1.0j])).T]
     at = complex(x, y)
     found = np.array([*(each(at) for each in both), *(each.deriv()(at) for each in both)])
-    return tuple(listed(np.stack([found.real, found.imag], axis=1).ravel()))
+    return tuple(as_list(np.stack([found.real, found.imag], axis=1).ravel()))
 
 
 @overload(two_polynomials, inline="always", strict=False)

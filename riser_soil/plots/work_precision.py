@@ -50,7 +50,7 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
     figure, (axes,) = sheet(1, 1, width=9.0, height=5.6)
     for number, line in enumerate(shown.lines):
         _draw_line(axes, line, f"C{number}", MARKERS[number % len(MARKERS)])
-    axes.plot(shown.other_seconds, _seen(shown.other_errors), "k*", markersize=9, label="several knobs at once")
+    axes.plot(shown.other_seconds, _seen(shown.other_errors), "k*", markersize=9, label="several settings at once")
     axes.step(shown.front_seconds, _seen(shown.front_errors), "k-", where="post", linewidth=0.8, label="Pareto front")
     axes.plot(*[[each] for each in (shown.scene[0], max(shown.scene[1], LEAST))], "ko", fillstyle="none", markersize=15)
     axes.annotate("scene as it is", (shown.scene[0], max(shown.scene[1], LEAST)), (12, 8), textcoords="offset points")
@@ -59,7 +59,7 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
     for target in shown.targets:
         axes.axhline(target, color="C2", linewidth=0.6)
     axes.set(xscale="log", yscale="log", xlabel="processor time [s]")
-    axes.set_ylabel("largest relative error of a headline quantity")
+    axes.set_ylabel("largest relative error of a key result")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
     reported = "123456789" if _span(shown) < 6.0 else "25" if _span(shown) < 30.0 else ""

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
 from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes, TimeResolution
@@ -119,7 +119,7 @@ class StageIndicators:
         values = rows[:, AT]
         self.resolution.update(times, values)
         self.largest = np.fmax(self.largest, np.fmax.reduce(np.abs(values)))
-        for t, step in zip(listed(times), steps, strict=True):
+        for t, step in zip(as_list(times), steps, strict=True):
             self.step.follow(t, step.health)
             self.impact.follow(t, step.health.time_step, self.contact_period, step.ledger)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes, final_state
@@ -138,7 +138,7 @@ class StageTally:
         """times (nt,): s (static stages: load factor), of the instants of the riser."""
         used, arc = riser.largest_bend_utilisation
         rows = np.column_stack([used, riser.tightest_radius, arc, times])
-        most = TightestBend(*listed(rows[np.argmax(np.nan_to_num(rows[:, 0], nan=-np.inf))]))
+        most = TightestBend(*as_list(rows[np.argmax(np.nan_to_num(rows[:, 0], nan=-np.inf))]))
         if most.utilisation > self.tightest.utilisation:
             self.tightest = most
 

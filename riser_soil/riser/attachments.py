@@ -112,7 +112,7 @@ class Attachments(CompiledPart):
         super().__init__(line)
         self._weights = _weights(line, attachments)
 
-    def make_numbers(self) -> GivenForces:
+    def make_kernel_data(self) -> GivenForces:
         return self._weights
 
     def nodal_forces(self, state: State) -> Array | None:

@@ -81,7 +81,7 @@ class Beam(CompiledPart):
         per_length = elements.weight[:, None] * DOWN + (np.zeros(3) if load is None else load)
         self._load = np.ascontiguousarray(per_length @ line.basis)
 
-    def make_numbers(self) -> PlanarBeam | SpatialBeam:
+    def make_kernel_data(self) -> PlanarBeam | SpatialBeam:
         line, load = self.line, self._load.copy()
         if isinstance(line.frames, PlanarFrames):
             return PlanarBeam(*in_plane(line, line.frames, self._elements), line.length, load)
@@ -89,7 +89,7 @@ class Beam(CompiledPart):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if (factor := self.factor(end)) != self._factor_now:
-            np.multiply(factor, self._load, out=self._numbers.load)
+            np.multiply(factor, self._load, out=self._data.load)
             self._factor_now = factor
 
 

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.configuration import maps_for, put_maps, put_turning
@@ -76,24 +76,24 @@ class LineTrials:
         return start, end
 
     def forget(self) -> None:
-        """What has been found does not hold any more: the parts' numbers have changed, or others have used them."""
+        """What has been found does not hold any more: the parts' kernel data have changed, or others have used them."""
         self.now.forget()
 
 
 class BoundPart:
-    """Kernels of a part, bound to its numbers and to the trials of its line, and what they have found last.
+    """Kernels of a part, bound to its kernel data and to the trials of its line, and what they have found last.
 
     found: the count of the trial at which the forces were found.
     """
 
-    def __init__(self, line: Line, numbers: tuple[Any, ...], trials: LineTrials) -> None:
-        self._numbers, self._trials, self.found = numbers, trials, -1
+    def __init__(self, line: Line, data: tuple[Any, ...], trials: LineTrials) -> None:
+        self._data, self._trials, self.found = data, trials, -1
         n, self.forces = 2 * line.ndof, forces_of(line)
         self.energy, self.turned_over = np.zeros(3), np.zeros(4)
         self.residual = np.zeros((line.length.size, n))
         self.K = Packed(np.zeros((line.length.size, n, n)))
         self._now, self._forces = Packed(trials.now.at), Packed(self.forces)
-        self.find = in_turn(Bound(clear, self._forces), bound(add_forces, numbers, self._now, self._forces))
+        self.find = in_turn(Bound(clear, self._forces), bound(add_forces, data, self._now, self._forces))
         self.collect = Bound(collect, self._now, self._forces)
 
     @cached_property
@@ -104,7 +104,7 @@ class BoundPart:
     @cached_property
     def _find_water(self) -> list[Bound]:
         """At the trial state, as another one may have been asked for since."""
-        return [bound(find_water, self._numbers, self._now)] if type(self._numbers) in find_water.kernels else []
+        return [bound(find_water, self._data, self._now)] if type(self._data) in find_water.kernels else []
 
     @cached_property
     def add_tangent(self) -> Bound:
@@ -112,7 +112,7 @@ class BoundPart:
         trials = self._trials
         return in_turn(
             *self._find_water,
-            bound(add_tangent, self._numbers, self._now, trials.maps, trials.weights, self.K),
+            bound(add_tangent, self._data, self._now, trials.maps, trials.weights, self.K),
             Bound(weigh, self._forces, trials.weights, trials.conjugate),
             bound(put_turning, trials.now.at, trials.conjugate, trials.turning),
             Bound(turn, self._now, trials.turning, self.K),
@@ -120,23 +120,23 @@ class BoundPart:
 
     @cached_property
     def add_energy(self) -> Bound:
-        return in_turn(*self._find_water, bound(add_energy, self._numbers, self._now, Packed(self.energy)))
+        return in_turn(*self._find_water, bound(add_energy, self._data, self._now, Packed(self.energy)))
 
     @cached_property
     def add_work(self) -> Bound | None:
         """None where the part has no kernel for it."""
-        if type(self._numbers) not in add_work.kernels:
+        if type(self._data) not in add_work.kernels:
             return None
         given = Packed(self._trials.then.at), self._now, Packed(self.turned_over)
-        return in_turn(*self._find_water, bound(add_work, self._numbers, *given))
+        return in_turn(*self._find_water, bound(add_work, self._data, *given))
 
     @cached_property
     def keep(self) -> Bound:
-        return bound(keep, self._numbers, self._now)
+        return bound(keep, self._data, self._now)
 
 
 class CompiledPart(LinePart, ABC):
-    """Base of the parts whose formulas are kernels; a part has numbers, and history if any.
+    """Base of the parts whose formulas are kernels; a part has kernel data, and history if any.
 
     after_forces: whether its kernels of energy and work read what that of its forces has found at the trial.
     """
@@ -145,15 +145,15 @@ class CompiledPart(LinePart, ABC):
     after_forces: ClassVar[bool] = False
 
     @abstractmethod
-    def make_numbers(self) -> tuple[Any, ...]:
-        """The part in numbers, made once; what changes is an array that is written to, see `renew_kernel_data`."""
+    def make_kernel_data(self) -> tuple[Any, ...]:
+        """The part's kernel data, made once; what changes is an array that is written to, see `renew_kernel_data`."""
 
     @cached_property
-    def _numbers(self) -> Any:
-        return self.make_numbers()
+    def _data(self) -> Any:
+        return self.make_kernel_data()
 
     def kernel_data(self) -> tuple[Any, ...]:
-        found: tuple[Any, ...] = self._numbers
+        found: tuple[Any, ...] = self._data
         return found
 
     @cached_property
@@ -165,7 +165,7 @@ class CompiledPart(LinePart, ABC):
         return BoundPart(self.line, self.kernel_data(), self._trials)
 
     def _go_to(self, state: State) -> BoundPart:
-        """Bring line and numbers to a trial state."""
+        """Update line and kernel data to a trial state."""
         found = self._bound
         self._trials.now.move(state)
         self.renew_kernel_data(*self._trials.step_to(state.t))
@@ -208,7 +208,7 @@ class CompiledPart(LinePart, ABC):
         found = self._placed(state)
         found.energy[:] = 0.0
         found.add_energy()
-        return Energy(*listed(found.energy))
+        return Energy(*as_list(found.energy))
 
     def work(self, before: State, after: State) -> Work:
         found, trials = self._bound, self._trials
@@ -219,7 +219,7 @@ class CompiledPart(LinePart, ABC):
         self._placed(after)
         found.turned_over[:] = 0.0
         found.add_work()
-        return Work(*listed(found.turned_over))
+        return Work(*as_list(found.turned_over))
 
     def commit(self, state: State) -> None:
         """Keep the history."""

@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Traits
 from riser_soil.riser import hermite
@@ -37,7 +37,7 @@ from riser_soil.riser.line import UP, Line
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.riser.stations import gauss
 
-POINTS, SHARES = (tuple(listed(values)) for values in gauss(4))  # exact for products of two cubics
+POINTS, SHARES = (tuple(as_list(values)) for values in gauss(4))  # exact for products of two cubics
 
 
 @dataclass(frozen=True)
@@ -137,14 +137,14 @@ class InnerFlow(CompiledPart):
         self._even = FlowMatrices.zeros(line.length.size)
         add_stretch(self._bore, 0.0, float(line.arc[-1]), flow.density, 0.0, self._even)
 
-    def make_numbers(self) -> ContentsData:
+    def make_kernel_data(self) -> ContentsData:
         ne = self.line.length.size
         return ContentsData(FlowMatrices.zeros(ne), FlowMatrices.zeros(ne), np.ascontiguousarray(UP @ self.line.basis))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if (start, end) != self._times:
-            self._put(start, self._numbers.then)
-            self._put(end, self._numbers.now)
+            self._put(start, self._data.then)
+            self._put(end, self._data.now)
             self._times = start, end
 
     def _put(self, t: float, out: FlowMatrices) -> None:

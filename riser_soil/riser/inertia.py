@@ -50,7 +50,7 @@ class Inertia(CompiledPart):
         M[-1, 2, 2] += self._mass.ends[1]
         return M
 
-    def make_numbers(self) -> Mass:
+    def make_kernel_data(self) -> Mass:
         return self._mass
 
     def nodal_forces(self, state: State) -> Array | None:

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray, IntArray, listed
+from riser_soil.core.arrays import Array, BoolArray, IntArray, as_list
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
@@ -290,7 +290,7 @@ class Line:
         left = trial if before is None else self.trial(before)
         first, last = (left.chord, left.turn.tangent), (trial.chord, trial.turn.tangent)
         put_folded(*first, *last, trial.turn.first_wound, found)
-        return self.folding(*listed(found))
+        return self.folding(*as_list(found))
 
     def folding(self, folded: int, swung: int) -> str:
         """What to say of the first element that is folded or wound up, and of the first that swings too far in a step;

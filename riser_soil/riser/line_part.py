@@ -25,15 +25,15 @@ class LinePart:
         return {self.line.name: self.line.element_block()}
 
     def kernel_data(self) -> tuple[Any, ...] | None:
-        """The part in numbers, for the compiled loop over a riser alone, see `part_kernels`; None without.
+        """The part's kernel data, for the compiled loop over a riser alone, see `part_kernels`; None without.
 
         Asked for once a stage, so that what changes is an array that is written to, see `renew_kernel_data`.
         """
         return None
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        """Write what depends on the time alone into the numbers that were asked for last, for a step between two times
-        [s].
+        """Write what depends on the time alone into the kernel data that was asked for last, for a step between two
+        times [s].
         """
 
     def energy(self, state: State) -> Energy:

@@ -92,7 +92,7 @@ class PointLoads(CompiledPart):
             shapes = hermite.shapes(np.array([xi]), line.length[e : e + 1])[0]
             self._along.append(_Share(load, e, shapes[:, None] * force))
 
-    def make_numbers(self) -> GivenForces | SpatialMoments:
+    def make_kernel_data(self) -> GivenForces | SpatialMoments:
         line, node = self.line, np.array([share.at for share in self._moments], dtype=np.int64)
         F, nodal = np.zeros((line.length.size, 4, line.dimension)), np.zeros((line.nodes, line.ndof))
         if self._moments:
@@ -100,13 +100,13 @@ class PointLoads(CompiledPart):
         return GivenForces(F, nodal, potential=False)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        numbers = self._numbers
-        for residual, shares in ((numbers.F, self._along), (numbers.nodal, self._nodal)):
+        data = self._data
+        for residual, shares in ((data.F, self._along), (data.nodal, self._nodal)):
             residual[:] = 0.0
             for share in shares:
                 residual[share.at] -= share.load.factor(end) * share.values
         for k, share in enumerate(self._moments):
-            numbers.moment[k] = share.load.factor(end) * share.values
+            data.moment[k] = share.load.factor(end) * share.values
 
     def nodal_forces(self, state: State) -> Array | None:
         return self.forces_on_nodes(state) if self._nodal or self._moments else None

@@ -49,9 +49,9 @@ def forces_of(line: Line) -> LineForces:
     return LineForces(*conjugate, *of_elements, *(np.zeros((line.nodes, line.ndof)) for _ in range(3)))
 
 
-def bound(stub: Any, numbers: tuple[Any, ...], *arguments: Packed) -> Bound:
-    """The kernel for these numbers, bound to them and to its other arguments."""
-    return Bound(stub.kernels[type(numbers)], Packed(numbers), *arguments)
+def bound(stub: Any, data: tuple[Any, ...], *arguments: Packed) -> Bound:
+    """The kernel for this data, bound to it and to its other arguments."""
+    return Bound(stub.kernels[type(data)], Packed(data), *arguments)
 
 
 @bound_by_type

@@ -1,4 +1,4 @@
-"""A line in numbers, where kernels that ask about it find it: at its accepted configuration, and at trial states."""
+"""A line by its kernel data, where kernels that ask for it find it: where it is accepted, and at trial states."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class RotaryInertia(CompiledPart):
         on_tangent = self.across - half
         return {0: on_tangent} | masses if on_tangent.any() else masses
 
-    def make_numbers(self) -> PlanarRotaryMass | SpatialRotaryMass:
+    def make_kernel_data(self) -> PlanarRotaryMass | SpatialRotaryMass:
         frames = self.line.frames
         if isinstance(frames, PlanarFrames):
             return PlanarRotaryMass(self.across)

@@ -56,13 +56,13 @@ class EndSpring(CompiledPart):
         self.node = node % line.nodes
         self.name = "start spring" if self.node == 0 else "end spring"
 
-    def make_numbers(self) -> PlanarSpring | SpatialSpring:
+    def make_kernel_data(self) -> PlanarSpring | SpatialSpring:
         kind = PlanarSpring if self.line.dimension == 2 else SpatialSpring
         supports = (np.array(self.line.support(self.node, 0.0)) for _ in range(2))
         return kind(self.node, self.stiffness, *supports)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        for kept, t in ((self._numbers.before, start), (self._numbers.support, end)):
+        for kept, t in ((self._data.before, start), (self._data.support, end)):
             kept[:] = self.line.support(self.node, t)
 
 

@@ -51,7 +51,7 @@ class StructuralDamping(CompiledPart):
         super().__init__(line)
         self._elements = elements
 
-    def make_numbers(self) -> PlanarViscosity | SpatialViscosity:
+    def make_kernel_data(self) -> PlanarViscosity | SpatialViscosity:
         line, ne, beta = self.line, self.line.length.size, self._elements.damping
         if isinstance(line.frames, PlanarFrames):
             flat, planar = in_plane(line, line.frames, self._elements)

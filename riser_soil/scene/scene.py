@@ -106,12 +106,12 @@ class Scene(BaseModel):
     output: Output = Field(default=Output(), description="what the run writes")
     accuracy: Accuracy | None = Field(
         default=None,
-        description="accuracy of all headline quantities, as 1 % or 0.01 (0.01 to 20 %), in place of elements, time "
+        description="accuracy of all key results, as 1 % or 0.01 (0.01 to 20 %), in place of elements, time "
         "steps, the soil's mesh and the penalty: the run chooses them",
     )
     error_bars: Literal[True, False] = Field(
         default=False,
-        description="whether a run estimates by coarser companions how far its headline quantities may be off",
+        description="whether a run estimates by coarser runs how far its key results may be off",
     )
 
     @model_validator(mode="before")

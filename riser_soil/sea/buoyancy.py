@@ -11,7 +11,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.part import Traits
-from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Configuration, Maps
@@ -93,7 +93,7 @@ def _station_forces(part: DryStationData, at: Configuration, out: LineForces) ->
         for g in range(part.share.shape[1]):
             part.f[len(at.D) - 1] = _lost(part, part.seen.end, m, g)
             p = m * part.share.shape[1] + g
-            stations.add_integrand_at(part.at.weighted, p, held(part.f, at.D), out.force_q, part.element[m], at.D)
+            stations.add_integrand_at(part.at.weighted, p, as_tuple(part.f, at.D), out.force_q, part.element[m], at.D)
 
 
 @add_tangent.of(DryStationData)
@@ -201,7 +201,7 @@ Dry = Callable[[FlowAtStations, bool], DryPipeData | DryStationData]
 def dry_stations(span: Array, displaced: Array) -> Dry:
     """By the dry share at the stations of a pipe, see `DryStationData`."""
 
-    def numbers(water: FlowAtStations, flat: bool) -> DryStationData:
+    def data(water: FlowAtStations, flat: bool) -> DryStationData:
         pipe, seen, d = water.pipe, water.in_loop, water.pipe.line.dimension
         return DryStationData(
             stream=seen.stream,
@@ -217,7 +217,7 @@ def dry_stations(span: Array, displaced: Array) -> Dry:
             change=element_workspace(2 * pipe.line.ndof, fixed(d)),
         )
 
-    return numbers
+    return data
 
 
 class Buoyancy(CompiledPart):
@@ -234,7 +234,7 @@ class Buoyancy(CompiledPart):
         self._water, self._dry, self._flat = water, dry, flat
         self.traits = Traits("F", symmetric=flat)
 
-    def make_numbers(self) -> DryPipeData | DryStationData:
+    def make_kernel_data(self) -> DryPipeData | DryStationData:
         return self._dry(self._water, self._flat)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
@@ -252,7 +252,7 @@ def dry_pipe(displaced: Array) -> Dry:
     displaced: weight of the water in the pipe's place [N/m] (ne,).
     """
 
-    def numbers(water: FlowAtStations, flat: bool) -> DryPipeData:
+    def data(water: FlowAtStations, flat: bool) -> DryPipeData:
         pipe, seen, ng = water.pipe, water.in_loop, water.pipe.share.shape[1]
         L, D = pipe.line.length, pipe.line.outer_diameter
         apart = 0.5 * np.pi * L  # times n, at most, between neighbours of n Gauss-Legendre points
@@ -273,4 +273,4 @@ def dry_pipe(displaced: Array) -> Dry:
             before=np.zeros(4),
         )
 
-    return numbers
+    return data

@@ -1,4 +1,4 @@
-"""The water's motion at given points: the sea of a stage as a sum of flows, compiled by the type of their numbers."""
+"""The water's motion at given points: the sea of a stage as a sum of flows, compiled by the type of their data."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Water = Callable[[float, Array], WaterMotion]
 
 
 class SeaData(NamedTuple):
-    """A `Sea`: z of its mean surface [m], inf without one, and the numbers of its flows."""
+    """A `Sea`: z of its mean surface [m], inf without one, and the kernel data of its flows."""
 
     level: float
     flows: tuple

@@ -15,7 +15,7 @@ from riser_soil.sea.stream_kernels import update
 class Morison(CompiledPart):
     """Loads of the water at the pipe's stations, brought to the line: group I is the added mass, F all the rest.
 
-    formed: what becomes of the loads in numbers, where they have kernels of their own.
+    formed: what becomes of the loads' kernel data, where they have kernels of their own.
 
     Drag of still water dissipates; all that moving water does is external work, of either sign. So a riser at rest in a
     current neither gains nor loses energy, whatever supports it. External, too, is the change of kinetic energy by a
@@ -31,7 +31,7 @@ class Morison(CompiledPart):
         super().__init__(loads.pipe.line)
         self._loads, self._formed = loads, formed
 
-    def make_numbers(self) -> tuple[Any, ...]:
+    def make_kernel_data(self) -> tuple[Any, ...]:
         found = self._loads.kernel_data()
         self._seen = found.seen if isinstance(found, MovingWaterData) else None
         if self._formed is None:

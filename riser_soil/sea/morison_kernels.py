@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import Term, add_pulled_back, held, put_weighed, times
+from riser_soil.core.rows import Term, add_pulled_back, as_tuple, put_weighed, times
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
@@ -80,7 +80,7 @@ class StepBatch(NamedTuple):
 
 @njit
 def _batch(rows: Array, D: Size) -> Batch:
-    """The first 3 d + 5 rows of a workspace. It is to be allocated where loops over its lanes are: the compiler then
+    """The first 3 d + 5 rows of a workspace. It is to be allocated where loops over its batch are: the compiler then
     knows its size, and that what they write lies apart from what they read, as it must to do them on vectors.
     """
     d = len(D)
@@ -128,16 +128,16 @@ def _still_forces(part: StillWaterData, at: Configuration, out: LineForces) -> N
         for e in range(first, after):
             for g in range(NG):
                 k, p = (e - first) * NG + g, e * NG + g
-                stations.add_integrand_at(weighted, p, held(inertia[:, k], D), out.inertia_q, e, D)
-                stations.add_integrand_at(weighted, p, held(force[:, k], D), out.force_q, e, D)
+                stations.add_integrand_at(weighted, p, as_tuple(inertia[:, k], D), out.inertia_q, e, D)
+                stations.add_integrand_at(weighted, p, as_tuple(force[:, k], D), out.force_q, e, D)
 
 
 @njit
 def _put_forces(seen: Batch, inertia: Array, force: Array, k: int, D: Size) -> None:
     """Write the resistance at one station, by groups."""
-    tau = held(seen.tau[:, k], D)
-    law.put_added(held(seen.a[:, k], D), tau, held(seen.mass[:, k], PAIR), inertia[:, k], D)
-    law.put_drag(held(seen.v[:, k], D), tau, held(seen.drag[:, k], PAIR), force[:, k], D)
+    tau = as_tuple(seen.tau[:, k], D)
+    law.put_added(as_tuple(seen.a[:, k], D), tau, as_tuple(seen.mass[:, k], PAIR), inertia[:, k], D)
+    law.put_drag(as_tuple(seen.v[:, k], D), tau, as_tuple(seen.drag[:, k], PAIR), force[:, k], D)
 
 
 @add_tangent.of(StillWaterData)
@@ -199,10 +199,10 @@ def _terms(part: StillWaterData, maps: Maps, e: int, g: int) -> tuple[Array, tup
 @njit
 def _put_derivatives(seen: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
     """Write the weighted derivatives by velocity, acceleration and slope at one station."""
-    tau, stretch, by_slope = held(seen.tau[:, k], D), seen.stretch[k], by[2, :, :, k]
-    v, drag = held(seen.v[:, k], D), held(seen.drag[:, k], PAIR)
+    tau, stretch, by_slope = as_tuple(seen.tau[:, k], D), seen.stretch[k], by[2, :, :, k]
+    v, drag = as_tuple(seen.v[:, k], D), as_tuple(seen.drag[:, k], PAIR)
     law.put_drag_derivatives(v, tau, stretch, drag, weights.force, by[0, :, :, k], by_slope, D)
-    a, mass = held(seen.a[:, k], D), held(seen.mass[:, k], PAIR)
+    a, mass = as_tuple(seen.a[:, k], D), as_tuple(seen.mass[:, k], PAIR)
     law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, by[1, :, :, k], by_slope, D)
 
 
@@ -235,17 +235,17 @@ def _still_work(part: StillWaterData, first: Configuration, last: Configuration,
     d = len(D)
     rows, workspace, done = np.zeros((8 * d + 10, BATCH)), np.zeros((3, d, BATCH)), np.zeros((2, BATCH))
     seen = StepBatch(_batch(rows, D), _batch(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
-    for begun in range(0, ne, ELEMENTS):
-        after = min(begun + ELEMENTS, ne)
-        _see(part, first, begun, after, seen.first)
-        _see(part, last, begun, after, seen.last)
-        _see_values(part, first.q, begun, after, seen.began, D)
-        _see_values(part, last.q, begun, after, seen.ended, D)
+    for start in range(0, ne, ELEMENTS):
+        after = min(start + ELEMENTS, ne)
+        _see(part, first, start, after, seen.first)
+        _see(part, last, start, after, seen.last)
+        _see_values(part, first.q, start, after, seen.began, D)
+        _see_values(part, last.q, start, after, seen.ended, D)
         for k in range(BATCH):
             _put_work(seen, workspace, done, k, D)
-        for e in range(begun, after):
+        for e in range(start, after):
             for g in range(NG):
-                k, share = (e - begun) * NG + g, part.share[e, g]
+                k, share = (e - start) * NG + g, part.share[e, g]
                 work[0] += share * done[0, k]
                 work[1] += share * done[1, k]
                 work[2] += share * done[1, k]
@@ -257,10 +257,10 @@ def _put_work(seen: StepBatch, workspace: Array, done: Array, k: int, D: Size) -
     velocity.
     """
     before, after, mean, lost, changed = workspace[0, :, k], workspace[1, :, k], workspace[2, :, k], 0.0, 0.0
-    drag, mass = held(seen.last.drag[:, k], PAIR), held(seen.last.mass[:, k], PAIR)
-    tau, turned = held(seen.first.tau[:, k], D), held(seen.last.tau[:, k], D)
-    law.put_drag(held(seen.first.v[:, k], D), tau, drag, before, D)
-    law.put_drag(held(seen.last.v[:, k], D), turned, drag, after, D)
+    drag, mass = as_tuple(seen.last.drag[:, k], PAIR), as_tuple(seen.last.mass[:, k], PAIR)
+    tau, turned = as_tuple(seen.first.tau[:, k], D), as_tuple(seen.last.tau[:, k], D)
+    law.put_drag(as_tuple(seen.first.v[:, k], D), tau, drag, before, D)
+    law.put_drag(as_tuple(seen.last.v[:, k], D), turned, drag, after, D)
     for i in range(len(D)):
         lost += 0.5 * (before[i] + after[i]) * (seen.ended[i, k] - seen.began[i, k])
         mean[i] = 0.5 * (seen.first.v[i, k] + seen.last.v[i, k])

@@ -19,7 +19,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.rows import Vector, held
+from riser_soil.core.rows import Vector, as_tuple
 from riser_soil.riser.hermite import Size
 
 
@@ -47,7 +47,7 @@ def _split(v: Vector, tau: Vector, D: Size) -> tuple[float, float]:
 @njit
 def put_drag(v: Vector, tau: Vector, c: Vector, f: Array, D: Size) -> None:
     """Write the resistance to the rate at one point, f (d,)."""
-    v, tau = held(v, D), held(tau, D)
+    v, tau = as_tuple(v, D), as_tuple(tau, D)
     along, speed = _split(v, tau, D)
     across, lengthwise = c[0] * speed, c[1] * abs(along) * along
     for i in range(len(D)):
@@ -57,7 +57,7 @@ def put_drag(v: Vector, tau: Vector, c: Vector, f: Array, D: Size) -> None:
 @njit
 def put_added(a: Vector, tau: Vector, m: Vector, f: Array, D: Size) -> None:
     """Write the resistance to the acceleration at one point, f (d,)."""
-    a, tau = held(a, D), held(tau, D)
+    a, tau = as_tuple(a, D), as_tuple(tau, D)
     along, _ = _split(a, tau, D)
     for i in range(len(D)):
         f[i] = m[0] * a[i] + (m[1] - m[0]) * along * tau[i]
@@ -68,7 +68,7 @@ def put_drag_derivatives(
     v: Vector, tau: Vector, stretch: float, c: Vector, weight: float, by_v: Array, by_slope: Array, D: Size
 ) -> None:
     """Write d drag/dv and d drag/dx' at one point, each (d, d), times a weight; at rest both are zero."""
-    v, tau = held(v, D), held(tau, D)
+    v, tau = as_tuple(v, D), as_tuple(tau, D)
     along, speed = _split(v, tau, D)
     normal, tangential = weight * c[0] * speed, weight * 2.0 * c[1] * abs(along)
     bend = weight * c[0] / speed if speed > 0.0 else 0.0
@@ -87,7 +87,7 @@ def put_added_derivatives(
     a: Vector, tau: Vector, stretch: float, m: Vector, weight: float, by_a: Array, by_slope: Array, D: Size
 ) -> None:
     """Write d added/da at one point (d, d), times a weight, and add d added/dx' to by_slope (d, d)."""
-    a, tau = held(a, D), held(tau, D)
+    a, tau = as_tuple(a, D), as_tuple(tau, D)
     normal, excess = weight * m[0], weight * (m[1] - m[0])
     along, _ = _split(a, tau, D)
     shorter = excess / stretch

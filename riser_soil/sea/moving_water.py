@@ -62,7 +62,7 @@ class WaterLoads:
     dissipative: bool = True
 
     def kernel_data(self) -> StillWaterData | MovingWaterData:
-        """See `LinePart.numbers`."""
+        """See `LinePart.kernel_data`."""
         if self.water is None and not self.pipe.points_alone:
             return still_water(self.pipe, self.drag, self.mass)
         return self.seen_in(self.water or FlowAtStations(self.pipe, Sea(None)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
@@ -156,8 +156,8 @@ def _forces(part: MovingWaterData, at: Configuration, out: LineForces) -> None:
                 workspace.inertia[i] *= share
                 workspace.force[i] *= share
             p = m * part.share.shape[1] + g
-            stations.add_integrand_at(part.at.weighted, p, held(workspace.inertia, at.D), out.inertia_q, e, at.D)
-            stations.add_integrand_at(part.at.weighted, p, held(workspace.force, at.D), out.force_q, e, at.D)
+            stations.add_integrand_at(part.at.weighted, p, as_tuple(workspace.inertia, at.D), out.inertia_q, e, at.D)
+            stations.add_integrand_at(part.at.weighted, p, as_tuple(workspace.force, at.D), out.force_q, e, at.D)
 
 
 @add_tangent.of(MovingWaterData)

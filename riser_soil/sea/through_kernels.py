@@ -1,6 +1,6 @@
 """Kernels of loads that follow from the velocity through the water, as those of `part_kernels` but for history.
 
-A part of such loads has numbers of a type of its own, with the fields of `ThroughData`: its law, whose type chooses
+A part of such loads has kernel data of a type of its own, with the fields of `ThroughData`: its law, whose type chooses
 the formula, and the pipe in the water.
 """
 
@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from riser_soil.core.arrays import Array
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
-from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
@@ -90,7 +90,7 @@ def _forces(part: ThroughData, at: Configuration, out: LineForces) -> None:
             for i in range(len(at.D)):
                 workspace.force[i] *= share
             p = m * flow.share.shape[1] + g
-            stations.add_integrand_at(flow.at.weighted, p, held(workspace.force, at.D), out.force_q, e, at.D)
+            stations.add_integrand_at(flow.at.weighted, p, as_tuple(workspace.force, at.D), out.force_q, e, at.D)
 
 
 def _tangent(part: ThroughData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
@@ -149,8 +149,8 @@ def _work(part: ThroughData, first: Configuration, last: Configuration, work: Ar
         work[1] -= resisted
 
 
-def with_kernels(numbers: type) -> None:
-    """Let a type of numbers have these kernels."""
+def with_kernels(data: type) -> None:
+    """Let a type of kernel data have these kernels."""
     stubs = find_water, add_forces, add_tangent, add_energy, add_work
     for stub, kernel in zip(stubs, (_find_water, _forces, _tangent, _energy, _work), strict=True):
-        stub.of(numbers)(kernel)
+        stub.of(data)(kernel)

@@ -61,7 +61,7 @@ class Vortices(CompiledPart):
         self.name = "vortices in line" if in_line else "vortices"
         self._loads, self._shed, self._in_line, self._wake = loads, shed, in_line, _new_wake(loads.pipe)
 
-    def make_numbers(self) -> VortexData:
+    def make_kernel_data(self) -> VortexData:
         flow = self._loads.kernel_data()
         assert isinstance(flow, MovingWaterData)
         push = Push(self._shed.lift, np.zeros((2, *flow.share.shape)), self._in_line)
@@ -69,13 +69,13 @@ class Vortices(CompiledPart):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         """Phases are known before a step, when the wake is kept where it starts."""
-        update(self._numbers.flow.seen, start, end)
-        for phases, t in zip(self._numbers.law.phases, (start, end), strict=True):
+        update(self._data.flow.seen, start, end)
+        for phases, t in zip(self._data.law.phases, (start, end), strict=True):
             phases[:] = law.phases_at(self._wake, t)
 
     @cached_property
     def _shed_at_rest(self) -> Bound:
-        return Bound(shed_at_rest, Packed(self._numbers), Packed(self._trials.now.at))
+        return Bound(shed_at_rest, Packed(self._data), Packed(self._trials.now.at))
 
     def begin_stage(self, state: State) -> None:
         """Shed as behind a pipe at rest, then as behind one in this motion."""

@@ -169,7 +169,7 @@ class WaveField:
     The acceleration is the rate of the ramped velocity, the ramp's own share included. depth [m] may be inf.
     surface_level: z of the mean surface [m]. clock: what the waves' clock, which their phases are counted on, shows
     when the stage begins [s]. ramp [s] is counted from the waves' beginning; since: how long they have acted when the
-    stage begins [s], by default what the clock shows. numbers: the same for compiled code.
+    stage begins [s], by default what the clock shows. kernel_data: the same for compiled code.
     """
 
     def __init__(

@@ -1,6 +1,6 @@
-"""The base of seabed laws: what a law does at one point is compiled, and chosen by the type of its numbers.
+"""The base of seabed laws: what a law does at one point is compiled, and chosen by the type of its kernel data.
 
-A law has kernels of `answer` and `may_act`, and all else goes through them. Of numbers without kernels numba says that
+A law has kernels of `answer` and `may_act`, and all else goes through them. Of data without kernels numba says that
 there is no implementation for their type.
 """
 
@@ -30,7 +30,7 @@ def may_act(law: Any, penetration: float, history: Array) -> Any:
 
 
 class CompiledLaw:
-    """Base of all `NormalLaw`s: what a law does is in the kernels for its numbers."""
+    """Base of all `NormalLaw`s: what a law does is in the kernels for its kernel data."""
 
     kernel_data: Any
     gradual: ClassVar[bool] = False

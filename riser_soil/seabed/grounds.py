@@ -23,7 +23,8 @@ Mat = tuple[Vec, Vec, Vec]
 
 @by_type
 def distance_at(ground: Any, x: Vec) -> Any:
-    """Distance of a point x in global axes from a ground of these numbers [m], its gradient and its hessian [1/m]."""
+    """Distance of a point x in global axes from a ground of this kernel data [m], its gradient and its hessian [1/m].
+    """
 
 
 class Distance(NamedTuple):

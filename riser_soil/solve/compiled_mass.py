@@ -45,8 +45,8 @@ KernelData = tuple[Any, ...]
 class CompiledMass:
     """A `InverseMass` of one line, by the kernels of its parts; and the bulk forces of an accepted state.
 
-    placed: the line where it is accepted; bulk, inertial: numbers of the parts with forces in groups I and F, and in I;
-    prescribed, levers (size,): of the line's dofs; update: writes what depends on the time into the numbers.
+    placed: the line where it is accepted; bulk, inertial: kernel data of the parts with forces in groups I and F, and
+    in I; prescribed, levers (size,): of the line's dofs; update: writes what depends on the time into the kernel data.
     """
 
     def __init__(
@@ -67,9 +67,9 @@ class CompiledMass:
     def _bind_state(self, bulk: Sequence[KernelData], inertial: Sequence[KernelData]) -> None:
         """Bind the kernels of forces and kinetic energy in motion."""
         here, forces, energy = map(Packed, (self._placed.at, self._forces, self._energy))
-        each = [bound(add_forces, numbers, here, forces) for numbers in bulk]
+        each = [bound(add_forces, data, here, forces) for data in bulk]
         self._find_forces = in_turn(Bound(clear, forces), *each, Bound(collect, here, forces))
-        self._find_energy = in_turn(*(bound(add_energy, numbers, here, energy) for numbers in inertial))
+        self._find_energy = in_turn(*(bound(add_energy, data, here, energy) for data in inertial))
 
     def _bind_mass(self, inertial: Sequence[KernelData]) -> None:
         """Bind the kernels of the mass at rest."""
@@ -77,10 +77,10 @@ class CompiledMass:
         here, K, weights = Packed(at), Packed(self._mass.K), Packed(LineWeights(1.0, 0.0))
         maps = Packed(maps_for(self._line)._replace(shift_a=1.0))
         self._find_matrices = in_turn(
-            *(bound(find_water, numbers, here) for numbers in inertial if type(numbers) in find_water.kernels),
+            *(bound(find_water, data, here) for data in inertial if type(data) in find_water.kernels),
             bound(put_maps, at, maps),
             Bound(loop.clear_tangent, K),
-            *(bound(add_tangent, numbers, here, maps, weights, K) for numbers in inertial),
+            *(bound(add_tangent, data, here, maps, weights, K) for data in inertial),
         )
 
     def bulk_forces(self, state: State) -> Forces:
@@ -157,7 +157,7 @@ class AcceptedForces:
     """What the parts of a line put within its elements at an accepted state: workspace of its own beside that of the
     loop.
 
-    placed: the line there; parts: with their numbers. whole: whether the loop's forces tell the same, where it has
+    placed: the line there; parts: with their data. whole: whether the loop's forces tell the same, where it has
     solved for the state: in the axes in which that step began, which parts with viscous forces don't know any more.
     forces: as found last.
     """
@@ -169,12 +169,12 @@ class AcceptedForces:
         here, forces = Packed(placed.at), Packed(out)
         self._find = in_turn(
             Bound(clear, forces),
-            *(bound(add_forces, numbers, here, forces) for _, numbers in parts),
+            *(bound(add_forces, data, here, forces) for _, data in parts),
         )
         self.forces = ElementForces(line, placed.at, out, [part for part, _ in parts])
 
     def found(self, state: State) -> ElementForces:
-        """At an accepted state, to whose time the numbers have been brought."""
+        """At an accepted state, to whose time the kernel data has been updated."""
         self._placed.move(state)
         self._find()
         return self.forces

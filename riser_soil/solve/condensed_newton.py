@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from riser_soil.contact.surface_contact import SurfaceContact
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
@@ -37,11 +37,11 @@ def condensed_newton(system: System, settings: NewtonSettings) -> CondensedNewto
         return None
     rest = [part for part in system.model.parts if part is not contact and part is not soil]
     asked = [(part, part.kernel_data()) for part in rest if isinstance(part, LinePart)]
-    numbered = [(part, numbers) for part, numbers in asked if numbers is not None]
-    if len(numbered) < len(rest):
+    with_data = [(part, data) for part, data in asked if data is not None]
+    if len(with_data) < len(rest):
         return None
     border = SoilBorder(contact.line, contact, soil, touch)
-    return CondensedNewton(system, settings, KernelParts(numbered), contact, soil, border)
+    return CondensedNewton(system, settings, KernelParts(with_data), contact, soil, border)
 
 
 class CondensedNewton(StepSolver):
@@ -78,7 +78,7 @@ class CondensedNewton(StepSolver):
         norms = self._norms(step, still)
         self.system.clock.add("riser and soil", since)
         found = self._by_newton(step) if norms is None else Solution(self._state(step, still), self._forces(), norms)
-        self._solved, self.rests = None if norms is None else found.state, False
+        self._solved, self.at_equilibrium = None if norms is None else found.state, False
         return found
 
     def _norms(self, step: Step, still: State) -> list[float] | None:
@@ -89,7 +89,7 @@ class CondensedNewton(StepSolver):
         guess = State(step.t, step.guess[at].copy(), still.v[at], still.a[at])
         self._line.prescribe(step.t, guess.u, guess.v, guess.a)
         guessed = bool(step.guess[~self.system.prescribed].any())
-        limits = limits_of(self.settings, False, False, self.rests or guessed)  # as in `Newton`
+        limits = limits_of(self.settings, False, False, self.at_equilibrium or guessed)  # as in `Newton`
         for _ in range(MOST_STARTS):
             self._border.begin(step.before, step.guess)
             self._prescribe_anew()
@@ -97,7 +97,7 @@ class CondensedNewton(StepSolver):
             outcome, taken = self._riser.solve()
             self.iterations += taken
             if outcome == CONVERGED and self._border.holds and not self._line.folding(*self._riser.folding):
-                return listed(self._riser.progress.norms[: taken + 1])
+                return as_list(self._riser.progress.norms[: taken + 1])
             if outcome != OUTGROWN:
                 return None
             self._border.widen()
@@ -113,7 +113,7 @@ class CondensedNewton(StepSolver):
         """With a matrix for what is reached and may touch now."""
         self._contact.rebuild(State.at_rest(step.before.t, len(self._nothing)))
         self._newton.renew()
-        self._newton.rests, before = self.rests, self._newton.iterations
+        self._newton.at_equilibrium, before = self.at_equilibrium, self._newton.iterations
         try:
             return self._newton.solve(step)
         finally:
@@ -159,20 +159,20 @@ class CondensedNewton(StepSolver):
         found = self._mass_of_line.bulk_forces(of_line(state, self._at))
         return self._padded(found.inertia, found.force, found.end)
 
-    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
+    def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         if solution.state is not self._solved:
             self._stored.clear()
-            return self._newton.turned_over(before, solution)
+            return self._newton.energy_exchanged(before, solution)
         since = time.perf_counter()
         work = {part.name: Work() for part in self.system.model.parts}
         stored, rows = self._riser.account(of_line(before, self._at))
-        self._parts.add_work(before, solution.state, listed(rows), work)
+        self._parts.add_work(before, solution.state, as_list(rows), work)
         work[self._soil.name] += self._soil.work(before, solution.state)
         work[self._contact.name] += self._work_of_contact(before, solution.state.t)
         potential = Energy(potential=self._border.potential)
         self.system.clock.add("riser and soil", since)
-        return Energy(*listed(stored)) + potential + self._soil.energy(solution.state), work
+        return Energy(*as_list(stored)) + potential + self._soil.energy(solution.state), work
 
     def _work_of_contact(self, before: State, t: float) -> Work:
         """See `SurfaceContact.work`: without a history all is the time scheme's."""
@@ -188,7 +188,7 @@ class CondensedNewton(StepSolver):
         return {"times": np.array([*self._stored]), "stored": np.array([*self._stored.values()])}
 
     def restore(self, saved: Saved) -> None:
-        self._stored = dict(zip(listed(saved["times"]), listed(saved["stored"]), strict=True))
+        self._stored = dict(zip(as_list(saved["times"]), as_list(saved["stored"]), strict=True))
 
     def renew(self) -> None:
         self._newton.renew()

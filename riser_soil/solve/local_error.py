@@ -99,14 +99,14 @@ class LocalError:
 
 
 def committed_error(
-    system: System, scheme: Scheme, begun: tuple[State, State], ended: tuple[State, State], dt: float
+    system: System, scheme: Scheme, start: tuple[State, State], ended: tuple[State, State], dt: float
 ) -> float:
     """Largest local error of a place [m] in a step just committed, on the rank that holds the riser: `LocalError.of`
     without solving for accelerations.
 
-    begun, ended: the states with the bulk's rates alone, and as the riser moves, before and after the step.
+    start, ended: the states with the bulk's rates alone, and as the riser moves, before and after the step.
     """
-    changed = (state.a for pair in (begun, ended) for state in pair)
+    changed = (state.a for pair in (start, ended) for state in pair)
     missed = _missed(*changed, scheme.error_constant, CONTACT.error_constant, system.prescribed_dofs)
     return dt**2 * _largest(system, missed)
 
@@ -219,16 +219,16 @@ def _accepted(differences: Array, steps: Array, increments: Array, dt: float, mo
 
 
 class EnergyGain:
-    """The sum of what steps have made out of nothing since it was last balanced [J]; begun: energy at the start.
+    """The sum of what steps have made out of nothing since it was last balanced [J]; start: energy at the start.
 
     largest: share of the energy in motion that a step may make. turned: the most that was stored, or put in or
     dissipated in all [J].
     """
 
-    def __init__(self, begun: Energy, largest: float = LARGEST) -> None:
+    def __init__(self, start: Energy, largest: float = LARGEST) -> None:
         self._largest = largest
         self._sum = self._work = self._dissipated = 0.0
-        self._turned = max(begun.kinetic, begun.strain)
+        self._turned = max(start.kinetic, start.strain)
 
     def rejection(self, was: Energy, now: Energy, dissipated: float, work: float, negligible: float) -> str:
         """Why a step from one energy to another that makes as much as it does is not accepted; "" for a good one."""

@@ -29,7 +29,7 @@ from riser_soil.solve.newton_progress import (
     above_round_off,
     diverges,
     leaves_tangent,
-    stays,
+    stalled,
     step_length,
     verdict,
 )
@@ -241,8 +241,9 @@ class Newton(StepSolver):
         self._x = self.system.numbering.to_global(step.guess)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._step.weights.inertia > 0.0
-        self._limits = limits_of(self.settings, near, False, self.rests or guessed)  # one like round-off has an answer
-        self.rests = False
+        answers = self.at_equilibrium or guessed  # one like round-off has an answer, too
+        self._limits = limits_of(self.settings, near, False, answers)
+        self.at_equilibrium = False
 
     def residual(self, x: Array) -> Array:
         """Residual of the unknowns, both (owned,); collective."""
@@ -290,7 +291,7 @@ class Newton(StepSolver):
         ending = NAMES[verdict(norm, self._norm.in_play(self._step.forces), self._taken, limits)]
         if ending != ITERATING:
             return ending
-        if self._taken >= limits.least and stays(np.array(self._norms)) and self._at_round_off():
+        if self._taken >= limits.least and stalled(np.array(self._norms)) and self._at_round_off():
             return CONVERGED
         if diverges(norm, self._norms[self._first], self._taken, limits):
             return DIVERGED

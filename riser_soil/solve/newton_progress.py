@@ -192,7 +192,7 @@ def place_of_largest(system: System, residual: Array, first: int) -> str:
 
 
 @njit
-def stays(norms: Array) -> bool:
+def stalled(norms: Array) -> bool:
     """Whether the last two iterations have left the residual's norm as it is, of all its norms so far (n,)."""
     if norms.size < 3:
         return False

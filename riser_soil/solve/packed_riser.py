@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core import banded
-from riser_soil.core.arrays import Array, BoolArray, listed
+from riser_soil.core.arrays import Array, BoolArray, as_list
 from riser_soil.core.bound import Bound, Packed, calls, in_turn
 from riser_soil.core.part import State, Weights, Work
 from riser_soil.riser.compiled_part import CompiledPart, LineTrials
@@ -77,7 +77,7 @@ class PackedRiser:
         self._bind(parts.kernel_data, parts.in_groups("E"))
         self._bind_account(parts.kernel_data)
 
-    def _bind(self, numbers: Sequence[KernelData], touching: Sequence[KernelData]) -> None:
+    def _bind(self, data: Sequence[KernelData], touching: Sequence[KernelData]) -> None:
         """Bind the kernels of the loop to where they read and write. touching: whose tangent may jump."""
         at, border = workspace_for(self._line), self._border
         self.at = at
@@ -89,14 +89,14 @@ class PackedRiser:
             Bound(loop.follow, step, maps, dofs),
             bound(place, at, self._placed.base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
             Bound(clear, forces),
-            *(bound(add_forces, each, now, forces) for each in numbers),
+            *(bound(add_forces, each, now, forces) for each in data),
             *border.forces(now, forces),
             Bound(collect, now, forces),
             Bound(loop.combine, forces, step, weights, dofs),
             border.judge(forces, dofs, limits, progress),
         ]
 
-        others = [each for each in numbers if all(each is not one for one in touching)]
+        others = [each for each in data if all(each is not one for one in touching)]
         contact = len(touching) > 0 or not border.smooth
         bulk = Packed(np.empty_like(self.workspace.K)) if contact else K
 
@@ -128,17 +128,17 @@ class PackedRiser:
         self._solve = in_turn(solve, bound(put_folded, at, self._placed.base, Packed(self._folded)))
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*renew[:-1], put_sizes)
         self.renew_contact = in_turn(*touch)
-        self.keep = in_turn(*(bound(keep, each, now) for each in numbers if type(each) in keep.kernels))
+        self.keep = in_turn(*(bound(keep, each, now) for each in data if type(each) in keep.kernels))
 
-    def _bind_account(self, numbers: Sequence[KernelData]) -> None:
+    def _bind_account(self, data: Sequence[KernelData]) -> None:
         """Bind the kernels of energy and work."""
-        turning = [each for each in numbers if type(each) in add_work.kernels]
+        turning = [each for each in data if type(each) in add_work.kernels]
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
         then, now, energy = map(Packed, (self._placed.at, self.at, self._energy))
         rows = [Packed(row) for row in self._work]
         self._account = in_turn(
             Bound(loop.clear_account, energy, Packed(self._work)),
-            *(bound(add_energy, each, now, energy) for each in numbers),
+            *(bound(add_energy, each, now, energy) for each in data),
             *(bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
             *self._border.account(then, now),
         )
@@ -164,13 +164,13 @@ class PackedRiser:
     @property
     def folding(self) -> tuple[int, int]:
         """First elements that are folded, and that swing too far, in the last trial: `Line.folding`."""
-        folded, swung = listed(self._folded)
+        folded, swung = as_list(self._folded)
         return folded, swung
 
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""
         self._solve()
-        outcome, taken = listed(self.progress.ending)
+        outcome, taken = as_list(self.progress.ending)
         return outcome, taken
 
     def solved(self, t: float, dt: float) -> State:
@@ -204,22 +204,22 @@ def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspa
 
 
 class KernelParts:
-    """Parts with their numbers; t: the time [s] that what depends on it was written for last; committed: parts whose
-    history no kernel keeps.
+    """Parts with their kernel data; t: the time [s] that what depends on it was written for last; committed: parts
+    whose history no kernel keeps.
     """
 
-    def __init__(self, numbered: Sequence[tuple[Any, KernelData]]) -> None:
-        self.numbered, self.t = numbered, math.nan
-        self.parts: list[LinePart] = [part for part, _ in numbered]
-        self.kernel_data = [held for _, held in numbered]
+    def __init__(self, with_data: Sequence[tuple[Any, KernelData]]) -> None:
+        self.with_data, self.t = with_data, math.nan
+        self.parts: list[LinePart] = [part for part, _ in with_data]
+        self.kernel_data = [held for _, held in with_data]
         self._renewed = [part for part in self.parts if overrides(part, "renew_kernel_data")]
-        kernels = [(part, type(held) in add_work.kernels) for part, held in numbered]
-        self.committed = [part for part, held in numbered if type(held) not in keep.kernels]
+        kernels = [(part, type(held) in add_work.kernels) for part, held in with_data]
+        self.committed = [part for part, held in with_data if type(held) not in keep.kernels]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or _by_method(part)]
         self._trials = {part.line.once(LineTrials) for part in self.parts}
 
     def update(self, start: float, end: float) -> None:
-        """Write what depends on the time into the numbers, for a step between two times."""
+        """Write what depends on the time into the kernel data, for a step between two times."""
         for trials in self._trials:
             trials.forget()
         for part in self._renewed:
@@ -232,7 +232,7 @@ class KernelParts:
 
     def in_groups(self, groups: str) -> list[KernelData]:
         """Numbers of the parts with forces in some of the groups."""
-        return [held for part, held in self.numbered if set(part.traits.groups) & set(groups)]
+        return [held for part, held in self.with_data if set(part.traits.groups) & set(groups)]
 
     def add_work(self, before: State, after: State, rows: list[list[float]], work: dict[str, Work]) -> None:
         """Add what the parts turn over in a step, by name; rows: of those that have kernels for it."""

@@ -31,7 +31,7 @@ from riser_soil.solve.newton_progress import (
     leaves_tangent,
     square_of,
     squares_in_play,
-    stays,
+    stalled,
     verdict,
 )
 
@@ -105,7 +105,7 @@ def solve_step(
     while True:
         call_each(evaluate)
         taken = ending[1]
-        if ending[0] == GOING_ON and taken >= limits.least and stays(norms[: taken + 1]):
+        if ending[0] == GOING_ON and taken >= limits.least and stalled(norms[: taken + 1]):
             call_each(probe)
         if ending[0] == GOING_ON:
             ending[0] = _given_up(norms, taken, limits)

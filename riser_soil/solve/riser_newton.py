@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
@@ -41,8 +41,8 @@ Numbered = Sequence[tuple[Any, tuple[Any, ...]]]  # parts of a line
 def riser_newton(system: System, settings: NewtonSettings) -> RiserNewton | None:
     """The compiled loop over a riser alone, where all of its parts have kernels."""
     asked = [(part, part.kernel_data()) for part in system.model.parts if isinstance(part, LinePart)]
-    numbered = [(part, numbers) for part, numbers in asked if numbers is not None]
-    return RiserNewton(system, settings, numbered) if len(numbered) == len(system.model.parts) else None
+    with_data = [(part, data) for part, data in asked if data is not None]
+    return RiserNewton(system, settings, with_data) if len(with_data) == len(system.model.parts) else None
 
 
 class RiserNewton(StepSolver):
@@ -72,9 +72,9 @@ class RiserNewton(StepSolver):
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
         outcome, taken = self._riser.solve()
-        self.rests = False
+        self.at_equilibrium = False
         self.iterations += taken
-        norms: list[float] = listed(self._riser.progress.norms[: taken + 1])
+        norms: list[float] = as_list(self._riser.progress.norms[: taken + 1])
         self.system.clock.add("riser alone", since)
         if outcome != CONVERGED:
             raise NotConvergedError(self._reason(outcome, norms))
@@ -125,10 +125,10 @@ class RiserNewton(StepSolver):
         """A contact's results where the loop has left the line: what writes them, and where to."""
         from riser_soil.contact.contact import ContactResults, put_results, size_of
 
-        numbers = next(numbers for part, numbers in self._parts.numbered if part is contact)
+        data = next(data for part, data in self._parts.with_data if part is contact)
         sizes = self._line.nodes, contact.along.arc.size
         out = np.empty(size_of(*sizes))
-        return bound(put_results, numbers, Packed(self._riser.at), Packed(ContactResults.within(out, *sizes))), out
+        return bound(put_results, data, Packed(self._riser.at), Packed(ContactResults.within(out, *sizes))), out
 
     def _has_solved(self, state: State) -> bool:
         """Whether a state is that of the step solved last, whose forces the loop has left and nothing has changed."""
@@ -145,7 +145,7 @@ class RiserNewton(StepSolver):
 
     @cached_property
     def _accepted(self) -> AcceptedForces:
-        return AcceptedForces(self._line, self._placed, self._parts.numbered)
+        return AcceptedForces(self._line, self._placed, self._parts.with_data)
 
     @cached_property
     def _at_solution(self) -> ElementForces:
@@ -155,14 +155,14 @@ class RiserNewton(StepSolver):
         """Of what acts on the line's nodes (nn, ndof) without holding them."""
         return nodal_residual(line, self._on_nodes, state) if self._on_nodes else None
 
-    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
+    def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         since = time.perf_counter()
         work = dict(self._no_work)
         energy, rows = self._riser.account(before)
-        self._parts.add_work(before, solution.state, listed(rows), work)
+        self._parts.add_work(before, solution.state, as_list(rows), work)
         self.system.clock.add("riser alone", since)
-        return Energy(*listed(energy)), work
+        return Energy(*as_list(energy)), work
 
     def _guess(self, step: Step) -> State:
         """The first guess, with the rates of no increments but those that are prescribed."""
@@ -174,7 +174,7 @@ class RiserNewton(StepSolver):
     def _limits(self, step: Step) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
         smooth, moves = self.system.smooth, bool(step.guess[self._free].any())
-        return limits_of(self.settings, smooth, self.system.gradual, smooth or self.rests or moves)
+        return limits_of(self.settings, smooth, self.system.gradual, smooth or self.at_equilibrium or moves)
 
     def _found(self) -> Forces:
         """The forces of the last trial."""

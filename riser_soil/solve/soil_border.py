@@ -164,8 +164,8 @@ def improve_with_border(
 class SoilBorder(LoopBorder):
     """The soil's reached dofs with their contact; kernels of both, bound to where they read and write.
 
-    touch: the contact's numbers. potential: the contact's energy in the last trial [J]; taken: what its force took in
-    the step accounted for last [J].
+    touch: the contact's kernel data. potential: the contact's energy in the last trial [J]; taken: what its force took
+    in the step accounted for last [J].
     """
 
     knows_round_off = smooth = False
@@ -176,7 +176,7 @@ class SoilBorder(LoopBorder):
         self._touch, self._found = touch, _workspace(FEW, points)
         pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
-        self._workspace, self._numbers = Packed(self._found), Packed(touch)
+        self._workspace, self._data = Packed(self._found), Packed(touch)
         self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
         self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
         self._taken: Array = np.zeros(1)
@@ -199,9 +199,9 @@ class SoilBorder(LoopBorder):
 
     def forces(self, at: Packed, forces: Packed) -> list[Bound]:
         """Kernels that add the border's residual, and contact's."""
-        moved = Bound(move_top, self._numbers, self._motion, self._border)
+        moved = Bound(move_top, self._data, self._motion, self._border)
         begun = Bound(begin_border, self._held, self._border)
-        given = self._numbers, self._watched, self._motion, at, forces, self._border, self._workspace
+        given = self._data, self._watched, self._motion, at, forces, self._border, self._workspace
         return [moved, begun, Bound(add_touch, *given)]
 
     def judge(self, forces: Packed, dofs: Packed, limits: Packed, progress: Packed) -> Bound:
@@ -209,7 +209,7 @@ class SoilBorder(LoopBorder):
 
     def tangent(self, at: Packed, K: Packed) -> list[Bound]:
         """Kernels that write the border's tangent, and add contact's."""
-        given = self._numbers, self._motion, at, K, self._border, self._workspace
+        given = self._data, self._motion, at, K, self._border, self._workspace
         return [Bound(clear_border, self._held, self._border), Bound(add_touch_tangent, *given)]
 
     def factorise(self, workspace: Packed, dofs: Packed, progress: Packed) -> Bound:
@@ -220,7 +220,7 @@ class SoilBorder(LoopBorder):
 
     def account(self, then: Packed, now: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
-        return [Bound(put_touch_work, self._numbers, self._motion, then, self._workspace, Packed(self._taken))]
+        return [Bound(put_touch_work, self._data, self._motion, then, self._workspace, Packed(self._taken))]
 
     def begin(self, before: State, guess: Array) -> None:
         """Begin a step with a first guess (size,) of all local increments."""

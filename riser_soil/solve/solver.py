@@ -116,13 +116,13 @@ class Solution:
 class StepSolver:
     """Solver of a system's steps. Create once a stage.
 
-    iterations: of all its steps, those that failed included. rests: whether the next step starts from the equilibrium
-    of its own loads, so that a residual within round-off needs no iteration.
+    iterations: of all its steps, those that failed included. at_equilibrium: whether the next step starts from that of
+    its own loads, so that a residual within round-off needs no iteration.
     """
 
     def __init__(self, system: System, settings: NewtonSettings) -> None:
         self.system, self.settings = system, settings
-        self.iterations, self.rests = 0, False
+        self.iterations, self.at_equilibrium = 0, False
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError; collective."""
@@ -132,7 +132,7 @@ class StepSolver:
         """Accept the state of the step solved last."""
         self.system.commit(state)
 
-    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
+    def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, from the accepted state `before`, and what each part turned
         over in it, those of one name together; collective.
         """

@@ -202,7 +202,7 @@ class TimeStepper:
 
     def _account(self, solution: Solution, control: Control, cuts: int) -> AcceptedStep:
         """Energy balance of the step: stored, dissipated and external."""
-        energy, turned = self.newton.turned_over(self.before, solution)
+        energy, turned = self.newton.energy_exchanged(self.before, solution)
         start = self._forces if self._history is None else self._history
         supports, against, ahead = self.system.work_in_step(
             self._forces, start.force, solution.forces, solution.state.u, self.scheme.start_share

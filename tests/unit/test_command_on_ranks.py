@@ -20,7 +20,7 @@ DRIVER = f"""
 import sys
 from types import SimpleNamespace
 from mpi4py import MPI
-import riser_soil.commands.endings as endings
+import riser_soil.commands.exit_status as endings
 from riser_soil.__main__ import main
 from riser_soil.errors import SolveError
 

@@ -105,7 +105,7 @@ def test_sources_follow_one_another_and_add_up_as_squares_do() -> None:
     assert bar.bar == pytest.approx(math.hypot(*bar.by_source.values()) + SMALLEST * 1000.0)
 
 
-def test_of_two_companions_in_one_source_the_larger_share_counts() -> None:
+def test_of_two_coarser_runs_in_one_source_the_larger_share_counts() -> None:
     """Of first order the two differences are 0.41 and 1.41 times the error; either may be small by chance."""
     near, far = 2.0**0.5, 2.0 * 2.0**0.5
     for first, second in ((near - 1.0, far - 1.0), (near - 1.0, near - 1.0), (0.0, far - near)):
@@ -160,12 +160,12 @@ def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
     assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * (4.0 + 3.0))
 
 
-def test_no_bar_without_a_companion() -> None:
+def test_no_bar_without_a_coarser_run() -> None:
     """What is known is told by source; what stands behind one that failed is not compared with what stands before."""
-    failed = ComparisonRun("time", 0.2, None, "its companion failed: it did")
+    failed = ComparisonRun("time", 0.2, None, "its coarser run failed: it did")
     bar = bar_of(1000.0, 1000.0, failed, comparison_run("mesh", 2.0, 1001.0))
     assert bar.bar is None
-    assert "its companion failed: it did" in bar.reason
+    assert "its coarser run failed: it did" in bar.reason
     assert bar.by_source["mesh"] == 0.0
 
 
@@ -196,7 +196,7 @@ def test_bars_of_a_run_are_on_the_screen_and_in_its_summary(
     assert not (tmp_path / "run" / ".riser_soil").exists()
 
 
-def test_companion_that_fails_is_reported_and_its_run_stays(
+def test_coarser_run_that_fails_is_reported_and_its_run_stays(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fails(scene: Scene, comm: object) -> None:
@@ -206,10 +206,10 @@ def test_companion_that_fails_is_reported_and_its_run_stays(
     reported = run_reported(tmp_path, "cantilever let go")
     assert reported["finished"]
     assert {bar["bar"] for bar in reported["error_bars"]["quantities"]} == {None}
-    assert "its companion failed: no convergence at 3 s" in capsys.readouterr().out
+    assert "its coarser run failed: no convergence at 3 s" in capsys.readouterr().out
 
 
-def test_error_that_one_rank_may_have_met_alone_is_no_failed_companion(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_error_that_one_rank_may_have_met_alone_is_no_failed_coarser_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """The others are within the comparison run still, and would not hear of the next one."""
 
     def fails(scene: Scene, comm: object) -> None:
@@ -222,7 +222,7 @@ def test_error_that_one_rank_may_have_met_alone_is_no_failed_companion(monkeypat
         chain.comparison_runs(scene, SimpleNamespace(rank=0, size=2))
 
 
-def test_companions_go_on_from_one_to_the_next(looked_at: list[Scene]) -> None:
+def test_coarser_runs_go_on_from_one_to_the_next(looked_at: list[Scene]) -> None:
     """Steps as long as 20 to the period, which output times do not hold back; elements twice as fine and contact 16
     times as stiff, so that a riser sinks in over half the length.
     """

@@ -8,7 +8,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 
-from riser_soil.commands.endings import ELSEWHERE, EXTRAS
+from riser_soil.commands.exit_status import ELSEWHERE, EXTRAS
 from tests.support.on_ranks import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

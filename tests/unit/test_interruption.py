@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import pytest
 import typer
 
-from riser_soil.commands.endings import expected_errors
+from riser_soil.commands.exit_status import expected_errors
 from riser_soil.errors import Interruption
 from riser_soil.interruption import agreeing, asked_to_end, check, handling_signals, leave_between_steps, uninterrupted
 from riser_soil.results import Run

@@ -96,7 +96,7 @@ def test_what_the_runs_that_are_left_can_not_reach_is_too_dear() -> None:
 
 
 def test_unknown_bars_ask_for_a_finer_setting() -> None:
-    unknown = ErrorBar(KEY_RESULT, None, {"time": 1.0}, "a companion failed")
+    unknown = ErrorBar(KEY_RESULT, None, {"time": 1.0}, "a coarser run failed")
     assert needed([unknown], 0.01) == {"mesh": 2.0, "time": 2.0}
     assert largest([unknown, bar(time=0.5)]) == (math.inf, KEY)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.core.arrays import listed
+from riser_soil.core.arrays import as_list
 from riser_soil.core.snapshot import ExtremeAlong, Instant
 from riser_soil.results.figures import pack, places_of
 from riser_soil.results.peaks import WINDOWS, RunPeaks, least_between_nodes, pack_peaks, vertex
@@ -104,7 +104,7 @@ def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str
     peaks.begin_stage("motion", kind, duration)
     line = Catenary(32.0, 30.0)
     risers = [line.riser(ARC)._replace(largest_moment=ExtremeAlong(float(size), 0.0)) for size in moment]
-    peaks.record(listed(t), stacked([Instant(ARC, riser, line.touch(ARC)) for riser in risers]))
+    peaks.record(as_list(t), stacked([Instant(ARC, riser, line.touch(ARC)) for riser in risers]))
     return peaks
 
 

@@ -20,7 +20,7 @@ APART = {"dev", "all", "small"}  # extras that set-up doesn't bring as such; sma
 pythons = pytest.mark.parametrize("python", ["3.11", "3.13", "3.14"])
 
 
-def listed(name: str) -> set[str]:
+def as_list(name: str) -> set[str]:
     """Names in requirements/NAME.txt."""
     lines = (ROOT / f"requirements/{name}.txt").read_text(encoding="utf-8").splitlines()
     return {canonicalize_name(line) for line in lines if not line.startswith("#")}
@@ -47,8 +47,8 @@ def holds(asked: Requirement, environment: dict[str, str]) -> bool:
 @pythons
 def test_what_is_listed_is_pinned_with_hashes(python: str) -> None:
     run, dev = pins("run", python), pins("dev", python)
-    assert set(run) >= listed("run")
-    assert set(dev) >= listed("dev")
+    assert set(run) >= as_list("run")
+    assert set(dev) >= as_list("dev")
     assert all(hashes > 0 for _, hashes in (run | dev).values())
 
 
@@ -57,7 +57,7 @@ def test_runs_need_no_test_tools_and_bring_no_numpy(python: str) -> None:
     run, dev = set(pins("run", python)), set(pins("dev", python))
     assert not run & dev
     assert not (run | dev) & DEBIAN
-    assert not run & listed("dev")
+    assert not run & as_list("dev")
 
 
 @pythons
@@ -68,7 +68,7 @@ def test_pins_are_what_the_project_asks_for(python: str) -> None:
     asked = {"run": [*project["dependencies"], *for_users], "dev": extras["dev"]}
     for name, texts in asked.items():
         found, needed = pins(name, python), [Requirement(text) for text in texts]
-        assert {canonicalize_name(r.name) for r in needed} - DEBIAN == listed(name)
+        assert {canonicalize_name(r.name) for r in needed} - DEBIAN == as_list(name)
         for each in needed:
             assert each.name in DEBIAN or each.specifier.contains(found[canonicalize_name(each.name)][0]), str(each)
 

@@ -11,7 +11,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, State, Weights
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.newton_progress import stays
+from riser_soil.solve.newton_progress import stalled
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep
@@ -30,7 +30,7 @@ from tests.support.turned_bar import turned_bar
     ],
 )
 def test_norms_that_stay_in_two_iterations(norms: list[float], expected: bool) -> None:
-    assert stays(np.array(norms)) == expected
+    assert stalled(np.array(norms)) == expected
 
 
 K, HIGH = 1e6, 1e6  # N/m, m: an eps of the height is 1e-4 N in a spring, where 4e-8 N are allowed

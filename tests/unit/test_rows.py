@@ -15,8 +15,8 @@ from riser_soil.core.rows import (
     add_pulled_back,
     add_shares,
     add_weighed,
+    as_tuple,
     combined,
-    held,
     numbers_at,
     put_blocks,
     put_weighed,
@@ -72,7 +72,7 @@ def test_polynomials_have_their_values_and_derivatives(N: Size) -> None:
 @njit
 def _read(values: Array, rest: Array, D: Size) -> Any:
     vector = numbers_at(values, 5, D)
-    kept = held(vector, D), held(values[1], D), times(2.0, vector)
+    kept = as_tuple(vector, D), as_tuple(values[1], D), times(2.0, vector)
     values[...] = 0.0
     return kept, combined(((2.0, rest, 3), (-1.0, rest, 7)), D)
 

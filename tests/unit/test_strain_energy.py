@@ -19,7 +19,7 @@ def strain(values: Array) -> Strain:
     return Strain(axial, twist, (curvature[0], curvature[1]), (curvature[2], curvature[3]))
 
 
-def listed(found: Strain) -> Array:
+def as_list(found: Strain) -> Array:
     return np.array([found.axial, found.twist, *found.first, *found.second])
 
 
@@ -37,7 +37,7 @@ def test_stress_and_its_change_are_derivatives(largest: float) -> None:
 
     def gradient(s: float) -> Array:
         total = strain(at + s * moved)
-        return listed(stress(STRIP, total, total))
+        return as_list(stress(STRIP, total, total))
 
     def stored(s: float) -> Array:
         total = strain(at + s * moved)
@@ -45,7 +45,7 @@ def test_stress_and_its_change_are_derivatives(largest: float) -> None:
 
     total = strain(at)
     assert gradient(0.0) @ moved == pytest.approx(slope(stored, 1e-3), rel=1e-8)
-    change = listed(stress_change(STRIP, total, total, strain(moved)))
+    change = as_list(stress_change(STRIP, total, total, strain(moved)))
     assert np.abs(change - slope(gradient, 1e-3)).max() < 1e-8 * np.abs(change).max()
 
 

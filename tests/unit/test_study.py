@@ -206,7 +206,7 @@ def test_numbers_are_json_and_the_page_stands_alone(monkeypatch: pytest.MonkeyPa
 
 
 def test_bad_input_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ResultsError, match="--knob penalty: the scene has no such knob; choose among elements, time"):
+    with pytest.raises(ResultsError, match="--setting penalty: the scene has no such setting; choose among elements"):
         study(scene(), tmp_path / "s", settings=["penalty"])
     assert not (tmp_path / "s").exists()
     (tmp_path / "letters").mkdir()
@@ -229,7 +229,7 @@ def test_how_a_point_ended(tmp_path: Path) -> None:
     assert StudyPoint((1.0, 1.0), scene().model_copy(update={"gravity": 9.8}), tmp_path).folder != point.folder
 
 
-COMMAND = [sys.executable, "-m", "riser_soil", "study", "small.yaml", "--rungs", "3", "--jobs", "2"]
+COMMAND = [sys.executable, "-m", "riser_soil", "study", "small.yaml", "--levels", "3", "--jobs", "2"]
 
 
 def _started(folder: Path) -> subprocess.Popen[str]:
@@ -277,9 +277,9 @@ def _first_outcomes(folder: Path, process: subprocess.Popen[str]) -> list[Path]:
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--rungs", "2"], "--rungs 2: must be from 3 to 9"),
+        (["--levels", "2"], "--levels 2: must be from 3 to 9"),
         (["--jobs", "0"], "--jobs 0: must be 1 or more"),
-        (["--knob", "time_step"], "--knob time_step: the scene has no such knob; choose among elements"),
+        (["--setting", "time_step"], "--setting time_step: the scene has no such setting; choose among elements"),
         (["-o", "small.yaml"], "small.yaml: is a file, not a folder; choose another result folder with -o FOLDER"),
     ],
 )

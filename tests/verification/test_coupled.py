@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build
 from riser_soil.contact.surface_contact import SurfaceContact
-from riser_soil.core.arrays import Array, listed
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.part import State, Weights
 from riser_soil.core.system import System, total
 from riser_soil.results import Run
@@ -190,7 +190,7 @@ def yielding(soil: Soil, state: State) -> frozenset[int]:
     """Points of the soil whose plastic strain grows in the step to a trial state."""
     plastic = soil.law.columns.index(PLASTIC_STRAIN)
     grown = soil._answer(state).found.history[:, plastic] > soil._found.history[:, plastic]
-    return frozenset(listed(np.flatnonzero(grown)))
+    return frozenset(as_list(np.flatnonzero(grown)))
 
 
 # The demo

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, TextIO
 import typer
 
 from riser_soil import __version__
-from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.errors import ResultsError
 
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="tell warnings and errors alone")]
@@ -29,7 +29,7 @@ _DRAWN = re.compile(r".*(?:\r|\x1b\[[0-9;]*[ABKJ])")  # a progress line that has
 _STYLE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 
 
-def telling(command: Callable[..., None]) -> Callable[..., None]:
+def logged(command: Callable[..., None]) -> Callable[..., None]:
     """The command with the options --quiet and --log-file."""
 
     @wraps(command)

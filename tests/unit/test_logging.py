@@ -99,7 +99,7 @@ def test_a_log_on_a_full_disk_ends_alone(invoke: Callable[..., Any], capfd: pyte
 
 DRAWS = """
 import sys, time
-from riser_soil.commands.telling import telling
+from riser_soil.commands.logging import logged
 from riser_soil.results.screen import Progress
 from rich.console import Console
 def command():
@@ -108,7 +108,7 @@ def command():
         print("laid in 3 steps")
         progress.update(1.0, 1.0, 4)
     Console().print("[red]top tension[/red] 3 kN")
-telling(command)(quiet=False, log_file=__import__("pathlib").Path(sys.argv[1]))
+logged(command)(quiet=False, log_file=__import__("pathlib").Path(sys.argv[1]))
 """
 
 
