@@ -119,7 +119,7 @@ def size_of(nodes: int, points: int) -> int:
 
 
 @bound_by_type
-def put_results(part: tuple, at: Configuration, out: ContactResults) -> None:
+def write_results(part: tuple, at: Configuration, out: ContactResults) -> None:
     """Write the results of a contact by its kernel data, see `part_kernels`, in the configuration of the forces found
     last.
     """

@@ -52,12 +52,12 @@ def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> t
     """
     columns = 4 * basis.shape[1] + 3 * surface.facets.shape[1]
     forms, C = np.empty((len(near.gap), FORMS, columns)), np.zeros((len(near.gap), FORMS, FORMS))
-    put_gap_forms(axis, surface, near, basis, forms, C)
+    write_gap_forms(axis, surface, near, basis, forms, C)
     return forms, C
 
 
 @njit
-def put_gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
+def write_gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
     """Write what `gap_forms` returns."""
     nv = surface.facets.shape[1]
     N, dN, vectors = np.empty(nv), np.empty((nv, 2)), np.empty((FORMS, 2, 3))

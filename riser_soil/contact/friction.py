@@ -25,7 +25,21 @@ from riser_soil.riser import stations
 from riser_soil.riser.compiled_part import BoundPart, CompiledPart
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
-from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, matadd, norm, outer, padded, put, put_matrix, scale, sub
+from riser_soil.riser.vectors import (
+    Mat,
+    Vec,
+    add,
+    cross,
+    dot,
+    matadd,
+    norm,
+    outer,
+    padded,
+    scale,
+    sub,
+    write,
+    write_matrix,
+)
 
 UPRIGHT = 1e-6  # sine of the angle to the ground's normal below which a riser has no axial direction along the ground
 Along = tuple[Vec, Vec]  # directions along the ground, axial and lateral
@@ -83,11 +97,11 @@ def read_along(along: Array) -> Along:
 
 
 @njit
-def put_along(along: Along, out: Array) -> None:
+def write_along(along: Along, out: Array) -> None:
     """Store the directions in an array (d, r)."""
-    put(along[0], out[:, 0])
+    write(along[0], out[:, 0])
     if out.shape[1] > 1:
-        put(along[1], out[:, 1])
+        write(along[1], out[:, 1])
 
 
 class FrictionData(NamedTuple):
@@ -151,13 +165,13 @@ class CoulombFriction(CompiledPart):
         return found
 
     @cached_property
-    def _put_start(self) -> Bound:
-        return Bound(put_start, Packed(self._data), Packed(self._trials.now.at))
+    def _write_start(self) -> Bound:
+        return Bound(write_start, Packed(self._data), Packed(self._trials.now.at))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if not self._begun:
             self.contact.find(State.at_rest(end, self.line.size))
-            self._put_start()
+            self._write_start()
             self._begun = True
 
     def _go_to(self, state: State) -> BoundPart:
@@ -240,7 +254,7 @@ def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> 
         for g in range(contact.share.shape[1]):
             limit, rise = _limits(part, e, g)
             t, _, _ = return_map(_elastic(part, e, g), limit, rise)
-            put(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
+            write(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
             p = e * contact.share.shape[1] + g
             stations.add_integrand_at(contact.at.weighted, p, as_tuple(part.resistance[e, g], at.D), out.end_q, e, at.D)
 
@@ -256,7 +270,7 @@ def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights
             limit, rise = _limits(part, e, g)
             _, by_elastic, by_penetration = return_map(_elastic(part, e, g), limit, rise)
             ways, normal = read_along(part.along[e, g]), padded(found.normal[e, g])
-            put_matrix(
+            write_matrix(
                 resistance_by_position(ways, part.stiffness[e], by_elastic, by_penetration, normal), contact.by
             )
             dragged = contact.at.N[e, g], contact.by, maps.place_rows[e]
@@ -298,11 +312,11 @@ def _keep_traction(part: FrictionData, at: Configuration) -> None:
                 part.slid[e, g] += slip_at(read_along(part.along[e, g]), taken, k, _moved(part, e, g))
             for i in range(len(at.D)):
                 part.traction[e, g, i] = -part.resistance[e, g, i] if found.touches[e] else 0.0
-    put_start(part, at)
+    write_start(part, at)
 
 
 @njit
-def put_start(part: FrictionData, at: Configuration) -> None:
+def write_start(part: FrictionData, at: Configuration) -> None:
     """Write the places and directions from which a step starts, where the contact's forces have been found."""
     contact = part.contact
     for e in range(part.stiffness.size):
@@ -311,4 +325,4 @@ def put_start(part: FrictionData, at: Configuration) -> None:
             tau, _ = stations.unit_tangent_at(contact.at.dN, p, at.chord, at.tangent, e, at.D)
             for i in range(len(at.D)):
                 contact.f[i], part.position[e, g, i] = tau[i], contact.found.position[e, g, i]
-            put_along(directions_at(padded(contact.f), padded(contact.found.normal[e, g])), part.along[e, g])
+            write_along(directions_at(padded(contact.f), padded(contact.found.normal[e, g])), part.along[e, g])

@@ -134,7 +134,7 @@ def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, 
     for i, f in enumerate(pairs.facets):
         nodes, cut = surface.facets[f], surface.parts[f]
         rows, columns = cut[0], cut[1]
-        _put_hull(surface.deformed, nodes, hull)
+        _write_hull(surface.deformed, nodes, hull)
         near = _not_beyond(axis, bow, pairs.elements[pairs.begin[i] : pairs.begin[i + 1]], hull, within)
         for row in range(rows if near.size > 0 else 0):
             first, last, share = row_of(nv, cut, row)
@@ -195,7 +195,7 @@ def _clear_points(clear: float, apart: float, most: int) -> int:
 
 
 @njit
-def _put_hull(points: Array, nodes: IntArray, hull: Array) -> None:
+def _write_hull(points: Array, nodes: IntArray, hull: Array) -> None:
     """Write points (nv, 3) between which all of a facet lies: its corners, and the Bézier points of tri6's sides and of
     those of strip8 that run across.
     """
@@ -306,12 +306,12 @@ def points_of(first: Surface, second: Surface, chosen: IntArray) -> tuple[IntArr
     numbers = np.concatenate([np.arange(n) + first.first[f] for f, n in zip(chosen, counts, strict=True)] or [chosen])
     places = np.empty((2, len(numbers), 3))
     for surface, out in zip((first, second), places, strict=True):
-        _put_places(surface, np.repeat(chosen, counts), numbers, out)
+        _write_places(surface, np.repeat(chosen, counts), numbers, out)
     return numbers, places[0], places[1]
 
 
 @njit
-def _put_places(surface: Surface, facets: IntArray, numbers: IntArray, out: Array) -> None:
+def _write_places(surface: Surface, facets: IntArray, numbers: IntArray, out: Array) -> None:
     nv = surface.facets.shape[1]
     N, dN = np.empty(nv), np.empty((nv, 2))
     for i, f in enumerate(facets):

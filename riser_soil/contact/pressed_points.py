@@ -13,13 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.cylinder_gap import FORMS, away_from_axis, gap_forms, put_gap_forms
+from riser_soil.contact.cylinder_gap import FORMS, away_from_axis, gap_forms, write_gap_forms
 from riser_soil.contact.facets import fill_shape
 from riser_soil.contact.near_points import NearPoints, Surface, point_on
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import shape as axis_shape
-from riser_soil.riser.vectors import add, dot, put, scale, sub, vector
+from riser_soil.riser.vectors import add, dot, scale, sub, vector, write
 from riser_soil.seabed.compiled_law import answer
 
 HELD, BEYOND = -1, -2  # in place of a dof's row: of those that are supported, and of those that are not reached
@@ -64,7 +64,7 @@ class PressedPoints:
     def on_riser(self) -> Array:
         """Force on the pipe at each point (n, 3) [N], global axes."""
         out = np.empty((len(self.force), 3))
-        put_on_riser(self.axis, self.surface, self.points, len(out), self.force, out)
+        write_on_riser(self.axis, self.surface, self.points, len(out), self.force, out)
         return out
 
     @cached_property
@@ -91,7 +91,7 @@ class PressedPoints:
 
 
 @njit
-def put_axis(origin: Array, basis: Array, q: Array, axis: Array) -> None:
+def write_axis(origin: Array, basis: Array, q: Array, axis: Array) -> None:
     """Write q (ne, 4, d) of a line in global axes (ne, 4, 3)."""
     for e in range(q.shape[0]):
         for a in range(4):
@@ -116,7 +116,7 @@ def press(law: Any, points: NearPoints, n: int, before: Array, after: Array, for
 
 
 @njit
-def put_on_riser(axis: Axis, surface: Surface, points: NearPoints, n: int, force: Array, out: Array) -> None:
+def write_on_riser(axis: Axis, surface: Surface, points: NearPoints, n: int, force: Array, out: Array) -> None:
     """Write the force on the pipe (n, 3) [N] at the first n points: away from the soil."""
     nv = surface.facets.shape[1]
     N, dN = np.empty(nv), np.empty((nv, 2))
@@ -124,7 +124,7 @@ def put_on_riser(axis: Axis, surface: Surface, points: NearPoints, n: int, force
         e, nodes = points.element[i], surface.facets[points.facet[i]]
         p = point_on(surface.deformed, nodes, points.xi[i, 0], points.xi[i, 1], N, dN)
         _, away = away_from_axis(axis.q[e], axis.length[e], axis.radius[e], points.along[i], p)
-        put(scale(-force[i], away), out[i])
+        write(scale(-force[i], away), out[i])
 
 
 @njit
@@ -213,7 +213,7 @@ def pair_tangents(
     """Derivative (m, nr, nr) of the residual of what presses by the dofs of its pairs, P (ne, 2, d, r) held."""
     n, nz = len(points.gap), 4 * basis.shape[1] + 3 * surface.facets.shape[1]
     forms, C = np.empty((n, FORMS, nz)), np.zeros((n, FORMS, FORMS))
-    put_gap_forms(axis, surface, points, basis, forms, C)
+    write_gap_forms(axis, surface, points, basis, forms, C)
     by_z = np.zeros((pairs.element.size, nz, nz))
     add_products(by_z, pairs.pair, forms, by_curvature(forms, C, force, slope))
     return in_dofs(by_z, pairs.element, P)

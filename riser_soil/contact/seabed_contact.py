@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.contact import ContactResults, RiserContact, put_results, size_of
+from riser_soil.contact.contact import ContactResults, RiserContact, size_of, write_results
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_kernels import UNKNOWN, OverNodes, SeabedData, covered_by, land, put_at_nodes, seabed_data
 from riser_soil.contact.touchdown import PointsAlong
@@ -99,16 +99,16 @@ class SeabedContact(CompiledPart, RiserContact):
         return np.zeros(size_of(self.line.nodes, self.share.size))
 
     @cached_property
-    def _put_results(self) -> Bound:
+    def _write_results(self) -> Bound:
         out = ContactResults.within(self._results_vector, self.line.nodes, self.share.size)
-        return bound(put_results, self._data, Packed(self._trials.now.at), Packed(out))
+        return bound(write_results, self._data, Packed(self._trials.now.at), Packed(out))
 
     def results(self, state: State) -> Array:
         """See `ContactResults.within`."""
         if self.active:
             found = self._found(state).found
             if self._reported != found:
-                self._put_results()
+                self._write_results()
                 self._reported = found
         return self._results_vector.copy()
 

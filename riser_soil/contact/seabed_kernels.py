@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.contact.along_step import lift, work_at
-from riser_soil.contact.contact import ContactResults, put_results
+from riser_soil.contact.contact import ContactResults, write_results
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
@@ -31,13 +31,13 @@ from riser_soil.riser.vectors import (
     matvec,
     outer,
     padded,
-    put,
-    put_matrix,
     scale,
     sub,
     transpose,
     vecmat,
     vector,
+    write,
+    write_matrix,
 )
 from riser_soil.seabed.compiled_law import answer, may_act
 from riser_soil.seabed.grounds import distance_at
@@ -214,7 +214,7 @@ def _contact_forces(part: SeabedData, at: Configuration, out: LineForces) -> Non
                 found.position[e, g, i] = x[i]
             value, normal, _ = distance_in(part.frame, part.ground, padded(found.position[e, g]))
             found.penetration[e, g] = part.radius[e] - value
-            put(normal, found.normal[e, g])
+            write(normal, found.normal[e, g])
             if may_act(part.law, found.penetration[e, g], part.memory[e, g]):
                 if _is_covered(part, found.position[e, g], e, g):
                     found.penetration[e, g] = -np.inf
@@ -233,7 +233,7 @@ def _press(part: SeabedData, at: Configuration, e: int, out: LineForces) -> None
         force, slope, stored = answer(part.law, found.penetration[e, g], part.memory[e, g], found.after[e, g])
         acting = part.acting[1]
         found.force[e, g], found.slope[e, g], found.stored[e, g] = acting * force, acting * slope, acting * stored
-        put(scale(-acting * force, padded(found.normal[e, g])), part.f)
+        write(scale(-acting * force, padded(found.normal[e, g])), part.f)
         p = e * part.share.shape[1] + g
         stations.add_integrand_at(part.at.weighted, p, as_tuple(part.f, at.D), out.end_q, e, at.D)
 
@@ -247,7 +247,7 @@ def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: L
         workspace[:] = 0.0
         for g in range(part.share.shape[1]):
             _, _, bend = distance_in(part.frame, part.ground, padded(found.position[e, g]))
-            put_matrix(by_position(found.force[e, g], found.slope[e, g], padded(found.normal[e, g]), bend), part.by)
+            write_matrix(by_position(found.force[e, g], found.slope[e, g], padded(found.normal[e, g]), bend), part.by)
             pressed = part.at.N[e, g], part.by, maps.place_rows[e]
             add_weighed(workspace, part.at.weighted[e, g], (pressed,), at.D, at.R)
         add_pulled_back(K[e], at.P[e], workspace, at.D, at.R)
@@ -313,7 +313,7 @@ def _keep_memory(part: SeabedData, at: Configuration) -> None:
                 memory[e, g, k] = found.after[e, g, k]
 
 
-@put_results.of(SeabedData)
+@write_results.of(SeabedData)
 def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -> None:
     found, nodes, total = part.found, part.nodes, (0.0, 0.0, 0.0)
     ng = part.share.shape[1]
@@ -328,7 +328,7 @@ def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -
             for side in range(2):
                 out.force_per_length[e + side] += nodes.linear[side, g] * (part.share[e, g] * pressing)
             total = add(total, scale(part.share[e, g] * pressing, padded(found.normal[e, g])))
-    put(vecmat(total, part.frame.axes), out.on_riser)
+    write(vecmat(total, part.frame.axes), out.on_riser)
     for n in range(nodes.length.size):
         value, _, _ = distance_in(part.frame, part.ground, padded(at.x[n]))
         inside = max(0.0, nodes.radius[n] - value)

@@ -25,7 +25,7 @@ from riser_soil.contact.near_points import (
     near_points,
     points_of,
 )
-from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, put_axis
+from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, write_axis
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.surface_loop import TouchData
 from riser_soil.core.arrays import Array, IntArray
@@ -139,7 +139,7 @@ class SurfaceContact(SoilContact):
     def axis(self, trial: Trial) -> Axis:
         """The riser's axis at a trial."""
         q = np.empty((self.line.length.size, 4, 3))
-        put_axis(self.line.origin, self._basis, trial.q, q)
+        write_axis(self.line.origin, self._basis, trial.q, q)
         return Axis(q, self.line.length, self._radius)
 
     @property

@@ -12,7 +12,7 @@ import numpy as np
 
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of
-from riser_soil.contact.pressed_points import pair_tangents, paired, press, put_axis, put_on_riser, spread, work_of
+from riser_soil.contact.pressed_points import pair_tangents, paired, press, spread, work_of, write_axis, write_on_riser
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration
@@ -103,14 +103,14 @@ def add_touch(
 ) -> None:
     """Add the contact's residual to that of the line and to the border's."""
     axis, surface, near, force = touch.axis, touch.surface, workspace.near, workspace.force
-    put_axis(touch.origin, touch.basis, at.q, axis.q)
+    write_axis(touch.origin, touch.basis, at.q, axis.q)
     n = fill_near(axis, surface, watched.pairs, touch.reach, near)
     workspace.met[:] = False
     workspace.found[LEFT] = n > len(force) or _leaves(axis, watched)
     n = workspace.found[POINTS] = min(n, len(force))
     nothing, given = np.empty((n, 0)), (axis, surface, touch.basis, near, n, workspace.on_riser)
     workspace.energy[0] = press(touch.law, near, n, nothing, nothing, force, workspace.slope)
-    put_on_riser(axis, surface, near, n, force, workspace.on_riser)
+    write_on_riser(axis, surface, near, n, force, workspace.on_riser)
     spread(*given, out.end_q, top.rows, border.residual, workspace.met)
 
 
@@ -161,11 +161,11 @@ def _spread(block: Array, e: int, rows: IntArray, nodes: IntArray, K: Array, bor
 
 
 @njit
-def put_touch_work(
+def write_touch_work(
     touch: TouchData, top: TopMotion, first: Configuration, workspace: TouchWorkspace, work: Array
 ) -> None:
     """Write to work (1,) what the force at a step's end, found last, takes along the step [J], see `SurfaceContact`."""
     before = np.empty(touch.axis.q.shape)
-    put_axis(touch.origin, touch.basis, first.q, before)
+    write_axis(touch.origin, touch.basis, first.q, before)
     given = touch.axis, touch.surface, workspace.near, workspace.found[POINTS], workspace.on_riser
     work[0] = work_of(*given, before, top.accepted)

@@ -114,7 +114,7 @@ def add_weighed(context: Any, S: Any, weights: Any, terms: Any, D: Any, R: Any) 
 
 
 @intrinsic
-def put_weighed(context: Any, S: Any, stations: Any, D: Any, R: Any) -> Any:
+def write_weighed(context: Any, S: Any, stations: Any, D: Any, R: Any) -> Any:
     """See `rows`; S is not read."""
 
     def put(target: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -157,7 +157,7 @@ def _rows_of_shapes(builder: Any, rows_of: _Rows, to: Any, d: int) -> Iterator[t
 
 
 @intrinsic
-def put_blocks(context: Any, S: Any, M: Any, factor: Any, rows: Any, D: Any, R: Any) -> Any:
+def write_blocks(context: Any, S: Any, M: Any, factor: Any, rows: Any, D: Any, R: Any) -> Any:
     """See `rows`."""
     d, n = len(D), 2 * (len(D) + len(R))
 

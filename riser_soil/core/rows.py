@@ -136,28 +136,28 @@ def _weighed(S: Any, weights: Any, terms: Any, D: Any, R: Any) -> Any:
     return lambda S, weights, terms, D, R: row_code.add_weighed(S, weights, terms, D, R)
 
 
-def put_weighed(S: Array, stations: Sequence[tuple[Array, Sequence[Term]]], D: Size, R: Size) -> None:
+def write_weighed(S: Array, stations: Sequence[tuple[Array, Sequence[Term]]], D: Size, R: Size) -> None:
     """Write to S the sum over some stations, each its weights (4,) and its terms as in `add_weighed`."""
     S[...] = 0.0
     for weights, terms in stations:
         add_weighed(S, weights, terms, D, R)
 
 
-@overload(put_weighed, inline="always", strict=False)
-def _put_weighed(S: Any, stations: Any, D: Any, R: Any) -> Any:
-    return lambda S, stations, D, R: row_code.put_weighed(S, stations, D, R)
+@overload(write_weighed, inline="always", strict=False)
+def _write_weighed(S: Any, stations: Any, D: Any, R: Any) -> Any:
+    return lambda S, stations, D, R: row_code.write_weighed(S, stations, D, R)
 
 
-def put_blocks(S: Array, M: Array, factor: float, rows: Array, D: Size, R: Size) -> None:
+def write_blocks(S: Array, M: Array, factor: float, rows: Array, D: Size, R: Size) -> None:
     """Write to S (4, d, n) rows (d, n), whose blocks of d, r, d and r columns count with `factor` times a row of
     M (4, 4). All contiguous.
     """
     S[...] = factor * np.repeat(M, [len(D), len(R)] * 2, axis=1)[:, None, :] * rows
 
 
-@overload(put_blocks, inline="always", strict=False)
+@overload(write_blocks, inline="always", strict=False)
 def _blocks(S: Any, M: Any, factor: Any, rows: Any, D: Any, R: Any) -> Any:
-    return lambda S, M, factor, rows, D, R: row_code.put_blocks(S, M, factor, rows, D, R)
+    return lambda S, M, factor, rows, D, R: row_code.write_blocks(S, M, factor, rows, D, R)
 
 
 def add_pulled_back(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:

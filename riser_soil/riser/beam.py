@@ -104,7 +104,7 @@ def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -
     f = np.empty(6)
     for e in range(part.length.size):
         seen = _corotated(at, e)
-        beam2d.put_element_forces(e, seen, part.reference, part.section, f)
+        beam2d.write_element_forces(e, seen, part.reference, part.section, f)
         uniform_load.add_element_forces(seen, part.length[e], part.load[e], f)
         for i in range(6):
             out.force_e[e, i] += f[i]
@@ -114,7 +114,7 @@ def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -
 def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces) -> None:
     f = np.empty(12)
     for e in range(part.length.size):
-        beam3d.put_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, f)
+        beam3d.write_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, f)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
@@ -125,7 +125,7 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
     f, own = np.empty(6), np.empty((6, 6))
     for e in range(part.length.size):
         seen = _corotated(at, e)
-        beam2d.put_element(e, seen, part.reference, part.section, f, own)
+        beam2d.write_element(e, seen, part.reference, part.section, f, own)
         uniform_load.add_element_tangent(seen, part.length[e], part.load[e], own)
         for i in range(6):
             for j in range(6):
@@ -136,7 +136,7 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
 def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     f, own, workspace = np.empty(12), np.empty((12, 12)), beam3d.tangent_workspace()
     for e in range(part.length.size):
-        beam3d.put_element(
+        beam3d.write_element(
             e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, workspace, f, own
         )
         rotations.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)

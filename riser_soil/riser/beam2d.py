@@ -154,7 +154,7 @@ def nodal_forces(at: PlanarCorotated, N: float, m1: float, m2: float) -> PlanarN
 
 
 @njit
-def put_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
+def write_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (6,) in the plane's axes."""
     along, across = forces.force
     p, z = axis[0] * along - axis[1] * across, axis[1] * along + axis[0] * across
@@ -163,10 +163,10 @@ def put_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
 
 
 @njit
-def put_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array) -> None:
+def write_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array) -> None:
     """Write internal forces f (6,) of element e."""
     N, m1, m2 = _stress(element_at(ref, section, e), at)
-    put_forces(at.axis, nodal_forces(at, N, m1, m2), f)
+    write_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
 
 @njit
@@ -193,23 +193,23 @@ def _tangent(element: PlanarElement, at: PlanarCorotated, N: float, force: Vec2,
     """Write the element's tangent, column by column, to K (6, 6)."""
     c, s = at.axis
     still = (0.0, 0.0)
-    put_forces(at.axis, _vary(element, at, N, force, (c, -s), 0.0, 0.0), K[:, 3])
-    put_forces(at.axis, _vary(element, at, N, force, (s, c), 0.0, 0.0), K[:, 4])
-    put_forces(at.axis, _vary(element, at, N, force, still, 1.0, 0.0), K[:, 2])
-    put_forces(at.axis, _vary(element, at, N, force, still, 0.0, 1.0), K[:, 5])
+    write_forces(at.axis, _vary(element, at, N, force, (c, -s), 0.0, 0.0), K[:, 3])
+    write_forces(at.axis, _vary(element, at, N, force, (s, c), 0.0, 0.0), K[:, 4])
+    write_forces(at.axis, _vary(element, at, N, force, still, 1.0, 0.0), K[:, 2])
+    write_forces(at.axis, _vary(element, at, N, force, still, 0.0, 1.0), K[:, 5])
     for i in range(6):
         K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]
 
 
 @njit
-def put_element(
+def write_element(
     e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array, K: Array
 ) -> None:
     """Write internal forces f (6,) of element e and their derivative K (6, 6) by displacements and angles."""
     element = element_at(ref, section, e)
     N, m1, m2 = _stress(element, at)
     response = nodal_forces(at, N, m1, m2)
-    put_forces(at.axis, response, f)
+    write_forces(at.axis, response, f)
     _tangent(element, at, N, response.force, K)
 
 

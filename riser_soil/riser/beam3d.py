@@ -179,7 +179,7 @@ def _respond(D: Stiffness, unstressed: Strain, at: Shape, w: Vec) -> SpatialResp
 
 
 @njit
-def put_forces(axes: Mat, forces: SpatialNodalForces, out: Array) -> None:
+def write_forces(axes: Mat, forces: SpatialNodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (12,) in global axes."""
     force = vecmat(forces.force, axes)
     moment1 = vecmat(forces.moment1, axes)
@@ -192,7 +192,7 @@ def put_forces(axes: Mat, forces: SpatialNodalForces, out: Array) -> None:
 
 
 @njit
-def put_element_forces(
+def write_element_forces(
     e: int,
     chord: Array,
     frame1: Array,
@@ -207,13 +207,13 @@ def put_element_forces(
     """
     at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])
     response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at, w)
-    _put_loaded_forces(ref.L[e], at, response, w, f)
+    _write_loaded_forces(ref.L[e], at, response, w, f)
 
 
 @njit
-def _put_loaded_forces(L: float, at: Shape, response: SpatialResponse, w: Vec, f: Array) -> None:
+def _write_loaded_forces(L: float, at: Shape, response: SpatialResponse, w: Vec, f: Array) -> None:
     """Write an element's forces, those of the load on its nodes among them."""
-    put_forces(at.frame.axes, response.forces, f)
+    write_forces(at.frame.axes, response.forces, f)
     for i in range(3):
         f[i] -= 0.5 * L * w[i]
         f[6 + i] -= 0.5 * L * w[i]
@@ -279,13 +279,13 @@ def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, workspace: Arra
         for k in range(3):
             moves[i, k] = moves[3 + i, 3 + k] = moves[6 + i, 6 + k] = axes[i][k]
     for k in range(8):
-        _put_change(D, at, response, moves, changes, k)
-    _put_last_change(at, response, changes)
+        _write_change(D, at, response, moves, changes, k)
+    _write_last_change(at, response, changes)
     _spread(changes, K)
 
 
 @njit
-def _put_last_change(at: Shape, response: SpatialResponse, changes: Array) -> None:
+def _write_last_change(at: Shape, response: SpatialResponse, changes: Array) -> None:
     """Write how the forces change as node 2 spins about the third axis: as the whole element turns about it, they turn
     with it, and the load on them changes. So eight moves are left to compute, which fill vectors.
     """
@@ -303,7 +303,7 @@ def _put_last_change(at: Shape, response: SpatialResponse, changes: Array) -> No
 
 
 @njit
-def _put_change(D: Stiffness, at: Shape, response: SpatialResponse, moves: Array, changes: Array, k: int) -> None:
+def _write_change(D: Stiffness, at: Shape, response: SpatialResponse, moves: Array, changes: Array, k: int) -> None:
     """Write how the forces change in move k; by itself so that the loop over all of them is done on vectors."""
     u, w1, w2 = _three(moves, 0, k), _three(moves, 3, k), _three(moves, 6, k)
     change, axes = _vary(D, at, response, u, w1, w2), at.frame.axes
@@ -331,7 +331,7 @@ def _spread(changes: Array, K: Array) -> None:
 
 
 @njit
-def put_element(
+def write_element(
     e: int,
     chord: Array,
     frame1: Array,
@@ -343,11 +343,11 @@ def put_element(
     f: Array,
     K: Array,
 ) -> None:
-    """Write forces f (12,) of element e as `put_element_forces`, and their derivative K (12, 12) by displacements and
+    """Write forces f (12,) of element e as `write_element_forces`, and their derivative K (12, 12) by displacements and
     spatial spins; workspace: `tangent_workspace`.
     """
     D, w = stiffness(ref, section, e), vector(load[e])
     at = element_shape(e, chord, frame1, frame2, ref)
     response = _respond(D, _unstressed(ref, e), at, w)
-    _put_loaded_forces(D.L, at, response, w, f)
+    _write_loaded_forces(D.L, at, response, w, f)
     _tangent(D, at, response, workspace, K)

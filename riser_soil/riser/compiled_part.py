@@ -16,7 +16,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
-from riser_soil.riser.configuration import maps_for, put_maps, put_turning
+from riser_soil.riser.configuration import maps_for, write_maps, write_turning
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.part_kernels import (
@@ -31,9 +31,9 @@ from riser_soil.riser.part_kernels import (
     find_water,
     forces_of,
     keep,
-    put_residual,
     turn,
     weigh,
+    write_residual,
 )
 from riser_soil.riser.placed_line import LineBase, PlacedTrial
 
@@ -50,7 +50,7 @@ class LineTrials:
         self.now, self.then = PlacedTrial(line, base), PlacedTrial(line, base)
         self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
         self.conjugate, self.turning = Packed(np.empty((ne, 2, d))), Packed(np.empty((ne, 2, r, r)))
-        self._put_maps = bound(put_maps, self.now.at, self.maps)
+        self._write_maps = bound(write_maps, self.now.at, self.maps)
         self._mapped = -1  # the count of `now` for which they hold
         self._start = self._end = math.nan
 
@@ -61,7 +61,7 @@ class LineTrials:
         kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
         if self._mapped != self.now.count or (kept.shift_v, kept.shift_a) != shifts:
             self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
-            self._put_maps()
+            self._write_maps()
             self._mapped = self.now.count
 
     def step_to(self, t: float) -> tuple[float, float]:
@@ -97,9 +97,9 @@ class BoundPart:
         self.collect = Bound(collect, self._now, self._forces)
 
     @cached_property
-    def put_residual(self) -> Bound:
+    def write_residual(self) -> Bound:
         """Writes the residual of the elements in the forces found last."""
-        return Bound(put_residual, self._now, self._forces, Packed(self.residual))
+        return Bound(write_residual, self._now, self._forces, Packed(self.residual))
 
     @cached_property
     def _find_water(self) -> list[Bound]:
@@ -114,7 +114,7 @@ class BoundPart:
             *self._find_water,
             bound(add_tangent, self._data, self._now, trials.maps, trials.weights, self.K),
             Bound(weigh, self._forces, trials.weights, trials.conjugate),
-            bound(put_turning, trials.now.at, trials.conjugate, trials.turning),
+            bound(write_turning, trials.now.at, trials.conjugate, trials.turning),
             Bound(turn, self._now, trials.turning, self.K),
         )
 
@@ -236,7 +236,7 @@ class CompiledPart(LinePart, ABC):
 
     def element_forces(self, state: State) -> Array:
         found = self._found(state)
-        found.put_residual()
+        found.write_residual()
         return found.residual.copy()
 
     def forces_on_nodes(self, state: State) -> Array:

@@ -17,7 +17,7 @@ from riser_soil.riser import directors, hermite, line_kernels, spatial_directors
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_kernels import put_moved
+from riser_soil.riser.line_kernels import write_moved
 
 
 class PlanarBase(NamedTuple):
@@ -94,7 +94,7 @@ Configuration = PlanarConfiguration | SpatialConfiguration
 
 class Maps(NamedTuple):
     """How the rates and accelerations of element ends' tangents (ne, 2, d, r) follow the rotation dofs; the shifts; and
-    how places, rates and accelerations of an element follow its dofs, rows (ne, d, n) as of `hermite.put_rows`.
+    how places, rates and accelerations of an element follow its dofs, rows (ne, d, n) as of `hermite.write_rows`.
     """
 
     rate: Array
@@ -144,72 +144,72 @@ def place(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
 
 
 @bound_by_type
-def put_rates(at: Configuration, v: Array, a: Array) -> None:
+def write_rates(at: Configuration, v: Array, a: Array) -> None:
     """Write other rates v and accelerations a (nn, ndof) of the dofs, in the same place."""
 
 
 @bound_by_type
-def put_magnitudes(at: Configuration, out: Array) -> None:
+def write_magnitudes(at: Configuration, out: Array) -> None:
     """Write the sizes (nn, ndof) of a configuration's coordinates, see `Field.magnitudes`."""
 
 
 @bound_by_type
-def put_maps(at: Configuration, maps: Maps) -> None:
+def write_maps(at: Configuration, maps: Maps) -> None:
     """Write the maps of a configuration with their shifts."""
 
 
 @bound_by_type
-def put_turning(at: Configuration, F: Array, G: Array) -> None:
+def write_turning(at: Configuration, F: Array, G: Array) -> None:
     """Write to G (ne, 2, r, r) the derivative of P^T F by the rotation dofs, F (ne, 2, d) held."""
 
 
 @bound_by_type
-def put_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
+def write_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
     """Write the maps (nn, 3, r) of what is conjugate to the rotation dofs to moments in global axes, see `Orientation`.
     axes (3, r): `Line.turning_axes`.
     """
 
 
 @bound_by_type
-def put_folded(at: Configuration, base: Base, out: IntArray) -> None:
-    """Write what `line_kernels.put_folded` writes, of a step from the accepted configuration."""
+def write_folded(at: Configuration, base: Base, out: IntArray) -> None:
+    """Write what `line_kernels.write_folded` writes, of a step from the accepted configuration."""
 
 
 @place.of(PlanarConfiguration)
 def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Array, a: Array) -> None:
-    put_moved(base.x, base.chord, u, at.x, at.chord)
+    write_moved(base.x, base.chord, u, at.x, at.chord)
     for n in range(u.shape[0]):
         at.angle[n] = base.angle[n] + u[n, 2]
     normal = at.P.reshape((at.P.shape[0], 2, 2))
-    directors.put_ends(at.angle, base.alpha0, at.end_angle, at.tangent, normal)
-    hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
-    put_rates(at, v, a)
+    directors.write_ends(at.angle, base.alpha0, at.end_angle, at.tangent, normal)
+    hermite.write_interleaved(at.x, at.tangent, at.q, at.D)
+    write_rates(at, v, a)
 
 
 @place.of(SpatialConfiguration)
 def _place_in_space(at: SpatialConfiguration, base: SpatialBase, u: Array, v: Array, a: Array) -> None:
-    put_moved(base.x, base.chord, u, at.x, at.chord)
+    write_moved(base.x, base.chord, u, at.x, at.chord)
     for n in range(u.shape[0]):
         for i in range(3):
             at.Theta[n, i] = u[n, 3 + i]
             for j in range(3):
                 at.Rn[n, i, j] = base.R[n, i, j]
     spatial_directors.orient(base.R, at.Theta, base.T0, at.frames, at.H, at.frame1, at.frame2, at.tangent, at.P)
-    hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
-    put_rates(at, v, a)
+    hermite.write_interleaved(at.x, at.tangent, at.q, at.D)
+    write_rates(at, v, a)
 
 
-@put_rates.of(PlanarConfiguration)
-def _put_planar_rates(at: PlanarConfiguration, v: Array, a: Array) -> None:
+@write_rates.of(PlanarConfiguration)
+def _write_planar_rates(at: PlanarConfiguration, v: Array, a: Array) -> None:
     _keep(at, v, a)
     normal = at.P.reshape((at.P.shape[0], 2, 2))
-    directors.put_motion(at.tangent, normal, v, a, at.rate, at.acceleration)
+    directors.write_motion(at.tangent, normal, v, a, at.rate, at.acceleration)
 
 
-@put_rates.of(SpatialConfiguration)
-def _put_spatial_rates(at: SpatialConfiguration, v: Array, a: Array) -> None:
+@write_rates.of(SpatialConfiguration)
+def _write_spatial_rates(at: SpatialConfiguration, v: Array, a: Array) -> None:
     _keep(at, v, a)
-    spatial_directors.put_motion(at.frames, at.T0, v, a, at.rate, at.acceleration)
+    spatial_directors.write_motion(at.frames, at.T0, v, a, at.rate, at.acceleration)
 
 
 @njit
@@ -219,69 +219,69 @@ def _keep(at: Configuration, v: Array, a: Array) -> None:
             at.v[n, i], at.a[n, i] = v[n, i], a[n, i]
 
 
-@put_magnitudes.of(PlanarConfiguration)
-def _put_magnitudes_in_plane(at: PlanarConfiguration, out: Array) -> None:
-    line_kernels.put_magnitudes(at.x, at.angle.reshape((at.angle.size, 1)), out)
+@write_magnitudes.of(PlanarConfiguration)
+def _write_magnitudes_in_plane(at: PlanarConfiguration, out: Array) -> None:
+    line_kernels.write_magnitudes(at.x, at.angle.reshape((at.angle.size, 1)), out)
 
 
-@put_magnitudes.of(SpatialConfiguration)
-def _put_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
-    line_kernels.put_magnitudes(at.x, at.Theta, out)
+@write_magnitudes.of(SpatialConfiguration)
+def _write_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
+    line_kernels.write_magnitudes(at.x, at.Theta, out)
 
 
-@put_maps.of(PlanarConfiguration)
-def _put_maps_in_plane(at: PlanarConfiguration, maps: Maps) -> None:
+@write_maps.of(PlanarConfiguration)
+def _write_maps_in_plane(at: PlanarConfiguration, maps: Maps) -> None:
     normal = at.P.reshape((at.P.shape[0], 2, 2))
-    directors.put_maps(
+    directors.write_maps(
         at.tangent, normal, at.v[:, 2:], at.a[:, 2:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
     )
-    _put_rows(at, maps)
+    _write_rows(at, maps)
 
 
-@put_maps.of(SpatialConfiguration)
-def _put_maps_in_space(at: SpatialConfiguration, maps: Maps) -> None:
-    spatial_directors.put_maps(
+@write_maps.of(SpatialConfiguration)
+def _write_maps_in_space(at: SpatialConfiguration, maps: Maps) -> None:
+    spatial_directors.write_maps(
         at.frames, at.H, at.T0, at.v[:, 3:], at.a[:, 3:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
     )
-    _put_rows(at, maps)
+    _write_rows(at, maps)
 
 
 @njit
-def _put_rows(at: Configuration, maps: Maps) -> None:
-    hermite.put_all_rows(at.P, 1.0, maps.place_rows, at.D, at.R)
-    hermite.put_all_rows(maps.rate, maps.shift_v, maps.rate_rows, at.D, at.R)
-    hermite.put_all_rows(maps.acceleration, maps.shift_a, maps.acceleration_rows, at.D, at.R)
+def _write_rows(at: Configuration, maps: Maps) -> None:
+    hermite.write_all_rows(at.P, 1.0, maps.place_rows, at.D, at.R)
+    hermite.write_all_rows(maps.rate, maps.shift_v, maps.rate_rows, at.D, at.R)
+    hermite.write_all_rows(maps.acceleration, maps.shift_a, maps.acceleration_rows, at.D, at.R)
 
 
-@put_turning.of(PlanarConfiguration)
-def _put_turning_in_plane(at: PlanarConfiguration, F: Array, G: Array) -> None:
-    directors.put_geometric(at.tangent, F, G)
+@write_turning.of(PlanarConfiguration)
+def _write_turning_in_plane(at: PlanarConfiguration, F: Array, G: Array) -> None:
+    directors.write_geometric(at.tangent, F, G)
 
 
-@put_turning.of(SpatialConfiguration)
-def _put_turning_in_space(at: SpatialConfiguration, F: Array, G: Array) -> None:
-    spatial_directors.put_geometric(at.Rn, at.H, at.Theta, at.tangent, F, G)
+@write_turning.of(SpatialConfiguration)
+def _write_turning_in_space(at: SpatialConfiguration, F: Array, G: Array) -> None:
+    spatial_directors.write_geometric(at.Rn, at.H, at.Theta, at.tangent, F, G)
 
 
-@put_moment_maps.of(PlanarConfiguration)
-def _put_moment_maps_in_plane(at: PlanarConfiguration, axes: Array, maps: Array) -> None:
-    directors.put_moment_maps(axes, maps)
+@write_moment_maps.of(PlanarConfiguration)
+def _write_moment_maps_in_plane(at: PlanarConfiguration, axes: Array, maps: Array) -> None:
+    directors.write_moment_maps(axes, maps)
 
 
-@put_moment_maps.of(SpatialConfiguration)
-def _put_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array) -> None:
-    spatial_directors.put_moment_maps(at.Rn, at.Theta, maps)
+@write_moment_maps.of(SpatialConfiguration)
+def _write_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array) -> None:
+    spatial_directors.write_moment_maps(at.Rn, at.Theta, maps)
 
 
-@put_folded.of(PlanarConfiguration)
-def _put_folded_in_plane(at: PlanarConfiguration, base: PlanarBase, out: IntArray) -> None:
+@write_folded.of(PlanarConfiguration)
+def _write_folded_in_plane(at: PlanarConfiguration, base: PlanarBase, out: IntArray) -> None:
     tangent, normal = np.empty(at.tangent.shape), np.empty(at.tangent.shape)
-    directors.put_ends(base.angle, base.alpha0, np.empty(base.alpha0.shape), tangent, normal)
-    line_kernels.put_folded(base.chord, tangent, at.chord, at.tangent, directors.first_wound(at.end_angle), out)
+    directors.write_ends(base.angle, base.alpha0, np.empty(base.alpha0.shape), tangent, normal)
+    line_kernels.write_folded(base.chord, tangent, at.chord, at.tangent, directors.first_wound(at.end_angle), out)
 
 
-@put_folded.of(SpatialConfiguration)
-def _put_folded_in_space(at: SpatialConfiguration, base: SpatialBase, out: IntArray) -> None:
+@write_folded.of(SpatialConfiguration)
+def _write_folded_in_space(at: SpatialConfiguration, base: SpatialBase, out: IntArray) -> None:
     tangent, first, second = np.empty(at.tangent.shape), np.empty(at.frame1.shape), np.empty(at.frame2.shape)
-    spatial_directors.put_end_frames(base.R, base.T0, first, second, tangent)
-    line_kernels.put_folded(base.chord, tangent, at.chord, at.tangent, spatial_directors.first_wound(at.Theta), out)
+    spatial_directors.write_end_frames(base.R, base.T0, first, second, tangent)
+    line_kernels.write_folded(base.chord, tangent, at.chord, at.tangent, spatial_directors.first_wound(at.Theta), out)

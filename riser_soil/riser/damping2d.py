@@ -22,8 +22,8 @@ from riser_soil.riser.beam2d import (
     corotate,
     element_at,
     nodal_forces,
-    put_forces,
     stress_variation,
+    write_forces,
 )
 
 STILL = (0.0, 0.0)
@@ -88,7 +88,7 @@ def _vary(
 
 
 @njit
-def put_element_forces(
+def write_element_forces(
     e: int,
     chord: Array,
     direction1: Array,
@@ -106,11 +106,11 @@ def put_element_forces(
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
     element = element_at(ref, viscosity, e)
     N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
-    put_forces(at.axis, nodal_forces(at, N, m1, m2), f)
+    write_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
 
 @njit
-def put_element_tangent(
+def write_element_tangent(
     e: int,
     chord: Array,
     direction1: Array,
@@ -136,6 +136,6 @@ def put_element_tangent(
         _move(at, STILL, 0.0, 1.0),
     )
     for j in range(4):
-        put_forces(at.axis, _vary(element, at, N, force, rates, moves[j], shift_v), K[:, 2 + j])
+        write_forces(at.axis, _vary(element, at, N, force, rates, moves[j], shift_v), K[:, 2 + j])
     for i in range(6):
         K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]

@@ -18,11 +18,11 @@ from riser_soil.riser.beam3d import (
     SpatialSection,
     forces_change,
     move,
-    put_forces,
     respond,
     shape,
     stiffness,
     strain_of,
+    write_forces,
 )
 from riser_soil.riser.corotation import SpatialNodalForces, rate, rate_variation
 from riser_soil.riser.rotations import rows_to_increments
@@ -112,7 +112,7 @@ def _element(
 
 
 @njit
-def put_element_forces(
+def write_element_forces(
     e: int,
     chord: Array,
     frame1: Array,
@@ -125,11 +125,11 @@ def put_element_forces(
 ) -> None:
     """Write viscous forces f (12,) of element e, conjugate to displacements and spatial spins.
 
-    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.put_element_forces`.
+    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.write_element_forces`.
     """
     D = stiffness(ref, viscosity, e)
     at, _, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
-    put_forces(at.frame.axes, response.forces, f)
+    write_forces(at.frame.axes, response.forces, f)
 
 
 @njit
@@ -158,13 +158,13 @@ def _shift_columns(
         unit = (axes[0][k], axes[1][k], axes[2][k])
         m = move(at, unit, STILL, STILL)
         d = _rates_change(at, flow, m, scale(shift_v, unit), STILL, STILL)
-        put_forces(axes, _vary(D, at, flow, response, m, d), K[:, 6 + k])
+        write_forces(axes, _vary(D, at, flow, response, m, d), K[:, 6 + k])
         for i in range(12):
             K[i, k] = -K[i, 6 + k]
 
 
 @njit
-def put_element_tangent(
+def write_element_tangent(
     e: int,
     chord: Array,
     frame1: Array,
@@ -189,7 +189,7 @@ def put_element_tangent(
         H, R = matrix(nodes.H[n]), matrix(nodes.R[n])
         for k in range(3):
             w, faster = transpose(H)[k], scale(shift_v, transpose(R)[k])
-            put_forces(at.frame.axes, _turn_column(D, at, flow, response, w, faster, end), K[:, first + k])
+            write_forces(at.frame.axes, _turn_column(D, at, flow, response, w, faster, end), K[:, first + k])
     for end in range(2):
         n, moment = e + end, response.forces.moment2 if end else response.forces.moment1
         spatial = vecmat(moment, at.frame.axes)

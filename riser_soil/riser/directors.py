@@ -30,7 +30,7 @@ class PlanarOrientation:
     def __init__(self, angle: Array, alpha0: Array) -> None:
         self.angle, both = angle, (*alpha0.shape, 2)
         self.end_angle, self.tangent, self.normal = np.empty(alpha0.shape), np.empty(both), np.empty(both)
-        put_ends(angle, alpha0, self.end_angle, self.tangent, self.normal)
+        write_ends(angle, alpha0, self.end_angle, self.tangent, self.normal)
 
     def at(self, node: int) -> Array:
         """Orientation of a node: its angle (1,)."""
@@ -53,19 +53,19 @@ class PlanarOrientation:
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
         rate, acceleration = (np.empty((len(self.tangent), 4, 2)) for _ in range(2))
-        put_motion(self.tangent, self.normal, v, a, rate, acceleration)
+        write_motion(self.tangent, self.normal, v, a, rate, acceleration)
         return rate, acceleration
 
     def moment_maps(self, axes: Array) -> Array:
         """Maps (nn, 3, 1) of moments conjugate to angles to those in global axes; axes (3, 1): its normal."""
         maps = np.empty((len(self.angle), 3, 1))
-        put_moment_maps(np.ascontiguousarray(axes), maps)
+        write_moment_maps(np.ascontiguousarray(axes), maps)
         return maps
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
         G = np.empty((len(F), 2, 1, 1))
-        put_geometric(self.tangent, F, G)
+        write_geometric(self.tangent, F, G)
         return G
 
 
@@ -122,7 +122,7 @@ class PlanarFrames:
 
 
 @njit
-def put_ends(angle: Array, alpha0: Array, end_angle: Array, tangent: Array, normal: Array) -> None:
+def write_ends(angle: Array, alpha0: Array, end_angle: Array, tangent: Array, normal: Array) -> None:
     """Write angle (ne, 2), tangent and normal (ne, 2, 2) of element ends; two at one angle share its sine."""
     known, cosine, sine = math.nan, math.nan, math.nan
     for e in range(alpha0.shape[0]):
@@ -145,7 +145,7 @@ def first_wound(end_angle: Array) -> int:
 
 
 @njit
-def put_motion(tangent: Array, normal: Array, v: Array, a: Array, rate: Array, acceleration: Array) -> None:
+def write_motion(tangent: Array, normal: Array, v: Array, a: Array, rate: Array, acceleration: Array) -> None:
     """Write q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
     for e in range(tangent.shape[0]):
         for side in range(2):
@@ -158,7 +158,7 @@ def put_motion(tangent: Array, normal: Array, v: Array, a: Array, rate: Array, a
 
 
 @njit
-def put_maps(
+def write_maps(
     tangent: Array, normal: Array, v: Array, a: Array, shift_v: float, shift_a: float, first: Array, second: Array
 ) -> None:
     """Write the derivatives of t' and t'' by the angle, each (ne, 2, 2, 1), from angular rates v and a (nn, 1)."""
@@ -172,7 +172,7 @@ def put_maps(
 
 
 @njit
-def put_moment_maps(axes: Array, maps: Array) -> None:
+def write_moment_maps(axes: Array, maps: Array) -> None:
     """Write the axis (3, 1) of each node."""
     for n in range(maps.shape[0]):
         for i in range(3):
@@ -180,7 +180,7 @@ def put_moment_maps(axes: Array, maps: Array) -> None:
 
 
 @njit
-def put_geometric(tangent: Array, F: Array, G: Array) -> None:
+def write_geometric(tangent: Array, F: Array, G: Array) -> None:
     """Write d(n . F)/dangle (ne, 2, 1, 1) at fixed F (ne, 2, 2): the normal turns against the tangent."""
     for e in range(tangent.shape[0]):
         for side in range(2):

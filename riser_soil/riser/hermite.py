@@ -16,7 +16,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import add_pulled_back, put_blocks
+from riser_soil.core.rows import add_pulled_back, write_blocks
 
 Four = tuple[float, float, float, float]
 Size = tuple[int, ...]  # of `fixed`: D for the dimension d, R for the r rotation dofs
@@ -75,12 +75,12 @@ def consistent_mass(L: Array, mass: Array) -> Array:
 def interleave(nodal: Array, directors: Array, D: Size) -> Array:
     """q (ne, 4, d) of nodal translations (nn, ≥ d) and directors at element ends (ne, 2, d)."""
     q = np.empty((directors.shape[0], 4, len(D)))
-    put_interleaved(nodal, directors, q, D)
+    write_interleaved(nodal, directors, q, D)
     return q
 
 
 @njit
-def put_interleaved(nodal: Array, directors: Array, q: Array, D: Size) -> None:
+def write_interleaved(nodal: Array, directors: Array, q: Array, D: Size) -> None:
     """Write what `interleave` returns."""
     for e in range(directors.shape[0]):
         for side in range(2):
@@ -111,12 +111,12 @@ def add_weighed(M: Array, q: Array, F: Array, D: Size) -> None:
 def pull_back(F: Array, P: Array) -> Array:
     """Element residual in the dofs, (ne, 2 (d + r)), of F (ne, 4, d) conjugate to q."""
     pulled = np.empty((P.shape[0], 2 * (P.shape[2] + P.shape[3])))
-    put_pulled_back(F, P, pulled, fixed(P.shape[2]), fixed(P.shape[3]))
+    write_pulled_back(F, P, pulled, fixed(P.shape[2]), fixed(P.shape[3]))
     return pulled
 
 
 @njit
-def put_pulled_back(F: Array, P: Array, out: Array, D: Size, R: Size) -> None:
+def write_pulled_back(F: Array, P: Array, out: Array, D: Size, R: Size) -> None:
     """Write what `pull_back` returns."""
     d, r = len(D), len(R)
     for e in range(P.shape[0]):
@@ -157,7 +157,7 @@ def collect_nodal(F: Array, P: Array, nodal: Array, D: Size, R: Size) -> None:
 
 
 @njit
-def put_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
+def write_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
     """Write how the coordinates of positions and tangents at an element's ends follow its dofs, to out (d, n): a row
     for each coordinate; positions by `shift`, tangents by P (2, d, r). `core.rows` takes them, with shape functions.
     """
@@ -171,10 +171,10 @@ def put_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
 
 
 @njit
-def put_all_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
-    """`put_rows` of all elements, out (ne, d, n)."""
+def write_all_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
+    """`write_rows` of all elements, out (ne, d, n)."""
     for e in range(out.shape[0]):
-        put_rows(P[e], shift, out[e], D, R)
+        write_rows(P[e], shift, out[e], D, R)
 
 
 def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array) -> None:
@@ -183,16 +183,16 @@ def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M
     D: `shift` for positions, `columns` (ne, 2, d, r) for tangents.
     """
     D, R, rows = fixed(P.shape[2]), fixed(P.shape[3]), np.empty((len(P), P.shape[2], out.shape[2]))
-    put_all_rows(columns, shift, rows, D, R)
+    write_all_rows(columns, shift, rows, D, R)
     add_mass_to(out, scale, P, rows, M, D, R)
 
 
 @njit
 def add_mass_to(out: Array, scale: float, P: Array, rows: Array, M: Array, D: Size, R: Size) -> None:
-    """What `add_mass` does, for compiled code; rows: see `put_rows`."""
+    """What `add_mass` does, for compiled code; rows: see `write_rows`."""
     S = np.empty((4, len(D), 2 * (len(D) + len(R))))  # M D of one element
     for e in range(P.shape[0]):
-        put_blocks(S, M[e], scale, rows[e], D, R)
+        write_blocks(S, M[e], scale, rows[e], D, R)
         add_pulled_back(out[e], P[e], S, D, R)
 
 

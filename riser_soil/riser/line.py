@@ -23,7 +23,7 @@ from riser_soil.riser import hermite, line_kernels
 from riser_soil.riser.directors import Frames, PlanarFrames
 from riser_soil.riser.ends import End
 from riser_soil.riser.line_ends import LineEnds, free_turns, unit_lengths
-from riser_soil.riser.line_kernels import after_increments, put_folded, put_magnitudes
+from riser_soil.riser.line_kernels import after_increments, write_folded, write_magnitudes
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
 
@@ -216,7 +216,7 @@ class Line:
 
     def magnitudes(self, state: State) -> Array:
         trial, out = self.trial(state), np.empty((self.nodes, self.ndof))
-        put_magnitudes(trial.x, trial.turn.turned, out)
+        write_magnitudes(trial.x, trial.turn.turned, out)
         return out.ravel()
 
     def commit(self, state: State) -> None:
@@ -289,7 +289,7 @@ class Line:
         trial, found = self.trial(state), np.zeros(2, dtype=np.int64)
         left = trial if before is None else self.trial(before)
         first, last = (left.chord, left.turn.tangent), (trial.chord, trial.turn.tangent)
-        put_folded(*first, *last, trial.turn.first_wound, found)
+        write_folded(*first, *last, trial.turn.first_wound, found)
         return self.folding(*as_list(found))
 
     def folding(self, folded: int, swung: int) -> str:

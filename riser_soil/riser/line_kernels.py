@@ -38,12 +38,12 @@ def motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> 
 def after_increments(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
     """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof)."""
     place, along = np.empty(x.shape), np.empty(chord.shape)
-    put_moved(x, chord, u, place, along)
+    write_moved(x, chord, u, place, along)
     return place, along
 
 
 @njit
-def put_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> None:
+def write_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> None:
     """Write what `after_increments` returns; chords add theirs, see `Line.commit`."""
     for n in range(x.shape[0]):
         for i in range(x.shape[1]):
@@ -54,7 +54,7 @@ def put_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> N
 
 
 @njit
-def put_magnitudes(x: Array, turned: Array, out: Array) -> None:
+def write_magnitudes(x: Array, turned: Array, out: Array) -> None:
     """Write the sizes (nn, ndof) of the coordinates: of places x (nn, d), and of turns (nn, r) [rad], at least one,
     as cosines and sines of less are no more exact.
     """
@@ -67,7 +67,7 @@ def put_magnitudes(x: Array, turned: Array, out: Array) -> None:
 
 
 @njit
-def put_folded(chord0: Array, tangent0: Array, chord: Array, tangent: Array, wound: int, out: IntArray) -> None:
+def write_folded(chord0: Array, tangent0: Array, chord: Array, tangent: Array, wound: int, out: IntArray) -> None:
     """Write the numbers (2,) of the first element that is folded or wound up, and of the first that swings too far from
     one configuration to another, see `Line.inadmissible`; ne without any.
     """
@@ -96,8 +96,8 @@ def first_swung(chord0: Array, tangent0: Array, chord: Array, tangent: Array, mo
     ne, d = chord.shape
     first, second = np.empty(d), np.empty(d)
     for e in range(ne):
-        _put_unit(chord0[e], first)
-        _put_unit(chord[e], second)
+        _write_unit(chord0[e], first)
+        _write_unit(chord[e], second)
         for side in range(2):
             if _cosine_of_swing(first, tangent0[e, side], second, tangent[e, side]) < math.cos(most):
                 return e
@@ -105,7 +105,7 @@ def first_swung(chord0: Array, tangent0: Array, chord: Array, tangent: Array, mo
 
 
 @njit
-def _put_unit(vector: Array, out: Array) -> None:
+def _write_unit(vector: Array, out: Array) -> None:
     square = 0.0
     for i in range(out.size):
         square += vector[i] ** 2

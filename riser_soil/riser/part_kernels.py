@@ -15,7 +15,7 @@ from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
-from riser_soil.riser.hermite import add_geometric, collect_nodal, put_pulled_back, scatter
+from riser_soil.riser.hermite import add_geometric, collect_nodal, scatter, write_pulled_back
 from riser_soil.riser.line import Line
 
 
@@ -108,10 +108,10 @@ def collect(at: Configuration, forces: LineForces) -> None:
 
 
 @njit
-def put_residual(at: Configuration, forces: LineForces, out: Array) -> None:
+def write_residual(at: Configuration, forces: LineForces, out: Array) -> None:
     """Write the sum (ne, 2 ndof) of all groups within the elements."""
     q = forces.inertia_q + forces.force_q + forces.end_q
-    put_pulled_back(q, at.P, out, at.D, at.R)
+    write_pulled_back(q, at.P, out, at.D, at.R)
     for e in range(out.shape[0]):
         for i in range(out.shape[1]):
             out[e, i] += forces.inertia_e[e, i] + forces.force_e[e, i]

@@ -7,7 +7,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Packed
 from riser_soil.core.part import State
-from riser_soil.riser.configuration import base_of, place, put_rates, workspace_for
+from riser_soil.riser.configuration import base_of, place, workspace_for, write_rates
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import bound
 
@@ -69,8 +69,8 @@ class PlacedLine:
         self.base, self.update = self._base.packed, self._base.update
         self._rates, still = (np.zeros(shape), np.zeros(shape)), Packed(np.zeros(shape))
         self._place = bound(place, self.at, self.base, still, still, still)
-        self._put = bound(put_rates, self.at, *map(Packed, self._rates))
-        self._stand = bound(put_rates, self.at, still, still)
+        self._put = bound(write_rates, self.at, *map(Packed, self._rates))
+        self._stand = bound(write_rates, self.at, still, still)
         self._at: Array | None = None  # the places of its nodes as they were when it was placed
         self._with: tuple[Array | None, Array | None] = None, None  # the rates that it has there
 

@@ -36,10 +36,10 @@ from riser_soil.riser.vectors import (
     norm,
     padded,
     padded_matrix,
-    put,
     scale,
     sub,
     transpose,
+    write,
 )
 
 
@@ -62,13 +62,13 @@ def misfit(line: Line, elements: Elements, state: State, residual: Array) -> Ben
     tangent, out = trial.turn.tangent, (np.empty(line.length.size), np.empty(line.length.size))
     stiffness = *section_frames(trial), *elements.flexibility, elements.larger_EI
     on_ends = end_forces(line, trial, residual)
-    _put_misfits(line.length, *on_ends, line.basis, tangent, _turns(line, trial), *stiffness, *out)
+    _write_misfits(line.length, *on_ends, line.basis, tangent, _turns(line, trial), *stiffness, *out)
     i, j = (int(values.argmax()) for values in out)
     return BendingMisfit(float(out[0][i]), i, float(out[1][j]), j)
 
 
 @njit
-def _put_misfits(
+def _write_misfits(
     length: Array,
     force: Array,
     moment: Array,
@@ -98,9 +98,9 @@ def _put_misfits(
             size[end] = norm(bending)
             for vector, out in ((bending, k[end]), (shear, slope[end])):
                 if len(first) == 0:
-                    put(scale(y[e], vector), out)
+                    write(scale(y[e], vector), out)
                 else:
-                    _put_over_stiffness(first[e] if end == 0 else second[e], vector, y[e], z[e], out)
+                    _write_over_stiffness(first[e] if end == 0 else second[e], vector, y[e], z[e], out)
         L, trapezoidal, corrected = length[e], 0.0, 0.0
         for i in range(3):
             plain = turn[e, i] - 0.5 * L * (k[0, i] + k[1, i])
@@ -121,7 +121,7 @@ def _in_space(basis: Array, a: Array) -> Vec:
 
 
 @njit
-def _put_over_stiffness(frame: Array, moment: Vec, y: float, z: float, out: Array) -> None:
+def _write_over_stiffness(frame: Array, moment: Vec, y: float, z: float, out: Array) -> None:
     """Write the curvature of a moment, global axes, about the section axes of two stiffnesses."""
     about_y = frame[0, 1] * moment[0] + frame[1, 1] * moment[1] + frame[2, 1] * moment[2]
     about_z = frame[0, 2] * moment[0] + frame[1, 2] * moment[1] + frame[2, 2] * moment[2]
@@ -137,12 +137,12 @@ def _turns(line: Line, trial: Trial) -> Array:
         angle = trial.turn.angle
         return np.asarray((angle[1:] - angle[:-1])[:, None] * line.normal)
     turns = np.empty((line.length.size, 3))
-    _put_turns(trial.turn.R, trial.turn.tangent, turns)
+    _write_turns(trial.turn.R, trial.turn.tangent, turns)
     return turns
 
 
 @njit
-def _put_turns(R: Array, tangent: Array, out: Array) -> None:
+def _write_turns(R: Array, tangent: Array, out: Array) -> None:
     """R (nn, 3, 3): frames of the nodes; tangent (ne, 2, 3): at the elements' ends."""
     for e in range(len(out)):
         Q = matmul(padded_matrix(R[e + 1]), transpose(padded_matrix(R[e])))
@@ -152,4 +152,4 @@ def _put_turns(R: Array, tangent: Array, out: Array) -> None:
         turn = scale(math.atan2(sine, cosine) / sine if sine > 0.0 else 1.0, vector)
         middle = add(padded(tangent[e, 0]), padded(tangent[e, 1]))
         middle = scale(1.0 / norm(middle), middle)
-        put(sub(turn, scale(dot(turn, middle), middle)), out[e])
+        write(sub(turn, scale(dot(turn, middle), middle)), out[e])

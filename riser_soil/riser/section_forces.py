@@ -15,11 +15,17 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import State
 from riser_soil.riser.compiled_part import LineTrials
-from riser_soil.riser.configuration import Configuration, PlanarConfiguration, put_moment_maps
+from riser_soil.riser.configuration import Configuration, PlanarConfiguration, write_moment_maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import bound
-from riser_soil.riser.section_kernels import SectionForces, SectionInput, put_end_forces, put_section_forces, size_of
+from riser_soil.riser.section_kernels import (
+    SectionForces,
+    SectionInput,
+    size_of,
+    write_end_forces,
+    write_section_forces,
+)
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.trial import Trial
@@ -86,8 +92,8 @@ class BoundSections:
         needed = SectionInput(*given, *(np.ascontiguousarray(values) for values in constant))
         self._out = np.empty(size_of(line.nodes))
         self._put = in_turn(
-            bound(put_moment_maps, at, Packed(np.ascontiguousarray(line.turning_axes)), Packed(maps)),
-            Bound(put_section_forces, Packed(needed), Packed(SectionForces.within(self._out, line.nodes))),
+            bound(write_moment_maps, at, Packed(np.ascontiguousarray(line.turning_axes)), Packed(maps)),
+            Bound(write_section_forces, Packed(needed), Packed(SectionForces.within(self._out, line.nodes))),
         )
 
     def found(self) -> Array:
@@ -117,7 +123,7 @@ def end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]
     """Force and moment on the elements' ends, each (ne, 2, 3), global axes."""
     shape = line.length.size, 2, 3
     force, moment = np.empty(shape), np.empty(shape)
-    put_end_forces(np.ascontiguousarray(residual), line.basis, _moment_maps(line, trial), force, moment)
+    write_end_forces(np.ascontiguousarray(residual), line.basis, _moment_maps(line, trial), force, moment)
     return force, moment
 
 

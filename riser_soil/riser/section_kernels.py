@@ -86,33 +86,33 @@ def size_of(nodes: int) -> int:
 
 
 @njit
-def put_section_forces(given: SectionInput, out: SectionForces) -> None:
+def write_section_forces(given: SectionInput, out: SectionForces) -> None:
     """All together."""
     ne, basis = len(given.residual), given.basis
     shape, free = (ne, 2, 3), np.empty((ne + 1, 3))
     on_ends, moments, damping, along = np.empty(shape), np.empty(shape), np.zeros(shape), out.tangent
-    put_end_forces(given.residual, basis, given.maps, on_ends, moments)
+    write_end_forces(given.residual, basis, given.maps, on_ends, moments)
     if len(given.viscous) > 0:
-        put_end_forces(given.viscous, basis, given.maps, np.empty(shape), damping)
+        write_end_forces(given.viscous, basis, given.maps, np.empty(shape), damping)
     for e in range(ne):
         for end in range(2):
             for i in range(3):
                 along[e, end, i] = 0.0
                 for j in range(basis.shape[1]):
                     along[e, end, i] += basis[i, j] * given.tangent[e, end, j]
-    _put_at_nodes(on_ends, moments, damping, along, given.bends, free, out)
-    _put_curvatures(free, given.first, given.second, given.y, given.z, out)
-    _put_about_axes(given, out.moment, out.about_axes)
-    _put_position(given, out.position)
+    _write_at_nodes(on_ends, moments, damping, along, given.bends, free, out)
+    _write_curvatures(free, given.first, given.second, given.y, given.z, out)
+    _write_about_axes(given, out.moment, out.about_axes)
+    _write_position(given, out.position)
     for end in range(2):
         e = -end  # the first element, or the last
         for i in range(3):
             out.end_force[end, i], out.end_moment[end, i] = on_ends[e, end, i], moments[e, end, i]
-    _put_extremes(given.arc, out)
+    _write_extremes(given.arc, out)
 
 
 @njit
-def _put_position(given: SectionInput, out: Array) -> None:
+def _write_position(given: SectionInput, out: Array) -> None:
     """Places of the nodes (nn, 3) in global axes."""
     for n in range(len(out)):
         for i in range(3):
@@ -122,7 +122,7 @@ def _put_position(given: SectionInput, out: Array) -> None:
 
 
 @njit
-def _put_extremes(arc: Array, out: SectionForces) -> None:
+def _write_extremes(arc: Array, out: SectionForces) -> None:
     """Least tension of the nodes, of equal ones the first; largest moment and curvature between nodes, too."""
     least, moments = 0, np.empty(out.curvature_beside.shape)
     for n in range(len(arc)):
@@ -136,7 +136,7 @@ def _put_extremes(arc: Array, out: SectionForces) -> None:
 
 
 @njit
-def _put_at_nodes(
+def _write_at_nodes(
     on_ends: Array, moments: Array, damping: Array, tangent: Array, bends: Array, free: Array, out: SectionForces
 ) -> None:
     """Forces, moments and the moment's slope; free (nn, 3): the bending moment less the damping's.
@@ -174,7 +174,7 @@ def _put_at_nodes(
 
 
 @njit
-def _put_curvatures(free: Array, first: Array, second: Array, y: Array, z: Array, out: SectionForces) -> None:
+def _write_curvatures(free: Array, first: Array, second: Array, y: Array, z: Array, out: SectionForces) -> None:
     """Curvatures: bending moment over stiffness, about the section axes where there are two stiffnesses.
 
     free (nn, 3): the moment that bends; first, second: see `SectionInput`; y, z (ne,): 1/EI.
@@ -198,7 +198,7 @@ def _put_curvatures(free: Array, first: Array, second: Array, y: Array, z: Array
 
 
 @njit
-def _put_about_axes(given: SectionInput, moment: Array, out: Array) -> None:
+def _write_about_axes(given: SectionInput, moment: Array, out: Array) -> None:
     """Moments about the section's axes (nn, 3), at a node the mean of those of the elements beside it."""
     out[:] = 0.0
     for n in range(len(moment)):
@@ -216,7 +216,7 @@ def _put_about_axes(given: SectionInput, moment: Array, out: Array) -> None:
 
 
 @njit
-def put_end_forces(residual: Array, basis: Array, maps: Array, force: Array, moment: Array) -> None:
+def write_end_forces(residual: Array, basis: Array, maps: Array, force: Array, moment: Array) -> None:
     """basis (3, d): the line's axes; maps: see `SectionInput`."""
     d, r = basis.shape[1], maps.shape[2]
     for e in range(len(force)):

@@ -60,19 +60,19 @@ class SpatialOrientation:
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
         rate, acceleration = (np.empty((len(self.T0), 4, 3)) for _ in range(2))
-        put_motion(self.R, self.T0, v, a, rate, acceleration)
+        write_motion(self.R, self.T0, v, a, rate, acceleration)
         return rate, acceleration
 
     def moment_maps(self, axes: Array) -> Array:
         """Maps (nn, 3, 3) of moments conjugate to the rotation increments to those in global axes; axes: unit."""
         maps = np.empty_like(self.Rn)
-        put_moment_maps(self.Rn, self.Theta, maps)
+        write_moment_maps(self.Rn, self.Theta, maps)
         return maps
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 3, 3) from the residual conjugate to the tangents, F (ne, 2, 3)."""
         G = np.empty((len(F), 2, 3, 3))
-        put_geometric(self.Rn, self.H, self.Theta, self.tangent, F, G)
+        write_geometric(self.Rn, self.H, self.Theta, self.tangent, F, G)
         return G
 
 
@@ -131,15 +131,15 @@ def orient(
     Rn: Array, Theta: Array, T0: Array, R: Array, H: Array, first: Array, second: Array, tangent: Array, P: Array
 ) -> None:
     """Write R and H of the nodes, frames and tangents of the elements' ends, and P."""
-    put_node_frames(Rn, Theta, R, H)
-    put_end_frames(R, T0, first, second, tangent)
+    write_node_frames(Rn, Theta, R, H)
+    write_end_frames(R, T0, first, second, tangent)
     for e in range(T0.shape[0]):
         for side in range(2):
             store(matscale(-1.0, matmul(skew(vector(tangent[e, side])), matrix(H[e + side]))), P[e, side])
 
 
 @njit
-def put_moment_maps(Rn: Array, Theta: Array, maps: Array) -> None:
+def write_moment_maps(Rn: Array, Theta: Array, maps: Array) -> None:
     """H^-T, that is Rn T_R^-1."""
     for n in range(len(Rn)):
         inverse = transpose(rotations.left_tangent_inverse(vector(Theta[n])))
@@ -182,12 +182,12 @@ def _to_body_axes(moment: Array, Theta: Array) -> Array:
 def node_frames(Rn: Array, Theta: Array) -> tuple[Array, Array]:
     """R = Rn exp(Theta) and H = Rn T_L(Theta), which gives the spatial spin H dTheta; each (nn, 3, 3)."""
     R, H = np.empty_like(Rn), np.empty_like(Rn)
-    put_node_frames(Rn, Theta, R, H)
+    write_node_frames(Rn, Theta, R, H)
     return R, H
 
 
 @njit
-def put_node_frames(Rn: Array, Theta: Array, R: Array, H: Array) -> None:
+def write_node_frames(Rn: Array, Theta: Array, R: Array, H: Array) -> None:
     """Write what `node_frames` returns."""
     for i in range(Rn.shape[0]):
         before, turn = matrix(Rn[i]), vector(Theta[i])
@@ -196,7 +196,7 @@ def put_node_frames(Rn: Array, Theta: Array, R: Array, H: Array) -> None:
 
 
 @njit
-def put_end_frames(R: Array, T0: Array, first: Array, second: Array, tangent: Array) -> None:
+def write_end_frames(R: Array, T0: Array, first: Array, second: Array, tangent: Array) -> None:
     """Write frames T = R T0 at the first and second end of each element, each (ne, 3, 3), and tangents (ne, 2, 3)."""
     for e in range(T0.shape[0]):
         store(matmul(matrix(R[e]), matrix(T0[e, 0])), first[e])
@@ -225,7 +225,7 @@ def _t0(T0: Array) -> Vec:
 
 
 @njit
-def put_motion(R: Array, T0: Array, v: Array, a: Array, rate: Array, acceleration: Array) -> None:
+def write_motion(R: Array, T0: Array, v: Array, a: Array, rate: Array, acceleration: Array) -> None:
     """Write q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
     for e in range(T0.shape[0]):
         for side in range(2):
@@ -238,7 +238,7 @@ def put_motion(R: Array, T0: Array, v: Array, a: Array, rate: Array, acceleratio
 
 
 @njit
-def put_maps(
+def write_maps(
     R: Array,
     H: Array,
     T0: Array,
@@ -272,7 +272,7 @@ def moment_stiffness(Rn: Mat, Theta: Vec, m: Vec) -> Mat:
 
 
 @njit
-def put_geometric(Rn: Array, H: Array, Theta: Array, t: Array, F: Array, G: Array) -> None:
+def write_geometric(Rn: Array, H: Array, Theta: Array, t: Array, F: Array, G: Array) -> None:
     """Write d(H^T (t x F))/dTheta (ne, 2, 3, 3) at fixed F (ne, 2, 3): H turns, and so does t."""
     for e in range(t.shape[0]):
         for side in range(2):

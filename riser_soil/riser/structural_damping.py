@@ -69,7 +69,7 @@ class StructuralDamping(CompiledPart):
 
 
 @njit
-def _put_chord_rates(v: Array, out: Array) -> None:
+def _write_chord_rates(v: Array, out: Array) -> None:
     """Rates of the chords (ne, d) from those of the dofs (nn, ndof)."""
     for e in range(out.shape[0]):
         for i in range(out.shape[1]):
@@ -79,9 +79,9 @@ def _put_chord_rates(v: Array, out: Array) -> None:
 @add_forces.of(PlanarViscosity)
 def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForces) -> None:
     f, first, second = np.empty(6), at.end_angle[:, 0], at.end_angle[:, 1]
-    _put_chord_rates(at.v, part.chord_rate)
+    _write_chord_rates(at.v, part.chord_rate)
     for e in range(at.chord.shape[0]):
-        damping2d.put_element_forces(
+        damping2d.write_element_forces(
             e, at.chord, first, second, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f
         )
         for i in range(6):
@@ -92,7 +92,7 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
 def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     own, first, second = np.empty((6, 6)), at.end_angle[:, 0], at.end_angle[:, 1]
     for e in range(at.chord.shape[0]):
-        damping2d.put_element_tangent(
+        damping2d.write_element_tangent(
             e,
             at.chord,
             first,
@@ -112,12 +112,12 @@ def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, 
 @add_forces.of(SpatialViscosity)
 def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineForces) -> None:
     f = np.empty(12)
-    _put_chord_rates(at.v, part.chord_rate)
+    _write_chord_rates(at.v, part.chord_rate)
     for n in range(at.v.shape[0]):
         spin = matvec(matrix(at.frames[n]), vector(at.v[n, 3:]))
         part.spin[n, 0], part.spin[n, 1], part.spin[n, 2] = spin
     for e in range(at.chord.shape[0]):
-        damping3d.put_element_forces(
+        damping3d.write_element_forces(
             e, at.chord, at.frame1, at.frame2, part.reference, part.viscosity, part.chord_rate, part.spin, f
         )
         rotations.element_to_increments(e, f, at.H)
@@ -131,7 +131,7 @@ def _spatial_tangent(
 ) -> None:
     own, nodes = np.empty((12, 12)), damping3d.NodeRotations(at.frames, at.H, at.Rn, at.Theta)
     for e in range(at.chord.shape[0]):
-        damping3d.put_element_tangent(
+        damping3d.write_element_tangent(
             e,
             at.chord,
             at.frame1,

@@ -3,7 +3,7 @@
 A `Vec` is a tuple of three floats, a `Mat` a tuple of three rows. Tuples live in registers, so a kernel
 allocates nothing per element. `vector` and `matrix` read them from arrays, `store` writes a matrix to one;
 `np.array(A)` works too, also in compiled code. In the plane the third component is 0: `padded`,
-`padded_matrix`, `put` and `put_matrix` take arrays of two components or three.
+`padded_matrix`, `put` and `write_matrix` take arrays of two components or three.
 """
 
 import math
@@ -48,7 +48,7 @@ def padded_matrix(a: Array) -> Mat:
 
 
 @njit
-def put(v: Vec, out: Array) -> None:
+def write(v: Vec, out: Array) -> None:
     """Write the vector v to `out`, shape (2,) or (3,)."""
     out[0], out[1] = v[0], v[1]
     if out.size > 2:
@@ -56,12 +56,12 @@ def put(v: Vec, out: Array) -> None:
 
 
 @njit
-def put_matrix(A: Mat, out: Array) -> None:
+def write_matrix(A: Mat, out: Array) -> None:
     """Write the matrix A to `out`, shape (2, 2) or (3, 3)."""
-    put(A[0], out[0])
-    put(A[1], out[1])
+    write(A[0], out[0])
+    write(A[1], out[1])
     if len(out) > 2:
-        put(A[2], out[2])
+        write(A[2], out[2])
 
 
 @njit

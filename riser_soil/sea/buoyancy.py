@@ -156,7 +156,7 @@ def _pipe_forces(part: DryPipeData, at: Configuration, out: LineForces) -> None:
     see_end(part.stream, at.q)
     up = len(at.D) - 1
     for e in range(part.length.size):
-        waterline.put_dry_lengths(part.points, _element(part, at, part.seen.end, e), part.dry)
+        waterline.write_dry_lengths(part.points, _element(part, at, part.seen.end, e), part.dry)
         for a in range(4):
             out.force_q[e, a, up] += part.displaced[e] * part.dry[a]
 
@@ -185,8 +185,8 @@ def _pipe_work(part: DryPipeData, first: Configuration, last: Configuration, wor
     see_start(part.stream, first.q)
     up = len(last.D) - 1
     for e in range(part.length.size):
-        waterline.put_dry_lengths(part.points, _element(part, first, part.seen.start, e), part.before)
-        waterline.put_dry_lengths(part.points, _element(part, last, part.seen.end, e), part.dry)
+        waterline.write_dry_lengths(part.points, _element(part, first, part.seen.start, e), part.before)
+        waterline.write_dry_lengths(part.points, _element(part, last, part.seen.end, e), part.dry)
         for a in range(4):
             risen = last.q[e, a, up] - first.q[e, a, up]
             work[1] -= 0.5 * part.displaced[e] * (part.before[a] + part.dry[a]) * risen

@@ -51,7 +51,7 @@ def motion_of(sea: SeaData, motion: WaterMotion, t: Array, x: Array) -> list[Bou
     """Kernels that write the water's motion at time t (1,) and points x (n, 3), as these then are."""
     out, when, places = Packed(motion), Packed(t), Packed(x)
     flows = (Bound(add_flow.kernels[type(flow)], Packed(flow), out, when, places) for flow in sea.flows)
-    return [Bound(put_at_rest, out, Packed(sea.level), places), *flows]
+    return [Bound(write_at_rest, out, Packed(sea.level), places), *flows]
 
 
 def motion_workspace(n: int, d: int) -> WaterMotion:
@@ -61,7 +61,7 @@ def motion_workspace(n: int, d: int) -> WaterMotion:
 
 
 @njit
-def put_at_rest(motion: WaterMotion, level: float, x: Array) -> None:
+def write_at_rest(motion: WaterMotion, level: float, x: Array) -> None:
     """Write still water at points x (n, 3)."""
     for p in range(x.shape[0]):
         motion.velocity[p] = 0.0
@@ -75,7 +75,7 @@ def put_at_rest(motion: WaterMotion, level: float, x: Array) -> None:
 
 
 @njit
-def put_in_plane(found: WaterMotion, basis: Array, motion: WaterMotion) -> None:
+def write_in_plane(found: WaterMotion, basis: Array, motion: WaterMotion) -> None:
     """Write the motion (n, 3) as it is seen in a plane, basis (3, 2)."""
     for p in range(found.immersion.size):
         motion.immersion[p] = found.immersion[p]

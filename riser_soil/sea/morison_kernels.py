@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import Term, add_pulled_back, as_tuple, put_weighed, times
+from riser_soil.core.rows import Term, add_pulled_back, as_tuple, times, write_weighed
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
@@ -124,7 +124,7 @@ def _still_forces(part: StillWaterData, at: Configuration, out: LineForces) -> N
         _see(part, at, first, after, seen)
         _see_values(part, at.acceleration, first, after, seen.a, D)
         for k in range(BATCH):
-            _put_forces(seen, inertia, force, k, D)
+            _write_forces(seen, inertia, force, k, D)
         for e in range(first, after):
             for g in range(NG):
                 k, p = (e - first) * NG + g, e * NG + g
@@ -133,11 +133,11 @@ def _still_forces(part: StillWaterData, at: Configuration, out: LineForces) -> N
 
 
 @njit
-def _put_forces(seen: Batch, inertia: Array, force: Array, k: int, D: Size) -> None:
+def _write_forces(seen: Batch, inertia: Array, force: Array, k: int, D: Size) -> None:
     """Write the resistance at one station, by groups."""
     tau = as_tuple(seen.tau[:, k], D)
-    law.put_added(as_tuple(seen.a[:, k], D), tau, as_tuple(seen.mass[:, k], PAIR), inertia[:, k], D)
-    law.put_drag(as_tuple(seen.v[:, k], D), tau, as_tuple(seen.drag[:, k], PAIR), force[:, k], D)
+    law.write_added(as_tuple(seen.a[:, k], D), tau, as_tuple(seen.mass[:, k], PAIR), inertia[:, k], D)
+    law.write_drag(as_tuple(seen.v[:, k], D), tau, as_tuple(seen.drag[:, k], PAIR), force[:, k], D)
 
 
 @add_tangent.of(StillWaterData)
@@ -156,14 +156,14 @@ def _add_mass(part: StillWaterData, at: Configuration, maps: Maps, weight: float
         for g in range(NG):
             tau, stretch = stations.unit_tangent_at(part.at.dN, e * NG + g, at.chord, at.tangent, e, D)
             at_rest = times(0.0, tau)
-            law.put_added_derivatives(
+            law.write_added_derivatives(
                 at_rest, tau, stretch, part.mass[e], weight, workspace.by_a[g], workspace.by_slope[g], D
             )
         weighted, by = part.at.weighted[e], workspace.by_a
         first = weighted[0], ((N[e, 0], by[0], moved[e]),)
         second = weighted[1], ((N[e, 1], by[1], moved[e]),)
         third = weighted[2], ((N[e, 2], by[2], moved[e]),)
-        put_weighed(part.element, (first, second, third), D, at.R)
+        write_weighed(part.element, (first, second, third), D, at.R)
         add_pulled_back(K[e], at.P[e], part.element, D, at.R)
 
 
@@ -178,12 +178,12 @@ def _add_whole_tangent(
         _see(part, at, first, after, seen)
         _see_values(part, at.acceleration, first, after, seen.a, D)
         for k in range(BATCH):
-            _put_derivatives(seen, by, k, weights, D)
+            _write_derivatives(seen, by, k, weights, D)
         for e in range(first, after):
             for g in range(NG):
                 _take(by, (e - first) * NG + g, g, workspace, D)
             each = _terms(part, maps, e, 0), _terms(part, maps, e, 1), _terms(part, maps, e, 2)
-            put_weighed(part.element, each, D, at.R)
+            write_weighed(part.element, each, D, at.R)
             add_pulled_back(K[e], at.P[e], part.element, D, at.R)
 
 
@@ -197,13 +197,13 @@ def _terms(part: StillWaterData, maps: Maps, e: int, g: int) -> tuple[Array, tup
 
 
 @njit
-def _put_derivatives(seen: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
+def _write_derivatives(seen: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
     """Write the weighted derivatives by velocity, acceleration and slope at one station."""
     tau, stretch, by_slope = as_tuple(seen.tau[:, k], D), seen.stretch[k], by[2, :, :, k]
     v, drag = as_tuple(seen.v[:, k], D), as_tuple(seen.drag[:, k], PAIR)
-    law.put_drag_derivatives(v, tau, stretch, drag, weights.force, by[0, :, :, k], by_slope, D)
+    law.write_drag_derivatives(v, tau, stretch, drag, weights.force, by[0, :, :, k], by_slope, D)
     a, mass = as_tuple(seen.a[:, k], D), as_tuple(seen.mass[:, k], PAIR)
-    law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, by[1, :, :, k], by_slope, D)
+    law.write_added_derivatives(a, tau, stretch, mass, weights.inertia, by[1, :, :, k], by_slope, D)
 
 
 @njit
@@ -223,7 +223,7 @@ def _still_energy(part: StillWaterData, at: Configuration, energy: Array) -> Non
             p = e * NG + g
             v = stations.value_at(part.at.N, p, at.rate, e, D)
             tau, _ = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
-            law.put_added(v, tau, part.mass[e], f, D)
+            law.write_added(v, tau, part.mass[e], f, D)
             for i in range(len(D)):
                 energy[0] += 0.5 * part.share[e, g] * v[i] * f[i]
 
@@ -242,7 +242,7 @@ def _still_work(part: StillWaterData, first: Configuration, last: Configuration,
         _see_values(part, first.q, start, after, seen.began, D)
         _see_values(part, last.q, start, after, seen.ended, D)
         for k in range(BATCH):
-            _put_work(seen, workspace, done, k, D)
+            _write_work(seen, workspace, done, k, D)
         for e in range(start, after):
             for g in range(NG):
                 k, share = (e - start) * NG + g, part.share[e, g]
@@ -252,20 +252,20 @@ def _still_work(part: StillWaterData, first: Configuration, last: Configuration,
 
 
 @njit
-def _put_work(seen: StepBatch, workspace: Array, done: Array, k: int, D: Size) -> None:
+def _write_work(seen: StepBatch, workspace: Array, done: Array, k: int, D: Size) -> None:
     """Write the work per length of the mean drag at one station, and half the change of the added mass along the mean
     velocity.
     """
     before, after, mean, lost, changed = workspace[0, :, k], workspace[1, :, k], workspace[2, :, k], 0.0, 0.0
     drag, mass = as_tuple(seen.last.drag[:, k], PAIR), as_tuple(seen.last.mass[:, k], PAIR)
     tau, turned = as_tuple(seen.first.tau[:, k], D), as_tuple(seen.last.tau[:, k], D)
-    law.put_drag(as_tuple(seen.first.v[:, k], D), tau, drag, before, D)
-    law.put_drag(as_tuple(seen.last.v[:, k], D), turned, drag, after, D)
+    law.write_drag(as_tuple(seen.first.v[:, k], D), tau, drag, before, D)
+    law.write_drag(as_tuple(seen.last.v[:, k], D), turned, drag, after, D)
     for i in range(len(D)):
         lost += 0.5 * (before[i] + after[i]) * (seen.ended[i, k] - seen.began[i, k])
         mean[i] = 0.5 * (seen.first.v[i, k] + seen.last.v[i, k])
-    law.put_added(mean, tau, mass, before, D)
-    law.put_added(mean, turned, mass, after, D)
+    law.write_added(mean, tau, mass, before, D)
+    law.write_added(mean, turned, mass, after, D)
     for i in range(len(D)):
         changed += 0.5 * mean[i] * (after[i] - before[i])
     done[0, k], done[1, k] = lost, changed

@@ -45,7 +45,7 @@ def _split(v: Vector, tau: Vector, D: Size) -> tuple[float, float]:
 
 
 @njit
-def put_drag(v: Vector, tau: Vector, c: Vector, f: Array, D: Size) -> None:
+def write_drag(v: Vector, tau: Vector, c: Vector, f: Array, D: Size) -> None:
     """Write the resistance to the rate at one point, f (d,)."""
     v, tau = as_tuple(v, D), as_tuple(tau, D)
     along, speed = _split(v, tau, D)
@@ -55,7 +55,7 @@ def put_drag(v: Vector, tau: Vector, c: Vector, f: Array, D: Size) -> None:
 
 
 @njit
-def put_added(a: Vector, tau: Vector, m: Vector, f: Array, D: Size) -> None:
+def write_added(a: Vector, tau: Vector, m: Vector, f: Array, D: Size) -> None:
     """Write the resistance to the acceleration at one point, f (d,)."""
     a, tau = as_tuple(a, D), as_tuple(tau, D)
     along, _ = _split(a, tau, D)
@@ -64,7 +64,7 @@ def put_added(a: Vector, tau: Vector, m: Vector, f: Array, D: Size) -> None:
 
 
 @njit
-def put_drag_derivatives(
+def write_drag_derivatives(
     v: Vector, tau: Vector, stretch: float, c: Vector, weight: float, by_v: Array, by_slope: Array, D: Size
 ) -> None:
     """Write d drag/dv and d drag/dx' at one point, each (d, d), times a weight; at rest both are zero."""
@@ -83,7 +83,7 @@ def put_drag_derivatives(
 
 
 @njit
-def put_added_derivatives(
+def write_added_derivatives(
     a: Vector, tau: Vector, stretch: float, m: Vector, weight: float, by_a: Array, by_slope: Array, D: Size
 ) -> None:
     """Write d added/da at one point (d, d), times a weight, and add d added/dx' to by_slope (d, d)."""

@@ -121,9 +121,9 @@ def _resist(part: MovingWaterData, water: WaterMotion, m: int, g: int, workspace
     p = m * part.share.shape[1] + g
     for i in range(len(D)):
         workspace.through[i] = workspace.v[i] - water.velocity[p, i]
-    law.put_added(workspace.a, workspace.tau, part.mass[m], workspace.inertia, D)
-    law.put_drag(workspace.through, workspace.tau, part.drag[m], workspace.force, D)
-    law.put_added(water.acceleration[p], workspace.tau, part.pushed[m], workspace.f, D)
+    law.write_added(workspace.a, workspace.tau, part.mass[m], workspace.inertia, D)
+    law.write_drag(workspace.through, workspace.tau, part.drag[m], workspace.force, D)
+    law.write_added(water.acceleration[p], workspace.tau, part.pushed[m], workspace.f, D)
     for i in range(len(D)):
         workspace.force[i] -= workspace.f[i]
 
@@ -178,7 +178,7 @@ def _add_mass(part: MovingWaterData, at: Configuration, maps: Maps, weight: floa
         for g in range(part.share.shape[1]):
             stretch = move(part, at, m, g, workspace)
             mass, share = part.mass[m], weight * wet(part, part.seen.end, m, g)
-            law.put_added_derivatives(workspace.a, workspace.tau, stretch, mass, share, by.by_a, by.by_slope, D)
+            law.write_added_derivatives(workspace.a, workspace.tau, stretch, mass, share, by.by_a, by.by_slope, D)
             moved = part.at.N[m, g], by.by_a, maps.acceleration_rows[e]
             add_weighed(part.change, part.at.weighted[m, g], (moved,), D, at.R)
         add_pulled_back(K[e], at.P[e], part.change, D, at.R)
@@ -213,9 +213,9 @@ def _differentiate(
     if part.partly:
         steep = wet_slope(water.immersion[p], part.span[m, g])
     axis, force = (workspace.tau, stretch), share * weights.force
-    law.put_drag_derivatives(workspace.through, *axis, part.drag[m], force, by.by_v, by.by_slope, D)
-    law.put_added_derivatives(workspace.a, *axis, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
-    law.put_added_derivatives(water.acceleration[p], *axis, part.pushed[m], -force, by.by_u, by.by_slope, D)
+    law.write_drag_derivatives(workspace.through, *axis, part.drag[m], force, by.by_v, by.by_slope, D)
+    law.write_added_derivatives(workspace.a, *axis, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
+    law.write_added_derivatives(water.acceleration[p], *axis, part.pushed[m], -force, by.by_u, by.by_slope, D)
     for i in range(len(D)):
         whole = weights.inertia * workspace.inertia[i] + weights.force * workspace.force[i]
         for j in range(len(D)):
@@ -233,7 +233,7 @@ def _energy(part: MovingWaterData, at: Configuration, energy: Array) -> None:
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
             move(part, at, m, g, workspace)
-            law.put_added(workspace.v, workspace.tau, part.mass[m], workspace.f, at.D)
+            law.write_added(workspace.v, workspace.tau, part.mass[m], workspace.f, at.D)
             share = part.share[m, g] * wet(part, part.seen.end, m, g)
             for i in range(len(at.D)):
                 energy[0] += 0.5 * share * workspace.v[i] * workspace.f[i]
@@ -281,8 +281,8 @@ def _changed(part: MovingWaterData, m: int, before: float, after: float, D: Size
     first, workspace, total = part.first, part.workspace, 0.0
     for i in range(len(D)):
         workspace.through[i] = 0.5 * (first.v[i] + workspace.v[i])
-    law.put_added(workspace.through, first.tau, part.mass[m], first.f, D)
-    law.put_added(workspace.through, workspace.tau, part.mass[m], workspace.f, D)
+    law.write_added(workspace.through, first.tau, part.mass[m], first.f, D)
+    law.write_added(workspace.through, workspace.tau, part.mass[m], workspace.f, D)
     for i in range(len(D)):
         total += 0.5 * workspace.through[i] * (after * workspace.f[i] - before * first.f[i])
     return total

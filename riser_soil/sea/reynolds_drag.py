@@ -21,10 +21,10 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import Size
 from riser_soil.sea import through_kernels
 from riser_soil.sea.morison import Morison
-from riser_soil.sea.morison_law import put_drag_derivatives
+from riser_soil.sea.morison_law import write_drag_derivatives
 from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.moving_water_kernels import MovingWaterData
-from riser_soil.sea.through_kernels import put_derivatives, put_resistance
+from riser_soil.sea.through_kernels import write_derivatives, write_resistance
 
 Rows = Sequence[tuple[float, float]]
 
@@ -83,8 +83,8 @@ def _across(v: Array, tau: Array, n: Array, D: Size) -> tuple[float, float]:
     return math.sqrt(square), along
 
 
-@put_resistance.of(ReynoldsTables)
-def _put_resistance(
+@write_resistance.of(ReynoldsTables)
+def _write_resistance(
     tables: ReynoldsTables, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size
 ) -> None:
     speed, _ = _across(v, tau, f, D)
@@ -93,8 +93,8 @@ def _put_resistance(
         f[i] *= c * speed
 
 
-@put_derivatives.of(ReynoldsTables)
-def _put_derivatives(
+@write_derivatives.of(ReynoldsTables)
+def _write_derivatives(
     tables: ReynoldsTables,
     m: int,
     g: int,
@@ -110,7 +110,7 @@ def _put_derivatives(
     n, pair = np.empty(len(D)), np.zeros(2)
     speed, along = _across(v, tau, n, D)
     pair[0], change = coefficient(tables, m, speed)
-    put_drag_derivatives(v, tau, stretch, pair, weight, by_v, by_slope, D)
+    write_drag_derivatives(v, tau, stretch, pair, weight, by_v, by_slope, D)
     if change == 0.0:
         return
     for i in range(len(D)):

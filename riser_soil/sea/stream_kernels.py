@@ -12,7 +12,7 @@ from riser_soil.core.bound import Bound, Calls, Packed, call_each, calls
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import stations
 from riser_soil.riser.hermite import Size
-from riser_soil.sea.flows import SeaData, WaterMotion, motion_of, motion_workspace, put_in_plane
+from riser_soil.sea.flows import SeaData, WaterMotion, motion_of, motion_workspace, write_in_plane
 from riser_soil.sea.pipe import Pipe
 
 START, END = 0, 1
@@ -75,7 +75,7 @@ def _finding(sea: SeaData, motion: WaterMotion, t: Array, x: Array, basis: Array
     if basis.shape[1] == 3:
         return motion_of(sea, motion, t, x)
     found = motion_workspace(len(x), 3)
-    return [*motion_of(sea, found, t, x), Bound(put_in_plane, *map(Packed, (found, basis, motion)))]
+    return [*motion_of(sea, found, t, x), Bound(write_in_plane, *map(Packed, (found, basis, motion)))]
 
 
 def update(seen: SeenWater, start: float, end: float) -> None:

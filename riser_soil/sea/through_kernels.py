@@ -40,14 +40,14 @@ class ThroughData(NamedTuple):
 
 
 @by_type
-def put_resistance(law: tuple, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
+def write_resistance(law: tuple, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
     """Write the resistance f (d,) per length at station g of element m, where a step starts or ends; v: velocity
     through the water.
     """
 
 
 @by_type
-def put_derivatives(
+def write_derivatives(
     law: tuple,
     m: int,
     g: int,
@@ -70,7 +70,7 @@ def resist(
     stretch, p = move(part.flow, at, m, g, workspace), m * part.flow.share.shape[1] + g
     for i in range(len(at.D)):
         workspace.through[i] = workspace.v[i] - water.velocity[p, i]
-    put_resistance(part.law, side, m, g, workspace.through, workspace.tau, workspace.force, at.D)
+    write_resistance(part.law, side, m, g, workspace.through, workspace.tau, workspace.force, at.D)
     return stretch
 
 
@@ -120,7 +120,7 @@ def _differentiate(
     if flow.partly:
         steep = wet_slope(water.immersion[p], flow.span[m, g])
     share = weight * wet(flow, water, m, g)
-    put_derivatives(part.law, m, g, workspace.through, workspace.tau, stretch, share, by.by_v, by.by_slope, D)
+    write_derivatives(part.law, m, g, workspace.through, workspace.tau, stretch, share, by.by_v, by.by_slope, D)
     for i in range(len(D)):
         for j in range(len(D)):
             followed = weight * steep * workspace.force[i] * water.immersion_gradient[p, j]

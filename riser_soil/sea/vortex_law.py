@@ -93,7 +93,7 @@ def _speed(v: Array, tau: Array) -> float:
 
 
 @njit
-def put_resistance(v: Array, tau: Array, k: float, f: Array) -> None:
+def write_resistance(v: Array, tau: Array, k: float, f: Array) -> None:
     """Write the resistance f across the flow at one station, of velocity v through the water; k: half rho D Cv
     cos(phi). In line it is that of a drag.
     """
@@ -103,7 +103,7 @@ def put_resistance(v: Array, tau: Array, k: float, f: Array) -> None:
 
 
 @njit
-def put_derivatives(v: Array, tau: Array, stretch: float, k: float, by_v: Array, by_slope: Array) -> None:
+def write_derivatives(v: Array, tau: Array, stretch: float, k: float, by_v: Array, by_slope: Array) -> None:
     """Write its derivatives (3, 3) by v and by the slope x' of the axis, of size stretch."""
     across, speed, along = _cross(tau, v), _speed(v, tau), _dot(v, tau)
     bend = k / speed if speed > 0.0 else 0.0

@@ -21,12 +21,12 @@ from riser_soil.riser.part_kernels import keep
 from riser_soil.riser.stations import POINTS
 from riser_soil.sea import through_kernels
 from riser_soil.sea import vortex_law as law
-from riser_soil.sea.morison_law import put_drag, put_drag_derivatives
+from riser_soil.sea.morison_law import write_drag, write_drag_derivatives
 from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.moving_water_kernels import MovingWaterData
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import see_end, update
-from riser_soil.sea.through_kernels import END, put_derivatives, put_resistance, resist
+from riser_soil.sea.through_kernels import END, resist, write_derivatives, write_resistance
 
 
 class Push(NamedTuple):
@@ -101,17 +101,17 @@ def _new_wake(pipe: Pipe) -> law.Wake:
 through_kernels.with_kernels(VortexData)
 
 
-@put_resistance.of(Push)
-def _put_resistance(push: Push, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
+@write_resistance.of(Push)
+def _write_resistance(push: Push, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
     k = push.lift[m] * math.cos(push.phases[side, m, g])
     if push.in_line:
-        put_drag(v, tau, (k, 0.0), f, D)
+        write_drag(v, tau, (k, 0.0), f, D)
     else:
-        law.put_resistance(v, tau, k, f)
+        law.write_resistance(v, tau, k, f)
 
 
-@put_derivatives.of(Push)
-def _put_derivatives(
+@write_derivatives.of(Push)
+def _write_derivatives(
     push: Push,
     m: int,
     g: int,
@@ -125,9 +125,9 @@ def _put_derivatives(
 ) -> None:
     k = weight * push.lift[m] * math.cos(push.phases[END, m, g])
     if push.in_line:
-        put_drag_derivatives(v, tau, stretch, (k, 0.0), 1.0, by_v, by_slope, D)
+        write_drag_derivatives(v, tau, stretch, (k, 0.0), 1.0, by_v, by_slope, D)
     else:
-        law.put_derivatives(v, tau, stretch, k, by_v, by_slope)
+        law.write_derivatives(v, tau, stretch, k, by_v, by_slope)
 
 
 @njit

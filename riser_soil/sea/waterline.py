@@ -39,8 +39,8 @@ class WetElement(NamedTuple):
 
 
 class TangentWorkspace(NamedTuple):
-    """Workspace for the tangent of one element: see `put_slopes`, `put_by_q` and `put_by_dofs`; S but for its last rows
-    is zero.
+    """Workspace for the tangent of one element: see `write_slopes`, `write_by_q`, `write_by_dofs`; S but for its last
+    rows is zero.
     """
 
     by_height: Array
@@ -77,7 +77,7 @@ def submerged(at: WetElement) -> bool:
 
 
 @njit
-def put_dry_lengths(points: FinePoints, at: WetElement, out: Array) -> None:
+def write_dry_lengths(points: FinePoints, at: WetElement, out: Array) -> None:
     """Write the integrals of (1 - S) N_a over an element to out (4,)."""
     out[:] = 0.0
     if submerged(at):
@@ -101,9 +101,9 @@ def dry_potential(points: FinePoints, at: WetElement) -> float:
 
 
 @njit
-def put_slopes(points: FinePoints, at: WetElement, by_height: Array, by_surface: Array) -> None:
-    """Write the derivatives of `put_dry_lengths` by the element's heights (4, 4), and by the surface's at its stations
-    (4, ng).
+def write_slopes(points: FinePoints, at: WetElement, by_height: Array, by_surface: Array) -> None:
+    """Write the derivatives of `write_dry_lengths` by the element's heights (4, 4), and by the surface's at its
+    stations (4, ng).
     """
     by_height[:] = 0.0
     by_surface[:] = 0.0
@@ -122,7 +122,7 @@ def put_slopes(points: FinePoints, at: WetElement, by_height: Array, by_surface:
 
 
 @njit
-def put_by_q(by_height: Array, by_surface: Array, N: Array, gradient: Array, by_q: Array, D: Size) -> None:
+def write_by_q(by_height: Array, by_surface: Array, N: Array, gradient: Array, by_q: Array, D: Size) -> None:
     """Write the derivatives of an element's dry lengths by its q (4, 4, d): as the pipe moves, and as the surface above
     it changes. N (ng, 4) of its stations; gradient (ng, d) of their immersion.
     """
@@ -137,7 +137,7 @@ def put_by_q(by_height: Array, by_surface: Array, N: Array, gradient: Array, by_
 
 
 @njit
-def put_by_dofs(by_q: Array, P: Array, scale: float, S: Array, D: Size, R: Size) -> None:
+def write_by_dofs(by_q: Array, P: Array, scale: float, S: Array, D: Size, R: Size) -> None:
     """Write how loads along z on an element, with scaled derivatives by_q (4, 4, d), follow the dofs to the last rows
     of S (4, d, n).
     """
@@ -178,7 +178,7 @@ def add_element_tangent(
     """
     if submerged(at):
         return
-    put_slopes(points, at, workspace.by_height, workspace.by_surface)
-    put_by_q(workspace.by_height, workspace.by_surface, N, gradient, workspace.by_q, D)
-    put_by_dofs(workspace.by_q, P, weight, workspace.S, D, R)
+    write_slopes(points, at, workspace.by_height, workspace.by_surface)
+    write_by_q(workspace.by_height, workspace.by_surface, N, gradient, workspace.by_q, D)
+    write_by_dofs(workspace.by_q, P, weight, workspace.S, D, R)
     add_pulled_back(out, P, workspace.S, D, R)

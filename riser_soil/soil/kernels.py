@@ -182,7 +182,7 @@ def return_elements(
 
 
 @njit
-def put_largest_strains(before: Array, after: Array, cells: IntArray, out: Array) -> None:
+def write_largest_strains(before: Array, after: Array, cells: IntArray, out: Array) -> None:
     """Write the largest strain (nc,) of each cell, half of the change of squared lengths over these, of lines between
     two of its nodes at points (n, 3) before and after.
     """

@@ -70,20 +70,20 @@ def turn(tensors: Array, spin: Array) -> None:
         x, y, z = spin[n]
         if x == 0.0 and y == 0.0 and z == 0.0:
             continue
-        _put_turn(x, y, z, Q)
+        _write_turn(x, y, z, Q)
         t = tensors[n]
         S[0, 0], S[1, 1], S[2, 2] = t[0], t[1], t[2]
         S[0, 1] = S[1, 0] = SHEAR * t[3]
         S[0, 2] = S[2, 0] = SHEAR * t[4]
         S[1, 2] = S[2, 1] = SHEAR * t[5]
-        _put_product(Q, S, QS)
-        _put_product(QS, Q.T, S)
+        _write_product(Q, S, QS)
+        _write_product(QS, Q.T, S)
         t[0], t[1], t[2] = S[0, 0], S[1, 1], S[2, 2]
         t[3], t[4], t[5] = S[0, 1] / SHEAR, S[0, 2] / SHEAR, S[1, 2] / SHEAR
 
 
 @njit
-def _put_turn(x: float, y: float, z: float, Q: Array) -> None:
+def _write_turn(x: float, y: float, z: float, Q: Array) -> None:
     share = 1.0 / (1.0 + 0.25 * (x * x + y * y + z * z))
     Q[0, 0] = 1.0 - 0.5 * share * (y * y + z * z)
     Q[1, 1] = 1.0 - 0.5 * share * (x * x + z * z)
@@ -94,7 +94,7 @@ def _put_turn(x: float, y: float, z: float, Q: Array) -> None:
 
 
 @njit
-def _put_product(A: Array, B: Array, out: Array) -> None:
+def _write_product(A: Array, B: Array, out: Array) -> None:
     for i in range(3):
         for j in range(3):
             out[i, j] = A[i, 0] * B[0, j] + A[i, 1] * B[1, j] + A[i, 2] * B[2, j]

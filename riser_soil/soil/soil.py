@@ -161,7 +161,7 @@ class Soil:
     def worn(self) -> Array:
         """Largest strain (nc,) of each of this rank's cells since they were made."""
         strain = np.empty(len(self.cells.nodes))
-        kernels.put_largest_strains(self._mesh_at, self.points, self.cells.nodes, strain)
+        kernels.write_largest_strains(self._mesh_at, self.points, self.cells.nodes, strain)
         return strain
 
     def gathered_wear(self, worn: Array) -> Array:

@@ -16,7 +16,7 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
-from riser_soil.riser.configuration import Configuration, maps_for, put_maps
+from riser_soil.riser.configuration import Configuration, maps_for, write_maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import (
@@ -30,7 +30,7 @@ from riser_soil.riser.part_kernels import (
     collect,
     find_water,
     forces_of,
-    put_residual,
+    write_residual,
 )
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import BoundSections, viscous_residual
@@ -78,7 +78,7 @@ class CompiledMass:
         maps = Packed(maps_for(self._line)._replace(shift_a=1.0))
         self._find_matrices = in_turn(
             *(bound(find_water, data, here) for data in inertial if type(data) in find_water.kernels),
-            bound(put_maps, at, maps),
+            bound(write_maps, at, maps),
             Bound(loop.clear_tangent, K),
             *(bound(add_tangent, data, here, maps, weights, K) for data in inertial),
         )
@@ -133,7 +133,7 @@ class ElementForces:
         self._line = line
         self._damped = [part for part in parts if overrides(part, "viscous_forces")]
         self._at, self._residual = at, np.zeros((line.length.size, 2 * line.ndof))
-        self._put = Bound(put_residual, Packed(at), Packed(forces), Packed(self._residual))
+        self._put = Bound(write_residual, Packed(at), Packed(forces), Packed(self._residual))
         self._viscous = np.zeros_like(self._residual) if self._damped else None
         self._sections: dict[Elements, BoundSections] = {}
 

@@ -16,11 +16,11 @@ from riser_soil.riser.compiled_part import CompiledPart, LineTrials
 from riser_soil.riser.configuration import (
     maps_for,
     place,
-    put_folded,
-    put_magnitudes,
-    put_maps,
-    put_turning,
     workspace_for,
+    write_folded,
+    write_magnitudes,
+    write_maps,
+    write_turning,
 )
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
@@ -102,11 +102,11 @@ class PackedRiser:
 
         def bulk_tangent(maps: Packed) -> list[Bound]:
             return [
-                bound(put_maps, at, maps),
+                bound(write_maps, at, maps),
                 Bound(loop.clear_tangent, bulk),
                 *(bound(add_tangent, each, now, maps, weights, bulk) for each in others),
                 Bound(weigh, forces, weights, conjugate),
-                bound(put_turning, at, conjugate, turning),
+                bound(write_turning, at, conjugate, turning),
                 Bound(turn, now, turning, bulk),
             ]
 
@@ -115,9 +115,9 @@ class PackedRiser:
             return [Bound(loop.begin_with, bulk, K), *added, *border.tangent(now, K)] if contact else []
 
         held = Packed(maps.value)  # without shifts
-        put_sizes = bound(put_magnitudes, at, Packed(self.dofs.sizes))
+        write_sizes = bound(write_magnitudes, at, Packed(self.dofs.sizes))
         judged = Bound(loop.judge_round_off, workspace, dofs, progress)
-        probe = [*bulk_tangent(held), *contact_tangent(held), put_sizes, judged]
+        probe = [*bulk_tangent(held), *contact_tangent(held), write_sizes, judged]
         factors = [Bound(loop.fill, workspace, dofs), border.factorise(workspace, dofs, progress)]
         renew = [*bulk_tangent(maps), *contact_tangent(maps), *factors]
         touch = [*contact_tangent(maps), *factors] if contact else []
@@ -125,8 +125,8 @@ class PackedRiser:
         tables = (Packed(calls(*kernels)) for kernels in each)
         self._folded = np.zeros(2, dtype=np.int64)
         solve = Bound(loop.solve_step, *tables, limits, progress)
-        self._solve = in_turn(solve, bound(put_folded, at, self._placed.base, Packed(self._folded)))
-        self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*renew[:-1], put_sizes)
+        self._solve = in_turn(solve, bound(write_folded, at, self._placed.base, Packed(self._folded)))
+        self.evaluate, self.write_tangent = in_turn(*evaluate), in_turn(*renew[:-1], write_sizes)
         self.renew_contact = in_turn(*touch)
         self.keep = in_turn(*(bound(keep, each, now) for each in data if type(each) in keep.kernels))
 

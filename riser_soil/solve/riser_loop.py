@@ -140,12 +140,12 @@ def follow(step: StepData, maps: Maps, dofs: Dofs) -> None:
     """Write the rates that follow the increments."""
     n = step.u.size
     u, fixed = step.u.reshape(n), dofs.fixed.reshape(n)
-    put_rates(u, fixed, step.v0.reshape(n), maps.shift_v, step.v.reshape(n))
-    put_rates(u, fixed, step.a0.reshape(n), maps.shift_a, step.a.reshape(n))
+    write_rates(u, fixed, step.v0.reshape(n), maps.shift_v, step.v.reshape(n))
+    write_rates(u, fixed, step.a0.reshape(n), maps.shift_a, step.a.reshape(n))
 
 
 @njit
-def put_rates(u: Array, fixed: BoolArray, start: Array, shift: float, out: Array) -> None:
+def write_rates(u: Array, fixed: BoolArray, start: Array, shift: float, out: Array) -> None:
     """Write rates (n,) that follow the increments u by a shift, but for those of fixed dofs; start: without increments.
     """
     for k in range(u.size):
@@ -158,13 +158,13 @@ def combine(forces: LineForces, step: StepData, weights: LineWeights, dofs: Dofs
     n = dofs.residual.size
     groups = forces.inertia.reshape(n), forces.force.reshape(n), forces.end.reshape(n)
     residual, fixed = dofs.residual.reshape(n), dofs.fixed.reshape(n)
-    put_balance(groups, weights.inertia, weights.force, step.past.reshape(n), residual)
+    write_balance(groups, weights.inertia, weights.force, step.past.reshape(n), residual)
     for k in range(n):
         residual[k] = 0.0 if fixed[k] else residual[k]
 
 
 @njit
-def put_balance(
+def write_balance(
     groups: tuple[Array, Array, Array], inertia: float, force: float, past: Array, out: Array
 ) -> None:
     """Write the residual (n,) of forces by group, see `Forces`, two of them weighted, with the share of the past."""

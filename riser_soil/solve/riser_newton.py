@@ -123,12 +123,12 @@ class RiserNewton(StepSolver):
 
     def _bound_results(self, contact: RiserContact) -> tuple[Bound, Array]:
         """A contact's results where the loop has left the line: what writes them, and where to."""
-        from riser_soil.contact.contact import ContactResults, put_results, size_of
+        from riser_soil.contact.contact import ContactResults, size_of, write_results
 
         data = next(data for part, data in self._parts.with_data if part is contact)
         sizes = self._line.nodes, contact.along.arc.size
         out = np.empty(size_of(*sizes))
-        return bound(put_results, data, Packed(self._riser.at), Packed(ContactResults.within(out, *sizes))), out
+        return bound(write_results, data, Packed(self._riser.at), Packed(ContactResults.within(out, *sizes))), out
 
     def _has_solved(self, state: State) -> bool:
         """Whether a state is that of the step solved last, whose forces the loop has left and nothing has changed."""

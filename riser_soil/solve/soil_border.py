@@ -34,7 +34,7 @@ from riser_soil.contact.surface_loop import (
     add_touch,
     add_touch_tangent,
     move_top,
-    put_touch_work,
+    write_touch_work,
 )
 from riser_soil.core import banded, dense
 from riser_soil.core.arrays import Array, IntArray
@@ -220,7 +220,7 @@ class SoilBorder(LoopBorder):
 
     def account(self, then: Packed, now: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
-        return [Bound(put_touch_work, self._data, self._motion, then, self._workspace, Packed(self._taken))]
+        return [Bound(write_touch_work, self._data, self._motion, then, self._workspace, Packed(self._taken))]
 
     def begin(self, before: State, guess: Array) -> None:
         """Begin a step with a first guess (size,) of all local increments."""

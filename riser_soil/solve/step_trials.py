@@ -11,7 +11,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import Limited
 from riser_soil.core.system import System
-from riser_soil.solve.riser_loop import put_balance, put_rates
+from riser_soil.solve.riser_loop import write_balance, write_rates
 from riser_soil.solve.solver import NotConvergedError, Step
 from riser_soil.solve.time_scheme import Scheme
 
@@ -46,8 +46,8 @@ class StepTrials:
     def _follow(self, u: Array) -> State:
         """State of the increments u: rates follow them by the scheme's shifts, but for the prescribed ones."""
         fixed, v, a, shifts = self._system.prescribed, np.empty_like(u), np.empty_like(u), self.weights
-        put_rates(u, fixed, np.where(fixed, self._prescribed.v, self._still.v), shifts.shift_v, v)
-        put_rates(u, fixed, np.where(fixed, self._prescribed.a, self._still.a), shifts.shift_a, a)
+        write_rates(u, fixed, np.where(fixed, self._prescribed.v, self._still.v), shifts.shift_v, v)
+        write_rates(u, fixed, np.where(fixed, self._prescribed.a, self._still.a), shifts.shift_a, a)
         return State(self.step.t, u, v, a, dt=self._still.dt)
 
     def with_prescribed(self, u: Array) -> Array:
@@ -98,5 +98,5 @@ def balance_of(scheme: Scheme, weights: Weights, forces: Forces, past: Array) ->
     `Scheme.past`.
     """
     out = np.empty_like(past)
-    put_balance((forces.inertia, forces.force, forces.end), weights.inertia, weights.force, past, out)
+    write_balance((forces.inertia, forces.force, forces.end), weights.inertia, weights.force, past, out)
     return out if scheme.moves == 1.0 else scheme.moves * out

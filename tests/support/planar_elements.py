@@ -27,7 +27,7 @@ def forces(
     """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
     f = np.empty((len(chord), 6))
     for e in range(len(chord)):
-        beam2d.put_element_forces(e, beam2d.corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e])
+        beam2d.write_element_forces(e, beam2d.corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e])
     return f
 
 
@@ -38,7 +38,7 @@ def forces_and_tangent(
     """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
     f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))
     for e in range(len(chord)):
-        beam2d.put_element(e, beam2d.corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e], K[e])
+        beam2d.write_element(e, beam2d.corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e], K[e])
     return f, K
 
 

@@ -65,7 +65,7 @@ class Compiled:
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
         self.riser.begin(State(state.t, state.u, v, a), None, WEIGHTS, StopLimits(0.0, 0.0, 0.0, 1, 0, False))
         self.riser.evaluate()
-        self.riser.put_tangent()
+        self.riser.write_tangent()
 
     def dense(self) -> Array:
         """The matrix (n, n) that was written to the band."""

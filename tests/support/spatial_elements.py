@@ -47,7 +47,7 @@ def forces(
     """
     f = np.empty((len(chord), 12))
     for e in range(len(chord)):
-        beam3d.put_element_forces(e, chord, frame1, frame2, ref, section, load, f[e])
+        beam3d.write_element_forces(e, chord, frame1, frame2, ref, section, load, f[e])
     return f
 
 
@@ -63,7 +63,7 @@ def forces_and_tangent(
     """Forces f (ne, 12) as in `forces`, and their derivative K (ne, 12, 12) by displacements and spatial spins."""
     f, K, workspace = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12)), beam3d.tangent_workspace()
     for e in range(len(chord)):
-        beam3d.put_element(e, chord, frame1, frame2, ref, section, load, workspace, f[e], K[e])
+        beam3d.write_element(e, chord, frame1, frame2, ref, section, load, workspace, f[e], K[e])
     return f, K
 
 

@@ -310,7 +310,7 @@ LEFT_OUT = {
 
 def interpret(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs the tangent's own functions uncompiled, so that they see substitutes."""
-    for name in ("move", "strain_of", "forces_change", "_vary", "_put_change", "_tangent", "put_element"):
+    for name in ("move", "strain_of", "forces_change", "_vary", "_write_change", "_tangent", "write_element"):
         monkeypatch.setattr(beam3d, name, getattr(beam3d, name).py_func)
 
 
@@ -342,7 +342,7 @@ def test_geometric_term_of_rotation_vectors_matters(monkeypatch: pytest.MonkeyPa
 def test_geometric_term_of_the_plane_matters(monkeypatch: pytest.MonkeyPatch) -> None:
     elements = plane(0.0, 0.6)
     _, K = elements.call(planar_elements.forces_and_tangent)
-    for name in ("_vary", "_tangent", "put_element"):
+    for name in ("_vary", "_tangent", "write_element"):
         monkeypatch.setattr(beam2d, name, getattr(beam2d, name).py_func)
     monkeypatch.setattr(beam2d, "configuration_variation", lambda *_: (0.0, 0.0))
     _, incomplete = elements.call(planar_elements.forces_and_tangent.py_func)

@@ -171,7 +171,7 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
 
     free = np.append(~dofs.fixed.ravel(), np.ones(len(border.u), dtype=bool))
     residual(x0)
-    riser.put_tangent()
+    riser.write_tangent()
     workspace, matrix = riser.workspace, np.zeros((len(x0), len(x0)))
     for i in range(n):
         for j in range(max(0, i - len(workspace.band)), min(n, i + len(workspace.band) + 1)):

@@ -18,10 +18,10 @@ from riser_soil.core.rows import (
     as_tuple,
     combined,
     numbers_at,
-    put_blocks,
-    put_weighed,
     times,
     two_polynomials,
+    write_blocks,
+    write_weighed,
 )
 
 
@@ -110,13 +110,13 @@ def _weighed(S: Array, weights: Array, terms: Any, D: Size, R: Size) -> None:
 
 
 @njit
-def _put_weighed(S: Array, stations: Any, D: Size, R: Size) -> None:
-    put_weighed(S, stations, D, R)
+def _write_weighed(S: Array, stations: Any, D: Size, R: Size) -> None:
+    write_weighed(S, stations, D, R)
 
 
 @njit
 def _blocks(S: Array, M: Array, factor: float, rows: Array, D: Size, R: Size) -> None:
-    put_blocks(S, M, factor, rows, D, R)
+    write_blocks(S, M, factor, rows, D, R)
 
 
 @njit
@@ -155,8 +155,8 @@ def test_rows_of_three_stations_are_written_at_once(d: int, r: int) -> None:
     expected, found, interpreted = np.zeros((4, d, n)), np.full((4, d, n), np.nan), np.full((4, d, n), np.nan)
     for weights, terms in stations:
         _weighed(expected, weights, terms, fixed(d), fixed(r))
-    put_weighed(interpreted, stations, fixed(d), fixed(r))
-    _put_weighed(found, stations, fixed(d), fixed(r))
+    write_weighed(interpreted, stations, fixed(d), fixed(r))
+    _write_weighed(found, stations, fixed(d), fixed(r))
     np.testing.assert_allclose(found, expected, rtol=1e-12)
     np.testing.assert_allclose(interpreted, expected, rtol=1e-12)
 
@@ -169,7 +169,7 @@ def test_blocks_of_rows_are_written_by_the_rows_of_a_matrix(d: int, r: int) -> N
         block = 2 * (c // (d + r)) + (c % (d + r) >= d)
         expected[:, :, c] = 2.5 * np.outer(M[:, block], rows[:, c])
     found, interpreted = np.empty_like(expected), np.empty_like(expected)
-    put_blocks(interpreted, M, 2.5, rows, fixed(d), fixed(r))
+    write_blocks(interpreted, M, 2.5, rows, fixed(d), fixed(r))
     _blocks(found, M, 2.5, rows, fixed(d), fixed(r))
     np.testing.assert_allclose(found, expected, rtol=1e-13)
     np.testing.assert_allclose(interpreted, expected, rtol=1e-13)
