@@ -182,15 +182,15 @@ class CoulombFriction(CompiledPart):
 
     def slip(self) -> Array:
         """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
-        put, slip = self._put_slip
+        put, slip = self._write_slip
         put()
         return slip.copy()
 
     @cached_property
-    def _put_slip(self) -> tuple[Bound, Array]:
+    def _write_slip(self) -> tuple[Bound, Array]:
         """What writes the slip at the nodes, and where to."""
         slip = np.empty(self.line.nodes)
-        return self.contact.put_at_nodes(self._slid, slip), slip
+        return self.contact.write_at_nodes(self._slid, slip), slip
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the friction on the riser (3,) [N], global axes."""

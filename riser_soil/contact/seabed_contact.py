@@ -10,7 +10,15 @@ import numpy as np
 
 from riser_soil.contact.contact import ContactResults, RiserContact, size_of, write_results
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.seabed_kernels import UNKNOWN, OverNodes, SeabedData, covered_by, land, put_at_nodes, seabed_data
+from riser_soil.contact.seabed_kernels import (
+    UNKNOWN,
+    OverNodes,
+    SeabedData,
+    covered_by,
+    land,
+    seabed_data,
+    write_at_nodes,
+)
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound, Packed
@@ -119,9 +127,9 @@ class SeabedContact(CompiledPart, RiserContact):
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
         return self._results(state).force_per_length
 
-    def put_at_nodes(self, values: Array, out: Array) -> Bound:
+    def write_at_nodes(self, values: Array, out: Array) -> Bound:
         """What writes means at the nodes (nn,) of values at the stations (ne, ng), by their share of arc length."""
-        return Bound(put_at_nodes, *map(Packed, (self._nodes, self.share, values, out)))
+        return Bound(write_at_nodes, *map(Packed, (self._nodes, self.share, values, out)))
 
     def penetration(self, state: State) -> Array:
         """Penetration (nn,) [m] of the nodes' undersides, 0 above the ground."""

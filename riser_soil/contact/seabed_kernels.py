@@ -339,7 +339,7 @@ def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -
 
 
 @njit
-def put_at_nodes(nodes: OverNodes, share: Array, values: Array, out: Array) -> None:
+def write_at_nodes(nodes: OverNodes, share: Array, values: Array, out: Array) -> None:
     """Write means at the nodes (nn,) of values at the stations (ne, ng), which count with their share (ne, ng) of arc
     length.
     """
