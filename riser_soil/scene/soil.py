@@ -174,8 +174,9 @@ class SoilScene(BaseModel):
         default=None, description="the box of soil to mesh, or auto: around the touchdown points; not with mesh.file"
     )
     mesh: Mesh = Field(
+        default="auto",
         description="{kind, size_at_riser, size_far} for a block, auto: sizes that resolve what touches, or "
-        "{file: mesh.msh}"
+        "{file: mesh.msh}",
     )
     law: Annotated[SoilLaw, LAW] | None = Field(
         default=None, description=f"constitutive law: {LAW.words}, with its constants; layers instead give several"
@@ -219,8 +220,9 @@ class SoilScene(BaseModel):
     @model_validator(mode="after")
     def _features_of_tetrahedra(self) -> Self:
         feature = self.given_block.feature if self.given_block else None
-        if feature is not None and isinstance(self.mesh, GeneratedMesh) and self.mesh.kind != "tet":
-            raise wrong("mesh", "a trench or a groove is meshed in tetrahedra", "write kind: tet")
+        if feature is not None and not self._tetrahedral:
+            remedy = "give mesh: {kind: tet, size_at_riser, size_far}"
+            raise wrong("mesh", "a trench or a groove is meshed in tetrahedra", remedy)
         return self
 
     @model_validator(mode="after")

@@ -75,6 +75,20 @@ def test_cells_follow_from_what_touches_and_from_what_bends(su: float, cells: fl
     assert bending_on_soil(elements, SOFT) == pytest.approx((4.0 * 5.0e4 / 1.2e6) ** 0.25)
 
 
+def test_soil_without_a_mesh_has_automatic_cells() -> None:
+    scene = touchdown(LAY)
+    scene["soil"].pop("mesh")
+    scene["contact"] = {"method": "surface"}
+    found, asked = (scene_from_mapping(scene | {"soil": scene["soil"] | more}) for more in ({}, {"mesh": "auto"}))
+    assert sized(found) == sized(asked)
+
+
+def test_a_trench_needs_sizes_of_tetrahedra() -> None:
+    trench = {"depth": 0.5, "width": 1.0, "along": [12.0, 28.0]}
+    with pytest.raises(SceneError, match=r"soil\.mesh: .* is meshed in tetrahedra; give mesh: \{kind: tet"):
+        automatic(LAY, soil__block={"x": [10.0, 30.0], "y": [-2.0, 2.0], "depth": 1.5, "trench": trench})
+
+
 def test_the_block_lies_around_the_touchdown_points() -> None:
     """Of the catenary at rest: a parabola nearly, x_end - x_0 = (H/w) arcosh(1 + w z/H)."""
     scene = automatic(LAY)
