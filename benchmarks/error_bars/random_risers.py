@@ -25,7 +25,7 @@ EACH = 8  # risers on each ground, in the calibration and out of it
 def random_riser(seed: int, ground: str, number: int) -> Mapping:
     """A scene on a ground of `GROUNDS`; of odd number it moves."""
     draw = Draw(f"{seed} {ground} {number}")
-    pipe = _pipe(draw)
+    pipe = some_pipe(draw)
     depth = _depth(draw, pipe)
     if ground == "hanging":
         hung, more = _hung(draw, depth), dict[str, Any]()
@@ -38,9 +38,13 @@ def random_riser(seed: int, ground: str, number: int) -> Mapping:
 
 def _depth(draw: Draw, pipe: Mapping) -> float:
     """So much that weight bends the pipe: times the length (EI/w)^(1/3) over which it resists that."""
-    sinks = G * (pipe["mass"] - 0.25 * math.pi * SEA * pipe["outer_diameter"] ** 2)
-    stiff = (pipe["EI"] / sinks) ** (1.0 / 3.0)
+    stiff = (pipe["EI"] / submerged_weight(pipe)) ** (1.0 / 3.0)
     return figures(min(max(stiff * spread(draw, 6.0, 80.0), 12.0), 2000.0))
+
+
+def submerged_weight(pipe: Mapping) -> float:
+    """In sea water [N/m]."""
+    return float(G * (pipe["mass"] - 0.25 * math.pi * SEA * pipe["outer_diameter"] ** 2))
 
 
 def spread(draw: Draw, low: float, high: float) -> float:
@@ -48,7 +52,7 @@ def spread(draw: Draw, low: float, high: float) -> float:
     return float(f"{low * (high / low) ** draw.random():.3g}")
 
 
-def _pipe(draw: Draw) -> Mapping:
+def some_pipe(draw: Draw) -> Mapping:
     made = draw.choice([_steel, _flexible])(draw)
     drag = {"normal": spread(draw, 0.7, 1.3), "tangential": draw.choice([0.0, 0.05])}
     return made | {"drag": drag, "added_mass": {"normal": 1.0}}
