@@ -1,26 +1,26 @@
 """Calibrate error bars: compute all scenes with comparison runs, and write the page docs/error_bars.md.
 
-Run from the project's folder. `--references` computes the references anew first, which takes about an hour.
+Run from the project's folder. `--references` computes the references anew first, in about two hours; `--missing`
+computes those that are not there, as after a stop; `--on-soil` takes the random scenes on soil alone, and writes their
+block of the page.
 """
 
 import argparse
+from collections.abc import Iterable, Mapping
 
-from benchmarks.error_bars import references
+from benchmarks.error_bars import random_soils, references
 from benchmarks.error_bars.calibration import JudgedScene, decided, judge
-from benchmarks.error_bars.page import publish
+from benchmarks.error_bars.page import publish, publish_on_soil
 from benchmarks.error_bars.random_risers import CALIBRATION, OUT_OF_SAMPLE
-from benchmarks.error_bars.scenes import Mapping
+from benchmarks.error_bars.scenes import Mapping as SceneMapping
+from benchmarks.error_bars.soil_page import soil_block
 from riser_soil.errors import SolveError
 
-parser = argparse.ArgumentParser(prog="python -m benchmarks.error_bars", description=__doc__)
-parser.add_argument("--references", nargs="*", metavar="SCENE", help="compute references anew: of these, else of all")
-asked = parser.parse_args().references
-if asked is not None:
-    references.write(asked or [*CALIBRATION, *OUT_OF_SAMPLE], CALIBRATION | OUT_OF_SAMPLE)
-known = references.read()
+ALL, SOILS = CALIBRATION | OUT_OF_SAMPLE, random_soils.SOILS
+Known = Mapping[str, references.Reference]
 
 
-def judged(scenes: dict[str, Mapping]) -> list[JudgedScene]:
+def judged(scenes: Mapping[str, SceneMapping], known: Known) -> list[JudgedScene]:
     """Those that can be computed."""
     found = []
     for name, scene in scenes.items():
@@ -34,4 +34,29 @@ def judged(scenes: dict[str, Mapping]) -> list[JudgedScene]:
     return found
 
 
-publish(judged(CALIBRATION), judged(OUT_OF_SAMPLE))
+def write_references(asked: Iterable[str], missing: bool = False) -> None:
+    """Of these, else of all or of those that are not there; those on soil have a file of their own."""
+    names = list(asked)
+    for scenes, file in ((ALL, references.FILE), (SOILS, references.ON_SOIL)):
+        there = references.read(file) if missing and file.exists() else {}
+        wanted = [name for name in scenes if name in names or not names]
+        references.write([name for name in wanted if name not in there], scenes, file)
+
+
+def on_soil() -> str:
+    known = references.read(references.ON_SOIL)
+    return soil_block(judged(random_soils.CALIBRATION, known), judged(random_soils.OUT_OF_SAMPLE, known), known)
+
+
+parser = argparse.ArgumentParser(prog="python -m benchmarks.error_bars", description=__doc__)
+parser.add_argument("--references", nargs="*", metavar="SCENE", help="compute references anew: of these, else of all")
+parser.add_argument("--missing", action="store_true", help="compute the references that are not there")
+parser.add_argument("--on-soil", action="store_true", help="the random scenes on soil alone")
+given = parser.parse_args()
+if given.references is not None or given.missing:
+    write_references(given.references or [], given.missing)
+if given.on_soil:
+    publish_on_soil(on_soil())
+else:
+    of_all = references.read()
+    publish(judged(CALIBRATION, of_all), judged(OUT_OF_SAMPLE, of_all), on_soil())

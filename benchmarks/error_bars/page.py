@@ -21,7 +21,8 @@ from benchmarks.error_bars.calibration import (
 )
 from benchmarks.error_bars.random_risers import CALIBRATION, GROUNDS, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import SCENES
-from demos.page import csv_table, table
+from benchmarks.error_bars.soil_page import ON_SOIL
+from demos.page import csv_table, filled, table
 from riser_soil import __version__
 from riser_soil.accuracy.error_bars import LARGE, ON_PATH, SAFETY, SMALLEST
 
@@ -90,6 +91,12 @@ leaves out those whose reference is not certain to {certain:.0%} of bar or error
 {figures}
 <!-- end of {figures_block} -->
 
+[Random scenes on soil](../benchmarks/error_bars/random_soils.py):
+
+<!-- {soil_block} -->
+{on_soil}
+<!-- end of {soil_block} -->
+
 With all factors of safety smaller or larger:
 
 {factors_tried}
@@ -119,8 +126,10 @@ Scene by scene in the calibration: [error_bars_scenes.csv](error_bars_scenes.csv
 Kind = Callable[[Judged], str]
 
 
-def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
+def page(calibration: list[JudgedScene], out: list[JudgedScene], on_soil: str) -> str:
     return TEXT.format(
+        soil_block=ON_SOIL,
+        on_soil=on_soil,
         version=__version__,
         date=datetime.date.today().isoformat(),
         python=platform.python_version(),
@@ -143,9 +152,14 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene]) -> str:
     )
 
 
-def publish(calibration: list[JudgedScene], out: list[JudgedScene]) -> None:
+def publish_on_soil(block: str) -> None:
+    """Write the page's block on soil alone."""
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), {ON_SOIL: block}), encoding="utf-8")
+
+
+def publish(calibration: list[JudgedScene], out: list[JudgedScene], on_soil: str) -> None:
     """Write the page, and beside it the calibration scene by scene, and all bars that were missed."""
-    PAGE.write_text(page(calibration, out), encoding="utf-8")
+    PAGE.write_text(page(calibration, out, on_soil), encoding="utf-8")
     head = ["scene", "inside", "bar over true error, median", "coarser runs over scene"]
     EVERY_SCENE.write_text(csv_table(head, map(_row, calibration)), encoding="utf-8")
     EVERY_MISSED.write_text(csv_table(MISSED, _missed([*out, *calibration])), encoding="utf-8")

@@ -90,10 +90,10 @@ def _cells(draw: Draw, D: float, bears: float, depth: float, dear: bool) -> Any:
 
 def _heave(draw: Draw) -> Mapping:
     """A period of the upper end."""
-    period, steps = spread(draw, 6.0, 14.0), round(spread(draw, 24.0, 40.0))
+    period, steps = spread(draw, 6.0, 14.0), round(spread(draw, 30.0, 50.0))
     size = figures(spread(draw, 0.05, 0.5) * period / (2.0 * math.pi))  # by its largest velocity [m/s]
-    heave = {"amplitude": [0.0, 0.0, size], "period": period, "ramp": figures(0.25 * period)}
-    motion: Mapping = {"name": "heave", "kind": "dynamic", "duration": period, "time_step": figures(period / steps)}
+    heave = {"amplitude": [0.0, 0.0, size], "period": period, "ramp": 0.5 * period}
+    motion: Mapping = {"name": "heave", "kind": "dynamic", "duration": period, "time_step": period / steps}
     return motion | {"motion": {"end": {"harmonic": heave}}}
 
 

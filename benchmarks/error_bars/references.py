@@ -6,8 +6,9 @@ The static stages that a scene begins with are computed alone, with 16 and 64 ti
 The penalty of a rigid floor grows by the fourth power of the elements: the length in which a riser sinks in beside an
 end, (4 EI/k)^(1/4), falls with their length.
 
-On soil cells are half and a quarter of the size, of a block or under a motion two thirds and a third; along the riser,
-where they matter less, not quite that short. Load steps are two and four times as many.
+On soil cells are half and a quarter of the size, under a riser a third and a sixth, as the clay may yield on fine ones
+alone, or where that is dear two thirds and a third; along the riser, where they matter less, not quite that short. Load
+steps are two and four times as many.
 
 `references.json` has them: by scene and key result the value of the finer run, and its uncertainty by how far
 the two are apart: a third of it, as that is left of a first-order error on elements of a quarter of the length; all of
@@ -27,6 +28,7 @@ from riser_soil.accuracy.chain import peaks_of, values_of
 from riser_soil.accuracy.error_bars import Values
 from riser_soil.accuracy.search import first_statics
 from riser_soil.accuracy.settings import settings_of, varied
+from riser_soil.assembly import build, sized
 from riser_soil.errors import MemoryShortageError, MeshError, SolveError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
@@ -41,10 +43,12 @@ SOIL: list[Level] = [
     {"elements": 2, "penalty": 6, "soil_mesh": 2, "along": 2**0.5, "load_steps": 2 * LAID_IN},
     {"elements": 4, "penalty": 32, "soil_mesh": 4, "along": 2, "load_steps": 4 * LAID_IN},
 ]
+LAID: list[Level] = [SOIL[0] | {"soil_mesh": 3}, SOIL[1] | {"soil_mesh": 6}]
 DEAR: list[Level] = [
     {"elements": 2, "penalty": 4, "soil_mesh": 1.5, "along": 1.25, "load_steps": 1.5 * LAID_IN, "time_step": 1.5},
     {"elements": 3, "penalty": 16, "soil_mesh": 3, "along": 1.5, "load_steps": 3 * LAID_IN, "time_step": 2},
 ]
+CHEAP = 3000  # unknowns of clay that a riser is laid on; three times that of elastic soil
 PRESSED = 4  # times as many load steps of a pipe that is pressed in
 STATIC: list[Level] = [{"elements": n} for n in (16, 64)]
 RIGID: list[Level] = [{"elements": n, "penalty": n**4} for n in (8, 32)]
@@ -76,9 +80,8 @@ def reference(mapping: Mapping) -> Reference:
     """Value and uncertainty of each key result."""
     scene = scene_from_mapping(mapping)
     if scene.soil is not None:
-        moves = any(isinstance(stage, DynamicStage) for stage in scene.stages)
-        dear = moves or (scene.soil.model == "block" and _is_laid(scene))
-        return _of_two(scene, DEAR if dear else SOIL, LEFT_ON_SOIL)
+        levels = DEAR if _is_dear(scene) else LAID if _is_laid(scene) else SOIL
+        return _of_two(scene, levels, LEFT_ON_SOIL)
     statics, found = first_statics(scene), dict[str, tuple[float, float]]()
     if len(statics) < len(scene.stages):
         found = _of_two(scene, DYNAMIC)
@@ -91,6 +94,18 @@ def reference(mapping: Mapping) -> Reference:
 def _of_two(scene: Scene, levels: list[Level], left: float = LEFT) -> Reference:
     half_way, fine = (_values(scene, level) for level in levels)
     return {key: (fine[key], left * abs(fine[key] - half_way[key])) for key in fine if key in half_way}
+
+
+def _is_dear(scene: Scene) -> bool:
+    """Whether finer cells cost too much: in blocks that yield or that a riser is laid on, in motion, and of many
+    unknowns.
+    """
+    yields, moves = scene.has_path_dependent_soil, any(isinstance(stage, DynamicStage) for stage in scene.stages)
+    soil = build(sized(scene), MPI.COMM_WORLD).soil
+    assert scene.soil is not None
+    assert soil is not None
+    in_block = scene.soil.model == "block" and (yields or _is_laid(scene))
+    return moves or in_block or soil.field.size > (CHEAP if yields else 3 * CHEAP)
 
 
 def _is_laid(scene: Scene) -> bool:

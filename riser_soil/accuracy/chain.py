@@ -3,7 +3,7 @@
 On a rigid floor the penalty goes with the elements: 16 times as stiff with elements half as long, so that both halve
 the length in which a riser sinks in beside an end, (4 EI/k)^(1/4). On soil its cells come first, then all else is
 coarser: contact grows cell by cell there, and finer ones would cost more than the run. Cells a little coarser tell by
-how much contact jumps, coarse ones whether two that agree do so by chance.
+how much contact jumps. The penalty goes with the elements there, too: its share is a hundredth of the cells'.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from typing import Any, NamedTuple
 
 from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, alone, error_bars, extremes_of
-from riser_soil.accuracy.key_results import KeyResult, key_results
+from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
+from riser_soil.checks.settlement import beyond_cells
 from riser_soil.core.snapshot import Instant, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
@@ -41,14 +42,9 @@ class Variation(NamedTuple):
     factors: Mapping[str, float]
 
 
-ON_SOIL = (
-    Variation("soil", {"soil_mesh": 0.5**0.5}),
-    Variation("soil", {"soil_mesh": 0.5}),
-    Variation("time", {"time_step": 0.2}),
-    Variation("mesh", {"elements": 0.5}),
-    Variation("penalty", {"penalty": 0.25}),
-)
+COARSER_SOIL = Variation("soil", {"soil_mesh": 0.6})
 FINER_MESH = Variation("mesh", {"elements": 2.0, "penalty": 16.0})
+COARSER_MESH = Variation("mesh", {"elements": 0.5, "penalty": 0.25})
 # Steps that a comparison run leaves to the shortest period, as the mesh tells little on longer ones; how many times as
 # long they are at least, at most, and where nothing has a period.
 STEPS_LEFT, LONGER, LONGEST, USUAL = 20.0, 2.0, 4.0, 3.0
@@ -76,9 +72,8 @@ def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None
 
 def variations(scene: Scene) -> Sequence[Variation]:
     """For error bars of a run, as cheap as they can be."""
-    if scene.soil is not None:
-        return ON_SOIL
-    return Variation("time", {"time_step": 1.0 / _longer(scene)}), FINER_MESH
+    longer = Variation("time", {"time_step": 1.0 / _longer(scene)})
+    return (longer, FINER_MESH) if scene.soil is None else (COARSER_SOIL, longer, COARSER_MESH)
 
 
 def _longer(scene: Scene) -> float:
@@ -95,7 +90,13 @@ def _longer(scene: Scene) -> float:
 def bars_of(scene: Scene, run: RunValues, chain: Sequence[ComparisonRun]) -> list[ErrorBar]:
     """The error bars of a run of the scene with its comparison runs."""
     rigid = scene.soil is None and isinstance(scene.seabed, RigidSeabed)
-    return error_bars(run, chain, rigid, scene.has_path_dependent_soil)
+    return error_bars(run, chain, rigid, scene.has_path_dependent_soil, _foretold(scene, run))
+
+
+def _foretold(scene: Scene, run: RunValues) -> float | None:
+    """The settlement [m] that is foretold beyond the cells of a run that reports one."""
+    settles = any(each.name == SETTLEMENT for each in run.reported.values())
+    return beyond_cells(sized(scene)) if settles else None
 
 
 def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:

@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import KeyResult, key_results
+from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.core.arrays import Array
 from riser_soil.results.peaks import RunPeaks
 
@@ -45,6 +45,7 @@ ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
 CONTACT_FORCE, OF_CONTACT_FORCE = "largest contact force", {"mesh": 1.0, "penalty": 0.25}
 SAFETY = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}
 ON_PATH = {"soil": 1.4}  # where the soil's law depends on its path: its errors jump more, as cells yield one by one
+FORETOLD = 1.25  # of what a settlement is foretold to be more
 LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
 
 Values = Mapping[str, float]  # of key results by their keys, in their units
@@ -89,10 +90,25 @@ class ErrorBar:
     order: Mapping[str, float] = field(default_factory=lambda: ORDER)
 
 
-def error_bars(run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, path_dependent: bool) -> list[ErrorBar]:
-    """Of all key results. rigid: whether the ground is a rigid floor. path_dependent: whether its soil is."""
-    safety = SAFETY | (ON_PATH if path_dependent else {})
-    return [_bar(reported, run, chain, orders(reported.name, rigid), safety) for reported in run.reported.values()]
+def error_bars(
+    run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, path_dependent: bool, foretold: float | None = None
+) -> list[ErrorBar]:
+    """Of all key results. rigid: whether the ground is a rigid floor. path_dependent: whether its soil is. foretold:
+    settlement at rest [m] on fine cells, where the run's are wider than what touches.
+    """
+    safety, more = SAFETY | (ON_PATH if path_dependent else {}), _more(run, foretold)
+    return [_bar(each, run, chain, orders(each.name, rigid), safety, more) for each in run.reported.values()]
+
+
+def _more(run: RunValues, foretold: float | None) -> float:
+    """By what part of it the riser is to settle more than in the first stage that reports a settlement.
+
+    Cells wider than what touches bear the pipe as a strip of their own width, and the settlement of a strip goes by the
+    logarithm of its width: each halving of the cells adds as much as the one before. Where the clay yields on fine
+    cells alone, coarser ones do not show it at all. The forecast does.
+    """
+    at_rest = next((each.value for each in run.reported.values() if each.name == SETTLEMENT), 0.0)
+    return 0.0 if foretold is None or at_rest <= 0.0 else max(0.0, foretold / at_rest - 1.0)
 
 
 def _bar(
@@ -101,7 +117,22 @@ def _bar(
     chain: Sequence[ComparisonRun],
     order: Mapping[str, float],
     safety: Mapping[str, float],
+    more: float,
 ) -> ErrorBar:
+    found, unknown = _of_sources(key_result, run, chain, order)
+    between = gaps(key_result, run)
+    shares = {s: safety[s] * (between.get(s, 0.0) + found.get(s, 0.0)) for s in between | found}
+    if key_result.name == SETTLEMENT and "soil" in shares:
+        shares["soil"] = max(shares["soil"], FORETOLD * more * abs(key_result.value))
+    if unknown:
+        return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
+    return ErrorBar(key_result, math.hypot(*shares.values()) + SMALLEST * key_result.scale, shares, "", order)
+
+
+def _of_sources(
+    key_result: KeyResult, run: RunValues, chain: Sequence[ComparisonRun], order: Mapping[str, float]
+) -> tuple[dict[str, float], list[str]]:
+    """Errors by source, without safety, in the quantity's unit; and why a source is not known."""
     key, scale = key_result.key, key_result.scale
     found, unknown, fineness = dict[str, float](), list[str](), dict[str, float]()
     before: Extremes | None = run.peaks
@@ -120,11 +151,7 @@ def _bar(
             unknown.append(f"{source}: {comparison_run.reason or 'a coarser run does not have it'}")
         fineness[source] = so_far * comparison_run.finer
         before = comparison_run.extremes
-    between = gaps(key_result, run)
-    shares = {s: safety[s] * (between.get(s, 0.0) + found.get(s, 0.0)) for s in between | found}
-    if unknown:
-        return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
-    return ErrorBar(key_result, math.hypot(*shares.values()) + SMALLEST * scale, shares, "", order)
+    return found, unknown
 
 
 def divisor(comparison_run: ComparisonRun, order: float, off: float) -> float:

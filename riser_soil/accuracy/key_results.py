@@ -26,6 +26,8 @@ from riser_soil.core.outputs import upper_end
 FORCE_FLOOR = 0.1  # of the largest key result force
 MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
 
+SETTLEMENT = "soil settlement"
+
 Reported = Mapping[str, Any]
 
 
@@ -111,7 +113,7 @@ def _contact(stage: Reported) -> Iterator[Known]:
     force = _value(stage, ("contact_force",), "max")
     yield from _known("largest contact force", "N", force if force else None, "contact_force", "max")
     settled = stage.get("soil", {}).get("max_settlement", {}).get("value")
-    yield from _known("soil settlement", "m", settled, "max_settlement", "max")
+    yield from _known(SETTLEMENT, "m", settled, "max_settlement", "max")
 
 
 def _known(name: str, unit: str, value: float | None, figure: str, which: str) -> Iterator[Known]:

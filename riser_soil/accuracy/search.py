@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any, TypeVar
 
-from riser_soil.accuracy.chain import FINER_MESH, Variation, bars_of, comparison_runs, peaks_of, run_values, variations
+from riser_soil.accuracy.chain import Variation, bars_of, comparison_runs, peaks_of, run_values, variations
 from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues
 from riser_soil.accuracy.key_results import key_results
@@ -24,7 +24,6 @@ from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 SHAPES = 3  # static runs at most that grade the mesh
 SETTLED = 1.5  # elements at most so many times as long as curvature asks for
 LONGER = Variation("time", {"time_step": 0.5})  # of the trial, whose steps are long already
-FINER = Variation("mesh", {"elements": 2.0}), Variation("penalty", {"penalty": 16.0})  # a run may need one of them
 ATTEMPTS, EACH = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
 HELPING = ("elements", "time_step")
 _Found = TypeVar("_Found")
@@ -69,8 +68,11 @@ def _with(longer: Variation, usual: Sequence[Variation]) -> list[Variation]:
 
 
 def _apart(varying: Sequence[Variation]) -> Iterator[Variation]:
-    for each in varying:
-        yield from FINER if each is FINER_MESH else (each,)
+    """The penalty after the elements that it goes with: a run may need one of them."""
+    for source, factors in varying:
+        apart = {name: factor for name, factor in factors.items() if name == "penalty" and len(factors) > 1}
+        yield Variation(source, {name: factor for name, factor in factors.items() if name not in apart})
+        yield from (Variation("penalty", {name: factor}) for name, factor in apart.items())
 
 
 def _known(values: RunValues | None) -> RunValues:

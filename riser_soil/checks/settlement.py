@@ -21,12 +21,15 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.ground import contact_width
-from riser_soil.assembly.scales import Scales
+from riser_soil.assembly.riser import elements_of
+from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.soil_sizes import touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
 from riser_soil.core.arrays import Array
+from riser_soil.riser.sections import Elements
 from riser_soil.riser.touchdown_bend import TouchdownBend
-from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.soil import Block, GeneratedMesh, SoilScene
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.law import SoilLaw
 
@@ -50,21 +53,46 @@ class Settled(NamedTuple):
 
 def foretold(assembly: Assembly, across: float = 0.0) -> Settled | None:
     """On cells of a size across the riser [m]; None without soil, and of a riser that has no weight."""
-    soil, scales = assembly.scene.soil, assembly.scales
-    if soil is None or assembly.soil is None or scales.weight <= 0.0:
+    soil = assembly.soil
+    if soil is None:
         return None
-    depth = float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
+    return settled(assembly.scene, assembly.elements, float(soil.grid.high[2] - soil.grid.low[2]), across)
+
+
+def settled(scene: Scene, elements: Elements, depth: float, across: float = 0.0) -> Settled | None:
+    """On soil of a depth, on cells of a size across the riser [m]; None without soil, and of a riser without weight."""
+    soil, scales = scene.soil, scales_of(elements)
+    if soil is None or scales.weight <= 0.0:
+        return None
     by_weight = settlement(soil, scales, depth, across)
-    touchdown = forecast(assembly.scene, assembly.elements)
+    touchdown = forecast(scene, elements)
     if touchdown is None or min(touchdown.H, by_weight) <= 0.0:
         return Settled(by_weight, by_weight, 1.0)
-    EI = float(np.maximum(assembly.elements.EI_y, assembly.elements.EI_z).max())
+    EI = float(np.maximum(elements.EI_y, elements.EI_z).max())
     deepest, overshoot = by_weight, 1.0
     for _ in range(ROUNDS):
         bend = TouchdownBend(scales.weight, touchdown.H, EI, deepest / overshoot)
         overshoot = 0.5 * (overshoot + bend.overshoot)
         deepest = settlement(soil, replace(scales, weight=overshoot * scales.weight), depth, across)
     return Settled(by_weight, deepest, overshoot)
+
+
+def beyond_cells(scene: Scene) -> float | None:
+    """Settlement foretold [m] of a riser that comes down on cells wider than what touches; their sizes are numbers.
+
+    None where cells resolve that, and where nothing is foretold: of contact at nodes, of a mesh file, of a pipe that
+    only lies.
+    """
+    soil, contact = scene.soil, scene.contact
+    if soil is None or contact is None or contact.at_nodes or not isinstance(soil.mesh, GeneratedMesh):
+        return None
+    assert isinstance(soil.block, Block)
+    elements = elements_of(scene)
+    found, scales = settled(scene, elements, soil.block.depth), scales_of(elements)
+    if found is None or forecast(scene, elements) is None:
+        return None
+    width = touching_width(replace(scales, weight=found.overshoot * scales.weight), soil.top_law)
+    return found.deepest if LIKE_CONTACT * soil.mesh.across > width else None
 
 
 def settlement(soil: SoilScene, scales: Scales, depth: float, across: float = 0.0) -> float:

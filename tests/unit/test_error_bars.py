@@ -15,8 +15,9 @@ import pytest
 from typer.testing import CliRunner
 
 from benchmarks.error_bars import references
-from benchmarks.error_bars.calibration import judge, share_inside
+from benchmarks.error_bars.calibration import Judged, judge, share_inside
 from benchmarks.error_bars.page import page
+from benchmarks.error_bars.random_soils import SOILS
 from benchmarks.error_bars.scenes import CLAY, SCENES
 from riser_soil.accuracy import chain, settings
 from riser_soil.accuracy.barred_run import run_with_error_bars
@@ -31,7 +32,7 @@ from riser_soil.accuracy.error_bars import (
     error_bars,
     orders,
 )
-from riser_soil.accuracy.key_results import KeyResult
+from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
 from riser_soil.accuracy.settings import SETTINGS, settings_reported
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
@@ -45,7 +46,7 @@ KEY = "hang: top tension"
 SAFETY, ON_PATH = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}, 1.4
 ORDER, SMALLEST = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}, 5e-5
 SOIL = [name for name, scene in SCENES.items() if "soil" in scene]
-SOIL_MESH = next(setting for setting in SETTINGS if setting.name == "soil_mesh")
+SOIL_MESH, PENALTY = (next(each for each in SETTINGS if each.name == name) for name in ("soil_mesh", "penalty"))
 QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 140 steps", "hose on a rigid floor")
 
 
@@ -111,6 +112,37 @@ def test_of_two_coarser_runs_in_one_source_the_larger_share_counts() -> None:
     for first, second in ((near - 1.0, far - 1.0), (near - 1.0, near - 1.0), (0.0, far - near)):
         chain = comparison_run("soil", 1.0 / near, 1000.0 + first), comparison_run("soil", 0.5, 1000.0 + second)
         assert bar_of(1000.0, 1000.0, *chain).by_source["soil"] == pytest.approx(SAFETY["soil"])
+
+
+def settlements(*values: float) -> RunValues:
+    """Of stages one after the other [m]."""
+    keys = [KeyResult(f"stage {n}", SETTLEMENT, "m", value, 0.0) for n, value in enumerate(values)]
+    known = {each.key: each.value for each in keys}
+    return RunValues({each.key: each for each in keys}, known, {key: alone(x) for key, x in known.items()}, known)
+
+
+def test_settlement_is_uncertain_by_what_is_foretold_beyond_the_cells() -> None:
+    """As a part of that at rest, in later stages, too; where coarser cells show more than that, they count."""
+    run, coarser = settlements(1e-3, 2e-3), {key: alone(0.9 * x) for key, x in settlements(1e-3, 2e-3).of_nodes.items()}
+    coarse = [ComparisonRun("soil", 0.5, coarser)]
+    by_cells = [SAFETY["soil"] * 1e-4, SAFETY["soil"] * 2e-4]
+    for foretold, expected in ((3e-3, [2.5e-3, 5e-3]), (None, by_cells), (0.9e-3, by_cells), (1.01e-3, by_cells)):
+        found = error_bars(run, coarse, rigid=False, path_dependent=False, foretold=foretold)
+        assert [each.by_source["soil"] for each in found] == pytest.approx(expected)
+
+
+def test_bars_see_clay_that_yields_on_fine_cells_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A riser on cells of D/4 settles 1.2 mm, on fine ones 2.2 mm; coarser cells alone don't show that."""
+    name = "laid on sections 4"
+    known = references.read(references.ON_SOIL)[name]
+
+    def settled() -> Judged:
+        (found,) = (each for each in judge(name, SOILS[name], known).judged if each.bar.key_result.name == SETTLEMENT)
+        return found
+
+    assert settled().inside
+    monkeypatch.setattr(chain, "beyond_cells", lambda scene: None)
+    assert not settled().inside
 
 
 def course(*windows: float, least: bool = False) -> Extreme:
@@ -241,12 +273,14 @@ def test_longer_steps_are_left_to_the_shortest_period(name: str, longer: float, 
     assert (1.0 / time.finer, mesh.finer) == pytest.approx((longer, 2.0))
 
 
-def test_soil_is_coarsened_twice(looked_at: list[Scene]) -> None:
+def test_soil_is_coarsened_first(looked_at: list[Scene]) -> None:
+    """Then the elements, and the penalty with them."""
     found = chain.comparison_runs(scene_from_mapping(SCENES["pipe pressed on clay"]), None)
-    assert [each.source for each in found] == ["soil", "soil", "mesh", "penalty"]
-    assert [each.finer for each in found] == pytest.approx([0.5**0.5, 0.5, 0.5, 0.25])
-    near, far = (f"soil cells of {0.025 * n**0.5:.4g} m across the riser" for n in (2.0, 8.0))
-    assert [settings_reported(each, [SOIL_MESH]) for each in looked_at] == [near, far, far, far]
+    assert [each.source for each in found] == ["soil", "mesh"]
+    assert [each.finer for each in found] == pytest.approx([0.6, 0.5])
+    coarser = f"soil cells of {0.025 / 0.6:.4g} m across the riser"
+    assert [settings_reported(each, [SOIL_MESH]) for each in looked_at] == [coarser, coarser]
+    assert PENALTY.fineness(looked_at[1]) == pytest.approx(0.25 * PENALTY.fineness(looked_at[0]))
 
 
 @pytest.fixture
@@ -281,7 +315,7 @@ def test_what_cannot_be_varied_has_no_bar(monkeypatch: pytest.MonkeyPatch) -> No
 def test_the_page_has_each_kind_in_and_out_of_sample() -> None:
     name = "catenary, 20 elements"
     found = [judge(name, SCENES[name], references.read()[name])]
-    reported = page(found, found).splitlines()
+    reported = page(found, found, "").splitlines()
     for kind in ("top tension", "no ground", "static"):
         (row,) = (line for line in reported if line.startswith(f"| {kind} |"))
         judged = [cell.strip() for cell in row.split("|")[2:-1]]

@@ -1,0 +1,86 @@
+"""The page's block on soil: error bars of the random scenes on soil, and the settlements foretold beside references."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from statistics import median
+
+from mpi4py import MPI
+
+from benchmarks.error_bars.calibration import Judged, JudgedScene, decided, ratios, share_inside
+from benchmarks.error_bars.random_soils import SOILS
+from benchmarks.error_bars.references import Reference
+from benchmarks.error_bars.scenes import Mapping
+from demos.page import table
+from riser_soil.accuracy.key_results import SETTLEMENT
+from riser_soil.assembly import build, sized
+from riser_soil.checks.settlement import foretold
+from riser_soil.scene.reader import scene_from_mapping
+
+ON_SOIL = "error bars on soil"  # block of the page
+WITHIN = 1.5  # factor that a settlement foretold is to keep to
+
+
+def soil_block(calibration: list[JudgedScene], out: list[JudgedScene], known: dict[str, Reference]) -> str:
+    """known: references by scene."""
+    factors = forecast_factors(known)
+    kept = sum(1.0 / WITHIN <= factor <= WITHIN for factor in factors.values())
+    spread = f"{min(factors.values()):.2f} to {max(factors.values()):.2f}"
+    rows = [*zip(*(_cells(scenes) for scenes in (calibration, out)), strict=True)]
+    figures = table(["on soil", "factors chosen on", "out of sample"], _named(rows))
+    return (
+        f"{figures}\n\nSettlement foretold over that of the reference, laid scenes: {spread}; {kept} of {len(factors)} "
+        f"within {WITHIN:g}."
+    )
+
+
+NAMES = (
+    "scenes, key results judged",
+    "true error inside its bar",
+    "bar over true error, median",
+    "settlements inside their bars",
+    "bar over true error, median, of settlements",
+    "left out, as the reference does not decide the side of the bar",
+    "bars not given, as a companion failed",
+    "processor time of the companions over that of the scenes",
+)
+
+
+def _named(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
+    return [[name, *cells] for name, cells in zip(NAMES, rows, strict=True)]
+
+
+def _cells(scenes: list[JudgedScene]) -> list[str]:
+    judged = [each for scene in scenes for each in scene.judged]
+    settled = [each for each in judged if each.bar.key_result.name == SETTLEMENT]
+    taken, extra = (sum(scene.seconds[n] for scene in scenes) for n in (0, 1))
+    return [
+        f"{len(scenes)}, {len(decided(judged))}",
+        *_figures(judged),
+        *_figures(settled),
+        str(len(judged) - len(decided(judged))),
+        str(sum(len(scene.not_known) for scene in scenes)),
+        f"{extra / taken:.0%}",
+    ]
+
+
+def _figures(judged: list[Judged]) -> tuple[str, str]:
+    found, reported = ratios(judged), decided(judged)
+    inside = f"{share_inside(judged):.1%}, {sum(each.inside for each in reported)} of {len(reported)}"
+    return inside, f"{median(found):.2f}" if found else "none"
+
+
+def forecast_factors(known: dict[str, Reference]) -> dict[str, float]:
+    """Settlement of laid scenes as `check` foretells it over that of their references."""
+    found = {name: forecast_factor(SOILS[name], known[name]) for name in SOILS if name in known}
+    return {name: factor for name, factor in found.items() if factor is not None}
+
+
+def forecast_factor(mapping: Mapping, reference: Reference) -> float | None:
+    """None of a pipe that is pressed in, and where the reference has no settlement."""
+    scene = scene_from_mapping(mapping)
+    settled = reference.get(f"{scene.stages[0].name}: {SETTLEMENT}")
+    if settled is None or scene.riser.initial == "straight":
+        return None
+    expected = foretold(build(sized(scene), MPI.COMM_WORLD))
+    return None if expected is None else expected.deepest / settled[0]
