@@ -68,7 +68,7 @@ bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn an
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page
 
-bars: setup ## error bars of 57 scenes beside their true errors: docs/error_bars.md
+bars: setup ## error bars of 211 scenes beside their true errors: docs/error_bars.md
 	$(PYTHON) -m benchmarks.error_bars
 
 asked: setup ## scenes that ask for 1 %, whether they reach it and what it costs beside the best by hand: docs/asked_accuracy.md

@@ -49,7 +49,7 @@ DEAR: list[Level] = [
     {"elements": 3, "penalty": 16, "soil_mesh": 3, "along": 1.5, "load_steps": 3 * LAID_IN, "time_step": 2},
 ]
 CHEAP = 3000  # unknowns of clay that a riser is laid on; three times that of elastic soil
-PRESSED = 4  # times as many load steps of a pipe that is pressed in
+PRESSED = 2  # times as many load steps of a pipe that is pressed in
 STATIC: list[Level] = [{"elements": n} for n in (16, 64)]
 RIGID: list[Level] = [{"elements": n, "penalty": n**4} for n in (8, 32)]
 DYNAMIC: list[Level] = [{"elements": n, "penalty": n**4, "time_step": t} for n, t in ((4, 4), (16, 10))]

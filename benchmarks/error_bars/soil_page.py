@@ -38,11 +38,10 @@ NAMES = (
     "scenes, key results judged",
     "true error inside its bar",
     "bar over true error, median",
-    "settlements inside their bars",
-    "bar over true error, median, of settlements",
-    "left out, as the reference does not decide the side of the bar",
-    "bars not given, as a companion failed",
-    "processor time of the companions over that of the scenes",
+    "settlements inside",
+    "their median",
+    "left out, as the reference does not decide",
+    "coarser runs' processor time over the scenes'",
 )
 
 
@@ -59,7 +58,6 @@ def _cells(scenes: list[JudgedScene]) -> list[str]:
         *_figures(judged),
         *_figures(settled),
         str(len(judged) - len(decided(judged))),
-        str(sum(len(scene.not_known) for scene in scenes)),
         f"{extra / taken:.0%}",
     ]
 

@@ -18,7 +18,7 @@ from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
-from riser_soil.checks.settlement import beyond_cells
+from riser_soil.checks.settlement import BeyondCells, beyond_cells
 from riser_soil.core.snapshot import Instant, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
@@ -93,8 +93,8 @@ def bars_of(scene: Scene, run: RunValues, chain: Sequence[ComparisonRun]) -> lis
     return error_bars(run, chain, rigid, scene.has_path_dependent_soil, _foretold(scene, run))
 
 
-def _foretold(scene: Scene, run: RunValues) -> float | None:
-    """The settlement [m] that is foretold beyond the cells of a run that reports one."""
+def _foretold(scene: Scene, run: RunValues) -> BeyondCells | None:
+    """What is foretold beyond the cells of a run that reports a settlement."""
     settles = any(each.name == SETTLEMENT for each in run.reported.values())
     return beyond_cells(sized(scene)) if settles else None
 

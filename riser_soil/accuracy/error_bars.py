@@ -32,7 +32,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
+from riser_soil.accuracy.key_results import SETTLEMENT, TOUCHDOWN, KeyResult, key_results
+from riser_soil.checks.settlement import BeyondCells
 from riser_soil.core.arrays import Array
 from riser_soil.results.peaks import RunPeaks
 
@@ -45,7 +46,7 @@ ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
 CONTACT_FORCE, OF_CONTACT_FORCE = "largest contact force", {"mesh": 1.0, "penalty": 0.25}
 SAFETY = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}
 ON_PATH = {"soil": 1.4}  # where the soil's law depends on its path: its errors jump more, as cells yield one by one
-FORETOLD = 1.25  # of what a settlement is foretold to be more
+FORETOLD = 1.25  # of what is foretold beyond the cells
 LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
 
 Values = Mapping[str, float]  # of key results by their keys, in their units
@@ -91,24 +92,36 @@ class ErrorBar:
 
 
 def error_bars(
-    run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, path_dependent: bool, foretold: float | None = None
+    run: RunValues,
+    chain: Sequence[ComparisonRun],
+    rigid: bool,
+    path_dependent: bool,
+    foretold: BeyondCells | None = None,
 ) -> list[ErrorBar]:
-    """Of all key results. rigid: whether the ground is a rigid floor. path_dependent: whether its soil is. foretold:
-    settlement at rest [m] on fine cells, where the run's are wider than what touches.
+    """Of all key results. rigid: whether the ground is a rigid floor. path_dependent: whether its soil is. foretold: of
+    a riser on fine cells, where the run's are wider than what touches.
     """
-    safety, more = SAFETY | (ON_PATH if path_dependent else {}), _more(run, foretold)
-    return [_bar(each, run, chain, orders(each.name, rigid), safety, more) for each in run.reported.values()]
+    safety, least = SAFETY | (ON_PATH if path_dependent else {}), _beyond_cells(run, foretold)
+    return [
+        _bar(each, run, chain, orders(each.name, rigid), safety, least.get(key, 0.0))
+        for key, each in run.reported.items()
+    ]
 
 
-def _more(run: RunValues, foretold: float | None) -> float:
-    """By what part of it the riser is to settle more than in the first stage that reports a settlement.
+def _beyond_cells(run: RunValues, foretold: BeyondCells | None) -> dict[str, float]:
+    """Errors at least of cells wider than what touches, by key: as the riser settles more on fine ones, and its
+    touchdown moves with that. At rest is the first stage that reports a settlement.
 
-    Cells wider than what touches bear the pipe as a strip of their own width, and the settlement of a strip goes by the
-    logarithm of its width: each halving of the cells adds as much as the one before. Where the clay yields on fine
-    cells alone, coarser ones do not show it at all. The forecast does.
+    Such cells bear the pipe as a strip of their own width, and the settlement of a strip goes by the logarithm of its
+    width: each halving of the cells adds as much as the one before. Where the clay yields on fine cells alone, coarser
+    ones do not show it at all. The forecast does.
     """
     at_rest = next((each.value for each in run.reported.values() if each.name == SETTLEMENT), 0.0)
-    return 0.0 if foretold is None or at_rest <= 0.0 else max(0.0, foretold / at_rest - 1.0)
+    if foretold is None or not 0.0 < at_rest < foretold.settlement:
+        return {}
+    more, moves = foretold.settlement / at_rest - 1.0, foretold.touchdown_moves(at_rest)
+    settles = {key: more * abs(each.value) for key, each in run.reported.items() if each.name == SETTLEMENT}
+    return settles | {key: moves for key, each in run.reported.items() if each.name.endswith(TOUCHDOWN)}
 
 
 def _bar(
@@ -117,13 +130,13 @@ def _bar(
     chain: Sequence[ComparisonRun],
     order: Mapping[str, float],
     safety: Mapping[str, float],
-    more: float,
+    on_cells: float,
 ) -> ErrorBar:
     found, unknown = _of_sources(key_result, run, chain, order)
     between = gaps(key_result, run)
     shares = {s: safety[s] * (between.get(s, 0.0) + found.get(s, 0.0)) for s in between | found}
-    if key_result.name == SETTLEMENT and "soil" in shares:
-        shares["soil"] = max(shares["soil"], FORETOLD * more * abs(key_result.value))
+    if "soil" in shares:
+        shares["soil"] = max(shares["soil"], FORETOLD * on_cells)
     if unknown:
         return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
     return ErrorBar(key_result, math.hypot(*shares.values()) + SMALLEST * key_result.scale, shares, "", order)

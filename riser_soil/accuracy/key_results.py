@@ -26,7 +26,7 @@ from riser_soil.core.outputs import upper_end
 FORCE_FLOOR = 0.1  # of the largest key result force
 MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
 
-SETTLEMENT = "soil settlement"
+SETTLEMENT, TOUCHDOWN = "soil settlement", "touchdown arc"  # the latter least or largest in stages that move
 
 Reported = Mapping[str, Any]
 
@@ -76,7 +76,7 @@ def _of_stage(stage: Reported) -> list[KeyResult]:
     floors["1/m"] = CURVATURE_FLOOR / length if length > 0.0 else 0.0
 
     def floor(name: str, unit: str) -> float:
-        return length if name.endswith("arc") else floors[unit]
+        return length if name.endswith(TOUCHDOWN) else floors[unit]
 
     return [
         KeyResult(stage["name"], name, unit, value, floor(name, unit), figure, which)
@@ -105,11 +105,11 @@ def _values(stage: Reported) -> Iterator[Known]:
 def _contact(stage: Reported) -> Iterator[Known]:
     """Those of a riser that touches; one that never does has no touchdown point, and a contact force of 0."""
     if stage["kind"] == "static":
-        yield from _known("touchdown arc", "m", _value(stage, ("touchdown_arc",), "max"), "touchdown_arc", "max")
+        yield from _known(TOUCHDOWN, "m", _value(stage, ("touchdown_arc",), "max"), "touchdown_arc", "max")
     else:
         for which, word in (("min", "least"), ("max", "largest")):
             value = _value(stage, ("touchdown_arc",), which)
-            yield from _known(f"{word} touchdown arc", "m", value, "touchdown_arc", which)
+            yield from _known(f"{word} {TOUCHDOWN}", "m", value, "touchdown_arc", which)
     force = _value(stage, ("contact_force",), "max")
     yield from _known("largest contact force", "N", force if force else None, "contact_force", "max")
     settled = stage.get("soil", {}).get("max_settlement", {}).get("value")

@@ -14,7 +14,7 @@ secant through that.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -68,7 +68,7 @@ def settled(scene: Scene, elements: Elements, depth: float, across: float = 0.0)
     touchdown = forecast(scene, elements)
     if touchdown is None or min(touchdown.H, by_weight) <= 0.0:
         return Settled(by_weight, by_weight, 1.0)
-    EI = float(np.maximum(elements.EI_y, elements.EI_z).max())
+    EI = _stiffness(elements)
     deepest, overshoot = by_weight, 1.0
     for _ in range(ROUNDS):
         bend = TouchdownBend(scales.weight, touchdown.H, EI, deepest / overshoot)
@@ -77,22 +77,46 @@ def settled(scene: Scene, elements: Elements, depth: float, across: float = 0.0)
     return Settled(by_weight, deepest, overshoot)
 
 
-def beyond_cells(scene: Scene) -> float | None:
-    """Settlement foretold [m] of a riser that comes down on cells wider than what touches; their sizes are numbers.
+@dataclass(frozen=True)
+class BeyondCells:
+    """What is foretold of a riser that comes down on cells wider than what touches, were they fine.
 
-    None where cells resolve that, and where nothing is foretold: of contact at nodes, of a mesh file, of a pipe that
-    only lies.
+    settlement: at its deepest place [m]; bend: of the touchdown there; overshoot: of that place over the depth at rest.
+    """
+
+    settlement: float
+    bend: TouchdownBend
+    overshoot: float
+
+    def touchdown_moves(self, settlement: float) -> float:
+        """How far along the riser its touchdown moves as it settles from so deep [m] to what is foretold."""
+        before = replace(self.bend, depth=settlement / self.overshoot)
+        return abs(self.bend.lift_off - before.lift_off)
+
+
+def beyond_cells(scene: Scene) -> BeyondCells | None:
+    """Of a scene whose sizes are numbers; None where cells resolve what touches, and where nothing is foretold: of
+    contact at nodes, of a mesh file, of a pipe that only lies.
     """
     soil, contact = scene.soil, scene.contact
     if soil is None or contact is None or contact.at_nodes or not isinstance(soil.mesh, GeneratedMesh):
         return None
     assert isinstance(soil.block, Block)
     elements = elements_of(scene)
-    found, scales = settled(scene, elements, soil.block.depth), scales_of(elements)
-    if found is None or forecast(scene, elements) is None:
+    scales, touchdown = scales_of(elements), forecast(scene, elements)
+    found = settled(scene, elements, soil.block.depth)
+    if found is None or touchdown is None or min(found.deepest, touchdown.H) <= 0.0:
         return None
     width = touching_width(replace(scales, weight=found.overshoot * scales.weight), soil.top_law)
-    return found.deepest if LIKE_CONTACT * soil.mesh.across > width else None
+    if LIKE_CONTACT * soil.mesh.across <= width:
+        return None
+    bend = TouchdownBend(scales.weight, touchdown.H, _stiffness(elements), found.deepest / found.overshoot)
+    return BeyondCells(found.deepest, bend, found.overshoot)
+
+
+def _stiffness(elements: Elements) -> float:
+    """The largest bending stiffness [N m2]."""
+    return float(np.maximum(elements.EI_y, elements.EI_z).max())
 
 
 def settlement(soil: SoilScene, scales: Scales, depth: float, across: float = 0.0) -> float:

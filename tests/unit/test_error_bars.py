@@ -34,10 +34,12 @@ from riser_soil.accuracy.error_bars import (
 )
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
 from riser_soil.accuracy.settings import SETTINGS, settings_reported
+from riser_soil.checks.settlement import BeyondCells
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
+from riser_soil.riser.touchdown_bend import TouchdownBend
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
@@ -126,7 +128,8 @@ def test_settlement_is_uncertain_by_what_is_foretold_beyond_the_cells() -> None:
     run, coarser = settlements(1e-3, 2e-3), {key: alone(0.9 * x) for key, x in settlements(1e-3, 2e-3).of_nodes.items()}
     coarse = [ComparisonRun("soil", 0.5, coarser)]
     by_cells = [SAFETY["soil"] * 1e-4, SAFETY["soil"] * 2e-4]
-    for foretold, expected in ((3e-3, [2.5e-3, 5e-3]), (None, by_cells), (0.9e-3, by_cells), (1.01e-3, by_cells)):
+    for settlement, expected in ((3e-3, [2.5e-3, 5e-3]), (0.9e-3, by_cells), (1.01e-3, by_cells)):
+        foretold = BeyondCells(settlement, TouchdownBend(700.0, 2.0e4, 5.0e4, settlement / 1.2), 1.2)
         found = error_bars(run, coarse, rigid=False, path_dependent=False, foretold=foretold)
         assert [each.by_source["soil"] for each in found] == pytest.approx(expected)
 

@@ -100,7 +100,11 @@ def test_what_wide_cells_hide_is_foretold() -> None:
     scene = touchdown(LAY, su=6000.0) | {"contact": {"method": "surface"}}
     expected = foretold(built(scene))
     assert expected is not None
-    assert beyond_cells(scene_from_mapping(scene)) == pytest.approx(expected.deepest, rel=1e-9)
+    found = beyond_cells(scene_from_mapping(scene))
+    assert found is not None
+    assert (found.settlement, found.overshoot) == pytest.approx(expected[1:], rel=1e-9)
+    assert found.touchdown_moves(found.settlement) == 0.0
+    assert found.touchdown_moves(0.5 * found.settlement) > 0.0
     assert beyond_cells(scene_from_mapping(scene | {"contact": {"method": "node"}})) is None
     scene["soil"]["mesh"] |= {"size_at_riser": {"along": 0.5, "across": 0.01}}
     assert beyond_cells(scene_from_mapping(scene)) is None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.error_bars import references
+from benchmarks.error_bars.soil_page import WITHIN, forecast_factors
 from riser_soil.assembly.scales import Scales
 from riser_soil.checks.settlement import settlement
 from riser_soil.scene.reader import scene_from_mapping
@@ -33,3 +35,10 @@ def test_settlement_is_foretold_within_half_of_it(clay: str) -> None:
         expected = D * float(np.interp(load, rises, found.w))
         reported = settlement(soil, Scales(load * SU * D, D, 1.0), 5.0 * D)
         assert 1.0 / 1.5 < reported / expected < 1.5
+
+
+def test_settlement_of_random_risers_is_foretold_within_half_of_it() -> None:
+    """Beside references on fine cells: risers laid on elastic, plastic and cyclic soil, light and heavy."""
+    factors = forecast_factors(references.read(references.ON_SOIL))
+    assert len(factors) == 27
+    assert 1.0 / WITHIN <= min(factors.values()) <= max(factors.values()) <= WITHIN
