@@ -45,7 +45,7 @@ def write_references(asked: Iterable[str], missing: bool = False) -> None:
 
 def on_soil() -> str:
     known = references.read(references.ON_SOIL)
-    return soil_block(judged(random_soils.CALIBRATION, known), judged(random_soils.OUT_OF_SAMPLE, known), known)
+    return soil_block(judged(random_soils.EVEN, known), judged(random_soils.ODD, known), known)
 
 
 parser = argparse.ArgumentParser(prog="python -m benchmarks.error_bars", description=__doc__)

@@ -16,7 +16,7 @@ from benchmarks.error_bars.random_risers import SEA, Draw, figures, some_pipe, s
 from benchmarks.error_bars.scenes import HANG, SURFACE, Mapping, even, line
 
 LAWS = ("linear-elastic", "von-mises", "von-mises", "kinematic-hardening", "iwan")
-#: Scenes of each kind: of even numbers in the calibration, of odd ones out of sample.
+#: Scenes of each kind, as far as they have references; even and odd numbers are judged apart.
 KINDS = {"laid on sections": 16, "heaved on sections": 8, "laid on a block": 3, "pressed into a slice": 8}
 
 
@@ -117,5 +117,5 @@ def _drawn(seed: int, half: int) -> dict[str, Mapping]:
     return {f"{kind} {n}": random_soil(seed, kind, n) for kind, count in KINDS.items() for n in range(half, count, 2)}
 
 
-CALIBRATION, OUT_OF_SAMPLE = (_drawn(4, half) for half in (0, 1))
-SOILS = CALIBRATION | OUT_OF_SAMPLE
+EVEN, ODD = (_drawn(4, half) for half in (0, 1))
+SOILS = EVEN | ODD

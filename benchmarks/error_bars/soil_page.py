@@ -21,13 +21,13 @@ ON_SOIL = "error bars on soil"  # block of the page
 WITHIN = 1.5  # factor that a settlement foretold is to keep to
 
 
-def soil_block(calibration: list[JudgedScene], out: list[JudgedScene], known: dict[str, Reference]) -> str:
+def soil_block(even: list[JudgedScene], odd: list[JudgedScene], known: dict[str, Reference]) -> str:
     """known: references by scene."""
     factors = forecast_factors(known)
     kept = sum(1.0 / WITHIN <= factor <= WITHIN for factor in factors.values())
     spread = f"{min(factors.values()):.2f} to {max(factors.values()):.2f}"
-    rows = [*zip(*(_cells(scenes) for scenes in (calibration, out)), strict=True)]
-    figures = table(["on soil", "factors chosen on", "out of sample"], _named(rows))
+    rows = [*zip(*(_cells(scenes) for scenes in (even, odd)), strict=True)]
+    figures = table(["on soil", "even numbers", "odd numbers"], _named(rows))
     return (
         f"{figures}\n\nSettlement foretold over that of the reference, laid scenes: {spread}; {kept} of {len(factors)} "
         f"within {WITHIN:g}."
