@@ -92,7 +92,7 @@ leaves out those whose reference is not certain to {certain:.0%} of bar or error
 <!-- end of {figures_block} -->
 
 [Random scenes on soil](../benchmarks/error_bars/random_soils.py): risers laid on sections and blocks, heaved, pipes
-pressed in; elastic, plastic and cyclic. References have cells of a sixth to a third of the size, and more load steps.
+pressed in; elastic, plastic and cyclic. References have cells of a quarter or a third of the size, and more load steps.
 Both halves were seen while the way was chosen.
 
 <!-- {soil_block} -->

@@ -6,9 +6,8 @@ The static stages that a scene begins with are computed alone, with 16 and 64 ti
 The penalty of a rigid floor grows by the fourth power of the elements: the length in which a riser sinks in beside an
 end, (4 EI/k)^(1/4), falls with their length.
 
-On soil cells are half and a quarter of the size, under a riser a third and a sixth, as the clay may yield on fine ones
-alone, or where that is dear two thirds and a third; along the riser, where they matter less, not quite that short. Load
-steps are two and four times as many.
+On soil cells are half and a quarter of the size, where that is dear two thirds and a third; along the riser, where they
+matter less, not quite that short. Load steps are two and four times as many.
 
 `references.json` has them: by scene and key result the value of the finer run, and its uncertainty by how far
 the two are apart: a third of it, as that is left of a first-order error on elements of a quarter of the length; all of
@@ -43,7 +42,6 @@ SOIL: list[Level] = [
     {"elements": 2, "penalty": 6, "soil_mesh": 2, "along": 2**0.5, "load_steps": 2 * LAID_IN},
     {"elements": 4, "penalty": 32, "soil_mesh": 4, "along": 2, "load_steps": 4 * LAID_IN},
 ]
-LAID: list[Level] = [SOIL[0] | {"soil_mesh": 3}, SOIL[1] | {"soil_mesh": 6}]
 DEAR: list[Level] = [
     {"elements": 2, "penalty": 4, "soil_mesh": 1.5, "along": 1.25, "load_steps": 1.5 * LAID_IN, "time_step": 1.5},
     {"elements": 3, "penalty": 16, "soil_mesh": 3, "along": 1.5, "load_steps": 3 * LAID_IN, "time_step": 2},
@@ -80,8 +78,7 @@ def reference(mapping: Mapping) -> Reference:
     """Value and uncertainty of each key result."""
     scene = scene_from_mapping(mapping)
     if scene.soil is not None:
-        levels = DEAR if _is_dear(scene) else LAID if _is_laid(scene) else SOIL
-        return _of_two(scene, levels, LEFT_ON_SOIL)
+        return _of_two(scene, DEAR if _is_dear(scene) else SOIL, LEFT_ON_SOIL)
     statics, found = first_statics(scene), dict[str, tuple[float, float]]()
     if len(statics) < len(scene.stages):
         found = _of_two(scene, DYNAMIC)
