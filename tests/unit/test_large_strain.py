@@ -200,7 +200,7 @@ def test_cells_beside_new_ones_stay_as_they_are() -> None:
     assert np.allclose(soil.gathered_wear(soil.worn)[order].max(), soil.worn.max())
     soil.take_mesh(there[order], made[order])
     now = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.gradients.full
-    assert 0 < beside.sum() < len(beside)
+    assert 0 < beside.sum() < beside.size
     for before, after in zip(held, now, strict=True):
         assert np.array_equal(before[beside], after[beside])
         assert not np.array_equal(before[~beside], after[~beside])
