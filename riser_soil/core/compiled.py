@@ -29,6 +29,7 @@ from typing import Any
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colorama, if there, writes to standard output
 
 import numba
+from llvmlite import binding as llvm
 from numba.core import event
 
 from riser_soil.core.kernel_cache import PACKAGE, CacheByTypes, caching_in
@@ -70,10 +71,11 @@ def fixed(n: int) -> tuple[int, ...]:
 
 
 def fingerprint(package: Path) -> str:
-    """Fingerprint of all that compiled code depends on: sources of modules with kernels and of what they import, and
-    versions.
+    """Fingerprint of all that compiled code depends on: sources of modules with kernels and of what they import,
+    versions, and the processor.
     """
-    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
+    machine = f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
+    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()} {machine}".encode())
     for name, text in sorted(_sources(package).items()):
         digest.update(f"{name}\n{text}".encode())
     return digest.hexdigest()[:16]

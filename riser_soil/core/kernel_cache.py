@@ -1,8 +1,10 @@
-"""numba's cache on disk, so that reading it imports nothing but what the kernel at hand is called with.
+"""numba's cache on disk, a folder for each signature.
 
 numba keeps one index for a function, with all types that it was ever called with, and imports the modules of the
 NamedTuples among them to read it. A kernel that is called with the data of any law or part would import all of them;
-and fail where one is gone, as one of a test is in the next run. Here each set of NamedTuples has a folder of its own.
+and fail where one is gone, as one of a test is in the next run. Two processes that compile a function for different
+types at the same time may even give the machine code of one the other's place in the index. With one signature in a
+folder they write the same.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ class CacheByTypes:
 
     def __init__(self, function: Callable[..., object]) -> None:
         self._function, self._folder = function, config.CACHE_DIR
-        self._known: dict[str, FunctionCache] = {}  # by the word for their types
+        self._known: dict[str, FunctionCache] = {}  # by the word for the types
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         return self._of(sig).load_overload(sig, target_context)
@@ -34,7 +36,7 @@ class CacheByTypes:
         self._of(sig).save_overload(sig, data)
 
     def _of(self, sig: Any) -> FunctionCache:
-        word = _word(sig)
+        word = mark(sig)
         if word not in self._known:
             with caching_in(str(Path(self._folder, word))):
                 self._known[word] = FunctionCache(self._function)

@@ -61,6 +61,27 @@ def largest(x):
 for name in sys.argv[1:]:
     print(globals()[name](1.5))
 """
+TWO_TYPES = """
+import os
+import sys
+from unittest.mock import patch
+from numba.core.caching import IndexDataCacheFile
+from riser_soil.core.compiled import njit
+
+x, role, save = eval(sys.argv[1]), sys.argv[2], IndexDataCacheFile._save_data
+
+def overtaken(self, name, data):  # by a process that has looked into the index when it was empty
+    os.spawnv(os.P_WAIT, sys.executable, [sys.executable, "two.py", "3.5", "early"])
+    save(self, name, data)
+
+@njit
+def doubled(x):
+    return x + x
+
+changed = {"late": {"_save_data": overtaken}, "early": {"_load_index": lambda self: {}}}
+with patch.multiple(IndexDataCacheFile, **changed.get(role, {"_save_data": save})):
+    print(doubled(x))
+"""
 
 ERROR = """
 from riser_soil.core.compiled import njit
@@ -129,3 +150,11 @@ def test_a_kernel_that_is_read_tells_errors_with_their_values(folder: Path) -> N
     (folder / "error.py").write_text(ERROR, encoding="utf-8")
     for _ in range(2):
         assert printed(folder, "error.py") == ["too", "large", "1.5"]
+
+
+def test_processes_that_compile_for_different_types_at_once_do_not_mix_them_up(folder: Path) -> None:
+    """Both look into an empty cache; the second one writes while the first one does."""
+    (folder / "two.py").write_text(TWO_TYPES, encoding="utf-8")
+    printed(folder, "two.py", "3", "late")
+    assert printed(folder, "two.py", "3.5", "alone") == ["7.0"]
+    assert printed(folder, "two.py", "3", "alone") == ["6"]
