@@ -128,8 +128,14 @@ class SoilContact(RiserContact):
 
     @property
     def covering(self) -> Covering:
-        """What covers a seabed beside it: the soil as it is now."""
-        return Covering(self._soil.cover, lambda cover: cover.renew(self._soil.settled))
+        """What covers a seabed beside it: the soil as it is now; asked for on all ranks, used where contact is active."""
+        return Covering(self._cover, self._renew_cover)
+
+    def _cover(self) -> Cover:
+        return self._soil.cover()
+
+    def _renew_cover(self, cover: Cover) -> None:
+        cover.renew(self._soil.settled)
 
     def settlement(self, xy: Array, state: State) -> Array:
         """Settlement (n,) [m] of the soil's surface at horizontal positions (n, 2) [m] since before the riser came.

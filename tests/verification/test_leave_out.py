@@ -29,7 +29,7 @@ SLOW_TO_IMPORT = {"pandas", "xarray", "typer"} | {
     f"scipy.{name}" for name in ("fft", "integrate", "interpolate", "optimize", "signal", "spatial", "special", "stats")
 }
 OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.soil.dolfinx_compat"}
-FOR_HEAVE = {False: set[str](), True: {f"riser_soil.motion.{name}" for name in ("harmonic", "ramped")}}
+FOR_HEAVE = {False: set[str](), True: {"riser_soil.motion.prescribed"}}
 NODES = 37
 FORMULAS = {"riser", "sea", "seabed", "contact", "soil", "motion"}
 
