@@ -128,7 +128,7 @@ class SoilContact(RiserContact):
 
     @property
     def covering(self) -> Covering:
-        """What covers a seabed beside it: the soil as it is now; asked for on all ranks, used where contact is active."""
+        """What covers a seabed beside it: the soil as it is now. Used where contact is active."""
         return Covering(self._cover, self._renew_cover)
 
     def _cover(self) -> Cover:
