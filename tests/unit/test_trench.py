@@ -158,7 +158,7 @@ def scene(feature: dict[str, Any], start_y: float = 0.0, **mesh: Any) -> dict[st
 
 CUT = {"depth": 0.3, "width": 0.4}
 REFUSED = {
-    "hexahedra": (scene({"trench": CUT}, kind="hex"), "meshed in tetrahedra; give mesh: {kind: tet, size_at_riser, size_far}"),
+    "hexahedra": (scene({"trench": CUT}, kind="hex"), "meshed in tetrahedra; give mesh: {kind: tet"),
     "both": (scene({"trench": CUT, "groove": {"embedment": 0.2}}), "is given beside trench"),
     "too deep": (scene({"trench": {**CUT, "depth": 1.0}}), "is as deep as the block, 1 m"),
     "too wide": (scene({"trench": {**CUT, "width": 1.5}}), "2.539 m wide at the seabed about y = 0 m"),

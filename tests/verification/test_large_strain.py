@@ -63,6 +63,7 @@ def test_a_pipe_sinks_to_half_of_its_diameter_on_three_meshes() -> None:
     np.testing.assert_allclose(loads[0], loads[1], rtol=0.04)
 
 
+@pytest.mark.verify
 def test_a_rough_pipe_sinks_to_a_fifth_of_its_diameter() -> None:
     found = sink(sinking(8, 0.2, 40, **FULLY_ROUGH))
     for w in (0.1, 0.15, 0.2):
