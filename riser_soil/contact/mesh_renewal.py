@@ -54,14 +54,16 @@ class MeshRenewal:
         self._lost = 0.0
 
     def renew(self, state: State) -> bool:
-        """Go on on a new mesh if need be; whether so. state: accepted, increments zero. Collective."""
+        """Go on on a new mesh if need be and there is one; whether so. state: accepted, increments zero. Collective."""
         comm, worn = self._soil.grid.nodes.comm, self._soil.worn
         if max(comm.allgather(worn.max(initial=0.0))) < WORN:
             return False
         points, wear = self._soil.gathered_points(), self._soil.gathered_wear(worn)
-        made = self._renewed(points, wear, state) if comm.rank == 0 else None
+        points, made = comm.bcast(self._renewed(points, wear, state) if comm.rank == 0 else None)
+        if not made.any():
+            return False
         surface = self._soil.surface.points + self._soil.surface.committed
-        self._soil.take_mesh(*comm.bcast(made))
+        self._soil.take_mesh(points, made)
         if self._contact.active:
             self._contact.surface_renewed(surface, [self._friction.anew()] if self._friction else [])
         self.count += 1

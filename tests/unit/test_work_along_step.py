@@ -63,6 +63,20 @@ def test_area_of_a_slow_loop_hangs_little_on_the_steps(law: NormalLaw) -> None:
     assert at_end[1] / at_end[2] == pytest.approx(4.0, rel=0.3)
 
 
+@every_law
+def test_short_steps_are_told_by_both_ends_to_fourth_order(law: NormalLaw) -> None:
+    """Where the force is all but straight; the trapezoid alone would be of second order."""
+
+    def deeper(steps: int) -> float:
+        return float(along(law, np.append(0.03, through(0.03, 0.06, steps=steps)))[1:].sum())
+
+    exact = deeper(4096)
+    off = [abs(deeper(steps) - exact) for steps in (64, 128)]
+    print(f"{off[0] / exact:.2e}, {off[1] / exact:.2e}")
+    assert off[0] < 1e-7 * exact
+    assert off[0] > 10.0 * off[1]
+
+
 def pressed(law: NormalLaw, steps: int) -> tuple[float, float]:
     """Dissipated by the ground, and by the scheme, of a level line that goes through the cycle [J]."""
     arc = np.linspace(0.0, LENGTH, 5)
