@@ -339,5 +339,5 @@ def test_ranks_agree(tmp_path: Path) -> None:
     for ranks in (1, 2):
         done = mpirun(ranks, *common, str(tmp_path / f"on_{ranks}"))
         assert done.returncode == 0, done.stderr
-    one, two = (Run(tmp_path / f"on_{ranks}")["contact_force_total"] for ranks in (1, 2))
+    one, two = (Run(tmp_path / f"on_{ranks}")["contact_force_sum"] for ranks in (1, 2))
     assert two == pytest.approx(one, rel=1e-6, abs=1e-6)
