@@ -1,8 +1,11 @@
-"""Tests stand alone: what several of them need is in tests/support; the numbers that they judge by are their own."""
+"""Tests stand alone: what several of them need is in tests/support, which has an index; the numbers that they judge by are
+their own.
+"""
 
 from __future__ import annotations
 
 import ast
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -30,3 +33,9 @@ def test_no_number_is_imported_from_what_is_judged_by_it(path: Path) -> None:
         if (node.module or "").startswith("riser_soil") and alias.name.isupper()
     ]
     assert not [name for module, name in named if isinstance(getattr(import_module(str(module)), name), float)]
+
+
+def test_the_index_of_what_tests_share_has_each_module_once() -> None:
+    support = TESTS / "support"
+    named = re.findall(r"`(\w+)`", (support / "README.md").read_text(encoding="utf-8"))
+    assert sorted(named) == sorted(path.stem for path in support.glob("*.py"))
