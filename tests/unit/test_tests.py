@@ -1,6 +1,4 @@
-"""Tests stand alone: what several of them need is in tests/support, which has an index; the numbers that they judge by are
-their own.
-"""
+"""Tests stand alone: tests/support, which has an index, is what they share; the numbers they judge by are their own."""
 
 from __future__ import annotations
 
