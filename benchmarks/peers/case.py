@@ -154,6 +154,7 @@ def catenary(case: Case, nodes: int) -> np.ndarray:
     (x0, z0), (x1, z1), w = case.start, case.end, case.weight
     arcs = np.linspace(0.0, case.length, nodes)
     if case.floor is not None:  # a part s0 lies on the floor: H from the height, s0 from the length
+
         def far(H: float) -> tuple[float, float]:
             hanging = math.sqrt((z1 - z0) * ((z1 - z0) + 2.0 * H / w))
             return case.length - hanging, case.length - hanging + H / w * math.asinh(w * hanging / H)

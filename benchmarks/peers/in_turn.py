@@ -70,7 +70,10 @@ def _measure_level(
 def _worker(number: int) -> Iterator[Worker]:
     python = sys.executable if PROGRAMS[number].own or not THEIRS.exists() else str(THEIRS)
     command = [python, "-m", "benchmarks.peers.measure", str(number)]
-    with (ROOT / "build" / "peers.log").open("a", encoding="utf-8") as log, subprocess.Popen(
-        command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True
-    ) as process:
+    with (
+        (ROOT / "build" / "peers.log").open("a", encoding="utf-8") as log,
+        subprocess.Popen(
+            command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True
+        ) as process,
+    ):
         yield Worker(process)
