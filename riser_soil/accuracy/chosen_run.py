@@ -53,7 +53,7 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
 
 def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     """The scene with its hang-off solved, where it asks for one, and what its summary tells of that; collective."""
-    if not scene.riser.hangs_off:
+    if not scene.line.hangs_off:
         return scene, {}
     from riser_soil.assembly.packages import communicator_of
     from riser_soil.hang_off import hung

@@ -166,8 +166,8 @@ def _rows(assembly: Assembly) -> list[tuple[str, ...]]:
     scene, elements = assembly.scene, assembly.elements
     rows: list[tuple[str, ...]] = [(*HEADS, *STIFFNESSES)]
     begin = 0.0
-    firsts = accumulate((segment.element_count for segment in scene.riser.segments), initial=0)
-    for segment, first in zip(scene.riser.segments, firsts, strict=False):
+    firsts = accumulate((segment.element_count for segment in scene.line.segments), initial=0)
+    for segment, first in zip(scene.line.segments, firsts, strict=False):
         e = first + segment.element_count // 2  # beyond bend stiffeners
         line = scene.line_types[segment.line_type]
         mass, end = float(elements.mass[e]), begin + segment.length
@@ -198,7 +198,7 @@ def _whole(assembly: Assembly) -> Iterator[str]:
 
 def tensions_by_hand(assembly: Assembly) -> Iterator[str]:
     """Effective tensions at the ends, at rest: of the cable without bending stiffness, and by formula beside it."""
-    start, end = assembly.scene.riser.start, assembly.scene.riser.end
+    start, end = assembly.scene.line.start, assembly.scene.line.end
     if not (isinstance(start, Support) and isinstance(end, Support)):
         return
     places = np.array(start.position), np.array(end.position)

@@ -167,7 +167,7 @@ def _sides(scene: Scene, soil: SoilScene) -> tuple[float, float, float]:
 def size_of(scene: Scene) -> ProblemSize:
     """The size of a scene."""
     scene = sized(scene)
-    elements = scene.riser.element_count
+    elements = scene.line.element_count
     cells, unknowns, entries = _soil(scene, scene.soil) if scene.soil is not None else (0.0, 0.0, 0)
     factor = soil_factor(scene, scene.soil, unknowns) if scene.soil is not None else 0.0
     stages = [_stage(scene, stage) for stage in scene.stages]
@@ -239,7 +239,7 @@ def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
 def _block(scene: Scene, soil: SoilScene) -> BlockSpec:
     from riser_soil.assembly.soil_block import block_of
 
-    start, end = initial_ends(scene.riser)
+    start, end = initial_ends(scene.line)
     return block_of(scene, soil, ((start[0], start[1]), (end[0], end[1])))
 
 

@@ -26,14 +26,14 @@ def left_out(scene: Scene) -> dict[str, str]:
 
 def _reasons(scene: Scene) -> dict[str, str]:
     """Part -> why it is left out, empty where it is built."""
-    ends = (scene.riser.start, scene.riser.end)
+    ends = (scene.line.start, scene.line.end)
     sprung = any(isinstance(e, Support) and isinstance(e.rotation, RotationSpring) for e in ends)
     tensioned = any(isinstance(e, Support) and e.tensioner is not None for e in ends)
     ground = scene.seabed is not None or scene.soil is not None
     return {
         "riser": "",
         "springs": "" if sprung else "no end has a rotational spring",
-        "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
+        "attachments": "" if scene.line.attachments else "nothing is attached to the riser",
         "contents": _no_contents(scene),
         "loads": "" if any(s.loads for s in scene.stages) or tensioned else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "no stage is dynamic",
@@ -86,7 +86,7 @@ def has_dynamics(scene: Scene) -> bool:
 
 
 def _no_contents(scene: Scene) -> str:
-    given = scene.riser.contents
+    given = scene.line.contents
     if given is None:
         return "the riser is empty"
     return "" if given.uneven_or_moving else "even contents at rest count in the riser's mass and weight"
@@ -142,7 +142,7 @@ def _no_morison(scene: Scene) -> str:
         return "the scene has no water"
     if not has_dynamics(scene) and scene.water.current is None:
         return "no stage is dynamic, and still water does not load a riser at rest"
-    types, attachments = scene.used_line_types.values(), scene.riser.attachments
+    types, attachments = scene.used_line_types.values(), scene.line.attachments
     resist = any(t.drag or t.added_mass or t.strakes for t in types)
     resist = resist or any(a.drag_area or a.added_mass for a in attachments)
     changes = scene.water.current is not None and scene.water.current.history is not None

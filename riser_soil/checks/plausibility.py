@@ -58,8 +58,8 @@ def _meant_to_float(assembly: Assembly) -> BoolArray:
     which lie between heavier ones, as the buoyant section of a lazy wave, or whose submerged_weight is given.
     """
     scene, weight = assembly.scene, assembly.elements.weight
-    given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.riser.segments]
-    meant = np.repeat(given, [segment.element_count for segment in scene.riser.segments])
+    given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.line.segments]
+    meant = np.repeat(given, [segment.element_count for segment in scene.line.segments])
     heavy = np.flatnonzero(weight > 0.0)
     if heavy.size:
         meant[heavy[0] : heavy[-1]] = True
