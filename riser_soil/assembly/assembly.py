@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,6 +71,13 @@ class Assembly:
         assert self.scene.line is not None  # asked for, it refuses scenes with several
         (own,) = self.lines.values()
         return own
+
+    @cached_property
+    def by_line(self) -> dict[str, Assembly]:
+        """Each line as an assembly of its own, which shares all that is the line's, by name; "" of the only one."""
+        if not self.scene.lines:
+            return {"": self}
+        return {name: Assembly(own.scene, self.comm, {name: own}) for name, own in self.lines.items()}
 
     @property
     def line(self) -> Line:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from riser_soil.assembly.riser import no_wall_tension
 from riser_soil.assembly.soil_block import why_all
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
+from riser_soil.scene.lines import by_line
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
@@ -20,12 +23,29 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 def left_out(scene: Scene) -> dict[str, str]:
     """Parts and results that the scene leaves out, each with its reason."""
-    reported = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": no_wall_tension(scene)}
+    reasons = [no_wall_tension(view) for view in by_line(scene).values()]
+    reported = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": _why_all(reasons)}
     return {name: reason for name, reason in reported.items() if reason}
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """Part -> why it is left out, empty where it is built."""
+    """Part -> why it is left out, empty where it is built: of several lines where one has it."""
+    each = [_reasons_of_line(view) for view in by_line(scene).values()]
+    found = {name: _why_all([reasons[name] for reasons in each]) for name in each[0]}
+    if not scene.lines:
+        return found
+    drag = "" if scene.bodies and scene.water is not None else "no body is in water"
+    bodies = "" if scene.bodies else "the scene has no bodies"
+    joints = "" if scene.joints else "the scene has no joints"
+    return found | {"bodies": bodies, "body drag": drag, "joints": joints}
+
+
+def _why_all(reasons: Sequence[str]) -> str:
+    """The first of the reasons why each lacks something; empty where one has it."""
+    return reasons[0] if all(reasons) else ""
+
+
+def _reasons_of_line(scene: Scene) -> dict[str, str]:
     ends = (scene.line.start, scene.line.end)
     sprung = any(isinstance(e, Support) and isinstance(e.rotation, RotationSpring) for e in ends)
     tensioned = any(isinstance(e, Support) and e.tensioner is not None for e in ends)
@@ -55,7 +75,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 DISSIPATING = (
     *("morison", "structural damping", "contact", "seabed", "friction"),
-    *("soil friction", "soil", "new mesh", "cushion"),
+    *("soil friction", "soil", "new mesh", "cushion", "body drag"),
 )
 #: Accounts of a part that tells what is its own and what is the time scheme's.
 SPLIT = {
@@ -63,7 +83,7 @@ SPLIT = {
     "seabed": ("seabed", "seabed_time_scheme"),
     "contact": ("contact", "contact_time_scheme"),
 }
-WORKING = ("loads", "contents", "morison", "vortices", "vortices in line", "buoyancy")
+WORKING = ("loads", "contents", "morison", "vortices", "vortices in line", "buoyancy", "body drag")
 
 
 def dissipating(scene: Scene) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ def all_conflicts(scene: Scene) -> list[Problem]:
     """All conflicts of a scene, whether it has one line or several."""
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
-    own = [*_names(scene), *_joints(scene), *_stages(scene), *_not_yet(scene)]
+    own = [*_names(scene), *_joints(scene), *_stages(scene), *_clearances(scene), *_not_yet(scene)]
     if own:
         return own
     found = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
@@ -28,6 +28,8 @@ def all_conflicts(scene: Scene) -> list[Problem]:
 
 
 def _without_lines(scene: Scene) -> Iterator[Problem]:
+    if scene.output.clearance:
+        yield Problem(("output", "clearance"), "is one between lines, and the scene has riser", "leave it out")
     for n, stage in enumerate(scene.stages):
         if stage.lines:
             yield Problem(("stages", n, "lines"), "the scene has riser, not lines", "give move, motion and loads here")
@@ -115,6 +117,17 @@ def _stages(scene: Scene) -> Iterator[Problem]:
                 for end in ENDS:
                     if getattr(moved, end, None) is not None and _jointed(scene, name, end):
                         yield Problem((*path, key, end), "a joint holds this end", "leave it out")
+
+
+def _clearances(scene: Scene) -> Iterator[Problem]:
+    for n, pair in enumerate(scene.output.clearance):
+        path: Path = ("output", "clearance", n, "between")
+        for m, name in enumerate(pair.between):
+            if name not in scene.lines:
+                allowed = f"must be one of lines ({', '.join(scene.lines)})"
+                yield Problem((*path, m), allowed, f"name one of them{hint(name, scene.lines)}")
+        if pair.between[0] == pair.between[1]:
+            yield Problem(path, "a line has no clearance from itself", "name two lines")
 
 
 def _jointed(scene: Scene, name: str, end: str) -> bool:
