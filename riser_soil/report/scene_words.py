@@ -11,8 +11,6 @@ from pydantic import BaseModel
 from riser_soil.errors import RiserSoilError
 from riser_soil.report.tables import NOTHING, ReportTable, compact, number
 from riser_soil.results import Run
-from riser_soil.results import folder as run_folder
-from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 
 _UNIT = re.compile(r"\[([^\[\],\s]{1,12})\]")
@@ -47,7 +45,7 @@ _PIPE = (  # path of a line type's key, its head
 def read(run: Run) -> Scene | None:
     """The run's scene; None where its file can't be read."""
     try:
-        return read_scene(str(run.folder / run_folder.SCENE))
+        return run.read_scene()
     except (RiserSoilError, OSError):
         return None
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +19,7 @@ from riser_soil.riser.vectors import matrix
 from riser_soil.scene.lines import arc_of
 from riser_soil.scene.output import Clearance
 
+GAPES = 0.01  # of the diameter, by which a rigid joint may gape
 _OF_BODY = {
     "position": ("m", "place of the origin of the body's axes"),
     "rotation": ("rad", "rotation vector from the axes at first, no longer than pi"),
@@ -71,6 +74,24 @@ class HungReader:
         for pair in self._pairs:
             found |= {f"{pair.path}/{key}": value for key, value in zip(_OF_PAIR, pair.look(), strict=True)}
         return found
+
+
+    def warnings(self, found: Mapping[str, Any]) -> list[str]:
+        """Of rigid joints that gape, by what is known of the stage, see `HungExtremes`."""
+        joints = () if self._joints is None else self._joints.joints
+        given = self._assembly.scene.joints
+        told = []
+        for joint in joints:
+            stiffness = given[joint.name].stiffness
+            gap = found["joints"][joint.name]["gap"]
+            largest = float(np.linalg.norm(np.fmax(np.abs(gap["min"]), np.abs(gap["max"]))))
+            allowed = GAPES * self._assembly.scales.diameter
+            if largest > allowed and (stiffness is None or stiffness.translation is None):
+                told.append(
+                    f"joint {joint.name} gapes by up to {largest:.3g} m (told above {GAPES:g} diameters): it gives as "
+                    "the elements beside it do, which stretch as much; take shorter ones there, and check what pulls"
+                )
+        return told
 
 
 class _Pair:

@@ -222,6 +222,9 @@ class Observer:
                 plausibility.look_at_soil(times[-1], seen[-1].state, instants_at(instants[name], -1))
             stage = recorder.summary.stages[-1].of(name)
             stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
+        if self._hung is not None:
+            whole = recorder.summary.stages[-1]
+            whole.implausible = tuple(self._hung.warnings(whole.hung))
 
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
         """After a step, recorded: write the state, where it is due; collective. See `stages.CheckpointWriter`."""
@@ -270,6 +273,9 @@ class Observer:
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
+            if not slack:
+                print(f"joints closed, and bodies came to rest, in {steps} step(s)")
+                return
             print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
