@@ -23,6 +23,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.sea.flows import Sea
 
+TURNED = 1e-9  # rad: what needs no stage to turn
 CLOSED = 1e-6  # of a line's length: a first gap of a joint that needs no stage to close
 
 
@@ -99,7 +100,7 @@ def hung_of(scene: Scene, lines: Mapping[str, LineAssembly]) -> Hung:
         made = [_joint(name, joint, lines, bodies) for name, joint in scene.joints.items()]
         joints = Joints(made, [joint.keep_distance for joint in scene.joints.values()])
     closed = CLOSED * min(float(own.line.arc[-1]) for own in lines.values())
-    is_open = joints is not None and bool((joints.first_gap > closed).any())
+    is_open = joints is not None and bool((joints.first_gap > closed).any() or (joints.first_turn > TURNED).any())
     weights = {name: _weight(scene, body, given[name]) for name, body in bodies.items()}
     return Hung(bodies, joints, given, weights, is_open)
 

@@ -1,9 +1,12 @@
 """Joints between nodes of lines and bodies: the part "joints".
 
 A joint holds two points together, each on an arm s = R r that turns with its node, and their directions: with the gap
-g = xa + sa - xb - sb and the rotation phi from the second node to the first since the joint was made it has the energy
+g = xa + sa - xb - sb and the rotation phi of the first node against the second from where both are at rest it has the
+energy
 
-    k g.g/2 + kr phi.phi/2,    phi = log(Ra C Rb^T),    C = Ra(0)^T Rb(0).
+    k g.g/2 + kr phi.phi/2,    phi = log(Ra C Rb^T),    C = Ra(0)^T exp(q) Rb(0).
+
+At rest they stand as the joint is made, but for two ends of lines, whose axes become one: q turns the second there.
 
 So it acts on both with opposite forces k g and moments kr phi, and what is conjugate to the nodes' rotation vectors is
 H^T (s x F + M), H their spin. Its tangent is the Hessian of the energy, exact and symmetric.
@@ -12,7 +15,7 @@ Rigid joints are such springs too, `STIFF` times as stiff as the elements that t
 tenth of an element's stretch or bend, in all kinds of joints alike, at ends, arcs and bodies, with no other unknowns
 and no rows of another kind in the matrix. Dofs that two lines share would leave no gap where ends are pinned, but do
 not serve for arms, clamped ends and bodies, where the axes of rotations differ.
-`open`: the share of the first gap that a joint still has, while lines and bodies come together.
+`open`: the share of the first gap and of q that a joint still lacks, while lines and bodies come together.
 """
 
 from __future__ import annotations
@@ -71,12 +74,13 @@ class JointOf:
 
 
 class Laws(NamedTuple):
-    """k, kr (m,); arm (m, 2, 3); turned (m, 3, 3): C; gap (m, 3): at first."""
+    """k, kr (m,); arm (m, 2, 3). As the joints were made: first (m, 2, 3, 3), frames; turn (m, 3), q; gap (m, 3)."""
 
     k: Array
     kr: Array
     arm: Array
-    turned: Array
+    first: Array
+    turn: Array
     gap: Array
 
 
@@ -108,15 +112,20 @@ class Joints:
             if kept:
                 there = at.x[n, 1] + at.R[n, 1] @ arm[n, 1]
                 arm[n, 0] = at.R[n, 0].T @ (there - at.x[n, 0])
-        turned = np.swapaxes(at.R[:, 0], 1, 2) @ at.R[:, 1]
         k, kr = (np.array([getattr(joint, name) for joint in joints]) for name in ("translation", "rotation"))
-        laws = Laws(k, kr, arm, np.ascontiguousarray(turned), np.zeros((len(joints), 3)))
+        turn = np.array([_to_one_axis(*joint.sides) if joint.rotation else np.zeros(3) for joint in joints])
+        laws = Laws(k, kr, arm, at.R.copy(), turn, np.zeros((len(joints), 3)))
         self._laws = laws._replace(gap=gaps(laws, at, 0.0))
 
     @property
     def first_gap(self) -> Array:
         """Distances (m,) [m] of the points as the joints were made."""
         return np.asarray(np.linalg.norm(self._laws.gap, axis=1))
+
+    @property
+    def first_turn(self) -> Array:
+        """Angles (m,) [rad] by which the second sides turn to be at rest."""
+        return np.asarray(np.linalg.norm(self._laws.turn, axis=1))
 
     def _places(self, state: State | None) -> JointPlaces:
         """At a state; None for the accepted one."""
@@ -171,9 +180,34 @@ class Joints:
     def acting(self, state: State) -> tuple[Array, Array, Array]:
         """Forces [N] and moments [N.m] on the second node of each joint, at its point (m, 3), and gaps (m, 3) [m]."""
         at = self._places(state)
-        gap = gaps(self._laws, at, self._open(state))
-        moment = self._laws.kr[:, None] * turns(self._laws, at)
+        left = self._open(state)
+        gap = gaps(self._laws, at, left)
+        moment = self._laws.kr[:, None] * turns(self._laws, at, left)
         return self._laws.k[:, None] * gap, moment, gap
+
+
+def _to_one_axis(first: Side, second: Side) -> Array:
+    """Rotation vector (3,) of the second of two ends of lines that makes its axis go on along the first's; zero of
+    others.
+    """
+    axes = [_axis(side) for side in (first, second)]
+    if axes[0] is None or axes[1] is None:
+        return np.zeros(3)
+    ahead, onward = axes[0], -axes[1]
+    across = np.cross(onward, ahead)
+    sine = float(np.linalg.norm(across))
+    return np.asarray(across * (np.arctan2(sine, float(onward @ ahead)) / sine if sine > 0.0 else 1.0))
+
+
+def _axis(side: Side) -> Array | None:
+    """Direction (3,) from an end out of its line; None of other places."""
+    field = side.field
+    if not isinstance(field, Line) or side.node not in (0, field.nodes - 1):
+        return None
+    frames, last = field.frames, side.node > 0
+    assert isinstance(frames, SpatialFrames)
+    tangent = frames.R[side.node] @ frames.T0[-1 if last else 0, int(last), :, 0]
+    return np.asarray(tangent if last else -tangent)
 
 
 def _place(side: Side) -> Array:
@@ -207,19 +241,21 @@ def gaps(laws: Laws, at: JointPlaces, left: float) -> Array:
 
 
 @njit
-def turns(laws: Laws, at: JointPlaces) -> Array:
-    """phi (m, 3)."""
+def turns(laws: Laws, at: JointPlaces, left: float) -> Array:
+    """phi (m, 3), with what is left to turn."""
     out = np.zeros((laws.k.size, 3))
     for j in range(laws.k.size):
         if laws.kr[j] > 0.0:
-            turn = matmul(matrix(at.R[j, 0]), matmul(matrix(laws.turned[j]), transpose(matrix(at.R[j, 1]))))
+            rest = matmul(rotations.exp(scale(1.0 - left, vector(laws.turn[j]))), matrix(laws.first[j, 1]))
+            C = matmul(transpose(matrix(laws.first[j, 0])), rest)
+            turn = matmul(matrix(at.R[j, 0]), matmul(C, transpose(matrix(at.R[j, 1]))))
             out[j, 0], out[j, 1], out[j, 2] = rotations.log(turn)
     return out
 
 
 @njit
 def energy_of(laws: Laws, at: JointPlaces, left: float) -> float:
-    gap, turn, twice = gaps(laws, at, left), turns(laws, at), 0.0
+    gap, turn, twice = gaps(laws, at, left), turns(laws, at, left), 0.0
     for j in range(laws.k.size):
         twice += laws.k[j] * dot(vector(gap[j]), vector(gap[j])) + laws.kr[j] * dot(vector(turn[j]), vector(turn[j]))
     return 0.5 * twice
@@ -228,7 +264,7 @@ def energy_of(laws: Laws, at: JointPlaces, left: float) -> float:
 @njit
 def conjugate(laws: Laws, at: JointPlaces, left: float) -> Array:
     """What is conjugate to the dofs of both nodes (m, 12)."""
-    gap, turn, out = gaps(laws, at, left), turns(laws, at), np.empty((laws.k.size, 12))
+    gap, turn, out = gaps(laws, at, left), turns(laws, at, left), np.empty((laws.k.size, 12))
     for j in range(laws.k.size):
         for side in range(2):
             sign = 1.0 - 2.0 * side
@@ -243,7 +279,7 @@ def conjugate(laws: Laws, at: JointPlaces, left: float) -> Array:
 @njit
 def add_tangent(K: Array, weight: float, laws: Laws, at: JointPlaces, left: float) -> None:
     """Add weight times the derivative of `conjugate` to K (m, 12, 12)."""
-    gap, turn = gaps(laws, at, left), turns(laws, at)
+    gap, turn = gaps(laws, at, left), turns(laws, at, left)
     moved, turned, signs = np.zeros((3, 12)), np.zeros((3, 12)), np.array([1.0, -1.0])
     for j in range(laws.k.size):
         k, kr, phi = laws.k[j], laws.kr[j], vector(turn[j])

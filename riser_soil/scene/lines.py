@@ -81,8 +81,11 @@ def _cut(line: Riser, arcs: list[float]) -> Iterator[Segment]:
         nodes = [begin]
         for length in segment.element_lengths:
             nodes.append(nodes[-1] + length)
-        free = [arc for arc in arcs if begin < arc < end and min(abs(arc - node) for node in nodes) > near]
-        yield from _parts(segment, [0.0, *(arc - begin for arc in free), segment.length]) if free else (segment,)
+        within = [arc for arc in dict.fromkeys(arcs) if begin + near < arc < end - near]
+        if all(min(abs(arc - node) for node in nodes) <= near for arc in within):
+            yield segment
+        else:
+            yield from _parts(segment, [0.0, *(arc - begin for arc in within), segment.length])
         begin = end
 
 
