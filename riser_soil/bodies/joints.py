@@ -11,10 +11,10 @@ At rest they stand as the joint is made, but for two ends of lines, whose axes b
 So it acts on both with opposite forces k g and moments kr phi, and what is conjugate to the nodes' rotation vectors is
 H^T (s x F + M), H their spin. Its tangent is the Hessian of the energy, exact and symmetric.
 
-Rigid joints are such springs too, `STIFF` times as stiff as the elements that they join: so they give as much as a
-tenth of an element's stretch or bend, in all kinds of joints alike, at ends, arcs and bodies, with no other unknowns
-and no rows of another kind in the matrix. Dofs that two lines share would leave no gap where ends are pinned, but do
-not serve for arms, clamped ends and bodies, where the axes of rotations differ.
+Rigid joints are such springs too, `STIFF` times as stiff as the elements that they join: they give as much as a
+hundredth of an element does, in all kinds of joints alike, at ends, arcs and bodies, with no other unknowns and no rows
+of another kind in the matrix. Dofs that two lines share would leave no gap where ends are pinned, but do not serve for
+arms, clamped ends and bodies, where the axes of rotations differ.
 `open`: the share of the first gap and of q that a joint still lacks, while lines and bodies come together.
 """
 
@@ -51,7 +51,7 @@ from riser_soil.riser.vectors import (
     vector,
 )
 
-STIFF = 10.0  # times EA/l and 4 EI/l of the stiffest element beside a rigid joint
+STIFF = 100.0  # times EA/l and 4 EI/l of the stiffest element beside a rigid joint
 NAME = "joints"
 
 

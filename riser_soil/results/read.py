@@ -65,8 +65,9 @@ class Run:
 
     @cached_property
     def lines(self) -> tuple[str, ...]:
-        """Names of the lines of a run of several; none of a run of one riser."""
-        return tuple(self._whole_scene.get("lines") or ())
+        """Names of the lines of a run of several, sorted; none of a run of one riser."""
+        with self._open(run_folder.SERIES) as file:
+            return tuple(name for name in sorted(file) if isinstance(file[name], h5py.Group) and "arc" in file[name])
 
     @property
     def place(self) -> Path:
