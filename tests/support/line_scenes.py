@@ -129,7 +129,7 @@ def lazy_s_by_catenaries() -> tuple[Array, dict[str, tuple[float, float]]]:
         for name, (kind, length, _, place, arm, ends_up) in LAZY_S.items():
             lever, other = turn @ np.array(arm)[[0, 2]], np.array(place)[[0, 2]]
             ends = (other, at[:2] + lever) if ends_up else (at[:2] + lever, other)
-            forces = pulls(*ends, kind["submerged_weight"], kind["EA"], length)
+            forces = pulls(ends[0], ends[1], kind["submerged_weight"], kind["EA"], length)
             found[name] = lever, forces[int(ends_up)], forces[int(not ends_up)]
         for key, force in (("centre_of_gravity", -ARCH["mass"] * G), ("centre_of_buoyancy", RHO * G * ARCH["volume"])):
             found[key] = turn @ np.array(ARCH[key])[[0, 2]], np.array([0.0, force]), np.zeros(2)
