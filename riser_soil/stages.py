@@ -14,13 +14,14 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.assembly import Assembly
+from riser_soil.assembly.assembly import LETTING_GO
 from riser_soil.assembly.motions import corners
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import Adaptive, owners, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, within
-from riser_soil.core.system import System, Timer
+from riser_soil.core.system import System, Timer, total
 from riser_soil.errors import SolveError
 from riser_soil.interruption import asked_to_end, end_together, uninterrupted
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
@@ -95,13 +96,26 @@ def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
     rest, stage = State.at_rest(0.0, assembly.size), assembly.laying
     if stage is None:
         return rest, None
-    if assembly.too_soft:
-        raise SolveError(assembly.too_soft)
+    slackest = assembly.slackest
+    if slackest.too_soft:
+        raise SolveError(slackest.too_soft)
     counter = LayingCounter()
     try:
-        return _take(assembly, assembly.begin_laying(stage), stage, rest, counter, clock), counter
+        before = _take(assembly, assembly.begin_laying(stage), stage, rest, counter, clock)
     except SolveError as err:
-        raise SolveError(f"{assembly.too_slack}: {err}") from err
+        raise SolveError(f"{slackest.too_slack}: {err}" if slackest.slack else f"joints do not close: {err}") from err
+    return _let_go(assembly, before, counter, clock) if assembly.lets_go else before, counter
+
+
+def _let_go(assembly: Assembly, before: State, counter: LayingCounter, clock: Timer) -> State:
+    """Bodies that were held go to their own equilibrium, as what held them grows less."""
+    assert assembly.hung is not None
+    stage = StaticStage(name=LETTING_GO, kind="static")
+    held = System(assembly.comm, assembly.begin_laying(stage), clock)
+    with destroyed_together(assembly.comm, held.destroy):
+        met = total(held.forces(replace(before, t=1.0)))
+    reactions = {name: met[body.part] for name, body in assembly.hung.bodies.items()}
+    return _take(assembly, assembly.begin_letting_go(stage, reactions), stage, before, counter, clock)
 
 
 def run_stage(
@@ -231,6 +245,8 @@ def _static_step(run: StageRun) -> AcceptedStep:
     assembly, stepper, control = run.assembly, run.stepper, run.control
     seabed = assembly.scene.seabed
     on_clay = assembly.soil is not None or (seabed is not None and seabed.kind == "hysteretic")
+    if assembly.scene.lines:  # relaxation is one line's
+        return stepper.advance(control)
     while True:
         try:
             return stepper.advance(control, MOST_CUTS if stepper.depends_on(control) else 0)

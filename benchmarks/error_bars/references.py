@@ -107,7 +107,7 @@ def _is_dear(scene: Scene) -> bool:
 
 def _is_laid(scene: Scene) -> bool:
     """Whether a riser comes down on the soil; else a length of pipe is pressed into it."""
-    return scene.riser.initial != "straight"
+    return scene.line.initial != "straight"
 
 
 def _values(scene: Scene, level: Level) -> Values:

@@ -78,7 +78,7 @@ def forecast_factor(mapping: Mapping, reference: Reference) -> float | None:
     """None of a pipe that is pressed in, and where the reference has no settlement."""
     scene = scene_from_mapping(mapping)
     settled = reference.get(f"{scene.stages[0].name}: {SETTLEMENT}")
-    if settled is None or scene.riser.initial == "straight":
+    if settled is None or scene.line.initial == "straight":
         return None
     expected = foretold(build(sized(scene), MPI.COMM_WORLD))
     return None if expected is None else expected.deepest / settled[0]

@@ -20,6 +20,8 @@ def run_as_asked(
     """
     if restart and force:
         raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
+    if error_bars and scene.lines:
+        raise SceneError("--error-bars: they are not there yet for several lines; leave it out")
     scene, more = in_numbers(scene)
     if scene.accuracy is not None:
         from riser_soil.accuracy.target_run import run_to_accuracy
@@ -53,7 +55,7 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
 
 def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     """The scene with its hang-off solved, where it asks for one, and what its summary tells of that; collective."""
-    if not scene.riser.hangs_off:
+    if scene.lines or not scene.line.hangs_off:
         return scene, {}
     from riser_soil.assembly.packages import communicator_of
     from riser_soil.hang_off import hung

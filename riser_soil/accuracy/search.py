@@ -45,7 +45,7 @@ class TriedSetting:
 
 def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     """On a mesh that curvature has graded, with comparison runs; collective. scene: in its first setting."""
-    segments = scene.riser.segments
+    segments = scene.line.segments
     scene = _meshed(scene, accuracy, comm)
     scene, seen, peaks = _computed(scene, comm)
     if _excess(seen, accuracy, comm) > SETTLED:
@@ -90,7 +90,7 @@ def finer(scene: Scene, factors: dict[str, float]) -> Scene:
 
 def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
     """By the static stages that the scene begins with; as it is where there is none."""
-    segments, statics = scene.riser.segments, first_statics(scene)
+    segments, statics = scene.line.segments, first_statics(scene)
     for _ in range(SHAPES if statics else 0):
         part, seen, _ = _computed(scene.model_copy(update={"stages": statics}), comm)
         scene = scene.model_copy(update={"riser": part.riser})
@@ -118,7 +118,7 @@ def _computed(scene: Scene, comm: Any) -> tuple[Scene, CurveEnvelope, RunPeaks]:
 
 def _graded(scene: Scene, segments: tuple[Segment, ...], seen: CurveEnvelope, accuracy: float, comm: Any) -> Scene:
     made = _on_first(comm, lambda: graded(segments, seen.arc, seen.lengths(accuracy)))
-    return scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": made})})
+    return scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": made})})
 
 
 def _excess(seen: CurveEnvelope, accuracy: float, comm: Any) -> float:
@@ -133,12 +133,12 @@ def _on_first(comm: Any, found: Callable[[], _Found]) -> _Found:
 
 def first_setting(scene: Scene) -> Scene:
     """The scene with elements, steps, soil mesh and penalty in numbers, and no accuracy asked any more."""
-    length, accuracy = scene.riser.length, scene.accuracy
+    length, accuracy = scene.line.length, scene.accuracy
     assert accuracy is not None
     of_period = min(max(OF_PERIOD / math.sqrt(accuracy), FEWEST), MOST)
     segments = tuple(_cut(part, length, least) for part, least in _parts(scene))
     stages = tuple(_stepped(scene, stage, of_period) for stage in scene.stages)
-    riser = scene.riser.model_copy(update={"segments": segments})
+    riser = scene.line.model_copy(update={"segments": segments})
     return resolved(scene.model_copy(update={"accuracy": None, "riser": riser, "stages": stages}))
 
 

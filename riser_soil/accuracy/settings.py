@@ -53,7 +53,7 @@ def varied(scene: Scene, setting: Setting, factor: float) -> Scene:
     if factor == 1.0:
         return scene
     turned = setting.turned(resolved(scene), factor)
-    if turned.riser.element_count > MOST_ELEMENTS:
+    if turned.line.element_count > MOST_ELEMENTS:
         raise SceneError(f"{setting.words}, {factor:g} times as fine: more than {MOST_ELEMENTS} elements")
     return turned
 
@@ -121,8 +121,8 @@ def _has_penalty(scene: Scene) -> bool:
 
 
 def _finer_elements(scene: Scene, factor: float) -> Scene:
-    segments = tuple(_cut(segment, factor) for segment in scene.riser.segments)
-    return scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": segments})})
+    segments = tuple(_cut(segment, factor) for segment in scene.line.segments)
+    return scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": segments})})
 
 
 def _cut(segment: Segment, factor: float) -> Segment:
@@ -230,7 +230,7 @@ def _steps_reported(scene: Scene) -> str:
 SETTINGS = (
     Setting(
         "elements", "elements of the riser", lambda scene: True, _finer_elements,
-        lambda scene: float(scene.riser.element_count), lambda scene: f"{scene.riser.element_count} elements",
+        lambda scene: float(scene.line.element_count), lambda scene: f"{scene.line.element_count} elements",
     ),
     Setting("time_step", "time step", _has_steps, _shorter_steps, _steps_per_time, _steps_reported),
     Setting(

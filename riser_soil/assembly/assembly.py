@@ -3,33 +3,31 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from riser_soil.assembly.hang_off import hung_end
-from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
-from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, pressures_of, springs_of
-from riser_soil.assembly.scales import Scales, scales_of
-from riser_soil.assembly.sea_loads import sea_loads
-from riser_soil.assembly.shape import least_bend
+from riser_soil.assembly.line_assembly import LineAssembly, add_seabed, line_assembly
+from riser_soil.assembly.scales import Scales
 from riser_soil.assembly.soil_block import condensed_of
-from riser_soil.assembly.stage import contents_of, dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
-from riser_soil.core.part import Field, Model, Part
-from riser_soil.core.saved_state import Saved
+from riser_soil.core.part import Field, LineField, Model, Part
+from riser_soil.core.saved_state import Saved, gathered, restore_all
 from riser_soil.errors import SceneError
-from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
-from riser_soil.scene.riser import Support
+from riser_soil.scene.lines import by_line, spinning
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage, pressure_in
+from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 
 if TYPE_CHECKING:
+    from riser_soil.assembly.bodies_and_joints import Hung
     from riser_soil.assembly.vessels import Vessels
     from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
@@ -45,43 +43,89 @@ if TYPE_CHECKING:
 
 AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
 AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
-MOST_STRETCHED = 10.0  # lengths of the riser: an end farther beyond its place is there by stretch that no pipe bears
+LAYING, LETTING_GO = "laying", "letting go"  # stages before those of the scene
 
 
 @dataclass(eq=False)
 class Assembly:
     """A scene's fields and lasting parts; what the scene lacks is None.
 
-    catenary: the first shape, None for other ones.
-    attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
-    pressures: inside and outside the pipe; None where the wall tension is not known.
-    contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
-    vessels: those that carry ends, None where there are none.
+    lines: what belongs to each, by name, "riser" where there is one. hung: bodies, and joints between them and lines.
     condensed: linear soil as it is solved for, in the place of `soil`, whose state is then that of `recovered_soil`.
-    start_places: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow
-    from it. stage: the last one begun.
+    stage: the last one begun.
     """
 
     scene: Scene
     comm: Communicator
-    line: Line
-    elements: Elements
-    riser_parts: list[Part]
-    catenary: Catenary | None
-    attachments: tuple[PointAttachment, ...] = ()
-    pressures: Pressures | None = None
+    lines: dict[str, LineAssembly]
+    hung: Hung | None = None
     soil: Soil | None = None
     condensed: CondensedSoil | None = None
-    soil_contact: SoilContact | None = None
-    seabed: SeabedContact | None = None
-    friction: CoulombFriction | None = None
-    soil_friction: SoilFriction | None = None
     mesh_renewal: MeshRenewal | None = None
     cushion: Cushion | None = None
-    contact_stiffness: dict[str, float] = field(default_factory=dict)
-    vessels: Vessels | None = None
-    start_places: dict[str, Array] = field(default_factory=dict)
     stage: Stage | None = None
+
+    @property
+    def only(self) -> LineAssembly:
+        """The one line there is; SceneError where there are several."""
+        assert self.scene.line is not None  # asked for, it refuses scenes with several
+        (own,) = self.lines.values()
+        return own
+
+    @cached_property
+    def by_line(self) -> dict[str, Assembly]:
+        """Each line as an assembly of its own, which shares all that is the line's, by name; "" of the only one."""
+        if not self.scene.lines:
+            return {"": self}
+        return {name: Assembly(own.scene, self.comm, {name: own}) for name, own in self.lines.items()}
+
+    @property
+    def line(self) -> Line:
+        return self.only.line
+
+    @property
+    def elements(self) -> Elements:
+        return self.only.elements
+
+    @property
+    def catenary(self) -> Catenary | None:
+        return self.only.catenary
+
+    @property
+    def attachments(self) -> tuple[PointAttachment, ...]:
+        return self.only.attachments
+
+    @property
+    def pressures(self) -> Pressures | None:
+        return self.only.pressures
+
+    @property
+    def vessels(self) -> Vessels | None:
+        return self.only.vessels
+
+    @property
+    def contact_stiffness(self) -> dict[str, float]:
+        return self.only.contact_stiffness
+
+    @property
+    def soil_contact(self) -> SoilContact | None:
+        return self.only.soil_contact
+
+    @property
+    def soil_friction(self) -> SoilFriction | None:
+        return self.only.soil_friction
+
+    @property
+    def seabed(self) -> SeabedContact | None:
+        return self.only.seabed
+
+    @property
+    def friction(self) -> CoulombFriction | None:
+        return self.only.friction
+
+    @property
+    def wall_sections(self) -> WallSections | None:
+        return self.only.wall_sections
 
     @property
     def ground_fields(self) -> list[Field]:
@@ -90,19 +134,24 @@ class Assembly:
         return [self.soil.field, self.soil.surface] if self.condensed is None else [self.condensed.top]
 
     @property
+    def moving(self) -> list[LineField]:
+        """Lines and bodies."""
+        bodies = [] if self.hung is None else self.hung.bodies.values()
+        return [*(own.line for own in self.lines.values()), *bodies]
+
+    @property
     def fields(self) -> list[Field]:
-        return [self.line, *self.ground_fields]
+        return [*self.moving, *self.ground_fields]
 
     @property
     def contacts(self) -> list[RiserContact]:
-        """Contact parts of the riser."""
-        both: tuple[RiserContact | None, RiserContact | None] = (self.soil_contact, self.seabed)
-        return [contact for contact in both if contact is not None]
+        """Contact parts of all lines."""
+        return [contact for own in self.lines.values() for contact in own.contacts]
 
     @property
     def frictions(self) -> list[CoulombFriction | SoilFriction]:
-        """Friction parts of the riser."""
-        return [friction for friction in (self.friction, self.soil_friction) if friction is not None]
+        """Friction parts of all lines."""
+        return [friction for own in self.lines.values() for friction in own.frictions]
 
     @property
     def soil_parts(self) -> list[Part]:
@@ -113,7 +162,8 @@ class Assembly:
     @property
     def lasting_parts(self) -> list[Part]:
         """Those that act in all stages."""
-        return [*self.riser_parts, *self.contacts, *self.frictions, *self.soil_parts]
+        parts = [part for own in self.lines.values() for part in own.parts]
+        return [*parts, *self.contacts, *self.frictions, *self.soil_parts]
 
     def recovered_soil(self) -> Soil | None:
         """The whole soil as of the last accepted step, for results."""
@@ -121,26 +171,20 @@ class Assembly:
 
     @property
     def on_soil(self) -> list[SoilContact | SoilFriction]:
-        """Parts by which the riser loads the soil."""
-        return [part for part in (self.soil_contact, self.soil_friction) if part is not None]
+        """Parts by which the lines load the soil."""
+        return [part for own in self.lines.values() for part in own.on_soil]
 
     @property
     def size(self) -> int:
         """Entries of a local array on this rank."""
         return sum(f.size for f in self.fields)
 
-    @cached_property
+    @property
     def scales(self) -> Scales:
-        return scales_of(self.elements)
-
-    @cached_property
-    def wall_sections(self) -> WallSections | None:
-        """Sections of the walls that bear stress; None where no line type has one."""
-        if not self.elements.wall_outer_diameter.any():
-            return None
-        from riser_soil.riser.wall_stress import walls_of
-
-        return walls_of(self.elements)
+        """Of several lines the heaviest's weight, the thinnest's diameter, the stiffest's round-off."""
+        each = [own.scales for own in self.lines.values()]
+        weight, floor = max(one.weight for one in each), max(one.force_floor for one in each)
+        return Scales(weight, min(one.diameter for one in each), floor)
 
     def error_tolerance(self, stage: DynamicStage) -> float:
         """Largest local error of an automatic step [m]."""
@@ -148,15 +192,19 @@ class Assembly:
 
     @property
     def contact_period(self) -> float:
-        """Shortest period [s] of the riser on the stiffness of its contact, on soil in series with the soil's own; nan
-        where it touches nothing.
+        """Shortest period [s] of a line on the stiffness of its contact, on soil in series with the soil's own; nan
+        where none touches anything.
         """
-        found = dict(self.contact_stiffness)
+        periods = (self._contact_period(own) for own in self.lines.values())
+        return min((period for period in periods if not math.isnan(period)), default=math.nan)
+
+    def _contact_period(self, own: LineAssembly) -> float:
+        found = dict(own.contact_stiffness)
         if "soil" in found and self.scene.soil is not None:
             E = self.scene.soil.top_law.surface_modulus(self.scales.diameter)
             found["soil"] *= E / (E + found["soil"])
         stiffest = max(found.values(), default=math.nan)
-        return 2.0 * math.pi * math.sqrt(float(self.elements.mass.min()) / stiffest)
+        return 2.0 * math.pi * math.sqrt(float(own.elements.mass.min()) / stiffest)
 
     def smallest_step(self, stage: DynamicStage) -> float:
         """Down to which time steps are cut [s]."""
@@ -167,87 +215,83 @@ class Assembly:
 
     @property
     def slack(self) -> float:
-        """Distance of the end of the initial shape from its prescribed position [m]."""
-        return self.catenary.slack if self.catenary is not None else 0.0
+        """The largest distance of the end of a line's initial shape from its prescribed position [m]."""
+        return max(own.slack for own in self.lines.values())
 
     @property
-    def too_slack(self) -> str:
-        """Error message where a riser too slack for its elements finds no equilibrium."""
-        bend = least_bend(self.elements)
-        return (
-            f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
-            "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
-            f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
-        )
-
-    @property
-    def too_soft(self) -> str:
-        """Error message where a slack riser would stretch to many times its length under its own weight, else empty."""
-        L, elements = float(self.line.arc[-1]), self.elements
-        if self.slack <= MOST_STRETCHED * L:
-            return ""
-        weight = float(np.abs(elements.weight) @ elements.length)
-        return (
-            f"the riser is too soft along its axis: hung with a bend that its elements can follow its end would lie "
-            f"{self.slack:.4g} m beyond its place, {self.slack / L:.3g} times its length of {L:.4g} m, by stretch; "
-            f"give an EA well above its weight, {weight:.3g} N (the least EA given is {elements.EA.min():.3g} N)"
-        )
+    def slackest(self) -> LineAssembly:
+        """The line of that distance."""
+        return max(self.lines.values(), key=lambda own: own.slack)
 
     @property
     def laying(self) -> StaticStage | None:
-        """The stage that lays a slack riser: it moves the end to its prescribed position before the scene's stages."""
-        end = self.scene.riser.end
-        if self.slack == 0.0 or not isinstance(end, Support) or self.scene.initial is not None:
-            return None
-        return StaticStage(name="laying", kind="static", move=MovedEnds(end=end.position))
+        """The stage before the scene's in which slack lines are laid, ends moved to their prescribed positions, and
+        joints close, while bodies are held.
+        """
+        moved = any(own.laying is not None for own in self.lines.values())
+        if moved or (self.hung is not None and (self.hung.joints_are_open or self.lets_go)):
+            return StaticStage(name=LAYING, kind="static")
+        return None
+
+    @property
+    def lets_go(self) -> bool:
+        """Whether bodies come to rest before the scene's stages."""
+        return self.hung is not None and bool(self.hung.bodies) and self.scene.stages[0].kind != "dynamic"
 
     def begin_laying(self, stage: StaticStage) -> Model:
-        """Set the end in motion and name the parts: without a current's drag."""
-        model = self._enter(stage, end_positions(self.line))
-        return replace(model, parts=[part for part in model.parts if not part.traits.follows])
+        """Set ends and joints in motion and name the parts, without a current's drag; bodies are held."""
+        self.stage = stage
+        parts = {name: own.lay(stage) for name, own in self.lines.items()}
+        return self._model(parts, [] if self.hung is None else self.hung.close())
+
+    def begin_letting_go(self, stage: StaticStage, reactions: Mapping[str, Array]) -> Model:
+        """Let bodies go that were held; reactions: on their dofs, by name [N, N.m]."""
+        assert self.hung is not None
+        self.stage = stage
+        parts = {name: own.lay(stage) for name, own in self.lines.items()}
+        return self._model(parts, self.hung.let_go(reactions))
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
-        self.start_places[stage.name] = end_positions(self.line)
-        return self._enter(stage, self.start_places[stage.name])
+        self.stage = stage
+        return self._model({name: own.begin(stage) for name, own in self.lines.items()}, self._hung_in(stage))
 
     def resume(self) -> tuple[Stage, Model]:
         """The last stage of those begun, its ends set in motion, and its parts: of an assembly that was restored."""
-        *before, stage = (stage for stage in self.scene.stages if stage.name in self.start_places)
-        for earlier in before:
-            set_motions(self.line, earlier, self.vessels, self.start_places[earlier.name])
-        return stage, self._enter(stage, self.start_places[stage.name])
+        begun = next(iter(self.lines.values())).start_places
+        *before, stage = (stage for stage in self.scene.stages if stage.name in begun)
+        self.stage = stage
+        parts = {name: own.resume(before, stage) for name, own in self.lines.items()}
+        return stage, self._model(parts, self._hung_in(stage))
+
+    def _hung_in(self, stage: Stage) -> list[Part]:
+        return [] if self.hung is None else self.hung.parts_in(self.scene, stage)
 
     def state(self) -> Saved:
         """The state of the prescribed motions; fields and parts have states of their own."""
-        return dict(self.start_places)
+        return self.only.state() if not self.scene.lines else gathered(self.lines)
 
     def restore(self, saved: Saved) -> None:
-        self.start_places = dict(saved)
+        if self.scene.lines:
+            restore_all(self.lines, saved)
+        else:
+            self.only.restore(saved)
 
-    def _enter(self, stage: Stage, origins: Array) -> Model:
-        self.stage = stage
-        set_motions(self.line, stage, self.vessels, origins)
-        prescribe_spin(self.scene, self.line, stage)
-        parts = [*self.riser_parts, *loads_of(self.scene, self.line, stage)]
-        parts += contents_of(self.scene, self.line, self.elements, stage)
-        if isinstance(stage, DynamicStage):
-            parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
-        parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
+    def _model(self, of_lines: Mapping[str, list[Part]], hung: list[Part]) -> Model:
+        stage = self.stage
+        assert stage is not None
         cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
         on_ground = [*self.contacts, *self.frictions, *cushion]
         renewal = [] if self.mesh_renewal is None else [self.mesh_renewal]
         with_soil = [*self.soil_parts, *on_ground, *renewal]
         if self.condensed is not None:
             with_soil = [*on_ground, *self.soil_parts]
-        return Model([self.line], [*parts, *with_soil], self.ground_fields)
+        parts = [part for each in of_lines.values() for part in each]
+        return Model(self.moving, [*parts, *hung, *with_soil], self.ground_fields)
 
     def pressure_change(self, t: float) -> float:
         """How much higher the pressure inside [Pa] is at t of the present stage than the contents' own."""
-        given = self.scene.riser.contents
-        if given is None or self.stage is None:
-            return 0.0
-        return pressure_in(self.scene.stages, self.stage, t, given.pressure) - given.pressure
+        return self.only.pressure_change(t)
 
     def moved(self, t0: float, t1: float) -> float:
         """How far the end that the present stage moves farthest [m] is at t1 from where it is at t0."""
@@ -262,26 +306,22 @@ class Assembly:
         return max((abs(after - before) for before, after in depths), default=0.0)
 
     def _moves(self, t0: float, t1: float) -> list[tuple[Array, Array]]:
-        """Where the ends that the present stage moves are at t0 and at t1 (3,) [m]."""
-        motions = (end.motion for end in (self.line.start, self.line.end))
-        return [(motion(t0)[0], motion(t1)[0]) for motion in motions if motion is not None]
+        return [move for own in self.lines.values() for move in own.moves(t0, t1)]
 
     def first_guess(self, stage: Stage) -> Array | None:
         """Increments (size,) to where the first static step begins its search; None where it begins as it is placed."""
-        if not self.is_laid_in(stage) or self.seabed is None or self.catenary is None or self.soil is not None:
+        if not self.is_laid_in(stage):
             return None
-        from riser_soil.assembly.laid_guess import laid_guess
-
-        guess = laid_guess(self.scene, self.seabed, self.elements, self.attachments, self.catenary)
-        if guess is None:
-            return None
-        increments = np.zeros(self.size)
-        self.line.nodal(increments)[:] = guess
-        return increments
+        increments, guessed = np.zeros(self.size), False
+        for own in self.lines.values():
+            if (guess := own.first_guess()) is not None:
+                own.line.nodal(increments)[:] = guess
+                guessed = True
+        return increments if guessed else None
 
     def is_laid_in(self, stage: Stage) -> bool:
         """Whether a static stage is the first, in which the riser is laid on the soil."""
-        first = self.laying.name if self.laying is not None else self.scene.stages[0].name
+        first = LAYING if self.laying is not None else self.scene.stages[0].name
         return stage.kind == "static" and stage.name == first and self.scene.initial is None
 
 
@@ -298,39 +338,51 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     if scene.accuracy is not None:
         raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")
-    if (asking := hung_end(scene)) is not None:
+    if scene.riser is not None and (asking := hung_end(scene)) is not None:
         raise SceneError(f"{asking.path}: is to be solved first, by riser_soil.hang_off")
     scene = sized(scene)
-    elements = elements_of(scene)
-    attachments = attachments_of(scene)
-    line, catenary = line_of(scene, elements, attachments, active=comm.rank == 0)
-    parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
-    pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
-    assembly = Assembly(scene, comm, line, elements, parts, catenary, attachments, pressures, vessels=vessels)
+    if scene.lines and comm.size > 1:
+        raise SceneError("lines: several lines are not there yet on several ranks: start one process alone")
+    spins = spinning(scene)
+    assembly = Assembly(scene, comm, {})
+    for name, view in by_line(scene).items():
+        turns = name in spins if scene.lines else None
+        assembly.lines[name] = line_assembly(view, name, comm.rank == 0, turns)
+    if scene.bodies or scene.joints:
+        from riser_soil.assembly.bodies_and_joints import hung_of
+
+        assembly.hung = hung_of(scene, assembly.lines)
     if scene.contact is not None:
         _add_ground(assembly)
     return assembly
 
 
 def _add_ground(assembly: Assembly) -> None:
+    from riser_soil.assembly import ground
+
+    for own in assembly.lines.values():
+        assert own.scene.contact is not None
+        own.contact_stiffness |= ground.stiffnesses(own.scene, own.scene.contact, own.scales)
+    if assembly.scene.soil is not None:
+        _add_soil(assembly, assembly.scene.soil)
+    if assembly.scene.seabed is not None:
+        for own in assembly.lines.values():
+            add_seabed(own)
+
+
+def _add_soil(assembly: Assembly, given: SoilScene) -> None:
+    """One line's alone, as yet."""
     from riser_soil.assembly import friction, ground
 
-    scene, settings = assembly.scene, assembly.scene.contact
+    scene, settings, own, comm = assembly.scene, assembly.scene.contact, assembly.only, assembly.comm
     assert settings is not None
-    stiffness = ground.stiffnesses(scene, settings, assembly.scales)
-    line, elements, assembly.contact_stiffness = assembly.line, assembly.elements, stiffness
-    if scene.soil is not None:
-        assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.scales.diameter, assembly.comm)
-        assembly.condensed = condensed_of(scene, soil, line, assembly.scales.diameter)
-        surface = soil.surface if assembly.condensed is None else assembly.condensed.top
-        contact = ground.soil_contact_of(scene, settings, line, elements, surface, stiffness["soil"])
-        assembly.soil_contact = contact
-        assembly.soil_friction = friction.soil_friction_of(scene, settings, contact, elements, soil.surface.volume)
-        assembly.mesh_renewal = ground.mesh_renewal_of(soil, contact, assembly.soil_friction, line)
-        if assembly.laying is not None or scene.stages[0].kind == "static":
-            top = soil.surface.points
-            assembly.cushion = ground.cushion_of(scene, contact, elements, top, assembly.comm)
-    if scene.seabed is not None:
-        law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
-        assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)
-        assembly.friction = friction.friction_of(scene, settings, assembly.seabed, elements)
+    line, elements, diameter = own.line, own.elements, assembly.scales.diameter
+    assembly.soil = soil = ground.soil_of(scene, given, line, diameter, comm)
+    assembly.condensed = condensed_of(scene, soil, line, diameter)
+    surface = soil.surface if assembly.condensed is None else assembly.condensed.top
+    contact = ground.soil_contact_of(scene, settings, line, elements, surface, own.contact_stiffness["soil"])
+    own.soil_contact = contact
+    own.soil_friction = friction.soil_friction_of(scene, settings, contact, elements, soil.surface.volume)
+    assembly.mesh_renewal = ground.mesh_renewal_of(soil, contact, own.soil_friction, line)
+    if assembly.laying is not None or scene.stages[0].kind == "static":
+        assembly.cushion = ground.cushion_of(scene, contact, elements, soil.surface.points, comm)

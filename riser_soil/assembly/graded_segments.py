@@ -20,8 +20,8 @@ SAME_PLACE = 1e-6  # of the riser's length
 
 def broken(scene: Scene) -> Iterator[tuple[Segment, ...]]:
     """Each segment in parts with ends where something acts within it: there shear jumps, and moments need nodes."""
-    begin, near = 0.0, SAME_PLACE * scene.riser.length
-    for segment in scene.riser.segments:
+    begin, near = 0.0, SAME_PLACE * scene.line.length
+    for segment in scene.line.segments:
         end, cuts = begin + segment.length, [begin]
         for place in sorted(_places(scene)):
             if cuts[-1] + near < place < end - near:
@@ -35,7 +35,7 @@ def _places(scene: Scene) -> Iterator[float]:
     """Arc lengths [m] of point loads and attachments."""
     for stage in scene.stages:
         yield from (load.at for load in stage.loads if isinstance(load.at, float))
-    for attachment in scene.riser.attachments:
+    for attachment in scene.line.attachments:
         yield from attachment.arcs
 
 

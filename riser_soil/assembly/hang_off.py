@@ -49,7 +49,7 @@ class HungEnd:
     @property
     def span(self) -> Array:
         """From the other end to this one (3,) [m]."""
-        here, there = (_position(self.scene.riser, name) for name in (self.name, self.other))
+        here, there = (_position(self.scene.line, name) for name in (self.name, self.other))
         return here - there
 
     @property
@@ -60,14 +60,14 @@ class HungEnd:
     @property
     def segment(self) -> int:
         """Number of the segment at the other end."""
-        return 0 if self.name == "end" else len(self.scene.riser.segments) - 1
+        return 0 if self.name == "end" else len(self.scene.line.segments) - 1
 
     @property
     def limits(self) -> tuple[float, float]:
         """Least and largest value that is looked at [m]."""
-        L, rise = self.scene.riser.length, float(self.span[2])
+        L, rise = self.scene.line.length, float(self.span[2])
         if self.asked.by == "length":
-            rest = L - self.scene.riser.segments[self.segment].length
+            rest = L - self.scene.line.segments[self.segment].length
             slack = math.fsum([rise, self.layback, L])
             return max(math.hypot(rise, self.layback) / LONGEST - rest, NEAREST * L), max(slack - rest, NEAREST * slack)
         return NEAREST * L, max(math.sqrt(max((LONGEST * L) ** 2 - rise**2, 0.0)), 2.0 * NEAREST * L)
@@ -84,14 +84,14 @@ def reported(hung: HungEnd, value: float) -> str:
     if hung.asked.by == "length":
         return f"{hung.reported}: a length of {value:.6g} m of segments.{hung.segment}"
     name = hung.name if hung.asked.by == "layback" else hung.other
-    place = ", ".join(f"{x:.6g}" for x in _position(with_value(hung, value).riser, name))
+    place = ", ".join(f"{x:.6g}" for x in _position(with_value(hung, value).line, name))
     return f"{hung.reported}: a layback of {value:.6g} m, the {name} at [{place}],"
 
 
 def hung_end(scene: Scene) -> HungEnd | None:
     """The end that hangs off; None where none does."""
     for name in ("start", "end"):
-        end = getattr(scene.riser, name)
+        end = getattr(scene.line, name)
         if isinstance(end, Support) and end.hang_off is not None:
             return HungEnd(scene, name, end.hang_off)
     return None
@@ -99,19 +99,19 @@ def hung_end(scene: Scene) -> HungEnd | None:
 
 def with_value(hung: HungEnd, value: float) -> Scene:
     """The scene with a value of what is solved for [m], and no hang-off asked any more."""
-    plain = getattr(hung.scene.riser, hung.name).model_copy(update={"hang_off": None})
-    scene = hung.scene.model_copy(update={"riser": hung.scene.riser.model_copy(update={hung.name: plain})})
+    plain = getattr(hung.scene.line, hung.name).model_copy(update={"hang_off": None})
+    scene = hung.scene.model_copy(update={"riser": hung.scene.line.model_copy(update={hung.name: plain})})
     if hung.asked.by == "length":
         return with_segment_as_long(scene, hung.segment, value)
     name, sign = (hung.name, 1.0) if hung.asked.by == "layback" else (hung.other, -1.0)
     ahead = hung.span * [1.0, 1.0, 0.0] * (sign * (value / hung.layback - 1.0))
-    x, y, z = (float(each) for each in _position(scene.riser, name) + ahead)
+    x, y, z = (float(each) for each in _position(scene.line, name) + ahead)
     return _as_high_over_the_ground(with_end_at(scene, name, (x, y, z)), scene, hung.other)
 
 
 def _as_high_over_the_ground(scene: Scene, before: Scene, name: str) -> Scene:
     """With the lower end as high over the ground as before: it moved, or the ground below it with the riser's start."""
-    x, y, z = getattr(scene.riser, name).position
+    x, y, z = getattr(scene.line, name).position
     rise = ground_height(scene, (x, y, z)) - ground_height(before, getattr(before.riser, name).position)
     return with_end_at(scene, name, (x, y, z + rise)) if rise else scene
 
@@ -156,7 +156,7 @@ def _looked_at(hung: HungEnd) -> Array:
 def _seen(hung: HungEnd, value: float) -> float:
     """The cable's angle from the vertical [deg] or tension [N] at the end that hangs off."""
     scene = with_value(hung, value)
-    start, end = (_position(scene.riser, name) for name in ("start", "end"))
+    start, end = (_position(scene.line, name) for name in ("start", "end"))
     cable = catenary_between(scene, elements_of(scene), attachments_of(scene), start, end)
     tension = float(cable.tension[-1 if hung.name == "end" else 0])
     return tension if hung.asked.angle is None else math.degrees(math.asin(min(1.0, cable.H / tension)))

@@ -153,7 +153,7 @@ def _carry(end: End, origin: Array, six: SixDegreeMotion) -> None:
 
 def end_places(scene: Scene) -> Iterator[dict[str, Array]]:
     """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
-    ends = {name: getattr(scene.riser, name) for name in ("start", "end")}
+    ends = {name: getattr(scene.line, name) for name in ("start", "end")}
     last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
     end, vessels = End(prescribed=True), vessels_of(scene)
     for stage in scene.stages:

@@ -24,7 +24,9 @@ def communicator_of(scene: Scene) -> Communicator:
         require("soil", FOR_SOIL)
     elif scene.solver.newton == "snes":
         require("solver.newton: snes", FOR_SNES)
-    return world(with_mpi=scene.soil is not None or scene.solver.newton == "snes")
+    elif scene.lines:
+        require("lines", FOR_SNES)
+    return world(with_mpi=scene.soil is not None or scene.solver.newton == "snes" or bool(scene.lines))
 
 
 def require(key: str, packages: dict[str, str]) -> None:

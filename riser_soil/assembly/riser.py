@@ -38,10 +38,10 @@ def elements_of(scene: Scene) -> sections.Elements:
     """Properties of all elements, from start to end."""
     around = sections.Surroundings(
         gravity=scene.gravity,
-        contents=scene.riser.contents.density if scene.riser.contents else 0.0,
+        contents=scene.line.contents.density if scene.line.contents else 0.0,
         water=scene.water.density if scene.water else 0.0,
     )
-    bare = elements_along(scene.riser, scene.used_line_types, around)
+    bare = elements_along(scene.line, scene.used_line_types, around)
     given = scene.water.marine_growth if scene.water else None
     return bare if given is None else _grown(scene, bare, np.array(given), around)
 
@@ -54,7 +54,7 @@ def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections
     from riser_soil.riser.additions import Growth, with_growth
 
     growth, attachments, grown = Growth(*given.T), attachments_of(scene), bare
-    unstressed = unstressed_shape(scene.riser, bare.arc)
+    unstressed = unstressed_shape(scene.line, bare.arc)
     before: Array = np.full(bare.arc.size, np.inf)
     for _ in range(MOST_SHAPES):
         z = initial_shape(scene, grown, attachments, unstressed)[1].position[:, 2]
@@ -108,7 +108,7 @@ def _line_type(given: LineType) -> sections.SectionProperties:
 
 def attachments_of(scene: Scene) -> tuple[PointAttachment, ...]:
     """Everything attached to the riser, one by one."""
-    if not scene.riser.attachments:
+    if not scene.line.attachments:
         return ()
     from riser_soil.riser.attachments import PointAttachment
 
@@ -122,7 +122,7 @@ def attachments_of(scene: Scene) -> tuple[PointAttachment, ...]:
             drag_area=given.drag_area,
             added_mass=given.added_mass,
         )
-        for given in scene.riser.attachments
+        for given in scene.line.attachments
         for arc in given.arcs
     )
 
@@ -137,13 +137,13 @@ def attached_weight(line: Line, attachments: Sequence[PointAttachment]) -> list[
 
 
 def line_of(
-    scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment], active: bool
+    scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment], active: bool, name: str
 ) -> tuple[Line, Catenary | None]:
     """The line in its initial shape, and the catenary where it is one."""
-    unstressed = unstressed_shape(scene.riser, elements.arc)
+    unstressed = unstressed_shape(scene.line, elements.arc)
     catenary, initial = initial_shape(scene, elements, attachments, unstressed)
     layout = shapes.layout(elements.arc, elements.outer_diameter, unstressed, initial)
-    start, end = _end(scene.riser.start), _end(scene.riser.end)
+    start, end = _end(scene.line.start), _end(scene.line.end)
     line = Line(
         resolved_dimension(scene),
         layout,
@@ -151,12 +151,13 @@ def line_of(
         end,
         direction=np.asarray(vertical_plane(scene).direction),
         active=active,
+        name=name,
     )
     return line, catenary
 
 
 def _end(given: str | Support) -> End:
-    if not isinstance(given, Support):
+    if not isinstance(given, Support) or given.jointed:
         return End(prescribed=False)
     return End(prescribed=True, rotation_fixed=given.rotation == "fixed", heaves=given.tensioner is not None)
 
@@ -193,7 +194,7 @@ def _to_neutral(line: Line, node: int, angle: float) -> Array:
 def no_wall_tension(scene: Scene) -> str:
     """Why there is no wall tension; empty where there is one."""
     if scene.water is None:
-        needed = scene.riser.contents or any(line.wall for line in scene.used_line_types.values())
+        needed = scene.line.contents or any(line.wall for line in scene.used_line_types.values())
         return "" if needed else "without water and contents it is the effective tension"
     if scene.water.surface_level is None:
         return "the pressure outside is unknown without water.surface_level"
@@ -212,7 +213,7 @@ def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | No
 
 
 def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:
-    given = scene.riser.contents
+    given = scene.line.contents
     if given is None:
         return None
     from riser_soil.riser.wall_stress import HydrostaticPressure

@@ -49,7 +49,7 @@ def tables_of(scene: Scene, water: Water, elements: Elements) -> ReynoldsTables 
         return None
     from riser_soil.sea import reynolds_drag
 
-    of_each = [rows.get(s.line_type) or NO_DRAG for s in scene.riser.segments for _ in range(s.element_count)]
+    of_each = [rows.get(s.line_type) or NO_DRAG for s in scene.line.segments for _ in range(s.element_count)]
     return reynolds_drag.tables_of(water.density, water.kinematic_viscosity, elements.outer_diameter, of_each)
 
 

@@ -55,10 +55,10 @@ def initial_shape(
     scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment], unstressed: shapes.Curve
 ) -> tuple[Catenary | None, shapes.Curve]:
     """The first shape, and the catenary where it is one."""
-    given = scene.riser.initial
+    given = scene.line.initial
     match given:
         case "catenary":
-            start, end = _ends(scene.riser)
+            start, end = _ends(scene.line)
             assert start is not None, "the scene's checks let no catenary start without two prescribed ends"
             assert end is not None
             catenary = catenary_between(scene, elements, attachments, start, end)
@@ -69,7 +69,7 @@ def initial_shape(
         case PointsShape(points=points):
             return None, shapes.through(elements.arc, points)
         case "straight":
-            return None, _laid_straight(scene.riser, elements.arc)
+            return None, _laid_straight(scene.line, elements.arc)
         case "unstressed":
             return None, unstressed
         case _:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from riser_soil.assembly.riser import spins_freely
 from riser_soil.assembly.sea import current_times, wave_clock
 from riser_soil.core.part import Part
 from riser_soil.riser.line import Line
@@ -61,11 +60,6 @@ def _multiples(interval: float, end: float) -> list[float]:
     return [n * interval for n in range(1, int(end / interval) + 1)]
 
 
-def prescribe_spin(scene: Scene, line: Line, stage: Stage) -> None:
-    """Prescribe the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
-    line.prescribe_spin(spins_freely(scene.riser) and not isinstance(stage, DynamicStage))
-
-
 def loads_of(scene: Scene, line: Line, stage: Stage) -> list[Part]:
     """The part of the loads on the riser in a stage, if there are any."""
     loads = [*_tensioners(scene), *loads_in(scene.stages, stage)]
@@ -79,7 +73,7 @@ def loads_of(scene: Scene, line: Line, stage: Stage) -> list[Part]:
 def _tensioners(scene: Scene) -> Iterator[LoadScene]:
     """The constant upward forces of heave-compensated ends, as loads."""
     always = (0.0, 1.0), (1.0, 1.0)
-    start, end = scene.riser.start, scene.riser.end
+    start, end = scene.line.start, scene.line.end
     if isinstance(start, Support) and start.tensioner is not None:
         yield LoadScene(at="start", force=(0.0, 0.0, start.tensioner.tension), history=always)
     if isinstance(end, Support) and end.tensioner is not None:
@@ -136,12 +130,12 @@ def contents_at(
     scene: Scene, line: Line, elements: Elements, clock: float, runs: bool = False, grows: bool = False
 ) -> list[Part]:
     """The same at a reading of the clock [s]; runs: whether it goes on, grows: whether forces do, see `Flow`."""
-    given = scene.riser.contents
+    given = scene.line.contents
     if given is None or not given.uneven_or_moving:
         return []
     from riser_soil.riser.contents import Flow, InnerFlow, SlugTrain
 
-    fronts = [given.front_of(each, scene.riser.length) for each in given.slugs]
+    fronts = [given.front_of(each, scene.line.length) for each in given.slugs]
     slugs = [
         SlugTrain(each.density - given.density, each.length, front, each.spacing or 0.0)
         for each, front in zip(given.slugs, fronts, strict=True)

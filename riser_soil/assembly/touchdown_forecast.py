@@ -38,7 +38,7 @@ class TouchdownForecast:
 def forecast(scene: Scene, elements: Elements) -> TouchdownForecast | None:
     """The touchdown points nearest to the riser's end; None where no catenary between its ends comes down."""
     attachments = attachments_of(scene)
-    if not all(isinstance(end, Support) for end in (scene.riser.start, scene.riser.end)):
+    if not all(isinstance(end, Support) for end in (scene.line.start, scene.line.end)):
         return None
     found = [_touchdown(scene, elements, attachments, *ends) for ends in extreme_places(scene)]
     if not found or found[0] is None:

@@ -82,7 +82,7 @@ class ContactForceLog(StatelessObserver):
 
 def first_penetration(scene: Scene) -> float:
     """Depth of the pipe's underside below the seabed as the scene has it [m]; SceneError where it is no segment."""
-    ends = scene.riser.start, scene.riser.end
+    ends = scene.line.start, scene.line.end
     if scene.soil is None:
         raise SceneError("soil: missing: a pipe segment is pressed into soil; add soil")
     if scene.soil.reference_rate is not None:

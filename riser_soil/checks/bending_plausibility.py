@@ -126,7 +126,7 @@ def _uneven_neighbours(assembly: Assembly) -> Iterator[str]:
 
 def proposal(assembly: Assembly) -> str:
     """Segments in words, with line feeds; "" where the elements are right already, or no cable tells."""
-    asked, given = asked_lengths(assembly), assembly.scene.riser.segments
+    asked, given = asked_lengths(assembly), assembly.scene.line.segments
     if asked is None:
         return ""
     segments = segments_for(assembly.scene, *asked)
@@ -145,10 +145,10 @@ def asked_lengths(assembly: Assembly) -> tuple[Array, Array] | None:
     between two places, or soil has a say.
     """
     scene = assembly.scene
-    supported = all(isinstance(end, Support) for end in (scene.riser.start, scene.riser.end))
+    supported = all(isinstance(end, Support) for end in (scene.line.start, scene.line.end))
     if assembly.catenary is None or scene.soil is not None or not supported:
         return None
-    fine = scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": _fine(scene)})})
+    fine = scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": _fine(scene)})})
     elements = elements_of(fine)
     try:
         shapes = [catenary_between(fine, elements, assembly.attachments, *ends) for ends in extreme_places(scene)]
@@ -172,8 +172,8 @@ def _excess(nodes: Array, arc: Array, lengths: Array) -> float:
 def _fine(scene: Scene) -> tuple[Segment, ...]:
     return tuple(
         segment.model_copy(update={"elements": elements, "element_length": None})
-        for segment in scene.riser.segments
-        for elements in [max(LEAST, round(FINE * segment.length / scene.riser.length))]
+        for segment in scene.line.segments
+        for elements in [max(LEAST, round(FINE * segment.length / scene.line.length))]
     )
 
 
@@ -213,7 +213,7 @@ def _of_bend(elements: Elements, shape: Catenary, hangs: BoolArray, moment: floa
 def _layers(scene: Scene, hanging: Sequence[BoolArray]) -> BoolArray:
     """Elements (ne,) beside clamped ends, and those that touch down in some shapes and hang in others."""
     beside: BoolArray = np.zeros(hanging[0].size, dtype=bool)
-    for end, at in ((scene.riser.start, 0), (scene.riser.end, -1)):
+    for end, at in ((scene.line.start, 0), (scene.line.end, -1)):
         beside[at] |= isinstance(end, Support) and end.rotation != "free"
     for hangs in hanging:
         edges = np.flatnonzero(np.diff(hangs))

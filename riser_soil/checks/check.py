@@ -38,7 +38,10 @@ def describe(scene: Scene) -> str:
     tell(size, comm)
     of_size = [*tight(size, comm), *too_long(size)]
     assembly = build(scene, comm)
-    lines = [*_parts(assembly), *_unknowns(assembly), _memory_line(assembly), *_results(size)]
+    lines = [*_parts(assembly)]
+    for name, line in assembly.by_line.items():
+        lines += [*_unknowns(line, name or "riser")]
+    lines += [*_hung(assembly), _memory_line(assembly), *_results(size)]
     warnings = [*physical_warnings(assembly), *of_size]
     return "\n".join([*lines, *(f"warning: {warning}" for warning in warnings), _verdict(warnings)])
 
@@ -62,18 +65,33 @@ def reported_waves(assembly: Assembly) -> Iterator[str]:
 
 def _parts(assembly: Assembly) -> Iterator[str]:
     stages = len(assembly.scene.stages)
-    yield f"{assembly.scene.title}: {_counted(stages, 'stage')}, riser in {assembly.line.dimension} dimensions"
+    what = "riser" if not assembly.scene.lines else _counted(len(assembly.lines), "line")
+    dimension = next(iter(assembly.lines.values())).line.dimension
+    yield f"{assembly.scene.title}: {_counted(stages, 'stage')}, {what} in {dimension} dimensions"
     yield "built: " + ", ".join(built(assembly.scene))
     yield from (f"left out: {name}: {reason}" for name, reason in left_out(assembly.scene).items())
     yield from reported_waves(assembly)
 
 
-def _unknowns(assembly: Assembly) -> Iterator[str]:
+def _hung(assembly: Assembly) -> Iterator[str]:
+    """Bodies, and how stiff joints are that are rigid."""
+    hung = assembly.hung
+    for name, body in ({} if hung is None else hung.bodies).items():
+        given = assembly.scene.bodies[name]
+        buoyancy = assembly.scene.water.density * given.volume if assembly.scene.water is not None else 0.0
+        net = assembly.scene.gravity * (given.mass - buoyancy)
+        yield f"body {name}: {unknowns(assembly.comm, body)} unknowns, weight less buoyancy {net:.4g} N"
+    for joint in () if hung is None or hung.joints is None else hung.joints.joints:
+        turns = f" and {joint.rotation:.4g} N.m/rad" if joint.rotation else ""
+        yield f"joint {joint.name}: {joint.translation:.4g} N/m{turns}"
+
+
+def _unknowns(assembly: Assembly, name: str) -> Iterator[str]:
     from riser_soil.checks.bending_plausibility import proposal
 
     line = assembly.line
     yield (
-        f"riser: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
+        f"{name}: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
         f"{unknowns(assembly.comm, line)} unknowns"
     )
     yield from line_summary(assembly)
@@ -141,7 +159,7 @@ def _results(size: ProblemSize) -> Iterator[str]:
 def memory(assembly: Assembly) -> float:
     """Estimated bytes over all ranks; collective."""
     comm = assembly.comm
-    total = riser_memory(comm.size, unknowns(comm, assembly.line))
+    total = riser_memory(comm.size, sum(unknowns(comm, field) for field in assembly.moving))
     if assembly.soil is not None and assembly.scene.soil is not None:
         cells, rows, cols = assembly.soil.blocks()["soil"].shape
         factor = soil_factor(assembly.scene, assembly.scene.soil, unknowns(comm, assembly.soil.field))
@@ -166,8 +184,8 @@ def _rows(assembly: Assembly) -> list[tuple[str, ...]]:
     scene, elements = assembly.scene, assembly.elements
     rows: list[tuple[str, ...]] = [(*HEADS, *STIFFNESSES)]
     begin = 0.0
-    firsts = accumulate((segment.element_count for segment in scene.riser.segments), initial=0)
-    for segment, first in zip(scene.riser.segments, firsts, strict=False):
+    firsts = accumulate((segment.element_count for segment in scene.line.segments), initial=0)
+    for segment, first in zip(scene.line.segments, firsts, strict=False):
         e = first + segment.element_count // 2  # beyond bend stiffeners
         line = scene.line_types[segment.line_type]
         mass, end = float(elements.mass[e]), begin + segment.length
@@ -198,7 +216,7 @@ def _whole(assembly: Assembly) -> Iterator[str]:
 
 def tensions_by_hand(assembly: Assembly) -> Iterator[str]:
     """Effective tensions at the ends, at rest: of the cable without bending stiffness, and by formula beside it."""
-    start, end = assembly.scene.riser.start, assembly.scene.riser.end
+    start, end = assembly.scene.line.start, assembly.scene.line.end
     if not (isinstance(start, Support) and isinstance(end, Support)):
         return
     places = np.array(start.position), np.array(end.position)

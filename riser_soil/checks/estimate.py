@@ -23,6 +23,7 @@ from riser_soil.assembly.motions import corner_count
 from riser_soil.checks.inventory import built
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
 from riser_soil.scene.layout import initial_ends
+from riser_soil.scene.lines import by_line
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import MeshFile, SoilScene
@@ -167,7 +168,7 @@ def _sides(scene: Scene, soil: SoilScene) -> tuple[float, float, float]:
 def size_of(scene: Scene) -> ProblemSize:
     """The size of a scene."""
     scene = sized(scene)
-    elements = scene.riser.element_count
+    elements = sum(view.line.element_count for view in by_line(scene).values())
     cells, unknowns, entries = _soil(scene, scene.soil) if scene.soil is not None else (0.0, 0.0, 0)
     factor = soil_factor(scene, scene.soil, unknowns) if scene.soil is not None else 0.0
     stages = [_stage(scene, stage) for stage in scene.stages]
@@ -179,12 +180,13 @@ def size_of(scene: Scene) -> ProblemSize:
     of_soil = cells * CELL + (0.0 if apart else FACTORED * unknowns**2)
     condensed = scene.soil is not None and _condensed(scene, scene.soil)
     seconds = BUILD * elements + steps * of_riser + (of_soil + ON_CONDENSED * steps if condensed else of_soil * steps)
-    dofs = 3 if resolved_dimension(scene) == 2 else 6
+    lines = len(by_line(scene))
+    dofs = 3 if not scene.lines and resolved_dimension(scene) == 2 else 6
     auto = any(not isinstance(stage, StaticStage) and stage.time_step == "auto" for stage in scene.stages)
     return ProblemSize(
         elements=elements,
         components=components,
-        riser_unknowns=dofs * (elements + 1),
+        riser_unknowns=dofs * (elements + lines + len(scene.bodies)),
         cells=cells,
         soil_unknowns=unknowns,
         entries=entries,
@@ -239,7 +241,7 @@ def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
 def _block(scene: Scene, soil: SoilScene) -> BlockSpec:
     from riser_soil.assembly.soil_block import block_of
 
-    start, end = initial_ends(scene.riser)
+    start, end = initial_ends(scene.line)
     return block_of(scene, soil, ((start[0], start[1]), (end[0], end[1])))
 
 

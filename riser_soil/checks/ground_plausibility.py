@@ -165,7 +165,7 @@ def _out_of_reach(assembly: Assembly) -> Iterator[str]:
     above = np.all((points[:, :2] >= grid.low[:2]) & (points[:, :2] <= grid.high[:2]), axis=1)
     gap = float(np.min((underside - scene.seabed_level)[above], initial=np.inf))
     moved = farthest_move(scene)
-    reach = LOWERED * moved + DRIVEN * scene.riser.length * _driven(scene) + 2.0 * _diameter(assembly)
+    reach = LOWERED * moved + DRIVEN * scene.line.length * _driven(scene) + 2.0 * _diameter(assembly)
     if gap <= reach:
         return
     where = f"hangs {gap:.4g} m above it" if np.isfinite(gap) else "is not above it"

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from riser_soil.assembly.riser import no_wall_tension
 from riser_soil.assembly.soil_block import why_all
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
+from riser_soil.scene.lines import by_line
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
@@ -20,20 +23,37 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 def left_out(scene: Scene) -> dict[str, str]:
     """Parts and results that the scene leaves out, each with its reason."""
-    reported = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": no_wall_tension(scene)}
+    reasons = [no_wall_tension(view) for view in by_line(scene).values()]
+    reported = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": _why_all(reasons)}
     return {name: reason for name, reason in reported.items() if reason}
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """Part -> why it is left out, empty where it is built."""
-    ends = (scene.riser.start, scene.riser.end)
+    """Part -> why it is left out, empty where it is built: of several lines where one has it."""
+    each = [_reasons_of_line(view) for view in by_line(scene).values()]
+    found = {name: _why_all([reasons[name] for reasons in each]) for name in each[0]}
+    if not scene.lines:
+        return found
+    drag = "" if scene.bodies and scene.water is not None else "no body is in water"
+    bodies = "" if scene.bodies else "the scene has no bodies"
+    joints = "" if scene.joints else "the scene has no joints"
+    return found | {"bodies": bodies, "body drag": drag, "joints": joints}
+
+
+def _why_all(reasons: Sequence[str]) -> str:
+    """The first of the reasons why each lacks something; empty where one has it."""
+    return reasons[0] if all(reasons) else ""
+
+
+def _reasons_of_line(scene: Scene) -> dict[str, str]:
+    ends = (scene.line.start, scene.line.end)
     sprung = any(isinstance(e, Support) and isinstance(e.rotation, RotationSpring) for e in ends)
     tensioned = any(isinstance(e, Support) and e.tensioner is not None for e in ends)
     ground = scene.seabed is not None or scene.soil is not None
     return {
         "riser": "",
         "springs": "" if sprung else "no end has a rotational spring",
-        "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
+        "attachments": "" if scene.line.attachments else "nothing is attached to the riser",
         "contents": _no_contents(scene),
         "loads": "" if any(s.loads for s in scene.stages) or tensioned else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "no stage is dynamic",
@@ -55,7 +75,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 DISSIPATING = (
     *("morison", "structural damping", "contact", "seabed", "friction"),
-    *("soil friction", "soil", "new mesh", "cushion"),
+    *("soil friction", "soil", "new mesh", "cushion", "body drag"),
 )
 #: Accounts of a part that tells what is its own and what is the time scheme's.
 SPLIT = {
@@ -63,7 +83,7 @@ SPLIT = {
     "seabed": ("seabed", "seabed_time_scheme"),
     "contact": ("contact", "contact_time_scheme"),
 }
-WORKING = ("loads", "contents", "morison", "vortices", "vortices in line", "buoyancy")
+WORKING = ("loads", "contents", "morison", "vortices", "vortices in line", "buoyancy", "body drag")
 
 
 def dissipating(scene: Scene) -> tuple[str, ...]:
@@ -86,7 +106,7 @@ def has_dynamics(scene: Scene) -> bool:
 
 
 def _no_contents(scene: Scene) -> str:
-    given = scene.riser.contents
+    given = scene.line.contents
     if given is None:
         return "the riser is empty"
     return "" if given.uneven_or_moving else "even contents at rest count in the riser's mass and weight"
@@ -142,7 +162,7 @@ def _no_morison(scene: Scene) -> str:
         return "the scene has no water"
     if not has_dynamics(scene) and scene.water.current is None:
         return "no stage is dynamic, and still water does not load a riser at rest"
-    types, attachments = scene.used_line_types.values(), scene.riser.attachments
+    types, attachments = scene.used_line_types.values(), scene.line.attachments
     resist = any(t.drag or t.added_mass or t.strakes for t in types)
     resist = resist or any(a.drag_area or a.added_mass for a in attachments)
     changes = scene.water.current is not None and scene.water.current.history is not None

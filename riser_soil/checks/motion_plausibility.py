@@ -39,7 +39,7 @@ VelocitiesByEnd = dict[str, EndVelocities]
 
 def motion_warnings(scene: Scene) -> Iterator[str]:
     """Warnings about prescribed motions and time steps, each with its numbers."""
-    for name, support in (("start", scene.riser.start), ("end", scene.riser.end)):
+    for name, support in (("start", scene.line.start), ("end", scene.line.end)):
         if isinstance(support, Support):
             yield from _shocks(scene, name, support)
     yield from _stretched(scene)
@@ -57,7 +57,7 @@ def farthest_move(scene: Scene) -> float:
 
 def top_speed(scene: Scene) -> float:
     """The largest speed [m/s] of an end in dynamic stages."""
-    ends = [(name, getattr(scene.riser, name)) for name in ("start", "end")]
+    ends = [(name, getattr(scene.line, name)) for name in ("start", "end")]
     courses = [_courses(scene, name, end) for name, end in ends if isinstance(end, Support)]
     moving = zip(scene.stages, *courses, strict=True)
     found = [each["m/s"].top for stage, *course in moving if isinstance(stage, DynamicStage) for each in course]
@@ -66,7 +66,7 @@ def top_speed(scene: Scene) -> float:
 
 def _stretched(scene: Scene) -> Iterator[str]:
     """Ends that go farther apart than the riser is long."""
-    length = scene.riser.length
+    length = scene.line.length
     for n, (stage, place) in enumerate(zip(scene.stages, end_places(scene), strict=True)):
         moves = stage.move if isinstance(stage, StaticStage) else stage.motion
         if moves is None or len(place) < 2:

@@ -16,7 +16,17 @@ from riser_soil.scene.stages import DynamicStage, Load, Stage, StaticStage
 
 
 def physical_warnings(assembly: Assembly) -> Iterator[str]:
-    """All plausibility warnings, each with its numbers; collective."""
+    """All plausibility warnings, each with its numbers, those of several lines behind their names; collective."""
+    if not assembly.scene.lines:
+        yield from _of_one(assembly)
+        return
+    found = {name: [*_of_one(line)] for name, line in assembly.by_line.items()}
+    for warning in dict.fromkeys(each for of_line in found.values() for each in of_line):
+        names = [name for name, of_line in found.items() if warning in of_line]
+        yield f"{', '.join(names)}: {warning}"
+
+
+def _of_one(assembly: Assembly) -> Iterator[str]:
     yield from _light_pipes(assembly)
     yield from bending_warnings(assembly)
     if assembly.contacts:
@@ -58,8 +68,8 @@ def _meant_to_float(assembly: Assembly) -> BoolArray:
     which lie between heavier ones, as the buoyant section of a lazy wave, or whose submerged_weight is given.
     """
     scene, weight = assembly.scene, assembly.elements.weight
-    given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.riser.segments]
-    meant = np.repeat(given, [segment.element_count for segment in scene.riser.segments])
+    given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.line.segments]
+    meant = np.repeat(given, [segment.element_count for segment in scene.line.segments])
     heavy = np.flatnonzero(weight > 0.0)
     if heavy.size:
         meant[heavy[0] : heavy[-1]] = True

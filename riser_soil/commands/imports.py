@@ -25,7 +25,7 @@ def import_(
     ] = None,
     line: Annotated[
         str | None,
-        typer.Option("--line", metavar="ID", help="line of the file, with those joined to it; by default the first"),
+        typer.Option("--line", metavar="ID", help="line with those joined to it, by default the first; all: the deck"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite a scene file, which is refused otherwise")] = False,
 ) -> None:
@@ -79,6 +79,10 @@ def _imported(file: Path, line: str | None, stem: str) -> "ImportedScene":
     from riser_soil.moordyn import deck
     from riser_soil.moordyn.scene_of import scene_of as scene_of_deck
 
+    if line == "all":
+        from riser_soil.moordyn.whole_deck import whole_scene_of
+
+        return whole_scene_of(deck.read_deck(file))
     return scene_of_deck(deck.read_deck(file), line)
 
 

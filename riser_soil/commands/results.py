@@ -94,8 +94,9 @@ def plot(
         if ending not in FORMATS:
             raise ResultsError(f'--format "{ending}": must be one of {", ".join(FORMATS)}')
         wanted = [name for group in what or () for name in group.split(",") if name]
-        for file, words in album(Run(folder), output or folder / "plots", wanted, ending, stage):
-            typer.echo(f"{file}: {words}" if file else words)
+        for name, run in Run(folder).of_lines.items():
+            for file, words in album(run, (output or folder / "plots") / name, wanted, ending, stage):
+                typer.echo(f"{file}: {words}" if file else words)
 
 
 def report(

@@ -46,7 +46,7 @@ def read(scene: str, overrides: list[str] | None) -> "Scene":
 
 def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
     """The scene with its hang-off as a cable would have it, where it asks for one."""
-    if not scene.riser.hangs_off:
+    if scene.lines or not scene.line.hangs_off:
         return scene
     from riser_soil.assembly.hang_off import by_cable, hung_end, reported, settled
 

@@ -170,7 +170,7 @@ class CoulombFriction(CompiledPart):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if not self._begun:
-            self.contact.find(State.at_rest(end, self.line.size))
+            self.contact.find(State.at_rest(end, self.line.offset + self.line.size))
             self._write_start()
             self._begun = True
 

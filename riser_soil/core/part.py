@@ -237,7 +237,7 @@ class Field(Protocol):
 
 
 class LineField(Field, Protocol):
-    """A field of translations (nn, d) and rotations along a line; it may turn as a whole.
+    """A field of translations (nn, d) and rotations along a line, or of a body, one node; it may turn as a whole.
 
     lever: arm [m] by which moments are converted to forces in norms, so that nothing depends on the unit of length.
     turns_axes: whether the axes of its rotation dofs turn with the line, from step to step.
@@ -283,7 +283,9 @@ class LineField(Field, Protocol):
 
 @dataclass(eq=False)
 class Model:
-    """The model of a stage: the lines, the parts that act on them, and the other owners of dofs, such as the soil."""
+    """The model of a stage: the lines and bodies, the parts that act on them, and the other owners of dofs, such as the
+    soil.
+    """
 
     lines: Sequence[LineField]
     parts: Sequence[Part] = ()

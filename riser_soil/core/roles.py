@@ -91,12 +91,18 @@ def owners(model: Model) -> dict[str, Stateful]:
     ValueError where two would have one name, and the one's state be taken for the other's.
     """
     named: list[tuple[str, Stateful]] = [(f"fields/{field.name}", field) for field in model.fields]
-    named += [(f"parts/{part.name}", part) for part in with_role(model.parts, Stateful)]
+    named += [(f"parts/{name_of(part)}", part) for part in with_role(model.parts, Stateful)]
     found = dict(named)
     if len(found) < len(named):
         names = [name for name, _ in named]
         raise ValueError(f'more than one keeps its state as "{max(names, key=names.count)}"')
     return found
+
+
+def name_of(part: Part) -> str:
+    """Of one instance: that of its kind, behind the name of its line where there may be several."""
+    line = getattr(part, "line", None)
+    return part.name if line is None or line.name == "riser" else f"{line.name}/{part.name}"
 
 
 def require_roles(model: Model) -> None:

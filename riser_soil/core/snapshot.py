@@ -120,6 +120,10 @@ class Instant(NamedTuple):
     touch: ContactSnapshot
 
 
+Instants = Mapping[str, Instant]
+"""Of each line by its name, "" of the only one."""
+
+
 def instants_at(seen: Instant, at: Any) -> Instant:
     """Those of many instants that an index of their axis selects: one, by its number, without that axis."""
     return Instant(seen.arc, *(mapped(lambda values: values[at], each) for each in (seen.riser, seen.touch)))

@@ -99,7 +99,7 @@ def _properties(scene: Scene, name: str, line: LineType) -> list[float]:
         raise SceneError(f"{path}.submerged_weight: a deck's weight follows from mass and diameter; leave it out")
     if about_y != about_z:
         raise SceneError(f"{path}: EI_y and EI_z differ, and a deck has one EI; give EI")
-    filled = scene.riser.contents.density * math.pi / 4.0 * line.inner_diameter**2 if scene.riser.contents else 0.0
+    filled = scene.line.contents.density * math.pi / 4.0 * line.inner_diameter**2 if scene.line.contents else 0.0
     if line.drag and line.drag.normal is None:
         raise SceneError(f"{path}.drag.by_reynolds: a deck has one coefficient across the line; give normal")
     drag = line.normal_drag, line.drag.tangential if line.drag else 0.0
@@ -119,10 +119,10 @@ def _time_step(scene: Scene, pieces: list[_Piece]) -> float:
 
 def _pieces(scene: Scene) -> tuple[list[_Piece], list[float]]:
     """Segments, cut where something is attached, and the arc lengths of their ends."""
-    cuts = [arc for each in scene.riser.attachments for arc in each.arcs]
+    cuts = [arc for each in scene.line.attachments for arc in each.arcs]
     pieces, at = list[_Piece](), [0.0]
-    for segment in scene.riser.segments:
-        pieces += _cut(segment, [arc - at[-1] for arc in cuts], _SAME_ARC * scene.riser.length)
+    for segment in scene.line.segments:
+        pieces += _cut(segment, [arc - at[-1] for arc in cuts], _SAME_ARC * scene.line.length)
         at = [0.0, *(sum(piece.length for piece in pieces[: n + 1]) for n in range(len(pieces)))]
     return pieces, at
 
@@ -136,7 +136,7 @@ def _cut(segment: Segment, arcs: Sequence[float], apart: float) -> Iterator[_Pie
 
 def _points(scene: Scene, arcs: list[float], level: float) -> Iterator[list[object]]:
     """Attachment, place and what sits there, of each point; free ones lie on a straight line, and find their places."""
-    ends = scene.riser.start, scene.riser.end
+    ends = scene.line.start, scene.line.end
     first, last = (end.position if isinstance(end, Support) else None for end in ends)
     if first is None and last is None:
         raise SceneError("riser: both ends are free; a deck needs one that is held")
@@ -161,8 +161,8 @@ def _between(first: Vector | None, last: Vector | None, arc: float, length: floa
 
 
 def _attached(scene: Scene, arc: float) -> list[Attachment]:
-    near = _SAME_ARC * scene.riser.length
-    return [each for each in scene.riser.attachments for at in each.arcs if abs(at - arc) <= near]
+    near = _SAME_ARC * scene.line.length
+    return [each for each in scene.line.attachments for at in each.arcs if abs(at - arc) <= near]
 
 
 def _sum(attached: list[Attachment]) -> list[float]:
@@ -176,7 +176,7 @@ def _options(scene: Scene, level: float) -> dict[str, float]:
     assert scene.water is not None
     found = {"g": scene.gravity, "rho": scene.water.density}
     if isinstance(bed := scene.seabed, SpringSeabed):
-        diameter = scene.line_types[scene.riser.segments[0].line_type].outer_diameter or 0.0
+        diameter = scene.line_types[scene.line.segments[0].line_type].outer_diameter or 0.0
         axis = scene.seabed_level + (0.5 * diameter if bed.contact_at == "outer" else 0.0)
         found |= {"WtrDpth": level - axis, "kBot": bed.stiffness / diameter, "cBot": 0.0}
     elif scene.has_ground:

@@ -29,9 +29,9 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
     first, last = (place(deck, name, row) for name, row in _ends(chain))
     if first[2] > last[2]:
         chain = chain.reversed()
-    options, reported = _options(deck)
-    seabed, about_seabed = _seabed(deck, chain, options)
-    types, about_types = _line_types(deck, chain)
+    options, reported = options_of(deck)
+    seabed, about_seabed = seabed_of(deck, chain, options)
+    types, about_types = line_types(deck, chain)
     data: dict[str, Any] = {"title": deck.title.strip("- ") or deck.name, "gravity": options["g"]}
     data |= {"water": {"density": options["rho"], "surface_level": 0.0}, "line_types": types}
     data |= {"riser": _riser(deck, chain)} | seabed
@@ -44,7 +44,7 @@ def _ends(chain: Chain) -> tuple[tuple[str, DeckRow], tuple[str, DeckRow]]:
     return (chain.joints[0], chain.lines[0]), (chain.joints[-1], chain.lines[-1])
 
 
-def _options(deck: Deck) -> tuple[dict[str, float], list[Remark]]:
+def options_of(deck: Deck) -> tuple[dict[str, float], list[Remark]]:
     values, remarks, known = dict(DEFAULTS), list[Remark](), (*DEFAULTS, *ALONG_AND_ACROSS)
     for row in deck.of("options"):
         key = ALIASES.get(row.words[1].lower(), row.words[1].lower())
@@ -57,7 +57,7 @@ def _options(deck: Deck) -> tuple[dict[str, float], list[Remark]]:
     return values, remarks
 
 
-def _seabed(
+def seabed_of(
     deck: Deck, chain: Chain, options: dict[str, float]
 ) -> tuple[dict[str, Any], list[Remark]]:
     """A bed of springs: kBot [Pa/m] times the diameter; MoorDyn's nodes touch with their axis."""
@@ -89,7 +89,7 @@ def _diameter(deck: Deck, row: DeckRow) -> float:
     return deck.number(_type_row(deck, row), 1, "Diam")
 
 
-def _line_types(deck: Deck, chain: Chain) -> tuple[dict[str, Any], list[Remark]]:
+def line_types(deck: Deck, chain: Chain) -> tuple[dict[str, Any], list[Remark]]:
     types, remarks = dict[str, Any](), list[Remark]()
     for row in dict.fromkeys(_type_row(deck, line) for line in chain.lines):
         name, *stiffnesses = row.words[0], row.words[3], row.words[5]
@@ -120,16 +120,16 @@ def _riser(deck: Deck, chain: Chain) -> dict[str, Any]:
         length = deck.number(row, 4, "UnstrLen")
         segments.append({"line_type": row.words[1], "length": length, "elements": int(deck.number(row, 5, "NumSegs"))})
         arc += length
-        if is_free(deck, joint) and (held := _held(deck, joint)):
+        if is_free(deck, joint) and (held := held_at(deck, joint)):
             attachments.append({"at": arc} | held)
-    if is_free(deck, chain.joints[0]) and (held := _held(deck, chain.joints[0])):
+    if is_free(deck, chain.joints[0]) and (held := held_at(deck, chain.joints[0])):
         attachments.insert(0, {"at": 0.0} | held)
     start, end = (_end(deck, *each) for each in _ends(chain))
     hung = {"attachments": attachments} if attachments else {}
     return {"segments": segments} | hung | {"start": start, "end": end}
 
 
-def _held(deck: Deck, joint: str) -> dict[str, float]:
+def held_at(deck: Deck, joint: str) -> dict[str, float]:
     """What sits at a free point; nothing of it that is zero."""
     row = point(deck, joint)
     assert row is not None
@@ -162,7 +162,12 @@ def _left_out(deck: Deck, chain: Chain) -> Iterator[Remark]:
     for row in chain.lines:
         if len(row.words) > 6 and row.words[6] != "-":
             yield row.line, f"outputs {row.words[6]} of line {row.words[0]}: a run writes its own"
-    for section in ("bodies", "rods"):
+    yield from left_of_sections(deck, ("bodies", "rods"))
+
+
+def left_of_sections(deck: Deck, known: tuple[str, ...]) -> Iterator[Remark]:
+    """Rows of sections that are not imported, these among them."""
+    for section in known:
         yield from ((row.line, f"{section}: {' '.join(row.words)}") for row in deck.of(section))
     for section in deck.rows.keys() - set(REPORTED_APART):
         yield from ((row.line, f"{section}: {' '.join(row.words)}") for row in deck.of(section))

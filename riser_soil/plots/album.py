@@ -134,8 +134,8 @@ def _drawn_alone(name: str, stage: StageRecords, file: Path, asked: bool) -> tup
     run = stage.run
     try:
         if name == "film":
-            return film(run.folder, file, stage=stage.name), f"film: {stage.name}"
-        return picture(run.folder, file), "the touchdown zone at the run's end"
+            return film(run.place, file, stage=stage.name), f"film: {stage.name}"
+        return picture(run.place, file), "the touchdown zone at the run's end"
     except ResultsError as err:
         if asked:
             raise

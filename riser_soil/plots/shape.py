@@ -13,11 +13,9 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError, RiserSoilError
 from riser_soil.plots.curves import sheet
 from riser_soil.results import Run
-from riser_soil.results import folder as run_folder
 from riser_soil.results.cycles import cycles, period_of
 from riser_soil.results.stage_records import StageRecords, along
 from riser_soil.scene.bathymetry import ground_height
-from riser_soil.scene.reader import read_scene
 
 SNAPSHOTS = 9
 _ASIDE = 0.002  # of the riser's length: what goes out of the plane less is not drawn from above
@@ -126,7 +124,7 @@ def seabed_under(run: Run, points: Array) -> Array | None:
     can't be read.
     """
     try:
-        scene = read_scene(str(run.folder / run_folder.SCENE))
+        scene = run.read_scene()
     except (RiserSoilError, OSError):
         return None
     if not scene.has_ground:

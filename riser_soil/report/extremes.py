@@ -88,13 +88,13 @@ def _without_round_off(
 ) -> tuple[list[float], Mapping[str, Any] | None]:
     """A vector and its extremes with 0 for what is round-off beside its largest component, or the riser's moments."""
     sides = {which: (extremes or {}).get(which) for which in ("min", "max")}
-    known = [abs(x) for values in (final, *sides.values()) for x in values or ()]
+    known = [abs(x) for values in (final, *sides.values()) for x in values or () if x is not None]
     if output.units == "N m":
         known.append(abs(found(stage["final"], ("max_bending_moment", "value")) or 0.0))
-    least = _ROUND_OFF * max(known)
+    least = _ROUND_OFF * max(known, default=0.0)
 
     def cleared(values: list[float]) -> list[float]:
-        return [x if abs(x) > least else 0.0 for x in values]
+        return [x if x is None or abs(x) > least else 0.0 for x in values]
 
     reported = {which: cleared(values) for which, values in sides.items() if values is not None}
     return cleared(final), extremes if extremes is None else {**extremes, **reported}

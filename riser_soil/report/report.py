@@ -78,7 +78,8 @@ def write_report(folders: Sequence[Path], file: Path, stage: str | None = None) 
 
     Raises ResultsError where a folder holds no run, or nothing was recorded; the file is then left as it was.
     """
-    runs = dict(zip(_labels(folders), (Run(folder) for folder in folders), strict=True))
+    given = zip(_labels(folders), (Run(folder) for folder in folders), strict=True)
+    runs = {" ".join([label, name]).strip(): line for label, run in given for name, line in run.of_lines.items()}
     with written_whole(file) as part:
         part.write_text(_page(runs, stage), encoding="utf-8")
     return file
@@ -114,7 +115,7 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
     summary, scene = run.summary, scene_words.read(run)
     shape, touchdown, why = _shape(run), None, ""
     try:
-        uri = embedded_png(lambda png: picture(run.folder, png))
+        uri = embedded_png(lambda png: picture(run.place, png))
         touchdown = Image(uri, f"the touchdown zone and the whole riser at {run.time[-1]:.5g} s")
     except ResultsError as err:
         why = str(err)
@@ -122,7 +123,7 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
     return RunPart(
         label=label,
         anchor=anchor,
-        folder=str(run.folder),
+        folder=str(run.place),
         summary=summary,
         warnings=health.warnings_of(summary),
         prose=scene_words.prose(scene, run) if scene is not None else ["The scene's file can't be read."],

@@ -11,8 +11,6 @@ from pydantic import BaseModel
 from riser_soil.errors import RiserSoilError
 from riser_soil.report.tables import NOTHING, ReportTable, compact, number
 from riser_soil.results import Run
-from riser_soil.results import folder as run_folder
-from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 
 _UNIT = re.compile(r"\[([^\[\],\s]{1,12})\]")
@@ -47,7 +45,7 @@ _PIPE = (  # path of a line type's key, its head
 def read(run: Run) -> Scene | None:
     """The run's scene; None where its file can't be read."""
     try:
-        return read_scene(str(run.folder / run_folder.SCENE))
+        return run.read_scene()
     except (RiserSoilError, OSError):
         return None
 
@@ -61,7 +59,7 @@ def prose(scene: Scene, run: Run) -> list[str]:
 def segments_table(scene: Scene) -> ReportTable:
     """The riser's stretches from its start to its end."""
     rows, begin = [], 0.0
-    for segment in scene.riser.segments:
+    for segment in scene.line.segments:
         size = segment.element_length if segment.elements is None else None
         graded = " to ".join(text(each) for each in (size if isinstance(size, tuple) else (size,)))
         mesh = f"{segment.elements} elements" if size is None else f"elements of {graded} m"
@@ -80,9 +78,9 @@ def pipes_table(scene: Scene) -> ReportTable:
 def parts_table(scene: Scene) -> ReportTable:
     """All else that the scene gives, contents and ends of the riser first, key by key, with unit and meaning."""
     rows: list[Sequence[str]] = []
-    for name, value in scene.riser:
+    for name, value in scene.line:
         if name != "segments":
-            rows += _rows(type(scene.riser), name, value, ("riser", name))
+            rows += _rows(type(scene.line), name, value, ("riser", name))
     for name, value in scene:
         if name not in _ELSEWHERE:
             rows += _rows(type(scene), name, value, (name,))
@@ -149,8 +147,8 @@ def _cell(value: Any) -> str:
 def _riser(scene: Scene, run: Run) -> str:
     length, position = float(run.arc[-1]), run["position"][0]
     start, end = (text([float(x) for x in position[at]]) for at in (0, -1))
-    count = len(scene.riser.segments)
-    inside = scene.riser.contents
+    count = len(scene.line.segments)
+    inside = scene.line.contents
     filled = f", filled with {number(inside.density)} kg/m³" if inside is not None else ""
     stretches = "one segment" if count == 1 else f"{count} segments"
     meshed = f"A riser of {number(length)} m in {stretches}{filled}, in {len(run.arc) - 1} elements"

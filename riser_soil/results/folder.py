@@ -24,8 +24,15 @@ FORMER_SOIL_NUMBERS = "soil.h5"
 FORMER = (FORMER_RISER_NUMBERS, FORMER_SOIL_NUMBERS)
 CHECKPOINT = "checkpoint.npz"
 NAMES = (SUMMARY, SERIES, RISER_XDMF, RISER_NUMBERS, SOIL_XDMF, SOIL_NUMBERS, *FORMER, CHECKPOINT, SCENE)
+OF_LINE = "line_{}.xdmf"  # of one of several lines
 _WORKSHOP = ".riser_soil"  # in the run's folder, while it is written: drafts of its files, and the lock
 _LOCK = "lock"
+
+
+def names_in(folder: Path) -> list[str]:
+    """Names of a run's files, those of several lines included that are there."""
+    found = (folder.glob(OF_LINE.format("*").replace("xdmf", kind)) for kind in ("xdmf", "vtkhdf"))
+    return [*NAMES, *sorted(path.name for each in found for path in each)]
 
 
 def write_atomically(path: Path, content: str | bytes | memoryview, lasting: bool = False) -> None:

@@ -114,11 +114,14 @@ class StageIndicators:
         """The figures, from `figures.pack`, that a dynamic stage begins with."""
         self.resolution.update(t, vector[AT])
 
-    def follow(self, times: Array, rows: Array, steps: Sequence[StepRecord]) -> None:
+    def follow(self, times: Array, rows: Array) -> None:
         """After steps of a dynamic stage, in turn: times (nt,) [s] of the run, and the figures then."""
         values = rows[:, AT]
         self.resolution.update(times, values)
         self.largest = np.fmax(self.largest, np.fmax.reduce(np.abs(values)))
+
+    def follow_steps(self, times: Array, steps: Sequence[StepRecord]) -> None:
+        """The same of the steps themselves."""
         for t, step in zip(as_list(times), steps, strict=True):
             self.step.follow(t, step.health)
             self.impact.follow(t, step.health.time_step, self.contact_period, step.ledger)
@@ -145,10 +148,14 @@ class StageIndicators:
 
     def warnings(self) -> Iterator[str]:
         """Of a dynamic stage, with numbers and a remedy."""
-        judged = JudgedExtremes(self.resolution, self.largest, self.diameter, self.weight)
-        yield from judged.warnings(self.automatic)
+        yield from self.warnings_of_extremes()
         yield from self._jumps()
         yield from self._lost_impact()
+
+    def warnings_of_extremes(self) -> Iterator[str]:
+        """Those of the figures alone."""
+        judged = JudgedExtremes(self.resolution, self.largest, self.diameter, self.weight)
+        yield from judged.warnings(self.automatic)
 
     def _jumps(self) -> Iterator[str]:
         step, allowed = self.step, LARGE_LOCAL_ERROR * self.diameter

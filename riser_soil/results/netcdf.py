@@ -16,7 +16,7 @@ import io
 import math
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +55,9 @@ def lay_out(file: h5py.File, sizes: Mapping[str, int | None], variables: Mapping
     """Add dimensions and variables, which are empty. sizes: of the dimensions, None where one grows."""
     file.attrs["_NCProperties"] = np.bytes_(f"version=2,h5py={h5py.__version__},hdf5={h5py.version.hdf5_version}")
     numbers = {name: np.int32(number) for number, name in enumerate(sizes)}
+    paths = (name.split("/")[:-1] for name in [*sizes, *variables])
+    for path in dict.fromkeys("/".join(parts[: n + 1]) for parts in paths for n in range(len(parts))):
+        file.create_group(path, track_order=True)
     for name, number in numbers.items():
         if name in variables:
             scale, title = _add(file, name, variables[name], sizes, numbers), name
@@ -63,7 +66,7 @@ def lay_out(file: h5py.File, sizes: Mapping[str, int | None], variables: Mapping
             scale = file.create_dataset(name, (size,), ">f4", maxshape=(sizes[name],), track_order=True)
             title = f"{_NO_VARIABLE}{size:10}"
         scale.attrs["_Netcdf4Dimid"] = number
-        scale.make_scale(title)
+        scale.make_scale(title.rpartition("/")[2])
     for name in [name for name in variables if name not in numbers]:
         made = _add(file, name, variables[name], sizes, numbers)
         for axis, dim in enumerate(variables[name].dims):
@@ -157,19 +160,30 @@ def _spoken(name: str) -> str:
     return _SPOKEN.get(name, name.replace("_", " "))
 
 
+def group(line: str) -> str:
+    """Path of a line's group, "" of the only line's, which has none."""
+    return f"{line}/" if line else ""
+
+
+def _in_group(variable: Variable, path: str) -> Variable:
+    """With the line's own arc lengths."""
+    return replace(variable, dims=tuple(f"{path}arc" if dim == "arc" else dim for dim in variable.dims))
+
+
 class SeriesFile:
     """Writer of results.nc.
 
-    arc: (nn,) m, arc lengths of the nodes. left_out: names of SERIES that are not wanted. ledger: of
-    `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them. goes_on: with the file of
-    an earlier run, up to what is restored.
+    arcs: (nn,) m, arc lengths of the nodes of each line, by its name; "" of the only one. Several lines have a group
+    each, and `more` are variables of other groups, by their paths. left_out: names of SERIES that are not wanted.
+    ledger: of `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them. goes_on: with
+    the file of an earlier run, up to what is restored.
     Rows given to `record` and `step` live in memory until `flush`.
     """
 
     def __init__(
         self,
         path: Path,
-        arc: Array,
+        arcs: Mapping[str, Array],
         title: str,
         version: str,
         left_out: Collection[str] = (),
@@ -177,12 +191,23 @@ class SeriesFile:
         sections: int = 0,
         offsets: Sequence[float] = (),
         goes_on: bool = False,
+        more: Mapping[str, Variable] | None = None,
     ) -> None:
         self._of_step = HEALTH | dict(ledger or {})
         wanted = {name: v for name, v in SERIES.items() if name not in left_out}
-        self._variables = {name: v for name, v in wanted.items() if sections or "section" not in v.dims} | self._of_step
-        self._of_instant = [name for name in self._variables if name in SERIES and name != "stage"]
-        sizes = {"arc": arc.size, "component": 3, "section": sections, "offset": len(offsets)}
+        wanted = {name: v for name, v in wanted.items() if sections or "section" not in v.dims}
+        shared = {name: wanted[name] for name in ("time", "stage")}
+        along = {
+            f"{line}{name}": _in_group(v, line)
+            for line in map(group, arcs)
+            for name, v in wanted.items()
+            if name not in shared
+        }
+        of_instant = shared | along | dict(more or {})
+        self._variables = of_instant | self._of_step
+        self._of_instant = [name for name in of_instant if name != "stage"]
+        sizes = {f"{group(name)}arc": arc.size for name, arc in arcs.items()}
+        sizes |= {"component": 3, "section": sections, "offset": len(offsets)}
         self._sizes = {"time": None, "step": None} | {name: size for name, size in sizes.items() if size}
         self._offsets = np.array(offsets)
         self.row_size = sum(8 * values_in(self._variables[name], self._sizes) for name in self._of_instant)  # bytes
@@ -190,7 +215,7 @@ class SeriesFile:
         self._records = self._steps = 0
         self._stages: list[str] = []
         self._goes_on = goes_on
-        self._file = GrowingFile(path, None if goes_on else self._layout(arc, title, version))
+        self._file = GrowingFile(path, None if goes_on else self._layout(arcs, title, version))
 
     def begin_stage(self, name: str) -> None:
         self._stages.append(name)
@@ -230,9 +255,10 @@ class SeriesFile:
         """From now on, see `GrowingFile`."""
         self._file.outlast_power()
 
-    def _layout(self, arc: Array, title: str, version: str) -> bytes:
+    def _layout(self, arcs: Mapping[str, Array], title: str, version: str) -> bytes:
         content = io.BytesIO()
-        fixed = {"arc": _ARC, "component": _COMPONENT} | ({"offset": _OFFSET} if self._offsets.size else {})
+        along = {f"{group(name)}arc": _in_group(_ARC, group(name)) for name in arcs}
+        fixed = along | {"component": _COMPONENT} | ({"offset": _OFFSET} if self._offsets.size else {})
         with h5py.File(content, "w", track_order=True) as file:
             file.attrs["title"] = title
             file.attrs["version"] = version
@@ -240,7 +266,8 @@ class SeriesFile:
             file.attrs["Conventions"] = "CF-1.11"
             file.attrs["finished"] = np.int8(0)
             lay_out(file, self._sizes, fixed | self._variables)
-            file["arc"][...] = arc
+            for name, arc in arcs.items():
+                file[f"{group(name)}arc"][...] = arc
             file["component"][...] = ["x", "y", "z"]
             if self._offsets.size:
                 file["offset"][...] = self._offsets

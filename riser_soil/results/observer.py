@@ -20,9 +20,10 @@ from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, 
 from riser_soil.core import outputs
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.environment import versions
+from riser_soil.core.output import Need
 from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import Instant, RunFacts, SoilSnapshot, StepRecord, StepStatistics, instants_at
+from riser_soil.core.snapshot import Instants, RunFacts, SoilSnapshot, StepRecord, StepStatistics, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
@@ -43,17 +44,23 @@ from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 if TYPE_CHECKING:
+    from riser_soil.core.arrays import Array
+    from riser_soil.results.hung import HungReader
     from riser_soil.soil.boundary_stress import BoundaryStress
 
 MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # that are looked at before they are told of
 
 
 class Seen(NamedTuple):
-    """A step that has been looked at, its state, and the soil there where that is due."""
+    """A step that has been looked at, its state, and the soil there where that is due.
+
+    looks: at each line, by name; hung: at bodies and joints.
+    """
 
     record: StepRecord
     due: DueOutputs
-    look: Look
+    looks: dict[str, Look]
+    hung: dict[str, Array]
     state: State
     soil: SoilSnapshot | None
 
@@ -73,9 +80,11 @@ class Observer:
         self._peaks = peaks if recorder is not None else None
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        self._instants = InstantReader(assembly, _known_fields(assembly))
+        lines, fields = assembly.by_line, _known_fields(assembly)
+        self._instants = {name: InstantReader(line, fields) for name, line in lines.items()}
+        self._hung = _hung_reader(assembly)
         self._seen: list[Seen] = []  # since they were handed over
-        self._plausibility = Plausibility(assembly)
+        self._plausibility = {name: Plausibility(line) for name, line in lines.items()}
         self._checkpoints = CheckpointSchedule(_asked(assembly), assembly.comm)
         self._about = about(assembly) if recorder is not None and _asked(assembly) is not None else None
 
@@ -104,7 +113,10 @@ class Observer:
                 if assembly.comm.rank == 0:
                     text, fields, asked = dump_scene(assembly.scene), _known_fields(assembly), _asked(assembly)
                     keeping = Keeping(goes_on, end=asked is not None and asked.keep)
-                    recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force, keeping)
+                    arcs = {name: line.line.arc for name, line in assembly.by_line.items()}
+                    reader = _hung_reader(assembly)
+                    hung = {} if reader is None else reader.variables
+                    recorder = Recorder.open(folder, known, arcs, mesh, text, fields, force, keeping, hung)
             with recorder or nullcontext():
                 observer = cls(assembly, clock, recorder, progress, peaks)
                 try:
@@ -132,7 +144,8 @@ class Observer:
         self._schedule.begin_stage(stage.kind)
         self._balance = EnergyLedger(start, static, dissipating(scene), working(scene))
         self._relaxed = 0
-        self._plausibility.begin_stage(stage)
+        for each in self._plausibility.values():
+            each.begin_stage(stage)
 
     def _show(self, stage: Stage) -> None:
         self._progress.begin_stage(stage.name, stage.kind, stage.end)
@@ -141,10 +154,10 @@ class Observer:
         """Records the state before all stages, which no static stage has brought about."""
         soil = self._soil()
         if self._recorder is not None:
-            seen = self._instants.reported([self._instants.look(stepper)])
-            self._recorder.begin_at(seen, soil)
+            seen = {name: reader.reported([reader.look(stepper)]) for name, reader in self._instants.items()}
+            self._recorder.begin_at(seen, soil, _in_rows([self._look_at_hung(stepper)]))
             if self._peaks is not None:
-                self._peaks.record([0.0], seen)
+                self._peaks.record([0.0], seen[""])
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
@@ -154,17 +167,20 @@ class Observer:
         soil = self._soil() if due.pictures or not isinstance(self._stage, DynamicStage) else None
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
-        if last:
-            self._plausibility.look_around(self._boundary())
+        if last and self._assembly.soil is not None:
+            self._plausibility[""].look_around(self._boundary())
         if self._recorder is not None:
             iterations = step.solution.iterations + self._relaxed
             health = StepStatistics(iterations, step.dt, change, step.cuts, stepper.local_error)
             record = StepRecord(step.t, health, self._balance.ledger)
             at_rest = due.series and isinstance(self._stage, StaticStage)
-            self._seen.append(Seen(record, due, self._instants.look(stepper, at_rest), stepper.now, soil))
+            looks = {name: reader.look(stepper, at_rest) for name, reader in self._instants.items()}
+            self._seen.append(Seen(record, due, looks, self._look_at_hung(stepper), stepper.now, soil))
             if due.pictures:  # which cost more than to look closely
-                time_of_run, elastic = self._recorder.time_at(step.t), elastic_residual(self._assembly, stepper)
-                self._plausibility.look_closely(time_of_run, stepper.now, elastic)
+                time_of_run = self._recorder.time_at(step.t)
+                for name, line in self._assembly.by_line.items():
+                    elastic = elastic_residual(line, stepper)
+                    self._plausibility[name].look_closely(time_of_run, stepper.now, elastic)
             if last or len(self._seen) >= self._most or self._recorder.flush_is_due:
                 self.hand_over()
         self._relaxed = 0
@@ -175,30 +191,40 @@ class Observer:
         """Steps to look at before they are told of: one where the soil is to be known then."""
         if self._assembly.soil is not None or isinstance(self._stage, StaticStage):
             return 1
-        return min(MOST_STEPS, MOST_NUMBERS // self._seen[0].look.inside.size)
+        numbers = sum(look.inside.size for look in self._seen[0].looks.values())
+        return max(1, min(MOST_STEPS, MOST_NUMBERS // numbers))
 
     def hand_over(self) -> None:
         """Tell the recorder of all steps that it has not been told of."""
         seen, self._seen, recorder = self._seen, [], self._recorder
         if not seen or recorder is None or recorder.closed:
             return
-        records, instants = [each.record for each in seen], self._instants.reported([each.look for each in seen])
-        recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil)
+        records, readers = [each.record for each in seen], self._instants.items()
+        instants = {name: reader.reported([each.looks[name] for each in seen]) for name, reader in readers}
+        hung = _in_rows([each.hung for each in seen])
+        recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil, hung)
         if self._peaks is not None:
-            self._peaks.record([record.t for record in records], instants)
+            self._peaks.record([record.t for record in records], instants[""])
         self._judge(recorder, seen, instants)
 
-    def _judge(self, recorder: Recorder, seen: Sequence[Seen], instants: Instant) -> None:
+    def _look_at_hung(self, stepper: TimeStepper) -> dict[str, Array]:
+        return {} if self._hung is None else self._hung.look(stepper.now)
+
+    def _judge(self, recorder: Recorder, seen: Sequence[Seen], instants: Instants) -> None:
         """Look whether what was recorded is plausible."""
         recorded = [n for n, each in enumerate(seen) if each.due.series]
         if not recorded:
             return
         times = [recorder.time_at(seen[n].record.t) for n in recorded]
-        self._plausibility.look(times, instants_at(instants, recorded).riser)
-        if self._assembly.soil_contact is not None:
-            self._plausibility.look_at_soil(times[-1], seen[-1].state, instants_at(instants, -1))
-        stage = recorder.summary.stages[-1]
-        stage.implausible, stage.indicators.bending = self._plausibility.warnings(), self._plausibility.bending()
+        for name, plausibility in self._plausibility.items():
+            plausibility.look(times, instants_at(instants[name], recorded).riser)
+            if self._assembly.soil is not None:
+                plausibility.look_at_soil(times[-1], seen[-1].state, instants_at(instants[name], -1))
+            stage = recorder.summary.stages[-1].of(name)
+            stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
+        if self._hung is not None:
+            whole = recorder.summary.stages[-1]
+            whole.implausible = tuple(self._hung.warnings(whole.hung))
 
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
         """After a step, recorded: write the state, where it is due; collective. See `stages.CheckpointWriter`."""
@@ -247,6 +273,9 @@ class Observer:
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
+            if not slack:
+                print(f"joints closed, and bodies came to rest, in {steps} step(s)")
+                return
             print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
@@ -286,8 +315,24 @@ class Observer:
     def _owners(self) -> dict[str, Stateful]:
         reported: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
         reported |= {} if self._peaks is None else {"peaks": self._peaks}
-        reported |= {"schedule": self._schedule, "ledger": self._balance, "instants": self._instants}
-        return reported | {"plausibility": self._plausibility}
+        reported |= {"schedule": self._schedule, "ledger": self._balance}
+        for name, reader in self._instants.items():
+            of_line: dict[str, Stateful] = {"instants": reader, "plausibility": self._plausibility[name]}
+            reported |= {f"{kind}/{name}" if name else kind: owner for kind, owner in of_line.items()}
+        return reported
+
+
+def _hung_reader(assembly: Assembly) -> HungReader | None:
+    if not assembly.scene.lines:
+        return None
+    from riser_soil.results.hung import HungReader
+
+    return HungReader(assembly)
+
+
+def _in_rows(looks: Sequence[dict[str, Array]]) -> dict[str, Array]:
+    """Looks at instants in turn as arrays, the first axis time."""
+    return {name: np.stack([each[name] for each in looks]) for name in looks[0]}
 
 
 def _asked(assembly: Assembly) -> Checkpoint | None:
@@ -308,8 +353,14 @@ def _on_all_ranks(comm: Communicator) -> Iterator[None]:
 
 
 def _known_fields(assembly: Assembly) -> tuple[str, ...]:
-    """Fields that the scene requests, as far as they can be computed."""
-    has = {
+    """Fields that the scene requests, as far as they can be computed, of all lines."""
+    of_lines = [_known_of_line(line) for line in assembly.by_line.values()]
+    needs = [need for need in of_lines[0] if all(need in known for known in of_lines)]
+    return outputs.known(assembly.scene.output.fields, needs)
+
+
+def _known_of_line(assembly: Assembly) -> list[Need]:
+    has: dict[Need, bool] = {
         "pressures": assembly.pressures is not None,
         "min_bend_radius": assembly.elements.limits_bending,
         "max_tension": assembly.elements.limits_tension,
@@ -320,12 +371,12 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
         "friction": bool(assembly.frictions),
         "soil": assembly.soil_contact is not None,
     }
-    return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
+    return [need for need, there in has.items() if there]
 
 
 def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
     """Facts about a run before its first step; collective."""
-    across = assembly.soil_contact is not None and "settlement_across" in assembly.scene.output.fields
+    across = assembly.soil is not None and "settlement_across" in assembly.scene.output.fields
     return RunFacts(
         title=assembly.scene.title,
         version=__version__,
@@ -336,10 +387,10 @@ def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
         versions=versions(),
         dissipating=dissipating(assembly.scene),
         working=working(assembly.scene),
-        riser_dofs=unknowns(assembly.comm, assembly.line),
+        riser_dofs=sum(unknowns(assembly.comm, field) for field in assembly.moving),
         soil_dofs=unknowns(assembly.comm, assembly.soil.field) if assembly.soil is not None else 0,
         diameter=assembly.scales.diameter,
-        weight=assembly.scales.weight * float(assembly.line.arc[-1] - assembly.line.arc[0]),
+        weight=max(own.scales.weight * float(np.ptp(own.line.arc)) for own in assembly.lines.values()),
         contact_period=assembly.contact_period,
         sections=count_of(assembly) if across else 0,
         offsets=offsets_of(assembly) if across else (),

@@ -21,7 +21,6 @@ from riser_soil.results.folder import (
     CHECKPOINT,
     FORMER_RISER_NUMBERS,
     FORMER_SOIL_NUMBERS,
-    NAMES,
     RISER_NUMBERS,
     RISER_XDMF,
     SCENE,
@@ -31,6 +30,7 @@ from riser_soil.results.folder import (
     SUMMARY,
     FolderLock,
     is_finished,
+    names_in,
 )
 from riser_soil.results.growing_file import reading
 from riser_soil.results.whole_file import unusable
@@ -66,7 +66,7 @@ def refuse(folder: Path, force: bool, goes_on: bool = False) -> None:
         if not force and is_finished(folder):
             raise SceneError(f"{folder}: holds a finished run; choose another folder (-o) or add --force")
         FolderLock.try_out(folder)
-        for name in NAMES:
+        for name in names_in(folder):
             _refuse_foreign(folder / name)
         if not (force or goes_on) and (folder / CHECKPOINT).exists():
             raise SceneError(
@@ -99,9 +99,9 @@ def prepare(folder: Path, force: bool, goes_on: bool = False) -> FolderLock:
     try:
         lock = FolderLock(folder)
         lock.clear()
-        for name in NAMES:
+        for name in names_in(folder):
             _refuse_foreign(folder / name)
-        for name in () if goes_on else NAMES:
+        for name in () if goes_on else names_in(folder):
             if name != SCENE:
                 (folder / name).unlink(missing_ok=True)
     except OSError as err:
@@ -110,11 +110,16 @@ def prepare(folder: Path, force: bool, goes_on: bool = False) -> FolderLock:
 
 
 def _refuse_foreign(path: Path) -> None:
-    if path.is_symlink() or (path.exists() and not (path.is_file() and _OWN[path.name](path))):
+    if path.is_symlink() or (path.exists() and not (path.is_file() and _owner(path)(path))):
         raise SceneError(
             f"{path}: was not written by riser_soil, or has been changed since, and would be replaced; move it away, "
             "or choose another folder (-o)"
         )
+
+
+def _owner(path: Path) -> Callable[[Path], bool]:
+    """What knows files of a name."""
+    return _OWN.get(path.name) or (_own_xdmf if path.suffix == ".xdmf" else _own_numbers)
 
 
 def _own_scene(path: Path) -> bool:

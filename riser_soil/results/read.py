@@ -24,6 +24,8 @@ from riser_soil.results.growing_file import reading
 if TYPE_CHECKING:
     import xarray as xr
 
+    from riser_soil.scene.scene import Scene
+
 
 @dataclass(frozen=True, eq=False)
 class SoilFrame:
@@ -43,17 +45,54 @@ class Run:
     run, or a name is not in it.
     """
 
-    def __init__(self, folder: Path | str) -> None:
+    def __init__(self, folder: Path | str, line: str | None = None) -> None:
+        """line: of a run of several lines, the one whose results these are, by its name. RUN/LINE in the place of a
+        folder is that line's, too.
+        """
         self.folder = Path(folder)
-        if not (self.folder / run_folder.SERIES).is_file():
+        if line is None and not self._is_run(self.folder) and self._is_run(self.folder.parent):
+            self.folder, line = self.folder.parent, self.folder.name
+        if not self._is_run(self.folder):
             raise ResultsError(f"{self.folder}: is not the folder of a run: no {run_folder.SERIES}")
+        self._group = f"{line}/" if line else ""
+        if line and line not in self.lines:
+            known = ", ".join(self.lines) or "none by name: it is a run of one riser"
+            raise ResultsError(f"{self.folder}: has no line {line}; it has {known}")
+
+    @staticmethod
+    def _is_run(folder: Path) -> bool:
+        return (folder / run_folder.SERIES).is_file()
+
+    @cached_property
+    def lines(self) -> tuple[str, ...]:
+        """Names of the lines of a run of several, sorted; none of a run of one riser."""
+        with self._open(run_folder.SERIES) as file:
+            return tuple(name for name in sorted(file) if isinstance(file[name], h5py.Group) and "arc" in file[name])
+
+    @property
+    def place(self) -> Path:
+        """Where these results are found again: the folder, or RUN/LINE."""
+        return self.folder / self._group
+
+    def of_line(self, name: str) -> Run:
+        """The results of one of several lines: with its variables, its figures in the summary and its scene."""
+        return Run(self.folder, name)
+
+    @property
+    def of_lines(self) -> dict[str, Run]:
+        """Each line's, by name; of a run of one riser itself, by ""."""
+        return {"": self} if self._group or not self.lines else {name: self.of_line(name) for name in self.lines}
 
     def __getitem__(self, name: str) -> Array:
         with self._open(run_folder.SERIES) as file:
-            if name not in file:
-                known = ", ".join(sorted(file))
-                raise ResultsError(f"{self.folder}: results.nc has no {name}; it has {known}")
-            stored = file[name]
+            path = self._path_of(file, name)
+            if path is None:
+                if self.lines and not self._group:
+                    each = ", ".join(str(self.folder / line) for line in self.lines)
+                    raise ResultsError(f"{self.folder}: {name} is not of the run but of its lines: take one of {each}")
+                known = ", ".join(sorted(file[self._group or "/"]))
+                raise ResultsError(f"{self.place}: results.nc has no {name}; it has {known}")
+            stored = file[path]
             values: Array = (stored.asstr() if h5py.check_string_dtype(stored.dtype) else stored)[...]
         return values
 
@@ -65,23 +104,36 @@ class Run:
 
         path = self.folder / run_folder.SERIES
         try:
-            return load(path)
+            return load(path, self._group)
         except (OSError, ValueError) as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
 
     def has(self, name: str) -> bool:
         """Whether results.nc has a variable."""
-        with self._open(run_folder.SERIES) as file:
-            return name in file
+        return name in self.variables
 
     @cached_property
     def variables(self) -> frozenset[str]:
-        """Names of what results.nc has."""
+        """Names of what results.nc has, of one line's those of the whole run as well."""
         with self._open(run_folder.SERIES) as file:
-            return frozenset(file)
+            own = [*file[self._group]] if self._group else []
+            return frozenset([*own, *(name for name in file if isinstance(file[name], h5py.Dataset))])
+
+    def _path_of(self, file: h5py.File, name: str) -> str | None:
+        """Where a variable is: the line's own, else the run's; None where there is none."""
+        paths = dict.fromkeys((f"{self._group}{name}", name))
+        return next((path for path in paths if isinstance(file.get(path), h5py.Dataset)), None)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
+        """Of one of several lines with its figures in the places of the only one's."""
+        found, line = self._whole_summary, self._group[:-1]
+        if not line:
+            return found
+        return found | {"stages": [stage | stage["lines"][line] for stage in found["stages"]]}
+
+    @cached_property
+    def _whole_summary(self) -> dict[str, Any]:
         path = self.folder / run_folder.SUMMARY
         try:
             summary: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
@@ -91,13 +143,30 @@ class Run:
 
     @cached_property
     def scene(self) -> dict[str, Any]:
-        """The resolved scene, scene.yaml, as plain data."""
+        """The resolved scene, scene.yaml, as plain data; of one of several lines with this line as its riser."""
+        found, line = self._whole_scene, self._group[:-1]
+        if not line:
+            return found
+        stages = [stage | (stage.get("lines") or {}).get(line, {}) | {"lines": {}} for stage in found["stages"]]
+        alone = {"riser": found["lines"][line], "lines": {}, "bodies": {}, "joints": {}, "dimension": 3}
+        return found | alone | {"stages": stages}
+
+    @cached_property
+    def _whole_scene(self) -> dict[str, Any]:
         path = self.folder / run_folder.SCENE
         try:
             scene: dict[str, Any] = YAML(typ="safe").load(path.read_text(encoding="utf-8"))
         except (OSError, YAMLError) as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
         return scene
+
+    def read_scene(self) -> Scene:
+        """The checked scene, of one of several lines its own; SceneError or OSError where it can't be read."""
+        from riser_soil.scene.lines import by_line
+        from riser_soil.scene.reader import read_scene
+
+        scene = read_scene(str(self.folder / run_folder.SCENE))
+        return by_line(scene)[self._group[:-1]] if self._group else scene
 
     @property
     def finished(self) -> bool:
@@ -144,8 +213,10 @@ class Run:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
 
 
-def load(path: Path) -> xr.Dataset:
-    """All that is in the file, which is free again then. Raises OSError or ValueError where it can't be read.
+def load(path: Path, group: str = "") -> xr.Dataset:
+    """All that is in the file, which is free again then, and in the group of a line.
+
+    Raises OSError or ValueError where it can't be read.
 
     HDF5 does not open the file itself: whoever else has it open, with locks or without, is no hindrance. A run that
     writes it sees the lock that is put on it meanwhile, and leaves this copy of the file as it is.
@@ -156,6 +227,9 @@ def load(path: Path) -> xr.Dataset:
         with suppress(OSError):  # a file system without locks
             fcntl.flock(file, fcntl.LOCK_SH)
         found = xr.load_dataset(file, engine="h5netcdf", decode_timedelta=False)
+        if group:
+            file.seek(0)
+            found = found.merge(xr.load_dataset(file, group=group, engine="h5netcdf", decode_timedelta=False))
     for coordinate, of in {"stage_name": "stage", "step_stage_name": "step_stage"}.items():
         found = found.assign_coords({coordinate: (found[of].dims, _names(found[of]))})
     return found.set_coords(["stage", "step_stage", "step_time"])

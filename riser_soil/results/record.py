@@ -16,14 +16,15 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import Instant, RunFacts, SoilMesh, SoilSnapshot, StepRecord, instants_at
+from riser_soil.core.snapshot import Instants, RunFacts, SoilMesh, SoilSnapshot, StepRecord, instants_at
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
 from riser_soil.results.figures import pack
 from riser_soil.results.folder import FolderLock
+from riser_soil.results.hung_figures import HungExtremes
 from riser_soil.results.indicators import StageIndicators
-from riser_soil.results.netcdf import SeriesFile, ledger_variables
+from riser_soil.results.netcdf import SeriesFile, Variable, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.run_frames import RunFrames, series_rows, step_rows
 from riser_soil.results.schedule import DueOutputs, SimulatedTime
@@ -48,7 +49,8 @@ class Keeping:
 class LastState:
     """The last recorded state, one instant as if of many, and the files that it has been written to."""
 
-    seen: Instant
+    seen: Instants
+    hung: Mapping[str, Array]
     soil: SoilSnapshot | None
     written: DueOutputs
     stamp: float = 0.0  # s, of its record in the series
@@ -66,26 +68,29 @@ class Recorder:
         lock: FolderLock,
         folder: Path,
         facts: RunFacts,
-        arc: Array,
+        arcs: Mapping[str, Array],
         soil_mesh: SoilMesh | None,
         fields: tuple[str, ...],
         keeping: Keeping,
+        hung: Mapping[str, Variable],
     ) -> None:
         self.summary = Summary(facts)
         self._keeping = keeping
         self._lock, self._folder = lock, folder
         self._scales = facts.diameter, facts.weight, facts.contact_period
-        self._arc = arc
+        self._lines = [*arcs]
         self._fields = fields
         left_out = outputs.left_out(fields)
         self._ledger = ledger_variables(facts.dissipating, facts.working)
         made_of = facts.title, facts.version, left_out, self._ledger, facts.sections, facts.offsets, keeping.goes_on
-        self._series = SeriesFile(folder / run_folder.SERIES, arc, *made_of)
-        self._frames = RunFrames(folder, arc.size, soil_mesh, fields, keeping.goes_on)
+        self._series = SeriesFile(folder / run_folder.SERIES, arcs, *made_of, hung)
+        nodes = {name: arc.size for name, arc in arcs.items()}
+        self._frames = RunFrames(folder, nodes, soil_mesh, fields, keeping.goes_on)
+        self._hung = HungExtremes(hung)
         self._lasting, self._resumable, self._untouched = False, keeping.goes_on, keeping.goes_on
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
-        self._latest: Array | None = None
+        self._latest: dict[str, Array] = {}
         self._last: LastState | None = None
         self._next_flush = 0.0
         self._waiting = 0
@@ -96,16 +101,18 @@ class Recorder:
         cls,
         folder: Path,
         facts: RunFacts,
-        arc: Array,
+        arcs: Mapping[str, Array],
         soil_mesh: SoilMesh | None,
         scene_text: str,
         fields: tuple[str, ...] | None = None,
         force: bool = False,
         keeping: Keeping | None = None,
+        hung: Mapping[str, Variable] | None = None,
     ) -> Self:
         """Takes the folder over, until it is closed, and lays the files out.
 
-        arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: of `outputs.choices()`; None for all.
+        arcs: (nn,) m, by the name of the line, "" of the only one. scene_text: the resolved scene, kept as scene.yaml.
+        fields: of `outputs.choices()`; None for all. hung: what is recorded of bodies and joints, by path.
         Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`). A run that
         goes on is to be restored next.
         """
@@ -115,7 +122,7 @@ class Recorder:
         try:
             with _reported_when_full(folder):
                 run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
-                recorder = cls(lock, folder, facts, arc, soil_mesh, wanted, keeping)
+                recorder = cls(lock, folder, facts, arcs, soil_mesh, wanted, keeping, hung or {})
                 if not keeping.goes_on:
                     recorder.flush()
         except BaseException:
@@ -169,31 +176,49 @@ class Recorder:
         if self.summary.stages:
             self.flush()
         self._time.begin_stage(kind)
-        stage = StageTally(name, kind, indicators=StageIndicators(*self._scales, automatic=automatic))
-        if kind != "static" and self._latest is not None:
-            stage.extremes.update(self._time.now, self._latest)
-            stage.indicators.begin(self._time.now, self._latest)
+        stage = self._new_tally(name, kind, automatic)
+        stage.lines = {line: self._new_tally(name, kind, automatic) for line in self._lines if line}
         self.summary.stages.append(stage)
+        self._hung.begin_stage()
+        if kind != "static":
+            self._begin_from_latest()
         self._series.begin_stage(name)
 
-    def begin_at(self, seen: Instant, soil: SoilSnapshot | None = None) -> None:
+    def _new_tally(self, name: str, kind: str, automatic: bool) -> StageTally:
+        return StageTally(name, kind, indicators=StageIndicators(*self._scales, automatic=automatic))
+
+    def _begin_from_latest(self) -> None:
+        """Count the state that the stage begins with."""
+        for line, latest in self._latest.items():
+            tally = self.summary.stages[-1].of(line)
+            tally.extremes.update(self._time.now, latest)
+            tally.indicators.begin(self._time.now, latest)
+
+    def begin_at(
+        self, seen: Instants, soil: SoilSnapshot | None = None, hung: Mapping[str, Array] | None = None
+    ) -> None:
         """The state that the run begins with, where its first stage is not static: recorded at time zero.
 
-        seen: of one instant, as if of many.
+        seen, hung: of one instant, as if of many.
         """
-        self._latest = pack(seen)[0]
-        self.summary.stages[-1].extremes.update(self._time.now, self._latest)
-        self.summary.stages[-1].indicators.begin(self._time.now, self._latest)
-        self._record(seen, [DueOutputs(series=True, pictures=True)], [self._time.stamp()], soil)
+        self._latest = {line: pack(instant)[0] for line, instant in seen.items()}
+        self._begin_from_latest()
+        self._record(seen, hung or {}, [DueOutputs(series=True, pictures=True)], [self._time.stamp()], soil)
 
     def accept(
-        self, steps: Sequence[StepRecord], due: Sequence[DueOutputs], seen: Instant, soil: SoilSnapshot | None = None
+        self,
+        steps: Sequence[StepRecord],
+        due: Sequence[DueOutputs],
+        seen: Instants,
+        soil: SoilSnapshot | None = None,
+        hung: Mapping[str, Array] | None = None,
     ) -> None:
         """Takes accepted steps of the present stage, in turn.
 
         seen: the instants at their ends. soil: at the last of them; needed where there is a soil mesh and pictures are
-        due, for no other step then.
+        due, for no other step then. hung: of bodies and joints at the instants, by path.
         """
+        hung = hung or {}
         times, stamps = [], []
         for step, wanted in zip(steps, due, strict=True):
             self._time.advance(step.t)
@@ -201,9 +226,12 @@ class Recorder:
             if wanted.series:
                 stamps.append(self._time.stamp())
         self._tally(steps, times, seen)
+        if hung:
+            at = [step.t for step in steps] if self.summary.stages[-1].kind == "static" else times
+            self.summary.stages[-1].hung = self._hung.update(np.array(at), hung)
         self._series.steps({"step_time": times} | step_rows(steps, self._ledger))
         self._waiting += _STEP * len(steps)
-        self._record(seen, due, stamps, soil)
+        self._record(seen, hung, due, stamps, soil)
         if self.flush_is_due or self._waiting > _MOST_WAITING:
             self.flush()
 
@@ -227,7 +255,8 @@ class Recorder:
         soil = last.soil or soil
         drawable = self._frames.drawable(soil)
         if not last.written.series:
-            self._record(last.seen, [DueOutputs(series=True, pictures=drawable)], [self._time.stamp()], soil)
+            due = [DueOutputs(series=True, pictures=drawable)]
+            self._record(last.seen, last.hung, due, [self._time.stamp()], soil)
         elif drawable and not last.written.pictures:
             self._picture(last.stamp, series_rows([last.stamp], last.seen, self._fields), 0, soil)
             last.written = DueOutputs(series=True, pictures=True)
@@ -301,31 +330,44 @@ class Recorder:
         self._series.close()
         self._lock.release()
 
-    def _tally(self, steps: Sequence[StepRecord], times: Sequence[float], seen: Instant) -> None:
-        stage, rows = self.summary.stages[-1], pack(seen)
-        self._latest = rows[-1]
+    def _tally(self, steps: Sequence[StepRecord], times: Sequence[float], seen: Instants) -> None:
+        stage = self.summary.stages[-1]
         at = np.array([step.t for step in steps] if stage.kind == "static" else times)
         self.now = float(at[-1])
         stage.count([step.health for step in steps])
         stage.time = self._time.stage_time
         stage.balance(times, [step.ledger for step in steps])
-        stage.extremes.update(at, rows)
         if stage.kind == "dynamic":
-            stage.indicators.follow(at, rows, steps)
-        stage.seen = instants_at(seen, -1)
-        stage.bend(at, seen.riser)
-        stage.pull(at, seen.arc, seen.riser)
+            stage.indicators.follow_steps(at, steps)
+        for line, instant in seen.items():
+            tally, rows = stage.of(line), pack(instant)
+            self._latest[line] = rows[-1]
+            tally.extremes.update(at, rows)
+            if stage.kind == "dynamic":
+                tally.indicators.follow(at, rows)
+            tally.seen = instants_at(instant, -1)
+            tally.bend(at, instant.riser)
+            tally.pull(at, instant.arc, instant.riser)
 
     def _record(
-        self, seen: Instant, due: Sequence[DueOutputs], stamps: Sequence[float], soil: SoilSnapshot | None
+        self,
+        seen: Instants,
+        hung: Mapping[str, Array],
+        due: Sequence[DueOutputs],
+        stamps: Sequence[float],
+        soil: SoilSnapshot | None,
     ) -> None:
         """stamps: of those whose series is due."""
-        self._last = LastState(instants_at(seen, slice(-1, None)), soil, due[-1], stamps[-1] if due[-1].series else 0.0)
+        last = {line: instants_at(instant, slice(-1, None)) for line, instant in seen.items()}
+        last_hung = {name: values[-1:] for name, values in hung.items()}
+        self._last = LastState(last, last_hung, soil, due[-1], stamps[-1] if due[-1].series else 0.0)
         recorded = [n for n, wanted in enumerate(due) if wanted.series]
         if not recorded:
             return
-        every = len(recorded) == len(due)
-        rows = series_rows(stamps, seen if every else instants_at(seen, recorded), self._fields)
+        if len(recorded) < len(due):
+            seen = {line: instants_at(instant, recorded) for line, instant in seen.items()}
+            hung = {name: values[recorded] for name, values in hung.items()}
+        rows = series_rows(stamps, seen, self._fields) | dict(hung)
         self._waiting += self._series.row_size * len(recorded)
         self._series.record(rows)
         for row, n in enumerate(recorded):
@@ -339,13 +381,15 @@ class Recorder:
 
     def state(self) -> Saved:
         """What is gathered on the way; what is written stays in the folder."""
-        latest = {} if self._latest is None else {"latest": self._latest}
+        latest = {f"latest/{line}" if line else "latest": values for line, values in self._latest.items()}
         return gathered(self._owners) | latest | {"now": np.array(self.now)}
 
     def restore(self, saved: Saved) -> None:
         with self._reported_when_full():
             restore_all(self._owners, saved)
-        self.now, self._latest = float(saved["now"]), saved.get("latest")
+        self.now = float(saved["now"])
+        keys = {line: f"latest/{line}" if line else "latest" for line in self._lines}
+        self._latest = {line: saved[key] for line, key in keys.items() if key in saved}
         self._untouched = False
         if self._keeping.goes_on:
             self._outlast_power()
@@ -353,7 +397,7 @@ class Recorder:
     @property
     def _owners(self) -> dict[str, Stateful]:
         found: dict[str, Stateful] = {"summary": self.summary, "time": self._time, "series": self._series}
-        return found | self._frames.owners
+        return found | self._frames.owners | {"hung": self._hung}
 
 
 @contextmanager

@@ -12,17 +12,22 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Stateful
-from riser_soil.core.snapshot import Instant, Ledger, SoilMesh, SoilSnapshot, StepRecord
+from riser_soil.core.snapshot import Instant, Instants, Ledger, SoilMesh, SoilSnapshot, StepRecord
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.results import folder as run_folder
 from riser_soil.results.figures import places, with_largest
+from riser_soil.results.netcdf import group
 from riser_soil.results.summary import StageTally
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 
-def series_rows(stamps: Sequence[float], seen: Instant, fields: Collection[str]) -> dict[str, Any]:
-    """Of many instants, by the names of netcdf.SERIES, but for choices that are not among the fields."""
-    return {"time": np.array(stamps)} | {name: get(seen) for name, get in _wanted(tuple(fields))}
+def series_rows(stamps: Sequence[float], seen: Instants, fields: Collection[str]) -> dict[str, Any]:
+    """Of many instants, by the names of netcdf.SERIES behind those of the lines' groups, but for choices that are not
+    among the fields.
+    """
+    wanted = _wanted(tuple(fields))
+    along = {f"{group(line)}{name}": get(instant) for line, instant in seen.items() for name, get in wanted}
+    return {"time": np.array(stamps)} | along
 
 
 @cache
@@ -56,15 +61,25 @@ def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Fra
 
 
 class RunFrames:
-    """The files of a run. fields: names of the outputs that are wanted; goes_on: from frames that are there."""
+    """The files of a run. nodes: how many each line has, by its name, "" of the only one. fields: names of the outputs
+    that are wanted; goes_on: from frames that are there.
+    """
 
     def __init__(
-        self, folder: Path, nodes: int, soil_mesh: SoilMesh | None, fields: tuple[str, ...], goes_on: bool
+        self,
+        folder: Path,
+        nodes: Mapping[str, int],
+        soil_mesh: SoilMesh | None,
+        fields: tuple[str, ...],
+        goes_on: bool,
     ) -> None:
         self._fields = fields
-        riser = folder / run_folder.RISER_XDMF
-        self._riser = XdmfFile(riser, "riser", polyline(nodes), polyline=True, goes_on=goes_on)
-        self._files, self._soil = [self._riser], None
+        paths = {line: folder / (run_folder.OF_LINE.format(line) if line else run_folder.RISER_XDMF) for line in nodes}
+        self._lines = {
+            line: XdmfFile(path, path.stem, polyline(nodes[line]), polyline=True, goes_on=goes_on)
+            for line, path in paths.items()
+        }
+        self._files, self._soil = [*self._lines.values()], None
         if soil_mesh is not None:
             soil = folder / run_folder.SOIL_XDMF
             self._soil = XdmfFile(soil, "soil", soil_mesh.cells, soil_mesh.points, goes_on=goes_on)
@@ -78,14 +93,17 @@ class RunFrames:
     def add(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> int:
         """Add a frame; how many bytes wait for their turn on disk."""
         wanted = [output.name for output in outputs.ALONG_RISER if output.chosen and output.name in self._fields]
-        on_points = {name: rows[name][row] for name in (*wanted, "position")}
-        self._riser.add(Frame(stamp, on_points, geometry="position"))
+        waiting = 0
+        for line, file in self._lines.items():
+            on_points = {name: rows[f"{group(line)}{name}"][row] for name in (*wanted, "position")}
+            file.add(Frame(stamp, on_points, geometry="position"))
+            waiting += _size(on_points)
         if self._soil is None:
-            return _size(on_points)
+            return waiting
         if soil is None:
             raise ValueError("pictures are due, so the soil's snapshot is needed too: both files share one time axis")
         self._soil.add(soil_frame(stamp, soil, self._fields))
-        return _size(on_points) + _size(vars(soil))
+        return waiting + _size(vars(soil))
 
     def tally(self, stage: StageTally, now: float, soil: SoilSnapshot | None) -> None:
         """Take note of the soil's largest values in a stage."""
@@ -109,8 +127,8 @@ class RunFrames:
     @property
     def owners(self) -> dict[str, Stateful]:
         """Of what is kept on the way."""
-        riser: dict[str, Stateful] = {"riser_frames": self._riser}
-        return riser if self._soil is None else riser | {"soil_frames": self._soil}
+        lines: dict[str, Stateful] = {f"{line or 'riser'}_frames": file for line, file in self._lines.items()}
+        return lines if self._soil is None else lines | {"soil_frames": self._soil}
 
 
 def _size(values: Mapping[str, Any]) -> int:

@@ -48,6 +48,11 @@ def print_summary(summary: dict[str, Any], console: Console | None = None) -> No
     for stage in summary["stages"]:
         if stage["final"] is not None:
             console.print(_table(_stage_title(stage), _stage_rows(stage)))
+        for name, line in stage.get("lines", {}).items():
+            if line["final"] is not None:
+                console.print(_table(f"{name}: {_stage_title(stage)}", [*_figure_rows(line)]))
+        if stage.get("lines") and stage["steps"]:
+            console.print(_table(_stage_title(stage), [*_hung_rows(stage), *_step_rows(stage)]))
         for warning in stage["warnings"]:
             console.print(f"warning: {stage['name']}: {warning}", soft_wrap=True, markup=False)
     console.print(_table(_title(summary), [*_run_rows(summary)]))
@@ -75,6 +80,23 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
     return [
         *_figure_rows(stage),
         *_soil_rows(stage),
+        *_step_rows(stage),
+    ]
+
+
+def _hung_rows(stage: dict[str, Any]) -> Iterator[Row]:
+    """Where bodies are, forces of joints and clearances."""
+    for name, body in stage.get("bodies", {}).items():
+        yield f"body {name}", _place(body["position"]["final"], "m", 1.0)
+    for name, joint in stage.get("joints", {}).items():
+        yield f"force in joint {name}", _number(float(np.linalg.norm(joint["force"]["final"])), "kN", 1e-3)
+    for name, pair in stage.get("clearance", {}).items():
+        found = pair["distance"]
+        yield f"clearance {name.replace('_', ' to ', 1)}", _span(found["final"], found, "m", 1.0)
+
+
+def _step_rows(stage: dict[str, Any]) -> list[Row]:
+    return [
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
         *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),

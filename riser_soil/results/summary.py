@@ -20,7 +20,8 @@ from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
 from riser_soil.results.indicators import StageIndicators
 
 _USED = ("tightest", "pulled", "stressed")
-_NOT_PLAIN = (*_USED, "seen", "extremes", "energy", "worst_residual", "implausible", "soil", "indicators")
+_PARTS = ("lines", "hung", "seen", "extremes", "energy", "worst_residual", "implausible", "soil", "indicators")
+_NOT_PLAIN = (*_USED, *_PARTS)
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
@@ -104,6 +105,7 @@ class StageTally:
     """Statistics of one stage, gathered while it runs.
 
     time: s simulated in it (static: 0); seen: its last step, until the summary of its `final` state is asked for.
+    lines: of several lines by name, what is each one's own. hung: figures of bodies, joints and clearances.
     """
 
     name: str
@@ -126,6 +128,12 @@ class StageTally:
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
     indicators: StageIndicators = field(default_factory=StageIndicators)
     soil: dict[str, Any] = field(default_factory=dict)  # largest values in the soil, see `figures`
+    hung: dict[str, Any] = field(default_factory=dict)
+    lines: dict[str, StageTally] = field(default_factory=dict)
+
+    def of(self, line: str) -> StageTally:
+        """What is a line's own, "" of the only one."""
+        return self.lines[line] if line else self
 
     def balance(self, times: Sequence[float], ledgers: Sequence[Ledger]) -> None:
         """times: s, total simulated time, after steps in turn."""
@@ -172,10 +180,25 @@ class StageTally:
     def as_dict(self) -> dict[str, Any]:
         self._finish()
         plain = {k: v for k, v in vars(self).items() if k not in _NOT_PLAIN}
-        extremes = self.extremes.nested() if self.steps else None
+        extremes = self.extremes.nested() if self.steps and not self.lines else None
         reported = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
         reported["indicators"] = self.indicators.as_dict(self.kind == "dynamic")
+        if self.lines:
+            reported["lines"] = {name: own._of_line(self.steps > 0) for name, own in self.lines.items()}
+            reported |= self.hung
         return plain | reported | ({"soil": self.soil} if self.soil else {})
+
+    def _of_line(self, stepped: bool) -> dict[str, Any]:
+        """One of several."""
+        self._finish()
+        extremes = self.extremes.nested() if stepped else None
+        return {"final": self.final, "extremes": extremes, "warnings": self._own_warnings}
+
+    @property
+    def _own_warnings(self) -> list[str]:
+        """Those of one of several lines."""
+        used = [*self._overused("of the load" if self.kind == "static" else "s"), *self.implausible]
+        return [*used, *(self.indicators.warnings_of_extremes() if self.kind == "dynamic" else ())]
 
     @property
     def _energy(self) -> dict[str, Any]:
@@ -188,6 +211,7 @@ class StageTally:
     def warnings(self) -> list[str]:
         """Warnings about the stage's results, with numbers and a remedy."""
         used = [*self._overused("of the load" if self.kind == "static" else "s")]
+        used += [f"{name}: {warning}" for name, own in self.lines.items() for warning in own._own_warnings]
         if self.kind != "dynamic":
             return [*used, *self.implausible]
         off = energy_warnings(self.energy, *self.worst_residual)
@@ -204,12 +228,14 @@ class StageTally:
 
     def state(self) -> Saved:
         self._finish()
-        plain = {name: value for name, value in vars(self).items() if name not in ("seen", "extremes", "indicators")}
-        reported = plain | {name: asdict(vars(self)[name]) for name in _RECORDS}
+        own = ("seen", "extremes", "indicators", "lines")
+        plain = {name: value for name, value in vars(self).items() if name not in own}
+        reported = plain | {name: asdict(vars(self)[name]) for name in _RECORDS} | {"lines": [*self.lines]}
         return gathered(self._followers) | {"told": packed(reported)}
 
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))
+        self.lines = {name: StageTally("", "") for name in self.lines}
         restore_all(self._followers, saved)
         vars(self).update({name: kind(**vars(self)[name]) for name, kind in _RECORDS.items()})
         worst, t = self.worst_residual
@@ -217,7 +243,8 @@ class StageTally:
 
     @property
     def _followers(self) -> dict[str, Stateful]:
-        return {"extremes": self.extremes, "indicators": self.indicators}
+        found: dict[str, Stateful] = {"extremes": self.extremes, "indicators": self.indicators}
+        return found | {f"lines/{name}": own for name, own in self.lines.items()}
 
 
 _RECORDS = {"energy": Ledger, "tightest": TightestBend, "pulled": MostUsed, "stressed": MostUsed}

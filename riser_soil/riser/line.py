@@ -51,16 +51,15 @@ class Layout:
 
 
 class Line:
-    """Field "riser": committed configuration, dofs and ends of the line; see the module's text and `Layout`.
+    """Field of a line: committed configuration, dofs and ends; see the module's text and `Layout`.
+
+    name: of the field, "riser" where it is the only line; its parts share the sparsity pattern of this name.
 
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
     Where no end prescribes the rotation of a line in space, `prescribe_spin` keeps the start from spinning about the
     pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
     active: whether this rank evaluates and owns the riser.
     """
-
-    name = "riser"
-    space = "riser"
 
     def __init__(
         self,
@@ -71,7 +70,9 @@ class Line:
         direction: Array | None = None,
         prescribe_spin: bool = False,
         active: bool = True,
+        name: str = "riser",
     ) -> None:
+        self.name = self.space = name
         self.dimension, self.start, self.end, self.active = dimension, start, end, active
         self.arc, self.outer_diameter = layout.arc, layout.outer_diameter
         self.length = np.diff(layout.arc)
@@ -144,7 +145,7 @@ class Line:
         hermite.scatter(element, self.nodal(values))
 
     def element_block(self) -> MatrixBlock:
-        """Pattern "riser": all dofs of each element."""
+        """Pattern of the line's name: all dofs of each element."""
         first = self.offset + self.ndof * np.arange(self.nodes - 1, dtype=np.int64)
         dofs = first[:, None] + np.arange(2 * self.ndof)
         return MatrixBlock(dofs, dofs)
@@ -315,14 +316,14 @@ class Line:
         self._ends.prescribe(t, self.x, u, v, a)
 
     def describe(self, entry: int) -> str:
-        """ "riser node at arc 24 m, vertical force"."""
+        """ "riser node at arc 24 m, vertical force", by the line's name."""
         node, dof = divmod(entry, self.ndof)
         names = (
             ("force along the plane", "vertical force", "moment")
             if self.dimension == 2
             else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
         )
-        return f"riser node at arc {self.arc[node]:.6g} m, {names[dof]}"
+        return f"{self.name} node at arc {self.arc[node]:.6g} m, {names[dof]}"
 
 
 def _planar_frames(layout: Layout, direction: Array) -> PlanarFrames:

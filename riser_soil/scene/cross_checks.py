@@ -43,7 +43,7 @@ def conflicts(scene: Scene) -> list[Problem]:
 
 
 def _line_types_exist(scene: Scene) -> Iterator[Problem]:
-    for n, segment in enumerate(scene.riser.segments):
+    for n, segment in enumerate(scene.line.segments):
         if segment.line_type not in scene.line_types:
             known = f"must be a key of line_types ({', '.join(scene.line_types)})"
             remedy = f"name one of them or add {segment.line_type}" + hint(
@@ -130,8 +130,8 @@ def _pressure_on_walls_known(scene: Scene) -> Iterator[Problem]:
 
 
 def _attachments_fit(scene: Scene) -> Iterator[Problem]:
-    length = scene.riser.length
-    for n, given in enumerate(scene.riser.attachments):
+    length = scene.line.length
+    for n, given in enumerate(scene.line.attachments):
         path: Path = ("riser", "attachments", n)
         for m, arc in enumerate(given.arcs):
             if arc > length * (1.0 + 1e-9):
@@ -152,7 +152,7 @@ def _stays_in_plane(scene: Scene) -> Iterator[Problem]:
 
 
 def _initial_shape_possible(scene: Scene) -> Iterator[Problem]:
-    riser, path = scene.riser, ("riser", "initial")
+    riser, path = scene.line, ("riser", "initial")
     if riser.initial == "catenary" and "free" in (riser.start, riser.end):
         remedy = "give both ends a position, or set initial: unstressed"
         yield Problem(path, "a catenary hangs between two ends with a position", remedy)
@@ -165,8 +165,8 @@ def _initial_shape_possible(scene: Scene) -> Iterator[Problem]:
 
 def _straight_without_slack(scene: Scene) -> Iterator[Problem]:
     """A straight line between ends nearer than its length would be a strut, and might stay one."""
-    start, end, length = scene.riser.start, scene.riser.end, scene.riser.length
-    if scene.riser.initial != "straight" or not isinstance(start, Support) or not isinstance(end, Support):
+    start, end, length = scene.line.start, scene.line.end, scene.line.length
+    if scene.line.initial != "straight" or not isinstance(start, Support) or not isinstance(end, Support):
         return
     distance = math.dist(start.position, end.position)
     if distance < (1.0 - _GREATEST_SLACK) * length:
@@ -178,7 +178,7 @@ def _straight_without_slack(scene: Scene) -> Iterator[Problem]:
 
 
 def _long_enough(scene: Scene) -> Iterator[Problem]:
-    start, end, length = scene.riser.start, scene.riser.end, scene.riser.length
+    start, end, length = scene.line.start, scene.line.end, scene.line.length
     if not isinstance(start, Support) or not isinstance(end, Support):
         return
     distance = math.dist(start.position, end.position)
@@ -188,7 +188,7 @@ def _long_enough(scene: Scene) -> Iterator[Problem]:
 
 
 def _unstressed_shape_fits(scene: Scene) -> Iterator[Problem]:
-    shape, length = scene.riser.unstressed, scene.riser.length
+    shape, length = scene.line.unstressed, scene.line.length
     if isinstance(shape, ArcShape):
         yield from _same_length(("riser", "unstressed", "arc"), shape.arc.length, length, _ARC_TOLERANCE)
     if isinstance(shape, PointsShape):
@@ -203,9 +203,9 @@ def _same_length(path: tuple[str, ...], along: float, length: float, tolerance: 
 
 
 def _initial_shape_meets_the_supports(scene: Scene) -> Iterator[Problem]:
-    ends = {"start": scene.riser.start, "end": scene.riser.end}
-    for (key, end), point in zip(ends.items(), initial_ends(scene.riser), strict=True):
-        if isinstance(end, Support) and math.dist(end.position, point) > _MEETING * scene.riser.length:
+    ends = {"start": scene.line.start, "end": scene.line.end}
+    for (key, end), point in zip(ends.items(), initial_ends(scene.line), strict=True):
+        if isinstance(end, Support) and math.dist(end.position, point) > _MEETING * scene.line.length:
             place = ", ".join(f"{x:.6g}" for x in point)
             allowed = f"the riser's initial shape has its {key} at [{place}]"
             remedy = "make the two equal, or choose another initial shape (straight, catenary, points)"
@@ -213,11 +213,11 @@ def _initial_shape_meets_the_supports(scene: Scene) -> Iterator[Problem]:
 
 
 def _passes_over_block(scene: Scene) -> Iterator[Problem]:
-    start, end = scene.riser.start, scene.riser.end
+    start, end = scene.line.start, scene.line.end
     block = scene.soil.block if scene.soil else None
     if not isinstance(block, Block) or not isinstance(start, Support) or not isinstance(end, Support):
         return
-    if scene.riser.initial == "catenary" and not _crosses(block, start.position, end.position):
+    if scene.line.initial == "catenary" and not _crosses(block, start.position, end.position):
         remedy = "move the block under the touchdown zone"
         yield Problem(("soil", "block"), "the riser, seen from above, never passes over it", remedy)
 
@@ -244,7 +244,7 @@ def _error_bars_from_the_beginning(scene: Scene) -> Iterator[Problem]:
 
 
 def _sections_across_soil(scene: Scene) -> Iterator[Problem]:
-    sections, length = scene.output.sections, scene.riser.length
+    sections, length = scene.output.sections, scene.line.length
     path: Path = ("output", "sections")
     if scene.soil is None and sections != SettlementSections():
         yield Problem(path, "settlement is that of soil, and the scene has none", "add soil, or leave it out")
@@ -260,7 +260,7 @@ _CONTENTS: Path = ("riser", "contents")
 
 def contents_conflicts(scene: Scene) -> Iterator[Problem]:
     """Conflicts of the contents with the line types, and of slugs with each other."""
-    given = scene.riser.contents
+    given = scene.line.contents
     if given is None:
         return
     bores = {line.inner_diameter for line in scene.used_line_types.values()}
@@ -272,7 +272,7 @@ def contents_conflicts(scene: Scene) -> Iterator[Problem]:
         allowed = f"flow and slugs need one bore, and inner_diameter is {sizes} m"
         yield Problem(_CONTENTS, allowed, "make them equal, or leave out speed and slugs")
     yield from _somewhere(given)
-    yield from _apart(given, scene.riser.length)
+    yield from _apart(given, scene.line.length)
 
 
 def _somewhere(given: Contents) -> Iterator[Problem]:

@@ -13,14 +13,14 @@ def end_conflicts(scene: Scene) -> Iterator[Problem]:
     """Bend stiffeners that are clamped to nothing, or fit on no pipe; tensioners that hold nothing."""
     yield from _tensioners(scene)
     for name, at in (("start", 0), ("end", -1)):
-        end = getattr(scene.riser, name)
+        end = getattr(scene.line, name)
         if isinstance(end, Support) and end.bend_stiffener is not None:
             path: Path = ("riser", name, "bend_stiffener")
             yield from (Problem((*path, *key), *reported) for key, reported in _wanting(scene, end, at))
 
 
 def _tensioners(scene: Scene) -> Iterator[Problem]:
-    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    ends = {"start": scene.line.start, "end": scene.line.end}
     held = [name for name, end in ends.items() if isinstance(end, Support) and end.tensioner is None]
     for name, end in ends.items():
         if not isinstance(end, Support) or end.tensioner is None:
@@ -33,7 +33,7 @@ def _tensioners(scene: Scene) -> Iterator[Problem]:
 
 
 def _wanting(scene: Scene, end: Support, at: int) -> Iterator[tuple[tuple[str, ...], tuple[str, str]]]:
-    stiffener, segment = end.bend_stiffener, scene.riser.segments[at]
+    stiffener, segment = end.bend_stiffener, scene.line.segments[at]
     assert stiffener is not None
     diameter = scene.line_types[segment.line_type].outer_diameter
     if end.rotation == "free":
@@ -64,7 +64,7 @@ def _longest(segment: Segment, at: int, length: float) -> float:
 
 def hang_off_conflicts(scene: Scene) -> Iterator[Problem]:
     """What a hang-off needs of the rest of the scene."""
-    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    ends = {"start": scene.line.start, "end": scene.line.end}
     asking = [name for name, end in ends.items() if end != "free" and end.hang_off is not None]
     if len(asking) > 1:
         yield Problem(("riser", "end", "hang_off"), "both ends hang off", "leave hang_off out of one of them")
@@ -76,10 +76,10 @@ def hang_off_conflicts(scene: Scene) -> Iterator[Problem]:
 def _wanting_of_hang_off(scene: Scene, name: str) -> Iterator[tuple[str, str]]:
     """What is wrong, and what to do."""
     other = "end" if name == "start" else "start"
-    here, there, first = getattr(scene.riser, name), getattr(scene.riser, other), scene.stages[0]
+    here, there, first = getattr(scene.line, name), getattr(scene.line, other), scene.stages[0]
     if scene.accuracy is not None:
         yield "is solved for on elements, which accuracy chooses later", "give elements and time steps"
-    if there == "free" or scene.riser.initial != "catenary":
+    if there == "free" or scene.line.initial != "catenary":
         yield f"needs a catenary to begin with, between this end and the {other}", "give both a position, and gravity"
         return
     if first.kind != "static":

@@ -114,8 +114,8 @@ def _surface_of_a_pipe_and_soil(scene: Scene) -> Iterator[Problem]:
 def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
     if not scene.contact:
         return
-    types = [scene.line_types[scene.riser.segments[n].line_type] for n in (0, -1)]
-    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    types = [scene.line_types[scene.line.segments[n].line_type] for n in (0, -1)]
+    ends = {"start": scene.line.start, "end": scene.line.end}
     for (key, end), line in zip(ends.items(), types, strict=True):
         if not isinstance(end, Support):
             continue

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import BaseModel, Field
 
 from riser_soil.core import outputs
-from riser_soil.core.quantities import FROZEN, ArcLength, Length, Text, Time
+from riser_soil.core.quantities import FROZEN, ArcLength, Length, LengthOrNone, Text, Time
 
 ALL_FIELDS = outputs.choices()
 if TYPE_CHECKING:
@@ -45,6 +45,17 @@ class Checkpoint(BaseModel):
     )
 
 
+class Clearance(BaseModel):
+    """A pair of lines whose least distance is recorded."""
+
+    model_config = FROZEN
+
+    between: tuple[Text, Text] = Field(description="names of the two lines")
+    beyond: LengthOrNone = Field(
+        default=0.0, description="arc length from the joints of a line within which it does not count [m]"
+    )
+
+
 class Output(BaseModel):
     """Intervals and fields of the result files."""
 
@@ -62,6 +73,9 @@ class Output(BaseModel):
     )
     sections: SettlementSections = Field(
         default=SettlementSections(), description="where settlement_across is recorded, with soil"
+    )
+    clearance: tuple[Clearance, ...] = Field(
+        default=(), description="pairs of lines whose least distance is recorded, {between, beyond}; none by default"
     )
     checkpoint: Checkpoint | None = Field(
         default=Checkpoint(),

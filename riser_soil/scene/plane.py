@@ -56,7 +56,7 @@ class VerticalPlane:
 def vertical_plane(scene: Scene) -> VerticalPlane:
     """The plane through the riser's start and end; along x when they give no direction."""
     points = _ends(scene)
-    return VerticalPlane(points[0], _direction(points), scene.riser.length)
+    return VerticalPlane(points[0], _direction(points), scene.line.length)
 
 
 def resolved_dimension(scene: Scene) -> Literal[2, 3]:
@@ -81,7 +81,7 @@ def leaving_the_plane(scene: Scene) -> Iterator[Path]:
 
 def _ends(scene: Scene) -> tuple[Vector, ...]:
     """Points that fix the plane: the prescribed ends, or those of the unstressed shape."""
-    riser = scene.riser
+    riser = scene.line
     prescribed = tuple(end.position for end in (riser.start, riser.end) if isinstance(end, Support))
     if len(prescribed) == 2:
         return prescribed
@@ -103,7 +103,7 @@ def _direction(points: tuple[Vector, ...]) -> Vector:
 
 def positions(scene: Scene) -> Iterator[tuple[Path, Vector]]:
     """Positions of the riser in the scene."""
-    riser = scene.riser
+    riser = scene.line
     for key, end in {"start": riser.start, "end": riser.end}.items():
         if isinstance(end, Support):
             yield ("riser", key, "position"), end.position
@@ -150,8 +150,8 @@ def _axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
             if load.moment is not None:
                 yield ("stages", n, "loads", m, "moment"), load.moment
     yield from rotation_axes(scene)
-    if isinstance(scene.riser.unstressed, ArcShape):
-        yield ("riser", "unstressed", "arc", "axis"), scene.riser.unstressed.arc.axis
+    if isinstance(scene.line.unstressed, ArcShape):
+        yield ("riser", "unstressed", "arc", "axis"), scene.line.unstressed.arc.axis
 
 
 def displacements(scene: Scene) -> Iterator[tuple[Path, Vector]]:

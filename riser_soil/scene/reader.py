@@ -14,9 +14,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from riser_soil.errors import SceneError
-from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.document import Document, parse, read_text
 from riser_soil.scene.explain import problems_in
+from riser_soil.scene.line_checks import all_conflicts
 from riser_soil.scene.overrides import override
 from riser_soil.scene.problem import Path as KeyPath
 from riser_soil.scene.problem import Problem, message
@@ -75,7 +75,7 @@ def checked(document: Document, folder: Path) -> Scene:
     except ValidationError as err:
         others = [p for p in problems_in(err, data) if not _beside(p, unsupported)]
         raise error_of([*unsupported, *others], document) from err
-    found = unsupported or conflicts(scene)
+    found = unsupported or all_conflicts(scene)
     if found:
         raise error_of(found, document)
     return scene

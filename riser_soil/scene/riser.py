@@ -4,7 +4,7 @@ import math
 from itertools import accumulate
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
+from pydantic import BaseModel, Discriminator, Field, PrivateAttr, Tag, model_validator
 
 from riser_soil.core.quantities import (
     FROZEN,
@@ -20,6 +20,7 @@ from riser_soil.core.quantities import (
     RotationalStiffness,
     Stress,
     Text,
+    Vector,
     Velocity,
     word_or,
     wrong,
@@ -219,6 +220,19 @@ class Support(BaseModel):
         description="angle or tension with which the riser hangs off here at rest, {angle: deg} or {tension: N}: the "
         "position, the other end's or a segment's length are then a first guess, and solved for",
     )
+    _jointed: bool = PrivateAttr(default=False)
+
+    @classmethod
+    def by_joint(cls, position: Vector, rotation: Literal["free", "fixed"]) -> Self:
+        """That of an end which a joint holds at this place at first, and lets go along with what it is joined to."""
+        support = cls(position=position, rotation=rotation)
+        support._jointed = True
+        return support
+
+    @property
+    def jointed(self) -> bool:
+        """Whether a joint holds the end, and nothing prescribes its position."""
+        return self._jointed
 
 
 End = Annotated[

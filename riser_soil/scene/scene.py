@@ -1,14 +1,17 @@
 """Scene language: the whole scene, with the state that it begins with and the solver's settings."""
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
 
-from riser_soil.core.quantities import FROZEN, AutoOrTime, Count, Gravity, Ratio, SolverTolerance, Text
+from riser_soil.core.quantities import FROZEN, AutoOrTime, Count, Gravity, Ratio, SolverTolerance, Text, wrong
+from riser_soil.errors import SceneError
 from riser_soil.scene.accuracy import Accuracy, with_placeholders
+from riser_soil.scene.bodies import Body
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.files import NamedFolder
+from riser_soil.scene.joints import Joint
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
 from riser_soil.scene.riser import Riser, Support
@@ -92,7 +95,12 @@ class Scene(BaseModel):
     )
     water: Water | None = Field(default=None, description="the water; none by default")
     line_types: dict[str, LineType] = Field(min_length=1, description="the kinds of pipe by name")
-    riser: Riser = Field(description="the riser")
+    riser: Riser | None = Field(default=None, description="the riser; or give lines")
+    lines: dict[str, Riser] = Field(
+        default={}, description="several lines by name, each with the keys of a riser; in the place of riser"
+    )
+    bodies: dict[str, Body] = Field(default={}, description="bodies that lines hang on, by name")
+    joints: dict[str, Joint] = Field(default={}, description="joints between lines and bodies, by name")
     seabed: Seabed | None = Field(default=None, description="seabed; with soil it acts outside the block")
     soil: SoilScene | None = Field(default=None, description="continuum of soil under the touchdown zone")
     contact: Contact | None = Field(
@@ -119,6 +127,25 @@ class Scene(BaseModel):
     def _fill_what_depends_on_other_parts(cls, data: Any) -> Any:
         return with_placeholders(_with_initial(_with_contact(data))) if isinstance(data, dict) else data
 
+    @model_validator(mode="after")
+    def _one_or_several(self) -> Self:
+        if self.riser is None and not self.lines:
+            raise wrong("riser", "the riser is missing", "give riser, or lines: {name: ...}")
+        if self.riser is not None and self.lines:
+            raise wrong("lines", "riser and lines are both given", "give the riser as one of the lines")
+        for key, given in (("bodies", self.bodies), ("joints", self.joints)):
+            if given and self.riser is not None:
+                raise wrong(key, "belong to lines, and the scene has riser", "write lines: {riser: ...} in its place")
+        return self
+
+    @property
+    def line(self) -> Riser:
+        """The one line of a scene with `riser`, or of one line's view; SceneError of a scene with several."""
+        if self.riser is None:
+            several = ", ".join(self.lines)
+            raise SceneError(f"lines: this is for one line, and the scene has several ({several}): it is not there yet")
+        return self.riser
+
     @property
     def seabed_level(self) -> float:
         """Height z of the seabed and of the soil's top face [m]; of a profile or grid that below the riser's start."""
@@ -128,7 +155,7 @@ class Scene(BaseModel):
             return profile_height(self.seabed.profile, 0.0)
         if self.seabed.grid is None:
             return self.seabed.level
-        ends = [end.position for end in (self.riser.start, self.riser.end) if isinstance(end, Support)]
+        ends = [end.position for end in (self.line.start, self.line.end) if isinstance(end, Support)]
         x, y, _ = ends[0] if ends else (0.0, 0.0, 0.0)
         return self.seabed.grid.heights.height(x, y)
 
@@ -171,7 +198,7 @@ class Scene(BaseModel):
     @property
     def used_line_types(self) -> dict[str, LineType]:
         """The line types that the riser is made of, by name."""
-        names = [segment.line_type for segment in self.riser.segments]
+        names = [segment.line_type for segment in self.line.segments]
         return {name: self.line_types[name] for name in names if name in self.line_types}
 
 
@@ -182,10 +209,29 @@ def _with_contact(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _with_initial(data: dict[str, Any]) -> dict[str, Any]:
-    """A riser with both end positions prescribed starts under gravity as a catenary."""
-    riser = data.get("riser")
-    if not isinstance(riser, dict) or riser.get("initial") is not None:
-        return data
-    prescribed = all(isinstance(riser.get(end), dict) for end in ("start", "end"))
-    initial = "catenary" if prescribed and data.get("gravity", 9.81) != 0 else "unstressed"
-    return {**data, "riser": {**riser, "initial": initial}}
+    """A line whose both ends have a place begins under gravity as a catenary."""
+    falls = data.get("gravity", 9.81) != 0
+    if isinstance(data.get("riser"), dict):
+        data = {**data, "riser": _with_shape(data["riser"], falls, [])}
+    if isinstance(lines := data.get("lines"), dict):
+        joints = data["joints"].values() if isinstance(data.get("joints"), dict) else ()
+        given = [point for joint in joints if isinstance(joint, dict) for point in _points(joint.get("between"))]
+        shaped = {
+            name: _with_shape(line, falls, [at for other, at in given if other == name]) for name, line in lines.items()
+        }
+        data = {**data, "lines": shaped}
+    return data
+
+
+def _points(between: Any) -> list[tuple[Any, Any]]:
+    """Lines and places of the points of a joint."""
+    points = between if isinstance(between, list | tuple) else ()
+    return [(point.get("line"), point.get("at")) for point in points if isinstance(point, dict)]
+
+
+def _with_shape(line: Any, falls: bool, jointed: list[Any]) -> Any:
+    """jointed: places along the line, its ends by their names."""
+    if not isinstance(line, dict) or line.get("initial") is not None:
+        return line
+    placed = all(isinstance(line.get(end), dict) or end in jointed for end in ("start", "end"))
+    return {**line, "initial": "catenary" if placed and falls else "unstressed"}

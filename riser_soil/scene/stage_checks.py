@@ -29,7 +29,7 @@ def stage_conflicts(scene: Scene) -> Iterator[Problem]:
         for m, load in enumerate(stage.loads):
             yield from _load_on_riser(scene, ("stages", n, "loads", m), load)
             yield from _moment_on_chain(scene, ("stages", n, "loads", m), load)
-        if stage.pressure is not None and scene.riser.contents is None:
+        if stage.pressure is not None and scene.line.contents is None:
             remedy = "add riser.contents: {density: ...}, or leave it out"
             yield Problem(("stages", n, "pressure"), "is that of the contents, and the riser is empty", remedy)
         if isinstance(stage, DynamicStage):
@@ -54,7 +54,7 @@ def _different_names(scene: Scene) -> Iterator[Problem]:
 def _load_on_riser(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
     if not isinstance(load.at, float):
         return
-    length = scene.riser.length
+    length = scene.line.length
     if load.at > length * (1.0 + 1e-9):
         yield Problem(
             (*path, "at"), f"must not exceed the riser's length ({length:.6g} m)", "correct the arc length"
@@ -70,10 +70,10 @@ def _moment_on_chain(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
     """A moment where all that is beside it has no bending stiffness."""
     if load.moment is None or load.at is None:
         return
-    length, first = scene.riser.length, 0.0
+    length, first = scene.line.length, 0.0
     at = {"start": 0.0, "end": length}[load.at] if isinstance(load.at, str) else load.at
     beside = list[str]()
-    for segment in scene.riser.segments:
+    for segment in scene.line.segments:
         if first - 1e-9 * length <= at <= first + segment.length + 1e-9 * length:
             beside.append(segment.line_type)
         first += segment.length
@@ -83,12 +83,12 @@ def _moment_on_chain(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
 
 
 def _nearest_node(scene: Scene, arc: float) -> float:
-    return min(scene.riser.node_arcs, key=lambda node: abs(node - arc))
+    return min(scene.line.node_arcs, key=lambda node: abs(node - arc))
 
 
 def _at_rest(scene: Scene, n: int) -> Iterator[Problem]:
     """What keeps a riser from having an equilibrium."""
-    if scene.riser.start == scene.riser.end == "free":
+    if scene.line.start == scene.line.end == "free":
         remedy = "give an end a position, or make the stage dynamic"
         yield Problem(("stages", n), "a riser with two free ends has no equilibrium", remedy)
     elif _swings_freely(scene):
@@ -99,7 +99,7 @@ def _at_rest(scene: Scene, n: int) -> Iterator[Problem]:
 
 
 def _moves(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
-    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    ends = {"start": scene.line.start, "end": scene.line.end}
     if stage.move:
         targets = {"start": stage.move.start, "end": stage.move.end}
         yield from _prescribed(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
@@ -119,13 +119,13 @@ def _of_ground(scene: Scene) -> str:
 
 
 def _swings_freely(scene: Scene) -> bool:
-    prescribed = [end for end in (scene.riser.start, scene.riser.end) if isinstance(end, Support)]
+    prescribed = [end for end in (scene.line.start, scene.line.end) if isinstance(end, Support)]
     return scene.gravity == 0.0 and len(prescribed) == 1 and prescribed[0].rotation == "free"
 
 
 def _motions(scene: Scene, n: int, stage: TimedStage) -> Iterator[Problem]:
     if stage.motion:
-        ends = {"start": scene.riser.start, "end": scene.riser.end}
+        ends = {"start": scene.line.start, "end": scene.line.end}
         yield from _prescribed(ends, {("stages", n, "motion", key): key for key in stage.motion.by_end})
         for key, motion in stage.motion.by_end.items():
             yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage)
@@ -149,10 +149,10 @@ def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
     path, remedy = ("stages", n, "scheme"), "choose another scheme"
     if scene.contact:
         yield Problem(path, "the midpoint rule would make energy out of contact", remedy)
-    if scene.riser.contents is not None and scene.riser.contents.uneven_or_moving:
+    if scene.line.contents is not None and scene.line.contents.uneven_or_moving:
         yield Problem(path, "the midpoint rule has no contents that flow or are uneven", remedy)
     for key, motion in stage.motion.by_end.items() if stage.motion else ():
-        end = getattr(scene.riser, key)
+        end = getattr(scene.line, key)
         if isinstance(end, Support) and end.rotation == "fixed" and motion.turns:
             yield Problem(path, f"the midpoint rule can't turn a fixed end, and the riser's {key} turns", remedy)
 
@@ -167,10 +167,10 @@ def _prescribed(ends: dict[str, End], places: dict[Path, str]) -> Iterator[Probl
 
 def _reachable_moves(scene: Scene) -> Iterator[Problem]:
     """The ends' positions stage by stage, against the riser's length."""
-    start, end = scene.riser.start, scene.riser.end
+    start, end = scene.line.start, scene.line.end
     if not isinstance(start, Support) or not isinstance(end, Support):
         return
-    a, b, length = start.position, end.position, scene.riser.length
+    a, b, length = start.position, end.position, scene.line.length
     for n, stage in enumerate(scene.stages):
         if isinstance(stage, StaticStage) and stage.move:
             a, b = stage.move.start or a, stage.move.end or b
@@ -196,7 +196,7 @@ def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, stage: TimedSt
         yield from _table((*path, "vessel_history", "file"), motion.vessel_history, stage)
     if motion.vessel:
         yield from _vessel(scene, (*path, "vessel"), motion.vessel, stage)
-    end = scene.riser.start if path[-1] == "start" else scene.riser.end
+    end = scene.line.start if path[-1] == "start" else scene.line.end
     if motion.rotation and isinstance(end, Support) and end.rotation == "free":
         allowed = f"riser.{path[-1]}.rotation is free, so that nothing turns with the support"
         yield Problem((*path, "rotation"), allowed, "set it to fixed or a stiffness, or leave this out")

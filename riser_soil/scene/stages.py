@@ -115,6 +115,18 @@ class MovedEnds(BaseModel):
     end: Position | None = Field(default=None, description="new position of the end, [x, y, z] [m]")
 
 
+class OfLine(BaseModel):
+    """What happens to one of several lines in a stage."""
+
+    model_config = FROZEN
+
+    move: MovedEnds | None = Field(
+        default=None, description="new prescribed positions of its ends in a static stage, {start, end}"
+    )
+    motion: Motion | None = Field(default=None, description="prescribed motions of its ends, {start, end}")
+    loads: tuple[Load, ...] = Field(default=(), description="loads on it during this stage")
+
+
 class NewmarkParameters(BaseModel):
     """Newmark's parameters."""
 
@@ -178,6 +190,7 @@ Scheme = Annotated[
 
 _KIND = "static, quasi-static or dynamic"
 _LOADS = "loads on the riser during this stage"
+_OF_LINES = "what happens to each of several lines, {name: {move, motion, loads}}"
 _PRESSURE = "gauge pressure of the contents at pressure_level from this stage on [Pa]; by default as it was before"
 
 
@@ -190,6 +203,7 @@ class StaticStage(BaseModel):
     kind: Literal["static"] = Field(description=_KIND)
     move: MovedEnds | None = Field(default=None, description="new prescribed positions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
+    lines: dict[str, OfLine] = Field(default={}, description=_OF_LINES)
     pressure: Pressure | None = Field(
         default=None, description=f"{_PRESSURE}; it changes linearly over a static stage"
     )
@@ -221,6 +235,7 @@ class QuasiStaticStage(BaseModel):
         default=None, description="prescribed motions of ends, {start, end}; tables are straight between their rows"
     )
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
+    lines: dict[str, OfLine] = Field(default={}, description=_OF_LINES)
     pressure: Pressure | None = Field(default=None, description=_PRESSURE)
 
     @model_validator(mode="after")
@@ -260,6 +275,7 @@ class DynamicStage(BaseModel):
     )
     motion: Motion | None = Field(default=None, description="prescribed motions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
+    lines: dict[str, OfLine] = Field(default={}, description=_OF_LINES)
     pressure: Pressure | None = Field(default=None, description=_PRESSURE)
     scheme: Scheme = Field(
         default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlphaParameters()),

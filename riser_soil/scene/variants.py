@@ -18,8 +18,8 @@ def with_end_at(scene: Scene, name: str, place: Vector) -> Scene:
     """The scene with an end at a place [m]; hubs and vessels that move it keep their place beside it, until a static
     stage moves it to a place of its own.
     """
-    end = getattr(scene.riser, name)
-    riser = scene.riser.model_copy(update={name: end.model_copy(update={"position": place})})
+    end = getattr(scene.line, name)
+    riser = scene.line.model_copy(update={name: end.model_copy(update={"position": place})})
     stages = tuple(_stages(scene, name, minus(place, end.position)))
     return scene.model_copy(update={"riser": riser, "stages": stages})
 
@@ -56,7 +56,7 @@ def with_segment_as_long(scene: Scene, number: int, length: float) -> Scene:
     """The scene with a segment of a length [m], in as many elements. Attachments, loads and sections keep their places
     in their segments; in this one in proportion.
     """
-    segments = scene.riser.segments
+    segments = scene.line.segments
     before, old = sum(segment.length for segment in segments[:number]), segments[number].length
 
     def at(arc: float) -> float:
@@ -67,11 +67,11 @@ def with_segment_as_long(scene: Scene, number: int, length: float) -> Scene:
     )
     arcs = scene.output.sections.arcs
     sections = scene.output.sections.model_copy(update={"arcs": None if arcs is None else tuple(map(at, arcs))})
-    riser: dict[str, Any] = {"attachments": tuple(_attachment(each, at) for each in scene.riser.attachments)}
+    riser: dict[str, Any] = {"attachments": tuple(_attachment(each, at) for each in scene.line.attachments)}
     riser["segments"] = (*segments[:number], _as_long(segments[number], length), *segments[number + 1 :])
     return scene.model_copy(
         update={
-            "riser": scene.riser.model_copy(update=riser),
+            "riser": scene.line.model_copy(update=riser),
             "stages": stages,
             "output": scene.output.model_copy(update={"sections": sections}),
         }

@@ -184,7 +184,7 @@ def use_mumps(pc: PETSc.PC, kind: str, controls: Mapping[int, int]) -> None:
 
 def _bordered_chain(system: System) -> int | None:
     """Rows of a serial system that are a chain's, the first ones, where all the others couple with each other."""
-    if system.comm.size > 1 or is_chain(system):
+    if system.comm.size > 1 or is_chain(system) or len(system.model.lines) > 1:
         return None
     at = slice(0, sum(line.size for line in system.model.lines))
     chain, rows = int(np.count_nonzero(system.numbering.index[at] >= 0)), system.numbering.free

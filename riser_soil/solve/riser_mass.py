@@ -87,6 +87,24 @@ class LineMass:
             self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))
 
 
+class NodeMass:
+    """The mass of a field of one node, such as a body's, whose matrix is written to K (1, n, n) before each call."""
+
+    moving: Array | None = None
+
+    def __init__(self, prescribed: BoolArray) -> None:
+        self.K, self._free = np.zeros((1, prescribed.size, prescribed.size)), ~prescribed
+
+    def accelerations(self, force: Array) -> Array:
+        """a with M a = force (size,); prescribed dofs get none."""
+        out, free = np.zeros(force.size), self._free
+        out[free] = np.linalg.solve(self.K[0][np.ix_(free, free)], force[free])
+        return out
+
+    def restore(self, moving: Array | None) -> None:
+        """Nothing is kept."""
+
+
 def projectors(blocks: Array, free: BoolArray) -> Array:
     """Projectors (nn, dofs, dofs) of the nodes onto what is free and has mass.
 
@@ -183,11 +201,14 @@ class RiserMass:
         self._system, self._parts = system, _with_inertia(system)
 
     @cached_property
-    def _lines(self) -> list[tuple[LineField, LineMass]]:
+    def _lines(self) -> list[tuple[LineField, LineMass | NodeMass]]:
         return [(line, self._mass_of(line)) for line in self._system.model.lines]
 
-    def _mass_of(self, line: LineField) -> LineMass:
-        return LineMass(len(line.translation_dofs), line.prescribed, self._system.levers[local(line)])
+    def _mass_of(self, line: LineField) -> LineMass | NodeMass:
+        nodes = len(line.translation_dofs)
+        if nodes == 1:
+            return NodeMass(line.prescribed)
+        return LineMass(nodes, line.prescribed, self._system.levers[local(line)])
 
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the lines."""
@@ -196,9 +217,11 @@ class RiserMass:
             out[local(line)] = comm.bcast(self._of_line(line, mass, t, force) if comm.rank == 0 else None)
         return out
 
-    def _of_line(self, line: LineField, mass: LineMass, t: float, force: Array) -> Array:
+    def _of_line(self, line: LineField, mass: LineMass | NodeMass, t: float, force: Array) -> Array:
         mass.K[...], state = 0.0, State.at_rest(t, force.size)
         for part in self._parts:
+            if line.name not in part.blocks():
+                continue
             part.tangent(state, MASS_ONLY, {line.name: mass.K})
         return mass.accelerations(force[local(line)])
 

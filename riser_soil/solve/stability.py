@@ -129,7 +129,8 @@ def prescribe_free_turns(system: System, state: State, least: float) -> None:
     prescribed = _one_dof_each(system, _neutral(system, state, least))
     if prescribed.size:
         more, mine = system.numbering.zeros(), _of_this_rank(system, prescribed)
-        more[mine] = np.abs(system.matrix.stored.diagonal()[mine])
+        sizes = np.abs(system.matrix.stored.diagonal())
+        more[mine] = np.where(sizes[mine] > 0.0, sizes[mine], sizes.max(initial=1.0))
         system.matrix.add_to_diagonal(more)
 
 

@@ -28,7 +28,7 @@ def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepS
         from riser_soil.solve.riser_newton import riser_newton
 
         return riser_newton(system, settings) or Newton(system, settings)
-    if system.whole_soil is None:
+    if system.whole_soil is None and len(system.model.lines) == 1:
         from riser_soil.solve.condensed_newton import condensed_newton
 
         return condensed_newton(system, settings) or Newton(system, settings)

@@ -55,7 +55,7 @@ def _balance(scene: Scene, stage: Stage, reported: dict[str, Any]) -> Iterator[A
     final, weight, load = reported["final"], _weight(scene), _loads(scene, stage)
     up = [final["start"]["force"][2], final["end"]["force"][2], final["contact_force"], float(load[2]), -weight]
     forces = [*final["start"]["force"], *final["end"]["force"], *up]
-    bending = final["max_bending_moment"]["value"] / scene.riser.length
+    bending = final["max_bending_moment"]["value"] / scene.line.length
     largest = max(bending, *(abs(x) for x in forces))
     if largest == 0.0:
         return
@@ -86,7 +86,7 @@ def _loads(scene: Scene, stage: Stage) -> np.ndarray:
     for load in loads_in(scene.stages, stage):
         factor = 1.0 if load.history is None else load.history[-1][1]
         total += factor * np.asarray(load.force or (0.0, 0.0, 0.0))
-        total += factor * scene.riser.length * np.asarray(load.distributed or (0.0, 0.0, 0.0))
+        total += factor * scene.line.length * np.asarray(load.distributed or (0.0, 0.0, 0.0))
     return total
 
 

@@ -48,7 +48,7 @@ def extremes(scene: Scene) -> Iterator[ExtremeScene]:
     yield from _materials(scene)
     if any(not isinstance(stage, StaticStage) and stage.motion for stage in scene.stages):
         yield from _motions(scene)
-    straight = _with(scene.riser, initial="straight")  # there is no catenary without weight
+    straight = _with(scene.line, initial="straight")  # there is no catenary without weight
     yield ExtremeScene("gravity 0", _with(scene, gravity=0.0, riser=straight))
     if scene.dimension == "auto":
         spatial = _with(scene, dimension=3, line_types=_line_types(scene, GJ=_as_stiff_as_bent))

@@ -73,7 +73,7 @@ def test_the_page_s_steps_and_elements_are_fine_enough() -> None:
     of the step.
     """
     rows = [[cell.strip() for cell in row.split("|")[1:-1]] for row in block(PAGE, "extremes").splitlines()[2:]]
-    (scene,) = (row for row in rows if row[:2] == [str(len(read_scene(SCENE).riser.node_arcs) - 1), "0.2"])
+    (scene,) = (row for row in rows if row[:2] == [str(len(read_scene(SCENE).line.node_arcs) - 1), "0.2"])
     assert max(float(cell.removesuffix(" %")) for cell in scene[-3:]) < 1.0
 
 

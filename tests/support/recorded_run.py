@@ -168,7 +168,7 @@ EVERYWHERE, NOWHERE = DueOutputs(series=True, pictures=True), DueOutputs(series=
 @contextmanager
 def a_recorder(folder: Path, kind: str = "dynamic", mesh: SoilMesh | None = None) -> Iterator[Recorder]:
     """In its first stage."""
-    with Recorder.open(folder, FACTS, CATENARY_ARC, mesh, SCENE) as recorder:
+    with Recorder.open(folder, FACTS, {"": CATENARY_ARC}, mesh, SCENE) as recorder:
         recorder.begin_stage("only", kind)
         yield recorder
 
@@ -178,7 +178,7 @@ def step(
 ) -> None:
     """Tells the recorder of an accepted step."""
     line, health = Catenary(32.0, 30.0 - 0.01 * t), StepStatistics(3, 0.1, 1e-6, 0)
-    recorder.accept([StepRecord(t, health, _ledger(t))], [due], stacked([line.seen(CATENARY_ARC)]), pictured)
+    recorder.accept([StepRecord(t, health, _ledger(t))], [due], {"": stacked([line.seen(CATENARY_ARC)])}, pictured)
 
 
 def record(
@@ -197,7 +197,7 @@ def record(
     """Records a static stage and a dynamic stage of steps of 0.1 s, so many steps at once. Returns the arc lengths."""
     arc = CATENARY_ARC
     schedule = Schedule(interval, picture_interval)
-    with Recorder.open(folder, facts, arc, mesh, SCENE, fields, force) as recorder:
+    with Recorder.open(folder, facts, {"": arc}, mesh, SCENE, fields, force) as recorder:
         for name, kind, times in (
             ("lay", "static", [0.5, 1.0]),
             ("heave", "dynamic", list(0.1 * np.arange(1, round(duration / 0.1) + 1))),
@@ -212,7 +212,7 @@ def record(
                 recorder.accept(
                     [StepRecord(t, health, _ledger(heave)) for t, heave in zip(now, heaves, strict=True)],
                     [schedule.due(t, t == times[-1]) for t in now],
-                    stacked([line.seen(arc) for line in lines]),
+                    {"": stacked([line.seen(arc) for line in lines])},
                     None if mesh is None else soil(mesh, lines[-1].s0),
                 )
         recorder.add_seconds({"newton": 1.25})

@@ -88,7 +88,7 @@ def test_first_setting_has_steps_by_period_and_accuracy() -> None:
     for accuracy in ("1 %", "0.25 %"):
         scene = first_setting(scene_from_mapping(asking("surge, 40 steps", accuracy)))
         assert scene.accuracy is None
-        assert scene.riser.element_count == 24
+        assert scene.line.element_count == 24
         motion = scene.stages[1]
         assert isinstance(motion, DynamicStage)
         steps.append(motion.time_step)
@@ -103,7 +103,7 @@ def test_nodes_are_where_something_acts(tmp_path: Path) -> None:
     given["riser"] = given["riser"] | {"attachments": [{"at": 7.1, "mass": 30.0}]}
     scene = scene_from_mapping(given)
     run_to_accuracy(scene, tmp_path / "run")
-    arcs = read_scene(tmp_path / "run" / "scene.yaml").riser.node_arcs
+    arcs = read_scene(tmp_path / "run" / "scene.yaml").line.node_arcs
     for place in (4.3, 7.1):
         assert min(abs(arc - place) for arc in arcs) < 1e-9
     reported = key_results(summary(tmp_path / "run"))
@@ -129,7 +129,7 @@ def test_statics_reach_it(name: str, tmp_path: Path) -> None:
 def test_elements_are_short_where_curvature_asks_for_it() -> None:
     """At the clamped ends of a taut beam, in a layer of 0.35 m; in the middle they are ten times as long."""
     found = trial(first_setting(scene_from_mapping(asking("beam under tension, unresolved"))), 0.01, MPI.COMM_WORLD)
-    lengths = [x for segment in found.scene.riser.segments for x in segment.element_lengths]
+    lengths = [x for segment in found.scene.line.segments for x in segment.element_lengths]
     assert max(lengths[0], lengths[-1]) < 0.35
     assert max(lengths) > 10.0 * lengths[0]
 
@@ -168,7 +168,7 @@ def test_an_impact_that_hardly_converges_ends_the_search_early(
     scene = scene_from_mapping(asking("cantilever under a sudden load", "1 %"))
     with pytest.raises(AccuracyError, match=r"; to reach it would take at least \d+ times as long, .*run has that"):
         run_to_accuracy(scene, tmp_path / "run")
-    reported, elements = summary(tmp_path / "run"), read_scene(tmp_path / "run" / "scene.yaml").riser.segments
+    reported, elements = summary(tmp_path / "run"), read_scene(tmp_path / "run" / "scene.yaml").line.segments
     assert reported["accuracy"]["reached"] is False
     assert reported["finished"]
     assert sum(part.elements or 0 for part in elements) < 200  # a second run has some 400

@@ -67,8 +67,8 @@ def test_scenes_from_files_and_dicts_are_the_same(file: str | Path) -> None:
 def test_a_changed_scene_is_another_one() -> None:
     scene = Scene.from_file(FIRST)
     changed = scene.changed({"riser.segments.0.element_length": np.float64(0.25), "gravity": 9.8})
-    assert (changed.model.riser.segments[0].element_length, changed.model.gravity) == (0.25, 9.8)
-    assert (scene.model.riser.segments[0].element_length, scene.model.gravity) == (0.5, 9.81)
+    assert (changed.model.line.segments[0].element_length, changed.model.gravity) == (0.25, 9.8)
+    assert (scene.model.line.segments[0].element_length, scene.model.gravity) == (0.5, 9.81)
     assert (scene.name, scene.changed({"output.directory": "there"}).name) == ("first_scene", "there")
 
 

@@ -76,7 +76,7 @@ def test_run_hands_over_scene_folder_and_force(invoke: Invoke) -> None:
     assert result.exit_code == 0
     assert calls.folders == [Path("catenary")]
     assert calls.forces == [True]
-    assert calls.scenes[0].riser.segments[0].elements == 70
+    assert calls.scenes[0].line.segments[0].elements == 70
 
 
 @pytest.mark.parametrize(

@@ -56,7 +56,7 @@ def test_a_line_hangs_at_its_angle_from_where_it_should_touch_down(kind: str, de
     assert angle == pytest.approx(HANGING[kind], rel=2e-3)
     lifted = cable.curve.position[:, 2] > cable.curve.position[0, 2] + 1e-3
     laid = {"steel-catenary": 0.25, "flexible": 0.4, "lazy-wave": 0.3, "mooring": 0.8}[kind] * depth
-    largest = max(segment.element_lengths[0] for segment in drafted.riser.segments)
+    largest = max(segment.element_lengths[0] for segment in drafted.line.segments)
     assert cable.curve.position[lifted.argmax(), 0] == pytest.approx(laid, abs=1.5 * largest)
 
 

@@ -29,7 +29,7 @@ def of(scene: Scene) -> tuple[Segment, ...] | None:
 
 
 def cut(scene: Scene, segments: tuple[Segment, ...]) -> Scene:
-    return scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": segments})})
+    return scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": segments})})
 
 
 def hung(**more: Any) -> Scene:
@@ -78,7 +78,7 @@ def test_a_third_of_the_elements_of_the_first_scene_keep_its_figures_to_one_per_
     rough, fine = (
         key_results(peaks_of(cut(scene, each), MPI.COMM_SELF).reported("peaks")) for each in (segments, finer)
     )
-    assert 3 * sum(each.element_count for each in segments) < scene.riser.element_count
+    assert 3 * sum(each.element_count for each in segments) < scene.line.element_count
     for key, key_result in fine.items():
         assert rough[key].value == pytest.approx(key_result.value, rel=0.01), key
 
@@ -102,7 +102,7 @@ def test_the_words_are_segments_of_a_scene() -> None:
     scene = read_scene(FIRST)
     reported = proposal(build(scene, MPI.COMM_SELF)).split("\n", 1)[1]
     segments = tuple(Segment(**each) for each in YAML(typ="safe").load(reported))
-    assert sum(each.length for each in segments) == pytest.approx(scene.riser.length, rel=1e-5)
+    assert sum(each.length for each in segments) == pytest.approx(scene.line.length, rel=1e-5)
     assert not proposal(build(cut(scene, segments), MPI.COMM_SELF))
     assert reported in describe(scene)
 

@@ -265,7 +265,7 @@ def test_coarser_runs_go_on_from_one_to_the_next(looked_at: list[Scene]) -> None
     found = chain.comparison_runs(scene, None)
     assert [each.source for each in found] == ["time", "mesh"]
     assert [each.finer for each in found] == pytest.approx([0.25, 2.0])  # four times as long at most
-    assert [each.riser.element_count for each in looked_at] == [80, 160]
+    assert [each.line.element_count for each in looked_at] == [80, 160]
     assert [each.contact and each.contact.stiffness for each in looked_at] == [1e5, 16e5]
     assert {each.output.interval for each in looked_at} == {None}
 

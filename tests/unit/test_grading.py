@@ -63,8 +63,8 @@ def graded(load_at: float) -> dict[str, Any]:
 
 def test_checks_and_elements_agree_on_the_nodes() -> None:
     scene = scene_from_mapping(graded(load_at=7.0))
-    assert scene.riser.node_arcs == pytest.approx([0.0, 1.0, 3.0, 7.0, 15.0, 17.5, 20.0], rel=1e-14)
-    assert elements_of(scene).arc.tolist() == scene.riser.node_arcs
+    assert scene.line.node_arcs == pytest.approx([0.0, 1.0, 3.0, 7.0, 15.0, 17.5, 20.0], rel=1e-14)
+    assert elements_of(scene).arc.tolist() == scene.line.node_arcs
 
 
 def test_a_moment_between_graded_nodes_is_sent_to_the_nearest() -> None:

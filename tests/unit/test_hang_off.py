@@ -61,7 +61,7 @@ def test_angle_of_a_cable(end: str) -> None:
 def test_tension_of_a_cable_by_its_length() -> None:
     found = solved(hanging(tension=1.1e4, by="length"))
     assert found.reached == pytest.approx(1.1e4, rel=2e-5)
-    assert found.scene.riser.segments[0].length == found.value != L
+    assert found.scene.line.segments[0].length == found.value != L
     assert catenary(30.0, found.value)[1] == pytest.approx(1.1e4, rel=1e-3), "by the elements"
 
 
@@ -146,8 +146,8 @@ def test_what_has_its_place_along_the_riser_stays_in_its_segment(end: str) -> No
     scene["riser"]["attachments"] = [{"at": 10.0, "mass": 5.0}, row]
     scene["stages"] = [static(), static("pulled", loads=[{"at": 50.0, "force": [1.0, 0.0, 0.0]}])]
     found = guessed(scene, 25.0)
-    places = [each.arcs for each in found.riser.attachments]
-    assert found.riser.length == pytest.approx(65.0)
+    places = [each.arcs for each in found.line.attachments]
+    assert found.line.length == pytest.approx(65.0)
     if end == "end":
         assert places == [pytest.approx((12.5,)), pytest.approx((35.0, 45.0, 55.0))]
         assert found.stages[1].loads[0].at == pytest.approx(55.0)

@@ -105,8 +105,9 @@ def followed(tensions: list[float], dt: float = 0.1, lost: float = 0.0, local_er
     ]
     steps = [StepRecord(0.0, StepStatistics(3, dt, 0.0, 0, local_error), ledger) for ledger in ledgers]
     times, half = dt * np.arange(len(rows)), len(rows) // 2  # as many at once as may be
-    found.follow(times[:half], rows[:half], steps[:half])
-    found.follow(times[half:], rows[half:], steps[half:])
+    for some in (slice(half), slice(half, None)):
+        found.follow(times[some], rows[some])
+        found.follow_steps(times[some], steps[some])
     return found
 
 
@@ -126,7 +127,8 @@ def judged(least: list[float], moments: list[float] | None = None, automatic: bo
     for n, tension in enumerate(least):
         vector[[TENSION, LEAST, MOMENT]] = 1000.0, tension, moments[n] if moments else 0.0
         step = StepRecord(0.0, StepStatistics(3, 0.1, 0.0, 0), Ledger())
-        found.follow(np.array([n * 0.1]), vector[None], [step])
+        found.follow(np.array([n * 0.1]), vector[None])
+        found.follow_steps(np.array([n * 0.1]), [step])
     return list(found.warnings())
 
 

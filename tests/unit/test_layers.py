@@ -21,7 +21,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("soil",),
     ("scene", "riser"),
     ("sea", "motion"),
-    ("contact",),
+    ("contact", "bodies"),
     ("solve",),
     ("assembly",),
     ("checks",),

@@ -119,11 +119,11 @@ def test_meant_buoyancy_is_not_warned_of() -> None:
 def test_a_row_of_attachments() -> None:
     row = {"from": 10.0, "to": 10.7, "spacing": 0.1, "mass": 5.0}
     given = scene(attachments=[row])
-    assert given.riser.attachments[0].arcs == pytest.approx(10.0 + 0.1 * np.arange(8))
+    assert given.line.attachments[0].arcs == pytest.approx(10.0 + 0.1 * np.arange(8))
     last: PointAttachment = build(given, MPI.COMM_SELF).attachments[-1]
     assert (last.arc, last.mass) == (10.7, 5.0)
     again = scene(attachments=[row | {"to": 10.69}])
-    assert len(again.riser.attachments[0].arcs) == 7
+    assert len(again.line.attachments[0].arcs) == 7
     assert "from: 10.0" in dump_scene(given)
 
 

@@ -29,7 +29,7 @@ def a_step(iterations: int = 2) -> dict[str, list[float]]:
 
 
 def a_file(folder: Path) -> SeriesFile:
-    file = SeriesFile(folder / "results.nc", ARC, "a title", "0.1.0", sections=2, offsets=(-1.0, 0.0, 1.0))
+    file = SeriesFile(folder / "results.nc", {"": ARC}, "a title", "0.1.0", sections=2, offsets=(-1.0, 0.0, 1.0))
     file.begin_stage("lay down")
     return file
 
@@ -133,7 +133,7 @@ def test_nan_and_all_digits_survive(tmp_path: Path) -> None:
 
 
 def test_what_is_left_out_takes_no_workspace(tmp_path: Path) -> None:
-    file = SeriesFile(tmp_path / "results.nc", ARC, "t", "0", left_out={"curvature", "moment_vector"})
+    file = SeriesFile(tmp_path / "results.nc", {"": ARC}, "t", "0", left_out={"curvature", "moment_vector"})
     file.begin_stage("only")
     file.record(a_row(0.0))
     file.flush()
@@ -144,7 +144,7 @@ def test_what_is_left_out_takes_no_workspace(tmp_path: Path) -> None:
 
 
 def test_without_sections_there_is_nothing_of_them(tmp_path: Path) -> None:
-    SeriesFile(tmp_path / "results.nc", ARC, "t", "0")
+    SeriesFile(tmp_path / "results.nc", {"": ARC}, "t", "0")
     with h5py.File(tmp_path / "results.nc") as file:
         assert "soil_settlement" in file
         assert not {"section", "offset", "section_arc", "settlement_across"} & set(file)

@@ -48,7 +48,7 @@ def test_a_riser_alone(tmp_path: Path) -> None:
 
 
 def test_nothing_recorded_is_said(tmp_path: Path) -> None:
-    with Recorder.open(tmp_path, FACTS, np.linspace(0.0, 1.0, 3), None, SCENE):
+    with Recorder.open(tmp_path, FACTS, {"": np.linspace(0.0, 1.0, 3)}, None, SCENE):
         pass
     with pytest.raises(ResultsError, match="nothing was recorded"):
         picture(tmp_path, tmp_path / "nothing.png")

@@ -259,7 +259,7 @@ def numbers_in(path: Path) -> dict[str, Any]:
 
 def test_a_run_that_begins_in_motion_is_recorded_from_its_beginning(tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
-        recorder.begin_at(stacked([Catenary(32.0, 35.0).seen(CATENARY_ARC)]))
+        recorder.begin_at({"": stacked([Catenary(32.0, 35.0).seen(CATENARY_ARC)])})
         step(recorder, 0.1)
         recorder.finish()
     run = Run(tmp_path)

@@ -67,8 +67,8 @@ def test_catenary_as_it_is_written() -> None:
     line = scene.line_types["flexible"]
     assert (line.EA, line.EI, line.mass) == (15.38e8, 20.96e3, 57.5)
     assert line.bending_stiffness == (20.96e3, 20.96e3)
-    assert scene.riser.initial == "catenary"
-    assert scene.riser.length == 350.0
+    assert scene.line.initial == "catenary"
+    assert scene.line.length == 350.0
     assert (scene.seabed, scene.soil, scene.contact) == (None, None, None)
     surge = scene.stages[1]
     assert isinstance(surge, DynamicStage)
@@ -84,7 +84,7 @@ def test_clay_has_contact_and_elements_by_length() -> None:
     scene = read_scene(SCENES["clay"])
     assert scene.contact is not None
     assert scene.contact.stiffness == "auto"
-    assert [len(segment.element_lengths) for segment in scene.riser.segments] == [100, 49]
+    assert [len(segment.element_lengths) for segment in scene.line.segments] == [100, 49]
     assert scene.seabed_level == 0.0
     assert scene.contact_at == "outer"
 
@@ -156,7 +156,7 @@ def test_arc_in_a_vertical_plane_is_planar() -> None:
 
 def test_arc_knows_its_radius_and_length() -> None:
     scene = read_scene(SCENES["bend"])
-    shape = scene.riser.unstressed
+    shape = scene.line.unstressed
     assert isinstance(shape, ArcShape)
     assert shape.arc.radius == pytest.approx(100.0, rel=1e-15)
     assert shape.arc.length == pytest.approx(78.53981634, rel=1e-9)
@@ -202,7 +202,7 @@ def test_initial_follows_from_ends_and_gravity(gravity: float, end: float | None
         },
         "stages": [{"name": "a", "kind": "static"}],
     }
-    assert scene_from_mapping(scene).riser.initial == initial
+    assert scene_from_mapping(scene).line.initial == initial
 
 
 @pytest.mark.parametrize(
@@ -220,7 +220,7 @@ def test_initial_follows_from_ends_and_gravity(gravity: float, end: float | None
     ],
 )
 def test_initial_shape_has_its_ends_where_they_are_held(overrides: tuple[str, ...], ends: Any) -> None:
-    start, end = initial_ends(read_scene(SCENES["bend"], overrides).riser)
+    start, end = initial_ends(read_scene(SCENES["bend"], overrides).line)
     assert start == pytest.approx(ends[0], abs=1e-6)
     assert end == pytest.approx(ends[1], abs=1e-6)
 

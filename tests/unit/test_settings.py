@@ -90,9 +90,9 @@ def test_given_and_graded_lengths_of_elements() -> None:
     reported["riser"]["segments"][0] = {"line_type": "flexible", "length": 12.0, "element_length": [0.2, 1.0]}
     reported["riser"]["segments"][1] = {"line_type": "flexible", "length": 18.0, "element_length": 1.5}
     turned = varied(scene_from_mapping(reported), ELEMENTS, 2.0)
-    assert [segment.element_length for segment in turned.riser.segments] == [(0.1, 0.5), 0.75]
-    assert varied(scene_from_mapping(reported), ELEMENTS, 1e-3).riser.element_count == 2
-    lengths = turned.riser.segments[0].element_lengths
+    assert [segment.element_length for segment in turned.line.segments] == [(0.1, 0.5), 0.75]
+    assert varied(scene_from_mapping(reported), ELEMENTS, 1e-3).line.element_count == 2
+    lengths = turned.line.segments[0].element_lengths
     assert lengths[-1] / lengths[0] == pytest.approx(5.0)
 
 

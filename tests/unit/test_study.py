@@ -170,7 +170,7 @@ def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest
     found = {"heave: top tension": KeyResult("heave", "top tension", "N", 100.0, 0.0)}
 
     def outcome(point: StudyPoint) -> PointOutcome:
-        if point.scene.riser.element_count < 4 * 36:
+        if point.scene.line.element_count < 4 * 36:
             return PointOutcome(point.factors, 3, "folded", 1.0, True)
         return PointOutcome(point.factors, 0, "", 1.0, True, 1, found)
 

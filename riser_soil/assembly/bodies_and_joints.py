@@ -1,0 +1,167 @@
+"""Assembly of bodies, and of the joints between them and the lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.assembly.line_assembly import LineAssembly
+from riser_soil.assembly.sea import water_of
+from riser_soil.bodies.body import MovingBody
+from riser_soil.bodies.joints import STIFF, JointOf, Joints, Side
+from riser_soil.bodies.loads import BodyDrag, BodyInertia, BodyProperties, BodyWeight, Release
+from riser_soil.bodies.wet_sphere import radius_of
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Part
+from riser_soil.scene.bodies import Body as BodyScene
+from riser_soil.scene.bodies import PointBody
+from riser_soil.scene.joints import Joint, JointPoint
+from riser_soil.scene.lines import arc_of
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.sea.flows import Sea
+
+TURNED = 1e-9  # rad: what needs no stage to turn
+CLOSED = 1e-6  # of a line's length: a first gap of a joint that needs no stage to close
+
+
+@dataclass(eq=False)
+class Hung:
+    """Bodies by name, and all joints; None without any.
+
+    given, weights: what each body is, and its weight and buoyancy.
+    """
+
+    bodies: dict[str, MovingBody]
+    joints: Joints | None
+    given: dict[str, BodyProperties]
+    weights: dict[str, BodyWeight]
+    joints_are_open: bool
+
+    @property
+    def _lasting(self) -> list[Part]:
+        return [*self.weights.values(), *([] if self.joints is None else [self.joints])]
+
+    def _hold(self, held: bool) -> None:
+        for body in self.bodies.values():
+            body.hold(held)
+        if self.joints is not None:
+            self.joints.open = float(held)
+
+    def close(self) -> list[Part]:
+        """Hold the bodies while joints close; the parts in that stage."""
+        self._hold(True)
+        return self._lasting
+
+    def let_go(self, reactions: Mapping[str, Array]) -> list[Part]:
+        """The same of the stage in which bodies are let go; reactions: on what held them, by name."""
+        self._hold(False)
+        return [*self._lasting, *(Release(self.bodies[name], reaction) for name, reaction in reactions.items())]
+
+    def parts_in(self, scene: Scene, stage: Stage) -> list[Part]:
+        """The same of a stage of the scene."""
+        self._hold(False)
+        parts, dynamic = self._lasting, isinstance(stage, DynamicStage)
+        for name, body in self.bodies.items():
+            if dynamic:
+                parts.append(BodyInertia(body, self.given[name].mass_matrix()))
+            if drag := _drag(scene, stage, body, self.given[name]):
+                parts.append(drag)
+        return parts
+
+
+def _drag(scene: Scene, stage: Stage, body: MovingBody, given: BodyProperties) -> BodyDrag | None:
+    """What the water does to a body beyond carrying it, where it does anything in a stage."""
+    water, dynamic = scene.water, isinstance(stage, DynamicStage)
+    if water is None or not (dynamic or water.current is not None):
+        return None
+    waves = water.waves is not None and dynamic
+    drags = bool(given.drag.any() or given.spin_drag.any())
+    pushed = bool(given.volume or given.added_mass.any()) and (
+        waves or (dynamic and water.current is not None and water.current.history is not None)
+    )
+    if not drags and not pushed:
+        return None
+    sea = water_of(scene, stage) or Sea(None)
+    buoyancy = scene.gravity * water.density * given.volume if waves else 0.0
+    level = water.surface_level if water.surface_level is not None else np.inf
+    still = water.current is None and not waves
+    return BodyDrag(body, given, sea, water.density, buoyancy, level, still)
+
+
+def hung_of(scene: Scene, lines: Mapping[str, LineAssembly]) -> Hung:
+    """The scene's bodies and joints."""
+    given = {name: _properties(scene, body) for name, body in scene.bodies.items()}
+    bodies = {name: _body(scene, name, given[name]) for name in scene.bodies}
+    joints = None
+    if scene.joints:
+        made = [_joint(name, joint, lines, bodies) for name, joint in scene.joints.items()]
+        joints = Joints(made, [joint.keep_distance for joint in scene.joints.values()])
+    closed = CLOSED * min(float(own.line.arc[-1]) for own in lines.values())
+    is_open = joints is not None and bool((joints.first_gap > closed).any() or (joints.first_turn > TURNED).any())
+    weights = {name: _weight(scene, body, given[name]) for name, body in bodies.items()}
+    return Hung(bodies, joints, given, weights, is_open)
+
+
+def _properties(scene: Scene, given: BodyScene) -> BodyProperties:
+    displaced = scene.water.density * given.volume if scene.water is not None else 0.0
+    if isinstance(given, PointBody):
+        none = np.zeros(3)
+        drag, added = np.full(3, given.drag_area), np.full(3, given.added_mass * displaced)
+        return BodyProperties(given.mass, none, none, given.volume, none, drag, none, added, none)
+    vectors = ("inertia", "centre_of_gravity", "centre_of_buoyancy", "drag_area", "rotational_drag", "added_inertia")
+    J, low, high, drag, spin_drag, added_J = (np.array(getattr(given, name)) for name in vectors)
+    added = np.array(given.added_mass) * displaced
+    return BodyProperties(given.mass, J, low, given.volume, high, drag, spin_drag, added, added_J)
+
+
+def _body(scene: Scene, name: str, given: BodyProperties) -> MovingBody:
+    """Moments are weighed by the farthest arm of a joint, or the body's size."""
+    points = (point for joint in scene.joints.values() for point in joint.between if point.body == name)
+    arms = [float(np.linalg.norm(point.offset)) for point in points]
+    gyration = float(np.sqrt(given.inertia.max() / given.mass))
+    lever = max([*arms, gyration, radius_of(given.volume)]) or 1.0
+    turns = not isinstance(scene.bodies[name], PointBody)
+    return MovingBody(name, np.array(scene.bodies[name].position), turns, lever)
+
+
+def _weight(scene: Scene, body: MovingBody, given: BodyProperties) -> BodyWeight:
+    water = scene.water
+    buoyancy = scene.gravity * water.density * given.volume if water is not None else 0.0
+    level = water.surface_level if water is not None and water.surface_level is not None else np.inf
+    return BodyWeight(body, given, scene.gravity * given.mass, buoyancy, level)
+
+
+def _joint(name: str, joint: Joint, lines: Mapping[str, LineAssembly], bodies: Mapping[str, MovingBody]) -> JointOf:
+    first, second = (_side(point, lines, bodies) for point in joint.between)
+    k, kr = _rigid([(side, point) for side, point in zip((first, second), joint.between, strict=True)], lines)
+    kr = kr if joint.kind == "clamped" else 0.0
+    if joint.stiffness is not None:
+        k = joint.stiffness.translation or k
+        kr = joint.stiffness.rotation or 0.0
+    return JointOf(name, (first, second), k, kr)
+
+
+def _side(point: JointPoint, lines: Mapping[str, LineAssembly], bodies: Mapping[str, MovingBody]) -> Side:
+    if point.body is not None:
+        return Side(bodies[point.body], 0, np.array(point.offset))
+    own = lines[str(point.line)]
+    node = int(np.abs(own.line.arc - arc_of(own.scene.line, point)).argmin())
+    return Side(own.line, node, np.zeros(3))
+
+
+def _rigid(sides: list[tuple[Side, JointPoint]], lines: Mapping[str, LineAssembly]) -> tuple[float, float]:
+    """Stiffness [N/m] and [N.m/rad] of a rigid joint, by the elements beside it; between bodies by all of them."""
+    beside = [(lines[str(point.line)], side.node) for side, point in sides if point.line is not None]
+    found = [_beside(own, slice(max(node - 1, 0), node + 1)) for own, node in beside]
+    found = found or [_beside(own, slice(None)) for own in lines.values()]
+    return STIFF * max(EA for EA, _ in found), STIFF * max(EI for _, EI in found)
+
+
+def _beside(own: LineAssembly, at: slice) -> tuple[float, float]:
+    """EA/l and 4 EI/l of the stiffest of some elements."""
+    e, length = own.elements, own.line.length[at]
+    EI = np.maximum(e.EI_y, e.EI_z)[at]
+    return float((e.EA[at] / length).max()), float((4.0 * EI / length).max())

@@ -1,0 +1,1 @@
+"""Bodies that lines hang on, and the joints between lines and bodies."""

@@ -1,0 +1,127 @@
+"""What is recorded of bodies, joints and clearances: their variables in results.nc, and values at a state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from riser_soil.assembly import Assembly
+from riser_soil.bodies.body import MovingBody
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.part import State
+from riser_soil.results.netcdf import Variable
+from riser_soil.riser import rotations
+from riser_soil.riser.clearance import clearance
+from riser_soil.riser.vectors import matrix
+from riser_soil.scene.lines import arc_of
+from riser_soil.scene.output import Clearance
+
+GAPES = 0.01  # of the diameter, by which a rigid joint may gape
+_OF_BODY = {
+    "position": ("m", "place of the origin of the body's axes"),
+    "rotation": ("rad", "rotation vector from the axes at first, no longer than pi"),
+    "velocity": ("m/s", "velocity of the origin of the body's axes"),
+}
+_OF_JOINT = {
+    "force": ("N", "force of the first point on the second"),
+    "moment": ("N m", "moment of the first point on the second, at the second"),
+    "gap": ("m", "way from the second point to the first, which a rigid joint leaves small"),
+}
+_OF_PAIR = {
+    "distance": ("m", "least distance of the surfaces of two lines, negative where they overlap"),
+    "arc_1": ("m", "arc length of the first line where they are nearest"),
+    "arc_2": ("m", "arc length of the second line where they are nearest"),
+}
+
+
+class HungReader:
+    """Looks at bodies, joints and clearances of a scene with several lines. Joints are in the order of the scene."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly, hung = assembly, assembly.hung
+        self._bodies: dict[str, MovingBody] = {} if hung is None else hung.bodies
+        self._joints = None if hung is None else hung.joints
+        self._pairs = [_Pair(assembly, given) for given in assembly.scene.output.clearance]
+
+    @property
+    def variables(self) -> dict[str, Variable]:
+        """By path in results.nc."""
+        found: dict[str, Variable] = {}
+        for name, body in self._bodies.items():
+            known = _OF_BODY if body.turns else {key: _OF_BODY[key] for key in ("position", "velocity")}
+            found |= {f"bodies/{name}/{key}": _vector(*texts) for key, texts in known.items()}
+        for joint in self._assembly.scene.joints:
+            found |= {f"joints/{joint}/{key}": _vector(*texts) for key, texts in _OF_JOINT.items()}
+        for pair in self._pairs:
+            found |= {f"{pair.path}/{key}": Variable(("time",), *texts) for key, texts in _OF_PAIR.items()}
+        return found
+
+    def look(self, state: State) -> dict[str, Array]:
+        """Values at an accepted state."""
+        found: dict[str, Array] = {}
+        for name, body in self._bodies.items():
+            found[f"bodies/{name}/position"] = body.x[0]
+            found[f"bodies/{name}/velocity"] = body.nodal(state.v)[0, :3].copy()
+            if body.turns:
+                found[f"bodies/{name}/rotation"] = np.array(rotations.log(matrix(body.frames.R[0])))
+        if self._joints is not None:
+            for key, values in zip(_OF_JOINT, self._joints.acting(state), strict=True):
+                of_each = zip(self._assembly.scene.joints, values, strict=True)
+                found |= {f"joints/{joint}/{key}": row for joint, row in of_each}
+        for pair in self._pairs:
+            found |= {f"{pair.path}/{key}": value for key, value in zip(_OF_PAIR, pair.look(), strict=True)}
+        return found
+
+
+    def warnings(self, found: Mapping[str, Any]) -> list[str]:
+        """Of rigid joints that gape, by what is known of the stage, see `HungExtremes`."""
+        joints = () if self._joints is None else self._joints.joints
+        given = self._assembly.scene.joints
+        told = []
+        for joint in joints:
+            stiffness = given[joint.name].stiffness
+            gap = found["joints"][joint.name]["gap"]
+            largest = float(np.linalg.norm(np.fmax(np.abs(gap["min"]), np.abs(gap["max"]))))
+            allowed = GAPES * self._assembly.scales.diameter
+            if largest > allowed and (stiffness is None or stiffness.translation is None):
+                told.append(
+                    f"joint {joint.name} gapes by up to {largest:.3g} m (told above {GAPES:g} diameters): it gives as "
+                    "the elements beside it do, which stretch as much; take shorter ones there, and check what pulls"
+                )
+        return told
+
+
+class _Pair:
+    """A pair of lines, and the elements of each that count."""
+
+    def __init__(self, assembly: Assembly, given: Clearance) -> None:
+        self.path = f"clearance/{given.between[0]}_{given.between[1]}"
+        self._lines = [assembly.lines[name].line for name in given.between]
+        self._counts = [_counting(assembly, name, given.beyond) for name in given.between]
+
+    def look(self) -> tuple[Array, Array, Array]:
+        """Distance and both arc lengths, each without axes [m]."""
+        (one, other), (counts, other_counts) = self._lines, self._counts
+        both = [(line.to_global(line.x), 0.5 * line.outer_diameter) for line in (one, other)]
+        distance, e, s, f, t = clearance(*both[0], counts, *both[1], other_counts)
+        arcs = (line.arc[at] + share * line.length[at] for line, at, share in ((one, e, s), (other, f, t)))
+        first, second = arcs
+        return np.array(distance), np.array(first), np.array(second)
+
+
+def _counting(assembly: Assembly, name: str, beyond: float) -> BoolArray:
+    """Elements (ne,) of a line no part of which lies within a length of a joint of it."""
+    own, scene = assembly.lines[name], assembly.scene
+    points = [point for joint in scene.joints.values() for point in joint.between if point.line == name]
+    joints = [arc_of(own.scene.line, point) for point in points]
+    return np.array([
+        all(last <= at - beyond or first >= at + beyond for at in joints) or beyond == 0.0
+        for first, last in pairwise(own.line.arc)
+    ])  # fmt: skip
+
+
+def _vector(units: str, text: str) -> Variable:
+    return Variable(("time", "component"), units, text)

@@ -1,0 +1,162 @@
+"""Consistency checks of scenes with several lines: each line by itself, names, joints, and what is not there yet."""
+
+from collections.abc import Iterator
+
+from riser_soil.scene.bodies import PointBody
+from riser_soil.scene.cross_checks import conflicts
+from riser_soil.scene.joints import Joint, JointPoint
+from riser_soil.scene.lines import ENDS, arc_of, by_line, first_place
+from riser_soil.scene.problem import Path, Problem, hint
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, MidpointScheme, StaticStage
+
+_RESERVED = ("riser", "soil", "bodies", "joints", "results")
+_OF_STAGE = ("move", "motion", "loads")
+_LATER = "leave it out, or take a scene of one line"
+
+
+def all_conflicts(scene: Scene) -> list[Problem]:
+    """All conflicts of a scene, whether it has one line or several."""
+    if not scene.lines:
+        return [*conflicts(scene), *_without_lines(scene)]
+    own = [*_names(scene), *_joints(scene), *_stages(scene), *_clearances(scene), *_not_yet(scene)]
+    if own:
+        return own
+    found = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
+    return list(found.values())
+
+
+def _without_lines(scene: Scene) -> Iterator[Problem]:
+    if scene.output.clearance:
+        yield Problem(("output", "clearance"), "is one between lines, and the scene has riser", "leave it out")
+    for n, stage in enumerate(scene.stages):
+        if stage.lines:
+            yield Problem(("stages", n, "lines"), "the scene has riser, not lines", "give move, motion and loads here")
+
+
+def _moved(problems: list[Problem], name: str) -> Iterator[Problem]:
+    """With the paths that the keys of a line have in the scene."""
+    for problem in problems:
+        path = problem.path
+        if path[:1] == ("riser",):
+            path = ("lines", name, *path[1:])
+        elif path[:1] == ("stages",) and len(path) > 2 and path[2] in _OF_STAGE:
+            path = (*path[:2], "lines", name, *path[2:])
+        yield Problem(path, problem.allowed, problem.remedy)
+
+
+def _names(scene: Scene) -> Iterator[Problem]:
+    for key, names in (("lines", scene.lines), ("bodies", scene.bodies), ("joints", scene.joints)):
+        for name in names:
+            if not name.replace("_", "").replace("-", "").isalnum() or not name.isascii():
+                yield Problem((key, name), "names files: letters, digits, _ and - alone", "rename it")
+    for name in scene.lines:
+        if name in scene.bodies:
+            yield Problem(("bodies", name), "a line has the same name", "rename one of the two")
+        if name in _RESERVED[1:]:
+            yield Problem(("lines", name), "is the name of another file or group of the results", "rename it")
+
+
+def _joints(scene: Scene) -> Iterator[Problem]:
+    for name, joint in scene.joints.items():
+        path: Path = ("joints", name)
+        found = [p for n, point in enumerate(joint.between) for p in _point(scene, (*path, "between", n), joint, point)]
+        yield from found
+        if found:
+            continue
+        first, second = joint.between
+        if (first.line, first.body) == (second.line, second.body):
+            yield Problem((*path, "between"), "both points are of the same line or body", "name two of them")
+        elif any(_free_end(scene, point) for point in joint.between) and first_place(scene, joint) is None:
+            yield Problem((*path, "position"), "nothing says where the joint is at first", "give position [m]")
+
+
+def _point(scene: Scene, path: Path, joint: Joint, point: JointPoint) -> Iterator[Problem]:
+    for key, known in (("line", scene.lines), ("body", scene.bodies)):
+        name = getattr(point, key)
+        if name is not None and name not in known:
+            allowed = f"must be one of {', '.join(known) or 'none: the scene has no ' + key}"
+            yield Problem((*path, key), allowed, f"name one of them{hint(name, known)}")
+            return
+    turns = joint.kind == "clamped" or (joint.stiffness is not None and joint.stiffness.rotation is not None)
+    if point.body is not None and isinstance(scene.bodies[point.body], PointBody):
+        if any(point.offset):
+            yield Problem((*path, "offset"), "a point has no place beside its own", "leave it out, or make it rigid")
+        if turns:
+            yield Problem((*path, "body"), "a point has no direction to clamp to", "pin the joint, or make it rigid")
+    if point.line is not None:
+        line = scene.lines[point.line]
+        if arc_of(line, point) > line.length:
+            yield Problem((*path, "at"), f"must not exceed the line's length ({line.length:.6g} m)", "correct the arc")
+        types = (scene.line_types.get(segment.line_type) for segment in line.segments)
+        if turns and not max((max(each.bending_stiffness) for each in types if each is not None), default=1.0):
+            yield Problem((*path, "line"), "a line without bending stiffness (EI: 0) bears no moment", "pin the joint")
+
+
+def _free_end(scene: Scene, point: JointPoint) -> bool:
+    return point.line is not None and point.at in ENDS and getattr(scene.lines[point.line], str(point.at)) == "free"
+
+
+def _stages(scene: Scene) -> Iterator[Problem]:
+    for n, stage in enumerate(scene.stages):
+        for key in _OF_STAGE:
+            if getattr(stage, key, None):
+                remedy = f"write lines: {{NAME: {{{key}: ...}}}} in the stage"
+                yield Problem(("stages", n, key), "does not say of which line it is", remedy)
+        for name, own in stage.lines.items():
+            path: Path = ("stages", n, "lines", name)
+            if name not in scene.lines:
+                allowed = f"must be one of lines ({', '.join(scene.lines)})"
+                yield Problem(path, allowed, f"name one of them{hint(name, scene.lines)}")
+                continue
+            key, way = ("motion", own.motion) if isinstance(stage, StaticStage) else ("move", own.move)
+            if way is not None:
+                yield Problem((*path, key), f"a {stage.kind} stage has none", "give it in a stage of the other kind")
+            for key, moved in (("move", own.move), ("motion", own.motion)):
+                for end in ENDS:
+                    if getattr(moved, end, None) is not None and _jointed(scene, name, end):
+                        yield Problem((*path, key, end), "a joint holds this end", "leave it out")
+
+
+def _clearances(scene: Scene) -> Iterator[Problem]:
+    for n, pair in enumerate(scene.output.clearance):
+        path: Path = ("output", "clearance", n, "between")
+        for m, name in enumerate(pair.between):
+            if name not in scene.lines:
+                allowed = f"must be one of lines ({', '.join(scene.lines)})"
+                yield Problem((*path, m), allowed, f"name one of them{hint(name, scene.lines)}")
+        if pair.between[0] == pair.between[1]:
+            yield Problem(path, "a line has no clearance from itself", "name two lines")
+
+
+def _jointed(scene: Scene, name: str, end: str) -> bool:
+    points = (point for joint in scene.joints.values() for point in joint.between)
+    return getattr(scene.lines[name], end) == "free" and any((p.line, p.at) == (name, end) for p in points)
+
+
+def _not_yet(scene: Scene) -> Iterator[Problem]:
+    """What one line has and several have not."""
+    given: dict[Path, bool] = {
+        ("soil",): scene.soil is not None,
+        ("accuracy",): scene.accuracy is not None,
+        ("error_bars",): scene.error_bars,
+        ("initial",): scene.initial is not None,
+        ("dimension",): scene.dimension == 2,
+        ("seabed", "profile"): scene.seabed is not None and scene.seabed.profile is not None,
+        ("seabed", "slope_deg"): scene.seabed is not None and scene.seabed.slope_deg != 0.0,
+    }
+    for path, there in given.items():
+        if there:
+            yield Problem(path, "is not there yet for several lines", _LATER)
+    over_a_grid, water = scene.seabed is not None and scene.seabed.grid is not None, scene.water
+    if over_a_grid and water is not None and water.waves is not None and water.depth is None:
+        yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")
+    for n, stage in enumerate(scene.stages):
+        if isinstance(stage, DynamicStage) and isinstance(stage.scheme, MidpointScheme):
+            yield Problem(("stages", n, "scheme"), "the midpoint rule is not there yet for several lines", _LATER)
+    for name, line in scene.lines.items():
+        for end in ENDS:
+            support = getattr(line, end)
+            if isinstance(support, Support) and support.hang_off is not None:
+                yield Problem(("lines", name, end, "hang_off"), "is not there yet for several lines", _LATER)

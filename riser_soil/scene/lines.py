@@ -1,0 +1,128 @@
+"""The lines of a scene one by one: each as a scene of its own, and what joints make of its ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import Any
+
+from riser_soil.core.quantities import Vector
+from riser_soil.scene.joints import Joint, JointPoint
+from riser_soil.scene.riser import Riser, Segment, Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import OfLine, Stage, StaticStage
+
+SAME_ARC = 1e-9  # of the line's length: where a node is one already
+ENDS = ("start", "end")
+
+
+def by_line(scene: Scene) -> dict[str, Scene]:
+    """Scenes of one line each, by name, in which all else is the same; a scene with `riser` is its own."""
+    if not scene.lines:
+        return {"riser": scene}
+    return {name: _of_line(scene, name) for name in scene.lines}
+
+
+def _of_line(scene: Scene, name: str) -> Scene:
+    line = scene.lines[name]
+    ends: dict[str, Any] = {key: _end(scene, name, key) for key in ENDS}
+    cut = {"segments": tuple(_cut(line, sorted(_inner_arcs(scene, name))))}
+    stages = tuple(_stage(stage, stage.lines.get(name, OfLine()), line) for stage in scene.stages)
+    several: dict[str, Any] = {"lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "stages": stages}
+    return scene.model_copy(update=several | {"riser": line.model_copy(update=ends | cut)})
+
+
+def _end(scene: Scene, name: str, key: str) -> Any:
+    """As it is given, or held by its joint."""
+    given = getattr(scene.lines[name], key)
+    for joint in scene.joints.values():
+        for point in joint.between:
+            if given == "free" and (point.line, point.at) == (name, key):
+                place = first_place(scene, joint) or (0.0, 0.0, 0.0)  # the scene's checks have seen to it
+                return Support.by_joint(place, "fixed" if joint.kind == "clamped" else "free")
+    return given
+
+
+def first_place(scene: Scene, joint: Joint) -> Vector | None:
+    """Where a joint is at first [m], as it says, or as a body or a support does; None where nothing does."""
+    if joint.position is not None:
+        return joint.position
+    for point in joint.between:
+        if point.body is not None and point.body in scene.bodies:
+            return joint.first_of(point, scene.bodies[point.body].position)
+        end = _supported(scene.lines, point)
+        if end is not None:
+            return end.position
+    return None
+
+
+def _supported(lines: Mapping[str, Riser], point: JointPoint) -> Support | None:
+    if point.line is None or point.line not in lines or point.at not in ENDS:
+        return None
+    end = getattr(lines[point.line], str(point.at))
+    return end if isinstance(end, Support) else None
+
+
+def arc_of(line: Riser, point: JointPoint) -> float:
+    """Arc length of a joint's point [m]."""
+    return {"start": 0.0, "end": line.length}[point.at] if isinstance(point.at, str) else float(point.at or 0.0)
+
+
+def _inner_arcs(scene: Scene, name: str) -> Iterator[float]:
+    for joint in scene.joints.values():
+        yield from (float(p.at) for p in joint.between if p.line == name and isinstance(p.at, float))
+
+
+def _cut(line: Riser, arcs: list[float]) -> Iterator[Segment]:
+    """The segments, those with an arc within them in parts."""
+    begin, near = 0.0, SAME_ARC * line.length
+    for segment in line.segments:
+        end = begin + segment.length
+        nodes = [begin]
+        for length in segment.element_lengths:
+            nodes.append(nodes[-1] + length)
+        within = [arc for arc in dict.fromkeys(arcs) if begin + near < arc < end - near]
+        if all(min(abs(arc - node) for node in nodes) <= near for arc in within):
+            yield segment
+        else:
+            yield from _parts(segment, [0.0, *(arc - begin for arc in within), segment.length])
+        begin = end
+
+
+def _parts(segment: Segment, cuts: list[float]) -> Iterator[Segment]:
+    """Element lengths that grow by equal ratios grow linearly along the segment."""
+    L, first = segment.length, segment.element_lengths[0]
+    growth = (segment.element_lengths[-1] - first) / L
+    for a, b in pairwise(cuts):
+        update: dict[str, Any] = {"length": b - a}
+        if segment.elements is not None:
+            update["elements"] = max(1, round(segment.elements * (b - a) / L))
+        else:
+            update["element_length"] = (first + growth * a, first + growth * b)
+        yield segment.model_copy(update=update)
+
+
+def _stage(stage: Stage, given: OfLine, line: Riser) -> Stage:
+    way = {"move": given.move} if isinstance(stage, StaticStage) else {"motion": given.motion}
+    pressure = stage.pressure if line.contents is not None else None
+    return stage.model_copy(update={**way, "loads": given.loads, "pressure": pressure, "lines": {}})
+
+
+def spinning(scene: Scene) -> set[str]:
+    """Lines, one of each that are clamped to each other, of which nothing keeps all from spinning about their axes."""
+    groups = {name: {name} for name in scene.lines}
+    held = {name for name, line in scene.lines.items() if any(_holds(getattr(line, key)) for key in ENDS)}
+    for joint in scene.joints.values():
+        if joint.kind == "pinned" or (joint.stiffness is not None and joint.stiffness.rotation is None):
+            continue
+        names = [point.line for point in joint.between if point.line is not None]
+        if len(names) == 1:
+            held.add(names[0])
+            continue
+        joined = groups[names[0]] | groups[names[1]]
+        groups |= dict.fromkeys(joined, joined)
+    return {name for name in scene.lines if not groups[name] & held and name == min(groups[name])}
+
+
+def _holds(end: Any) -> bool:
+    return isinstance(end, Support) and end.rotation != "free"

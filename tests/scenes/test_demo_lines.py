@@ -1,0 +1,42 @@
+"""The worked cases of several lines: both run, and the page has the tensions that a run gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from demos.page import block
+from riser_soil.results.read import Run
+from riser_soil.scene.reader import read_scene
+from riser_soil.whole_run import run
+from tests.support.line_scenes import LAZY_S, lazy_s_by_catenaries
+
+DEMO = Path(__file__).parents[2] / "demos" / "lines"
+SHORT = ("stages.1.duration=0.5",)
+
+
+def told() -> dict[tuple[str, int], tuple[float, float]]:
+    """Of the page, by line and end: a run's tension and the catenaries' [kN]."""
+    rows = [line.split("|") for line in block((DEMO / "README.md").read_text(), "tensions").splitlines() if "`" in line]
+    names = [row[1].strip().split("`, ") for row in rows]
+    values = [(float(row[2]), float(row[3])) for row in rows]
+    return {(name.strip("`"), int(end == "end")): pair for (name, end), pair in zip(names, values, strict=True)}
+
+
+def test_the_lazy_s_has_the_pages_tensions(tmp_path: Path) -> None:
+    run(read_scene(DEMO / "lazy_s.yaml", SHORT), tmp_path)
+    found, catenaries = Run(tmp_path), lazy_s_by_catenaries()[1]
+    page = told()
+    assert len(page) == 2 * len(LAZY_S)
+    for (name, end), (tension, reference) in page.items():
+        assert found.of_line(name)["effective_tension"][0, -end] == pytest.approx(1e3 * tension, rel=1e-3)
+        assert catenaries[name][end] == pytest.approx(1e3 * reference, rel=1e-3)
+        assert tension == pytest.approx(reference, rel=0.01)
+
+
+def test_the_mooring_runs_in_waves_and_current(tmp_path: Path) -> None:
+    run(read_scene(DEMO / "mooring.yaml", SHORT), tmp_path)
+    stage = Run(tmp_path).summary["stages"][1]
+    assert abs(stage["energy"]["relative_residual"]) < 1e-3
+    assert stage["clearance"]["east_north"]["distance"]["min"] > 20.0

@@ -1,0 +1,275 @@
+"""Runs of several lines: against catenaries and one line, their files, a restart, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from riser_soil.errors import ResultsError, SceneError
+from riser_soil.results.read import Run
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
+from tests.support.left_run import leave_after
+from tests.support.line_scenes import (
+    CHAIN,
+    DEPTH,
+    LENGTH,
+    NAMES,
+    POINT,
+    RADIUS,
+    RHO,
+    RIGID,
+    WET,
+    G,
+    lazy_s,
+    lazy_s_by_catenaries,
+    mooring,
+    shaken,
+    spans,
+)
+from tests.support.riser_scenes import dynamic, static
+
+
+def ran(scene: dict[str, Any], folder: Path) -> Run:
+    run(scene_from_mapping(scene), folder)
+    return Run(folder)
+
+
+def test_a_buoy_on_three_lines_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
+    """A third of its buoyancy is each line's upward pull; the anchors' circle gives H. The joints' gap is V/k."""
+    found = ran(mooring(elements=40), tmp_path)
+    V = (POINT["volume"] * RHO - POINT["mass"]) * G / 3.0
+    H = brentq(lambda H: spans(H, V, WET, CHAIN["EA"], LENGTH)[0] - RADIUS, 1.0, 1e6)
+    z = spans(H, V, WET, CHAIN["EA"], LENGTH)[1] - DEPTH
+    assert found["bodies/buoy/position"][-1] == pytest.approx([0.0, 0.0, z], abs=1e-3)
+    for name in NAMES:
+        line = found.of_line(name)
+        tension = line["effective_tension"][-1]
+        assert tension[[0, -1]] == pytest.approx([math.hypot(H, V - WET * LENGTH), math.hypot(H, V)], rel=1e-5)
+        gap, force = (found[f"joints/{name}_top/{key}"][-1] for key in ("gap", "force"))
+        assert np.linalg.norm(force) == pytest.approx(math.hypot(H, V), rel=1e-5)
+        assert 0.0 < np.linalg.norm(gap) < 0.01 * CHAIN["outer_diameter"]
+
+
+def test_a_lazy_s_over_an_arch_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
+    """Tensions within 1 % of a root finder's on elastic catenaries; the arch's place and angle, too."""
+    found = ran(lazy_s(), tmp_path)
+    (x, z, angle), tensions = lazy_s_by_catenaries()
+    assert found["bodies/arch/position"][-1] == pytest.approx([x, 0.0, z], abs=0.05)
+    assert found["bodies/arch/rotation"][-1] == pytest.approx([0.0, -angle, 0.0], abs=2e-3)
+    assert abs(angle) > 0.02
+    for name, ends in tensions.items():
+        assert found.of_line(name)["effective_tension"][-1, [0, -1]] == pytest.approx(ends, rel=0.005), name
+
+
+def one_riser() -> dict[str, Any]:
+    """Hanging, its end heaved."""
+    heave = {"amplitude": [0.2, 0.1, 0.2], "period": 4.0, "ramp": 1.0}
+    pipe = {"EA": 1.0e7, "EI": 5.0e4, "GJ": 4.0e4, "mass": 60.0, "submerged_weight": 200.0}
+    return {
+        "title": "whole",
+        "dimension": 3,
+        "line_types": {"pipe": pipe},
+        "riser": {
+            "segments": [{"line_type": "pipe", "length": 40.0, "elements": 20}],
+            "start": {"position": [0.0, 0.0, 0.0]},
+            "end": {"position": [30.0, 0.0, 15.0]},
+        },
+        "stages": [
+            {"name": "hang", "kind": "static"},
+            dynamic(1.0, 0.05, "heave", motion={"end": {"harmonic": heave}}),
+        ],
+    }
+
+
+def in_two(scene: dict[str, Any]) -> dict[str, Any]:
+    """The same as two lines that are clamped to each other, the first of them guessed to end somewhere."""
+    cut = deepcopy(scene)
+    whole = cut.pop("riser")
+    del cut["dimension"]
+    halves = ([{"line_type": "pipe", "length": 2.0 * n, "elements": n}] for n in (8, 12))
+    low, high = halves
+    cut["lines"] = {
+        "low": {"segments": low, "start": whole["start"], "end": "free"},
+        "high": {"segments": high, "start": "free", "end": whole["end"]},
+    }
+    between = [{"line": "low", "at": "end"}, {"line": "high", "at": "start"}]
+    cut["joints"] = {"weld": {"kind": "clamped", "between": between, "position": [14.0, 0.0, 1.0]}}
+    cut["stages"][1]["lines"] = {"high": {"motion": cut["stages"][1].pop("motion")}}
+    return cut
+
+
+def test_two_lines_clamped_together_are_one(tmp_path: Path) -> None:
+    """But for what the joint gives, a hundredth of an element. They begin as catenaries with a kink."""
+    whole = ran(one_riser(), tmp_path / "whole")
+    two = ran(in_two(one_riser()), tmp_path / "two")
+    low, high = two.of_line("low"), two.of_line("high")
+    for name, at_rest in (("effective_tension", 1e-3), ("bending_moment", 1e-2)):
+        joined = np.concatenate([low[name], high[name][:, 1:]], axis=1)
+        off = np.abs(joined - whole[name]).max(axis=1) / np.abs(whole[name]).max(axis=1)
+        assert off[0] < at_rest, name
+        assert off.max() < 0.02, name
+    assert np.abs(np.concatenate([low["position"], high["position"][:, 1:]], axis=1) - whole["position"]).max() < 0.02
+
+
+def test_the_energy_of_bodies_balances(tmp_path: Path) -> None:
+    """Of a rigid body with all that it may have, shaken by its mooring; in waves and a current, too."""
+    calm = ran(mooring(shaken(), body=RIGID), tmp_path / "calm")
+    waves = {"airy": {"height": 2.0, "period": 6.0}, "ramp": 1.0}
+    water: dict[str, Any] = {"density": RHO, "surface_level": 0.0, "depth": DEPTH, "waves": waves}
+    water["current"] = {"profile": [[-DEPTH, 0.2, 0.1], [0.0, 0.6, 0.3]]}
+    rough = mooring(shaken(), body=RIGID | {"position": [0.0, 0.0, -1.0]}, water=water)
+    for found in (calm, ran(rough, tmp_path / "rough")):
+        energy = found.summary["stages"][1]["energy"]
+        assert energy["turned_over"] > 1e3
+        assert abs(energy["relative_residual"]) < 5e-3
+        assert energy["work_by"]["supports"] != 0.0
+    assert calm.summary["stages"][1]["energy"]["dissipated_by"]["body_drag"] > 0.0
+    assert np.abs(found["bodies/buoy/rotation"][-1]).max() > 1e-3
+
+
+def test_lines_tied_along_their_length_keep_their_distance(tmp_path: Path) -> None:
+    """A light and a heavy line side by side, pinned to each other at three arcs: blown sideways, the heavy one takes
+    the light one along. What the ties give is their force over their stiffness.
+    """
+    lines = {
+        name: {
+            "segments": [{"line_type": name, "length": 50.0, "elements": 10}],
+            "start": {"position": [0.0, y, 0.0]},
+            "end": {"position": [45.0, y, 0.0]},
+        }
+        for name, y in (("light", 0.0), ("heavy", 0.4))
+    }
+    ties = {
+        f"tie{arc:g}": {
+            "kind": "pinned",
+            "keep_distance": True,
+            "between": [{"line": "light", "at": arc}, {"line": "heavy", "at": arc}],
+        }
+        for arc in (12.0, 25.0, 38.0)
+    }
+    pipe = {"EA": 1.0e7, "EI": 1.0e3, "GJ": 1.0e3}
+    weights = {"light": 100.0, "heavy": 300.0}
+    scene = {
+        "title": "bundle",
+        "line_types": {name: pipe | {"submerged_weight": weights[name]} for name in lines},
+        "lines": lines,
+        "joints": ties,
+        "stages": [
+            {"name": "hang", "kind": "static"},
+            {"name": "blown", "kind": "static", "lines": {"heavy": {"loads": [{"distributed": [0.0, 80.0, 0.0]}]}}},
+        ],
+        "output": {"clearance": [{"between": ["light", "heavy"]}]},
+    }
+    found = ran(scene, tmp_path)
+    light, heavy = (found.of_line(name) for name in lines)
+    assert len(light.arc) == 11, "three arcs have got nodes of their own"
+    for arc in (12.0, 25.0, 38.0):
+        one, other = (line["position"][:, np.abs(line.arc - arc).argmin()] for line in (light, heavy))
+        force, gap = (float(np.linalg.norm(found[f"joints/tie{arc:g}/{key}"][-1])) for key in ("force", "gap"))
+        assert gap == pytest.approx(force / (100.0 * pipe["EA"] / (13.0 / 3.0)), rel=1e-6)
+        before, after = np.linalg.norm(one - other, axis=1)
+        assert before == pytest.approx(0.4, abs=2e-3)
+        assert after == pytest.approx(before, abs=1.1 * gap)
+        assert one[1, 1] - one[0, 1] > 0.5, "it is taken along"
+    forces = sum(found[f"joints/{name}/force"][-1] for name in ties)
+    assert forces[1] < -100.0
+    assert found["clearance/light_heavy/distance"][-1] == pytest.approx(0.4, abs=0.05)
+
+
+def test_files_of_a_run(tmp_path: Path) -> None:
+    output = {"clearance": [{"between": ["east", "north"], "beyond": 20.0}]}
+    found = ran(mooring(shaken(0.2), output=output), tmp_path)
+    assert found.lines == NAMES
+    written = {f"line_{name}.{kind}" for name in NAMES for kind in ("xdmf", "vtkhdf")}
+    assert written <= {path.name for path in tmp_path.iterdir()}
+    assert not (tmp_path / "riser.xdmf").exists()
+    east = Run(tmp_path / "east")
+    assert east.arc.shape == east["effective_tension"][-1].shape == (21,)
+    assert east.dataset["effective_tension"].dims == ("time", "arc")
+    assert east.summary["stages"][1]["final"]["end"]["effective_tension"] == east["effective_tension"][-1, -1]
+    assert east.read_scene().line.length == LENGTH
+    with pytest.raises(ResultsError, match="effective_tension is not of the run but of its lines: take one of"):
+        found["effective_tension"]
+    with pytest.raises(ResultsError, match="has no line west; it has east, north, south"):
+        found.of_line("west")
+    summary = json.loads((tmp_path / "summary.json").read_text())["stages"][1]
+    place = found["bodies/buoy/position"]
+    assert summary["bodies"]["buoy"]["position"]["final"] == pytest.approx(place[-1])
+    assert summary["bodies"]["buoy"]["position"]["max"] == pytest.approx(place[1:].max(axis=0))
+    x, other = (found.of_line(name)["position"][-1] for name in ("east", "north"))
+    nearest = np.linalg.norm(x[:17, None] - other[None, :17], axis=2).min()
+    assert found["clearance/east_north/distance"][-1] == pytest.approx(nearest - CHAIN["outer_diameter"], rel=0.02)
+
+
+def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
+    seabed = {"kind": "spring", "level": -DEPTH - 0.5, "stiffness": 1e4}
+    scene = scene_from_mapping(mooring(shaken(0.5), body=RIGID, seabed=seabed))
+    run(scene, tmp_path / "alone")
+    leave_after(4, scene, tmp_path / "left")
+    run(scene, tmp_path / "left", restart=True)
+    with h5py.File(tmp_path / "alone/results.nc") as one, h5py.File(tmp_path / "left/results.nc") as other:
+        names: list[str] = []
+        one.visit(names.append)
+        for name in names:
+            if isinstance(one[name], h5py.Dataset) and one[name].dtype.kind == "f":
+                assert np.array_equal(one[name][...], other[name][...], equal_nan=True), name
+    alone, left = (json.loads((tmp_path / name / "summary.json").read_text())["stages"] for name in ("alone", "left"))
+    assert alone == left
+    assert len(names) > 100
+
+
+def changed(**more: Any) -> dict[str, Any]:
+    return mooring() | more
+
+
+def joint(*between: dict[str, Any], **more: Any) -> dict[str, Any]:
+    scene = mooring()
+    scene["joints"]["east_top"] |= more | ({"between": [*between]} if between else {})
+    return scene
+
+
+def stage(**more: Any) -> dict[str, Any]:
+    return changed(stages=[static("rest", **more)])
+
+
+TO_BUOY, EAST, NORTH = {"body": "buoy"}, {"line": "east", "at": "end"}, {"line": "north", "at": "end"}
+MOVED = {"move": {"end": [0.0, 0.0, 0.0]}}
+SLOPING = {"kind": "rigid", "level": -120.0, "slope_deg": 3.0}
+WITHOUT_LINES = {key: value for key, value in mooring().items() if key != "lines"}
+MISSPELT = {"line_type": "chian", "length": 9.0, "elements": 2}
+REFUSED = [
+    (changed(dimension=2), "dimension: value 2: is not there yet for several lines"),
+    (changed(error_bars=True), "error_bars: value true: is not there yet for several lines"),
+    (changed(seabed=SLOPING), "seabed.slope_deg: value 3.0: is not there yet"),
+    (changed(riser=mooring()["lines"]["east"]), "riser and lines are both given"),
+    (WITHOUT_LINES, "the riser is missing"),
+    (joint(kind="clamped"), "joints.east_top.between.1.body: value .buoy.: a point has no direction to clamp to"),
+    (joint(kind="sprung"), "a sprung joint lacks it"),
+    (joint({"line": "est", "at": "end"}, TO_BUOY), "between.0.line: value .est.: must be one of east, north, south"),
+    (joint({"line": "east", "at": 200.0}, TO_BUOY), "must not exceed the line's length .130 m."),
+    (joint(EAST, TO_BUOY | {"offset": [1.0, 0.0, 0.0]}), "has no place beside its own"),
+    (joint(EAST, NORTH), "nothing says where the joint is at first"),
+    (joint(TO_BUOY, TO_BUOY), "both points are of the same line or body"),
+    (changed(output={"clearance": [{"between": ["east", "west"]}]}), "output.clearance.0.between.1: value .west."),
+    (stage(**MOVED), "stages.0.move: value .*: does not say of which line it is"),
+    (stage(lines={"east": MOVED}), "stages.0.lines.east.move.end: value .*: a joint holds this end"),
+    (
+        changed(lines=mooring()["lines"] | {"east": mooring()["lines"]["east"] | {"segments": [MISSPELT]}}),
+        "lines.east.segments.0.line_type: value .chian.: must be a key of line_types",
+    ),
+]
+
+
+@pytest.mark.parametrize(("scene", "message"), REFUSED)
+def test_what_is_refused(scene: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        scene_from_mapping(scene)

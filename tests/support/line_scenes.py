@@ -1,0 +1,146 @@
+"""Scenes of several lines: a mooring of three lines on a buoy, and elastic catenaries by themselves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from scipy.optimize import fsolve
+
+from riser_soil.core.arrays import Array
+
+RADIUS, DEPTH, LENGTH = 100.0, 100.0, 130.0
+RHO, G = 1025.0, 9.81
+CHAIN: dict[str, Any] = {"EA": 1.0e8, "EI": 1.0e3, "GJ": 1.0e3, "mass": 8.0, "outer_diameter": 0.05}
+WET = (CHAIN["mass"] - RHO * math.pi / 4.0 * CHAIN["outer_diameter"] ** 2) * G  # N/m
+POINT: dict[str, Any] = {"kind": "point", "mass": 2000.0, "volume": 6.0, "drag_area": 3.0, "added_mass": 0.5}
+RIGID: dict[str, Any] = {
+    "kind": "rigid", "mass": 2000.0, "inertia": [800.0, 900.0, 700.0], "centre_of_gravity": [0.0, 0.0, -0.3],
+    "volume": 6.0, "centre_of_buoyancy": [0.0, 0.0, 0.3], "drag_area": [3.0, 3.0, 2.0],
+    "rotational_drag": [1.0, 1.0, 1.0], "added_mass": [0.5, 0.5, 0.8], "added_inertia": [300.0, 300.0, 100.0],
+}  # fmt: skip
+IN_WATER = {"drag": {"normal": 1.2, "tangential": 0.05}, "added_mass": {"normal": 1.0}}
+NAMES = ("east", "north", "south")
+
+
+def mooring(
+    *stages: Mapping[str, Any], body: Mapping[str, Any] = POINT, elements: int = 20, **more: Any
+) -> dict[str, Any]:
+    """Three lines from anchors on a circle to a buoy amid them, on a rigid one at arms of 1 m; more: of the scene."""
+    arm = 1.0 if body["kind"] == "rigid" else 0.0
+    scene: dict[str, Any] = {
+        "title": "A buoy on three lines",
+        "water": {"density": RHO, "surface_level": 0.0},
+        "line_types": {"chain": CHAIN | (IN_WATER if len(stages) > 1 else {})},
+        "bodies": {"buoy": {"position": [0.0, 0.0, -20.0], **body}},
+        "lines": {},
+        "joints": {},
+        "stages": [{"name": "rest", "kind": "static"}, *stages],
+    }
+    for n, name in enumerate(NAMES):
+        c, s = math.cos(2.0 * math.pi * n / 3.0), math.sin(2.0 * math.pi * n / 3.0)
+        scene["lines"][name] = {
+            "segments": [{"line_type": "chain", "length": LENGTH, "elements": elements}],
+            "start": {"position": [RADIUS * c, RADIUS * s, -DEPTH]},
+            "end": "free",
+        }
+        at_body = {"body": "buoy", "offset": [arm * c, arm * s, -arm]}
+        scene["joints"][f"{name}_top"] = {"kind": "pinned", "between": [{"line": name, "at": "end"}, at_body]}
+    return scene | more
+
+
+def shaken(duration: float = 1.0, time_step: float = 0.05) -> dict[str, Any]:
+    """A dynamic stage in which an anchor moves."""
+    heave = {"amplitude": [1.0, 0.3, 0.5], "period": 3.0, "ramp": 1.0}
+    lines = {"east": {"motion": {"start": {"harmonic": heave}}}}
+    return {"name": "shaken", "kind": "dynamic", "duration": duration, "time_step": time_step, "lines": lines}
+
+
+def spans(H: float, V: float, w: float, EA: float, L: float) -> tuple[float, float]:
+    """Horizontal and vertical distance [m] from the lower to the upper end of an elastic catenary that hangs on H, V.
+
+    Irvine, Cable Structures, 1981, equations 2.24 and 2.25.
+    """
+    low = V - w * L
+    x = H * L / EA + H / w * (math.asinh(V / H) - math.asinh(low / H))
+    z = w * L / EA * (V / w - 0.5 * L) + H / w * (math.hypot(1.0, V / H) - math.hypot(1.0, low / H))
+    return x, z
+
+
+def pulls(a: Array, b: Array, w: float, EA: float, L: float) -> tuple[Array, Array]:
+    """Forces (2,) [N] of an elastic catenary from a up to b, (2,) [m] along x and z, on what holds it at a and at b."""
+    dx, dz = b - a
+
+    def off(force: Array) -> Array:
+        x, z = spans(abs(float(force[0])) + 1e-9, float(force[1]), w, EA, L)
+        return np.array([x - abs(dx), z - dz])
+
+    H, V = fsolve(off, abs(w) * L * np.array([0.5, 0.7]), xtol=1e-12)
+    ahead = float(np.sign(dx)) * abs(H)
+    return np.array([ahead, V - w * L]), np.array([-ahead, -V])
+
+
+# A riser in two parts over a buoyant arch that a tether holds, all in the plane y = 0, above the seabed.
+ARCH: dict[str, Any] = {
+    "kind": "rigid", "position": [-60.0, 0.0, -70.0], "mass": 12.0e3, "inertia": [4.0e4, 4.0e4, 4.0e4], "volume": 24.0,
+    "centre_of_gravity": [0.0, 0.0, -0.5], "centre_of_buoyancy": [0.0, 0.0, 0.6], "drag_area": [20.0, 30.0, 20.0],
+    "added_mass": [0.6, 0.8, 0.6],
+}  # fmt: skip
+PIPE: dict[str, Any] = {"EA": 3.0e8, "EI": 2.0e3, "GJ": 2.0e3, "mass": 60.0, "outer_diameter": 0.2}
+ROPE: dict[str, Any] = {"EA": 4.0e7, "EI": 10.0, "GJ": 10.0, "mass": 12.0, "outer_diameter": 0.1}
+PIPE["submerged_weight"], ROPE["submerged_weight"] = 350.0, 30.0
+# Of each line: type, length, elements, place of the other end, arm on the arch, whether the arch is its upper end.
+LAZY_S = {
+    "upper": (PIPE, 115.0, 46, (0.0, 0.0, -5.0), (2.5, 0.0, 0.0), False),
+    "lower": (PIPE, 105.0, 42, (-115.0, 0.0, -140.0), (-2.5, 0.0, 0.0), True),
+    "tether": (ROPE, 76.0, 20, (-60.0, 0.0, -150.0), (0.0, 0.0, -2.0), True),
+}
+
+
+def lazy_s(*stages: Mapping[str, Any], **more: Any) -> dict[str, Any]:
+    """The riser over its arch."""
+    scene: dict[str, Any] = {
+        "title": "A lazy S",
+        "water": {"density": RHO},
+        "line_types": {"pipe": PIPE, "rope": ROPE},
+        "bodies": {"arch": ARCH},
+        "lines": {},
+        "joints": {},
+        "stages": [{"name": "rest", "kind": "static"}, *stages],
+    }
+    for name, (kind, length, elements, place, arm, ends_up) in LAZY_S.items():
+        segments = [{"line_type": "pipe" if kind is PIPE else "rope", "length": length, "elements": elements}]
+        held, free = ("start", "end") if ends_up else ("end", "start")
+        scene["lines"][name] = {"segments": segments, held: {"position": list(place)}, free: "free"}
+        between = [{"line": name, "at": free}, {"body": "arch", "offset": list(arm)}]
+        scene["joints"][f"{name}_hung"] = {"kind": "pinned", "between": between}
+    return scene | more
+
+
+def lazy_s_by_catenaries() -> tuple[Array, dict[str, tuple[float, float]]]:
+    """x, z [m] and angle [rad] of the arch, and tensions [N] of each line at its start and end, by a root finder."""
+
+    def hung(at: Array) -> dict[str, tuple[Array, Array, Array]]:
+        """Of each line: arm in the plane, force on the arch and at the other end."""
+        c, s = math.cos(at[2]), math.sin(at[2])
+        turn, found = np.array([[c, -s], [s, c]]), {}
+        for name, (kind, length, _, place, arm, ends_up) in LAZY_S.items():
+            lever, other = turn @ np.array(arm)[[0, 2]], np.array(place)[[0, 2]]
+            ends = (other, at[:2] + lever) if ends_up else (at[:2] + lever, other)
+            forces = pulls(ends[0], ends[1], kind["submerged_weight"], kind["EA"], length)
+            found[name] = lever, forces[int(ends_up)], forces[int(not ends_up)]
+        for key, force in (("centre_of_gravity", -ARCH["mass"] * G), ("centre_of_buoyancy", RHO * G * ARCH["volume"])):
+            found[key] = turn @ np.array(ARCH[key])[[0, 2]], np.array([0.0, force]), np.zeros(2)
+        return found
+
+    def unbalanced(at: Array) -> Array:
+        levers, forces = (np.array([each[n] for each in hung(at).values()]) for n in (0, 1))
+        moment = levers[:, 0] * forces[:, 1] - levers[:, 1] * forces[:, 0]
+        return np.append(forces.sum(axis=0), moment.sum())
+
+    at = fsolve(unbalanced, np.array([-60.0, -72.0, 0.0]), xtol=1e-12)
+    assert np.abs(unbalanced(at)).max() < 1e-3
+    ends = {name: [float(np.linalg.norm(force)) for force in hung(at)[name][1:]] for name in LAZY_S}
+    return at, {name: (two[1], two[0]) if LAZY_S[name][5] else (two[0], two[1]) for name, two in ends.items()}
