@@ -138,8 +138,10 @@ def _flows(scene: Scene, stage: Stage) -> Iterator[SteadyCurrent | ChangingCurre
 
 
 def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent | ChangingCurrent:
-    """It grows with the load factor when the run begins with a static stage; else it is there in full."""
-    grows = isinstance(stage, StaticStage) and stage.name == scene.stages[0].name
+    """It grows with the load factor in a first static stage, but where a scene begins with the end of another run; else
+    it is there in full.
+    """
+    grows = isinstance(stage, StaticStage) and stage.name == scene.stages[0].name and scene.initial is None
     level = np.unique([z for _, profile in given.each for z, _, _ in profile])
     velocity = np.array([_at_levels(np.array(profile), level) for _, profile in given.each])
     if given.history is None:

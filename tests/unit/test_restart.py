@@ -25,6 +25,7 @@ from riser_soil.results.checkpoint import CheckpointSchedule
 from riser_soil.results.checkpoint_file import About, read_checkpoint, write_checkpoint
 from riser_soil.results.observer import Observer
 from riser_soil.results.peaks import RunPeaks
+from riser_soil.results.read import Run
 from riser_soil.scene.identity import first_difference, identity_of
 from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.reader import read_scene
@@ -100,6 +101,20 @@ def test_a_run_begins_with_another_ones_end(tmp_path: Path) -> None:
     write_checkpoint(tmp_path / "lay/checkpoint.npz", replace(kept.about, ended=None), kept.shares)
     with pytest.raises(SceneError, match="its run has not kept the state at its end"):
         run(heave, tmp_path / "from the way")
+
+
+def test_a_current_is_there_in_full_after_another_run(tmp_path: Path) -> None:
+    """At rest in it nothing moves any more: no load step has anything to solve."""
+    current = "water.current={profile: [[0.0, 0.3, 0.0], [100.0, 0.6, 0.0]]}"
+    scene = scene_of(current, "output.checkpoint.keep=true", "solver.load_steps=3")
+    hang = scene.model_copy(update={"stages": scene.stages[:1]})
+    run(hang, tmp_path / "hang")
+    again = scene_of(current, "solver.load_steps=3", f"initial={{from: {tmp_path / 'hang'}}}")
+    run(again.model_copy(update={"stages": again.stages[:1]}), tmp_path / "again")
+    before, after = (Run(tmp_path / name) for name in ("hang", "again"))
+    assert np.abs(after["position"][-1] - before["position"][-1]).max() < 1e-6
+    (stage,) = after.summary["stages"]
+    assert stage["newton_iterations"] <= stage["steps"]
 
 
 @pytest.fixture(scope="module")
