@@ -29,7 +29,7 @@ from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step, StepSolver
-from riser_soil.solve.step_control import AutoSteps, Control, PathSteps, StepControl
+from riser_soil.solve.step_control import AutoSteps, Control, PathSteps, StepControl, from_last_to_first
 from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
@@ -317,7 +317,9 @@ def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
 
 def _path_steps(assembly: Assembly, stage: QuasiStaticStage) -> PathSteps:
     """From corner to corner of a quasi-static stage, as long as asked at most, or as load steps would be."""
-    met, longest = [0.0, *corners(assembly.scene, stage)], stage.time_step
+    seen = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, QuasiStaticStage)]
+    ends = (t for own, each in seen for t in corners(own.scene, each))
+    met, longest = [0.0, *from_last_to_first(stage.duration, ends)[::-1]], stage.time_step
     if longest == "auto":
         counts = [_load_steps(assembly, stage, a, b) for a, b in pairwise(met)]
     else:
@@ -336,7 +338,9 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)
         first = first_step(stepper.system, stepper.now, tolerance)
-        return AutoSteps(stage.duration, tolerance, smallest, first, times_to_hit(assembly.scene, stage))
+        seen = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, DynamicStage)]
+        hit = [t for own, each in seen for t in times_to_hit(own.scene, each)]
+        return AutoSteps(stage.duration, tolerance, smallest, first, hit)
     return StepControl(stage.duration, stage.time_step, smallest)
 
 

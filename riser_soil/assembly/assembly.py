@@ -264,6 +264,10 @@ class Assembly:
         parts = {name: own.resume(before, stage) for name, own in self.lines.items()}
         return stage, self._model(parts, self._hung_in(stage))
 
+    def seen_by_lines(self, stage: Stage) -> list[tuple[LineAssembly, Stage]]:
+        """Each line, and a stage of the scene as it sees it."""
+        return [(own, own.seen(stage)) for own in self.lines.values()]
+
     def _hung_in(self, stage: Stage) -> list[Part]:
         return [] if self.hung is None else self.hung.parts_in(self.scene, stage)
 

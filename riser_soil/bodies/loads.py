@@ -29,6 +29,8 @@ from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffn
 from riser_soil.riser.vectors import matrix, scale, vector
 from riser_soil.sea.flows import Sea
 
+STIFFER, LEAST = 10.0, 1e-6  # times the moment, of what holds a body as it is let go; its least force [N]
+
 
 @dataclass(frozen=True, eq=False)
 class BodyProperties:
@@ -322,21 +324,39 @@ class BodyDrag(BodyPart):
 
 
 class Release(BodyPart):
-    """What has held a body, less and less with the load factor of the stage in which it is let go (group F).
+    """What has held a body, in the stage in which it is let go: a spring to where it is, and to how it stands, that has
+    the reaction at first and gets as soft as the load factor grows (group F).
 
-    reaction (6,): conjugate to its dofs as it was held [N, N.m].
+    reaction (6,): conjugate to its dofs as it was held [N, N.m]. With a potential, so that it can't tip the body over.
     """
 
     name, group = "release", "F"
-    traits = Traits("F", symmetric=True, follows=True)
+    traits = Traits("F", symmetric=True)
 
     def __init__(self, body: MovingBody, reaction: Array) -> None:
         super().__init__(body)
-        self._reaction = np.zeros(6)
-        self._reaction[: body.size] = reaction
+        whole = np.zeros(6)
+        whole[: body.size] = reaction
+        force, moment = float(np.linalg.norm(whole[:3])), float(np.linalg.norm(whole[3:]))
+        self.k = max(force, LEAST) / body.lever
+        self.kr = STIFFER * (moment + max(force, LEAST) * body.lever)
+        turned = body.frames.R[0] @ whole[3:] / self.kr
+        self._x = body.x[0] + whole[:3] / self.k
+        self._R = np.array(rotations.exp(vector(turned))) @ body.frames.R[0]
+
+    def _turn(self, at: Posture) -> Array:
+        return np.array(rotations.log(matrix(at.R @ self._R.T)))
 
     def wrench(self, state: State) -> Array:
-        return (state.t - 1.0) * self._reaction
+        at = posture(self.body, state)
+        moment = self.kr * at.H.T @ self._turn(at)
+        return (1.0 - state.t) * np.concatenate([self.k * (at.x - self._x), moment])
 
     def derivative(self, state: State, weights: Weights) -> Array:
-        return np.zeros((6, 6))
+        at, out = posture(self.body, state), np.zeros((6, 6))
+        turn = self._turn(at)
+        out[:3, :3] = self.k * np.eye(3)
+        spin = np.array(rotations.left_tangent_inverse(vector(turn)))
+        lever = moment_stiffness(matrix(at.Rn), vector(at.Theta), vector(self.kr * turn))
+        out[3:, 3:] = self.kr * at.H.T @ spin @ at.H + np.array(lever)
+        return (1.0 - state.t) * out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -93,8 +93,14 @@ class CaseValue:
 
 
 def case_values(folder: Path, since: float) -> list[CaseValue]:
-    """Of a run's folder. since: time of the last dynamic stage [s] from which on its records count in statistics."""
-    run = Run(folder)
+    """Of a run's folder, those of several lines behind their names. since: time of the last dynamic stage [s] from
+    which on its records count in statistics.
+    """
+    each = ((line, value) for line, run in Run(folder).of_lines.items() for value in _of_line(run, since))
+    return [replace(value, name=f"{line} {value.name}".strip()) for line, value in each]
+
+
+def _of_line(run: Run, since: float) -> list[CaseValue]:
     found = key_results(run.summary).values()
     return [*(CaseValue(each.stage, each.name, each.unit, each.value) for each in found), *_statistics(run, since)]
 

@@ -40,6 +40,7 @@ from riser_soil.solve.chain import ChainFactors, is_chain
 
 EPS = float(np.finfo(float).eps)
 NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
+SOFTEST = 1e-9  # of the stiffest: what takes a free turn away, such as a buoy's about the axis that it hangs on
 MOST_ITERATIONS = 200
 SETTLED = 1e-12  # change of a mode's direction in an iteration, squared
 AS_LARGE = 1.0 - 1e-6  # of the largest displacement
@@ -101,7 +102,7 @@ def unstable_modes(
     bounds = _row_bounds(system)
     more = (-EPS if doubtful else EPS) * bounds
     mine = _of_this_rank(system, prescribed)
-    more[mine] += bounds[mine]
+    more[mine] += np.maximum(bounds[mine], SOFTEST * bounds.max())
     system.matrix.add_to_diagonal(more)
     return pivots.count()
 
@@ -130,7 +131,7 @@ def prescribe_free_turns(system: System, state: State, least: float) -> None:
     if prescribed.size:
         more, mine = system.numbering.zeros(), _of_this_rank(system, prescribed)
         sizes = np.abs(system.matrix.stored.diagonal())
-        more[mine] = np.where(sizes[mine] > 0.0, sizes[mine], sizes.max(initial=1.0))
+        more[mine] = np.maximum(sizes[mine], SOFTEST * sizes.max())
         system.matrix.add_to_diagonal(more)
 
 

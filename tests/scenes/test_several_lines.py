@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from riser_soil.cases.case_table import case_values
 from riser_soil.errors import ResultsError, SceneError
+from riser_soil.report.report import write_report
 from riser_soil.results.read import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -57,6 +59,23 @@ def test_a_buoy_on_three_lines_rests_where_catenaries_balance_it(tmp_path: Path)
         gap, force = (found[f"joints/{name}_top/{key}"][-1] for key in ("gap", "force"))
         assert np.linalg.norm(force) == pytest.approx(math.hypot(H, V), rel=1e-5)
         assert 0.0 < np.linalg.norm(gap) < 0.01 * CHAIN["outer_diameter"]
+
+
+@pytest.mark.parametrize("body", [POINT, RIGID], ids=["point", "rigid"])
+def test_a_buoy_on_one_line_rises_over_its_anchor(body: dict[str, Any], tmp_path: Path) -> None:
+    """From aside; nothing keeps a rigid one from turning about the line. Its buoyancy is the tension at its foot."""
+    scene, arm = mooring(body=body), 1.0 if body is RIGID else 0.0
+    for kind, key in (("lines", "east"), ("joints", "east_top")):
+        scene[kind] = {key: scene[kind][key]}
+    scene["lines"]["east"]["segments"][0]["length"] = L = 75.0
+    scene["joints"]["east_top"]["between"][1]["offset"] = [0.0, 0.0, -arm]
+    scene["bodies"]["buoy"]["position"] = [RADIUS + 4.0, 1.0, -22.0]
+    found = ran(scene, tmp_path)
+    net = (POINT["volume"] * RHO - POINT["mass"]) * G
+    stretched = L + (net * L - 0.5 * WET * L**2) / CHAIN["EA"]
+    assert found["bodies/buoy/position"][-1] == pytest.approx([RADIUS, 0.0, stretched + arm - DEPTH], abs=1e-3)
+    tension = found.of_line("east")["effective_tension"][-1]
+    assert tension[[0, -1]] == pytest.approx([net - WET * L, net], rel=1e-6)
 
 
 def test_a_lazy_s_over_an_arch_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
@@ -199,6 +218,10 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert east.read_scene().line.length == LENGTH
     with pytest.raises(ResultsError, match="effective_tension is not of the run but of its lines: take one of"):
         found["effective_tension"]
+    named = {value.name for value in case_values(tmp_path, 0.0)}
+    assert {"east top tension", "north largest bending moment"} <= named
+    page = write_report([tmp_path], tmp_path / "report.html").read_text()
+    assert all(f"{tmp_path.name} {name}" in page for name in NAMES)
     with pytest.raises(ResultsError, match="has no line west; it has east, north, south"):
         found.of_line("west")
     summary = json.loads((tmp_path / "summary.json").read_text())["stages"][1]

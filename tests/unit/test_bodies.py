@@ -10,7 +10,7 @@ import pytest
 
 from riser_soil.bodies.body import MovingBody
 from riser_soil.bodies.joints import JointOf, Joints, Side
-from riser_soil.bodies.loads import BodyDrag, BodyInertia, BodyPart, BodyProperties, BodyWeight
+from riser_soil.bodies.loads import BodyDrag, BodyInertia, BodyPart, BodyProperties, BodyWeight, Release
 from riser_soil.bodies.wet_sphere import radius_of, wet, wet_height
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Weights
@@ -60,6 +60,7 @@ def parts(made: MovingBody) -> list[BodyPart]:
         BodyInertia(made, given.mass_matrix()),
         BodyWeight(made, given, 9.81 * given.mass, buoyancy, 0.0),
         BodyDrag(made, given, sea(), RHO, buoyancy, -0.1, still=False),
+        Release(made, 1e3 * np.arange(1.0, 7.0)[: made.size]),
     ]
 
 
@@ -100,6 +101,16 @@ def test_the_weight_is_the_slope_of_its_energy() -> None:
     for i, direction in enumerate(np.eye(6)):
         there, back = (part.energy(State(0.0, state.u + s * direction, state.v, state.a)) for s in (h, -h))
         assert (there.potential - back.potential) / (2.0 * h) == pytest.approx(forces.force[i], rel=1e-6, abs=1e-3)
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_what_held_a_body_has_its_reaction_at_first_and_nothing_at_last(turns: bool) -> None:
+    made, reaction = body(turns), np.array([3.0, -2.0, 5.0, 4.0, -1.0, 2.0])
+    part = Release(made, reaction[: made.size])
+    for t, share in ((0.0, -1.0), (0.5, -0.5), (1.0, 0.0)):
+        found = Forces.zeros(made.size)
+        part.residual(State(t, *np.zeros((3, made.size))), found)
+        assert found.force == pytest.approx(share * reaction[: made.size], abs=1e-9)
 
 
 def test_inertia_of_a_body_that_is_thrown() -> None:
