@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import assert_never
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from riser_soil.bodies.wet_sphere import radius_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.scene.bodies import Body as BodyScene
-from riser_soil.scene.bodies import PointBody
+from riser_soil.scene.bodies import PointBody, SolidBody
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import arc_of
 from riser_soil.scene.scene import Scene
@@ -106,15 +107,19 @@ def hung_of(scene: Scene, lines: Mapping[str, LineAssembly]) -> Hung:
 
 
 def _properties(scene: Scene, given: BodyScene) -> BodyProperties:
-    displaced = scene.water.density * given.volume if scene.water is not None else 0.0
-    if isinstance(given, PointBody):
-        none = np.zeros(3)
-        drag, added = np.full(3, given.drag_area), np.full(3, given.added_mass * displaced)
-        return BodyProperties(given.mass, none, none, given.volume, none, drag, none, added, none)
-    vectors = ("inertia", "centre_of_gravity", "centre_of_buoyancy", "drag_area", "rotational_drag", "added_inertia")
-    J, low, high, drag, spin_drag, added_J = (np.array(getattr(given, name)) for name in vectors)
-    added = np.array(given.added_mass) * displaced
-    return BodyProperties(given.mass, J, low, given.volume, high, drag, spin_drag, added, added_J)
+    displaced, none = scene.water.density * given.volume if scene.water is not None else 0.0, np.zeros(3)
+    match given:
+        case PointBody():
+            drag, added = np.full(3, given.drag_area), np.full(3, given.added_mass * displaced)
+            return BodyProperties(given.mass, none, none, given.volume, none, drag, none, added, none)
+        case SolidBody():
+            vectors = given.inertia, given.centre_of_gravity, given.centre_of_buoyancy, given.drag_area
+            J, low, high, drag = map(np.array, vectors)
+            spin_drag, added_J, added = map(np.array, (given.rotational_drag, given.added_inertia, given.added_mass))
+            return BodyProperties(
+                given.mass, J, low, given.volume, high, drag, spin_drag, added * displaced, added_J
+            )
+    assert_never(given)
 
 
 def _body(scene: Scene, name: str, given: BodyProperties) -> MovingBody:
@@ -123,8 +128,7 @@ def _body(scene: Scene, name: str, given: BodyProperties) -> MovingBody:
     arms = [float(np.linalg.norm(point.offset)) for point in points]
     gyration = float(np.sqrt(given.inertia.max() / given.mass))
     lever = max([*arms, gyration, radius_of(given.volume)]) or 1.0
-    turns = not isinstance(scene.bodies[name], PointBody)
-    return MovingBody(name, np.array(scene.bodies[name].position), turns, lever)
+    return MovingBody(name, np.array(scene.bodies[name].position), scene.bodies[name].turns, lever)
 
 
 def _weight(scene: Scene, body: MovingBody, given: BodyProperties) -> BodyWeight:

@@ -1,6 +1,10 @@
-"""Scene language: bodies that lines hang on: points of three degrees of freedom, rigid bodies of six."""
+"""Scene language: bodies that lines hang on: points of three degrees of freedom, rigid bodies of six.
 
-from typing import Annotated, Literal, Self
+A further kind is a model here with `turns`, whether it has rotations, and a case of `_properties` in
+`assembly/bodies_and_joints.py`.
+"""
+
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
 
@@ -29,6 +33,7 @@ class PointBody(BaseModel):
 
     model_config = FROZEN
 
+    turns: ClassVar[bool] = False
     kind: Literal["point"] = Field(description="point: three degrees of freedom")
     position: Position = Field(description="where it is at first, [x, y, z] [m]")
     mass: BodyMass = Field(description="mass [kg]")
@@ -44,6 +49,7 @@ class SolidBody(BaseModel):
 
     model_config = FROZEN
 
+    turns: ClassVar[bool] = True
     kind: Literal["rigid"] = Field(description="rigid: six degrees of freedom")
     position: Position = Field(description="where the origin of its axes is at first, [x, y, z] [m]")
     mass: BodyMass = Field(description="mass [kg]")
@@ -71,7 +77,7 @@ class SolidBody(BaseModel):
     )
 
     @model_validator(mode="after")
-    def _turns(self) -> Self:
+    def _has_inertia(self) -> Self:
         if min(self.inertia) == 0.0:
             remedy = "give all three, or make it a point"
             raise wrong("inertia", "a rigid body without a moment of inertia can't turn", remedy)

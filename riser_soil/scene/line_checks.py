@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 
-from riser_soil.scene.bodies import PointBody
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import ENDS, arc_of, by_line, first_place
@@ -80,7 +79,7 @@ def _point(scene: Scene, path: Path, joint: Joint, point: JointPoint) -> Iterato
             yield Problem((*path, key), allowed, f"name one of them{hint(name, known)}")
             return
     turns = joint.kind == "clamped" or (joint.stiffness is not None and joint.stiffness.rotation is not None)
-    if point.body is not None and isinstance(scene.bodies[point.body], PointBody):
+    if point.body is not None and not scene.bodies[point.body].turns:
         if any(point.offset):
             yield Problem((*path, "offset"), "a point has no place beside its own", "leave it out, or make it rigid")
         if turns:
