@@ -1,10 +1,11 @@
 """Comparison runs of a run in a chain, each varied in one source of error: longer steps, then more elements too.
 
 On a rigid floor the penalty goes with the elements: 16 times as stiff with elements half as long, so that both halve
-the length in which a riser sinks in beside an end, (4 EI/k)^(1/4). On soil one run is coarser in all its settings, as each run
-costs half of the first, however coarse it is; finer cells are those of a slice (`fine_slice`). Of a few slices the
-cells are coarsened twice, as contact grows cell by cell and two runs agree by chance; then elements are finer, as they
-cost little there, and the penalty with them.
+the length in which a riser sinks in beside an end, (4 EI/k)^(1/4).
+
+On soil one run is coarser in all its settings, as each takes near half of the first one's time, however coarse it is;
+finer cells are those of a slice (`fine_slice`). Of a few slices the cells are coarsened twice, as contact grows cell by
+cell and two runs agree by chance. Then elements are finer, as they cost little there, and the penalty with them.
 """
 
 from __future__ import annotations
@@ -113,7 +114,10 @@ def _cells(scene: Scene, run: RunValues) -> SoilCells:
         fine = settlements_on_fine_cells(scene, list(settled.values()))
     except (*OF_ALL, *OF_ONE):
         fine = None
-    return SoilCells(scene.has_path_dependent_soil, dict(zip(settled, fine or (), strict=fine is not None)))
+    moving = frozenset(stage.name for stage in scene.stages if not isinstance(stage, StaticStage))
+    return SoilCells(
+        scene.has_path_dependent_soil, dict(zip(settled, fine or (), strict=fine is not None)), moving
+    )
 
 
 def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:

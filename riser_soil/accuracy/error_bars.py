@@ -53,8 +53,9 @@ SAFETY = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}
 ON_SOIL = {"mesh": 1.5, "time": 1.5}
 ON_PATH = {"soil": 1.4}  # where the soil's law depends on its path: its errors jump more, as cells yield one by one
 BY_SLICE = {"soil": 1.2}  # where a slice tells the settlement's error
-# Of a settlement: safety of what the slice tells, and part of the coarser run's difference.
-SLICE, ALONG = 1.4, 0.35
+# Of a settlement: safety of what the slice tells; part of the coarser run's difference, at rest and in motion, where the
+# trough comes by many loads, as a slice is pressed once.
+SLICE, AT_REST, IN_MOTION = 1.4, 0.35, 1.0
 MOST_SEEN = 2.0  # times at most that a difference counts by what the slice tells; where it fails, always
 LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
 
@@ -102,12 +103,15 @@ class ErrorBar:
 
 @dataclass(frozen=True)
 class SoilCells:
-    """The soil of a run: whether its law depends on its path, and settlements [m] on fine cells by their keys, as a
-    slice tells them; none where it failed, None of soil that is not told by a slice.
+    """The soil of a run: whether its law depends on its path.
+
+    fine: settlements [m] on fine cells by their keys, as a slice tells them; none where it failed, None of soil that is
+    not told by a slice. moving: stages that are not static.
     """
 
     path_dependent: bool
     fine: Values | None = None
+    moving: frozenset[str] = frozenset()
 
 
 def error_bars(
@@ -134,7 +138,7 @@ def _bar(
     between, safety = gaps(key_result, run), _safety(soil)
     shares = {s: safety[s] * (between.get(s, 0.0) + found.get(s, 0.0)) for s in between | found}
     if soil is not None and soil.fine is not None and "soil" in found:
-        shares["soil"] = _by_slice(key_result, run, chain, order, soil.fine)
+        shares["soil"] = _by_slice(key_result, run, chain, order, soil)
     if unknown:
         return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
     smallest = SMALLEST if soil is None else SMALLEST_ON_SOIL
@@ -142,19 +146,24 @@ def _bar(
 
 
 def _by_slice(
-    key_result: KeyResult, run: RunValues, chain: Sequence[ComparisonRun], order: Mapping[str, float], fine: Values
+    key_result: KeyResult,
+    run: RunValues,
+    chain: Sequence[ComparisonRun],
+    order: Mapping[str, float],
+    soil: SoilCells,
 ) -> float:
     """The soil's share, from a slice and a coarser run."""
-    off, _ = _of_sources(key_result, run, chain, order)
+    assert soil.fine is not None
+    off = _of_sources(key_result, run, chain, order)[0]["soil"]
     settled = run.reported.get(f"{key_result.stage}: {SETTLEMENT}")
-    if settled is None or settled.key not in fine:
-        return BY_SLICE["soil"] * MOST_SEEN * off["soil"]
-    finer = abs(fine[settled.key] - settled.value)
+    if settled is None or settled.key not in soil.fine:
+        return BY_SLICE["soil"] * MOST_SEEN * off
+    finer = abs(soil.fine[settled.key] - settled.value)
     if key_result.name == SETTLEMENT:
-        return math.hypot(SLICE * finer, ALONG * off["soil"])
+        return math.hypot(SLICE * finer, (IN_MOTION if key_result.stage in soil.moving else AT_REST) * off)
     coarser = _of_sources(settled, run, chain, order)[0].get("soil", 0.0)
     seen = min(max(finer / coarser, 1.0), MOST_SEEN) if coarser > 0.0 else MOST_SEEN
-    return BY_SLICE["soil"] * seen * off["soil"]
+    return BY_SLICE["soil"] * seen * off
 
 
 def _of_sources(

@@ -112,9 +112,10 @@ def slice_of(scene: Scene, scales: Scales, mesh: GeneratedMesh, settlement: floa
     low, high = (bound - origin[axis] for bound in (soil.block.x, soil.block.y)[axis])
     middle = 0.5 * (1.0 - LENGTH) * D, 0.5 * (1.0 + LENGTH) * D
     part = {"model": "sections", "mesh": mesh, "block": Block(x=middle, y=(low, high), depth=soil.block.depth)}
-    pressing = scene_from_mapping(_pipe(scales, soil.top_law.surface_modulus(D)) | {"stages": [*_stages(D, settlement)]})
-    solver = scene.solver.model_copy(update={"load_steps": STEPS})
-    return pressing.model_copy(update={"soil": soil.model_copy(update=part), "contact": scene.contact, "solver": solver})
+    pipe = _pipe(scales, soil.top_law.surface_modulus(D))
+    more: dict[str, Any] = {"soil": soil.model_copy(update=part), "contact": scene.contact}
+    more["solver"] = scene.solver.model_copy(update={"load_steps": STEPS})
+    return scene_from_mapping(pipe | {"stages": [*_stages(D, settlement)]}).model_copy(update=more)
 
 
 def _across(scene: Scene) -> int:
