@@ -7,9 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from riser_soil.accuracy import fine_slice
 from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
+from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.soil import GeneratedMesh
 
 D, DEPTH, E, NU, WEIGHT = 0.3, 1.8, 1.2e6, 0.45, 700.0
 ELASTIC = {"kind": "linear-elastic", "E": E, "nu": NU}
@@ -61,8 +64,26 @@ def test_wide_cells_settle_less_by_their_logarithm() -> None:
 
 
 def test_cells_that_resolve_what_touches_are_right() -> None:
-    """Of D/64, where 0.13 D touch."""
+    """Of D/64, where D/15 touches."""
     assert fine(laid(D / 64.0), 2.0e-3) == pytest.approx([2.0e-3], rel=0.01)
+
+
+@pytest.mark.parametrize(("across", "expected"), [(D / 64.0, D / 128.0), (0.5 * D, 0.25 * 0.02309)])
+def test_fine_cells_are_half_of_the_run_s_or_a_quarter_of_what_touches(
+    across: float, expected: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At 1.5 times the weight Hertz has 23.09 mm touch."""
+    cells = []
+
+    def sees(scene: Scene, **_: float) -> tuple[Array, Array]:
+        assert scene.soil is not None
+        assert isinstance(scene.soil.mesh, GeneratedMesh)
+        cells.append(scene.soil.mesh.across)
+        return np.array([0.0, 1.0]), np.array([0.0, 1.0])
+
+    monkeypatch.setattr(fine_slice, "_pressed", sees)
+    fine(laid(across), 1e-3)
+    assert cells == pytest.approx([across, expected], rel=2e-3)
 
 
 def test_clay_yields_on_fine_cells_alone() -> None:
