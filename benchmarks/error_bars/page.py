@@ -61,15 +61,14 @@ after the run. This page calls them coarser runs.
 | on soil of fewer than three slices: 1, 2 | cells {cells:.2g} times as large, each time |
 | 3, 4 | steps as above; twice the elements, four times the penalty |
 
-But for that one run each difference has one source of error. A finer mesh shows the mesh's error whatever its order
-is, so bars hold where elements are far too long. Finer steps would cost more than the run.
+A finer mesh shows the mesh's error whatever its order is, so bars hold where elements are far too long. Finer steps
+would cost more than the run.
 
-**On soil** the cells' error is found where it arises ([fine_slice.py](../riser_soil/accuracy/fine_slice.py)). A stiff
-pipe is pressed into one slice of the run's cells until it settles as deep as the riser did, which tells the load. On
-cells that resolve what touches, and half of the run's at most, it is pressed to the same load. So clay that yields on
-fine cells alone is seen. A settlement's bar is, as squares add up, {slice:g} times the slice's change and {at_rest:g}
-times the coarser run's difference, in motion {in_motion:g} times. Other bars are {by_slice:g} times that difference, or
-up to {most:g} times as much, as far as the settlement changes by more in the slice than in the coarser run.
+**On soil** a pipe is pressed into one [slice](../riser_soil/accuracy/fine_slice.py) of the run's cells as deep as the
+riser settled, and by the same load into one of cells that resolve what touches, half of the run's at most. A
+settlement's bar is {slice:g} times that change and, as squares add up, {at_rest:g} times the coarser run's
+difference, in motion {in_motion:g}. Other bars are {by_slice:g} times that difference, up to
+{most:g} times as much where the slice changes by more.
 
 1. **Difference.** The root mean square of the differences in the extreme itself and in those of 16 windows of time in
    which the quantity comes within a fifth of its range to the extreme: two runs may agree in one extreme by chance.
@@ -80,8 +79,8 @@ up to {most:g} times as much, as far as the settlement changes by more in the sl
 3. **Between samples.** What falls between nodes and between steps, by the parabola through three samples, is added to
    mesh and time; what rings from step to step to the time. Largest moments and curvatures are taken between nodes by
    a cubic of the elements' own order, and need no addition.
-4. **Factor of safety.** {factors}; on soil {on_soil_factors}, and for a few slices of soil whose law
-   depends on its path {on_path:g}.
+4. **Factor of safety.** {factors}; on soil
+   {on_soil_factors}, and for a few slices of soil whose law depends on its path {on_path:g}.
 5. **Sum.** Different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
    ([key_results.py](../riser_soil/accuracy/key_results.py)), on soil {smallest_on_soil:g}.
 
@@ -112,8 +111,7 @@ leaves out those whose reference is not certain to {certain:.0%} of bar or error
 
 [Random scenes on soil](../benchmarks/error_bars/random_soils.py): risers laid on sections and blocks, heaved, pipes
 pressed in; elastic, plastic and cyclic. References have cells of a quarter or a third of the size, and more load steps.
-Both halves of the first seed have chosen the way and its factors; those out of sample, of another seed, were judged
-once, thereafter.
+Both halves of the first seed have chosen the way and its factors; those out of sample, of another seed, nothing.
 
 <!-- {soil_block} -->
 {on_soil}

@@ -16,7 +16,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil.accuracy.settings import resolved
 from riser_soil.assembly import Assembly, build, sized
@@ -175,6 +174,8 @@ class _Pressing(StatelessObserver):
 
 def _pressed(scene: Scene, settlement: float = np.inf, load: float = np.inf) -> tuple[Array, Array]:
     """Settlements [m] and loads [N] on the way to one of them."""
+    from mpi4py import MPI
+
     assembly, clock = build(scene, MPI.COMM_SELF), Timer.new()
     pressing = _Pressing(assembly, settlement, load)
     before, _ = lay(assembly, clock)
