@@ -55,7 +55,7 @@ ON_PATH = {"soil": 1.4}  # where the soil's law depends on its path: its errors 
 BY_SLICE = {"soil": 1.2}  # where a slice tells the settlement's error
 # Of a settlement: safety of what the slice tells; part of the coarser run's difference, at rest and in motion, where
 # the trough comes by many loads and a slice is pressed once.
-SLICE, AT_REST, IN_MOTION = 1.4, 0.35, 1.0
+SLICE, AT_REST, IN_MOTION = 1.4, 0.35, 1.8
 MOST_SEEN = 2.0  # times at most that a difference counts by what the slice tells; where it fails, always
 LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
 
