@@ -45,7 +45,8 @@ def write_references(asked: Iterable[str], missing: bool = False) -> None:
 
 def on_soil() -> str:
     known = references.read(references.ON_SOIL)
-    return soil_block(judged(random_soils.EVEN, known), judged(random_soils.ODD, known), known)
+    columns = {"even numbers": random_soils.EVEN, "odd numbers": random_soils.ODD, "out of sample": random_soils.NEW}
+    return soil_block({heading: judged(scenes, known) for heading, scenes in columns.items()}, known)
 
 
 parser = argparse.ArgumentParser(prog="python -m benchmarks.error_bars", description=__doc__)

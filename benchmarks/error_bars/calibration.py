@@ -64,9 +64,9 @@ def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
     peaks = peaks_of(scene, MPI.COMM_WORLD)
     done = _processor_time()
     chain = comparison_runs(scene, MPI.COMM_WORLD)
-    seconds = done - began, _processor_time() - done
     run = run_values(key_results(peaks.reported("sampled")), peaks)
     found = bars_of(scene, run, chain)
+    seconds = done - began, _processor_time() - done
     judged = [_judged(name, bar, *reference.get(bar.key_result.key, UNKNOWN)) for bar in found if bar.bar is not None]
     return JudgedScene(name, judged, [bar for bar in found if bar.bar is None], seconds)
 

@@ -6,7 +6,7 @@ import datetime
 import math
 import os
 import platform
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
@@ -21,11 +21,23 @@ from benchmarks.error_bars.calibration import (
 )
 from benchmarks.error_bars.random_risers import CALIBRATION, GROUNDS, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import SCENES
-from benchmarks.error_bars.soil_page import ON_SOIL
+from benchmarks.error_bars.soil_page import ON_SOIL as SOIL_BLOCK
 from demos.page import csv_table, filled, table
 from riser_soil import __version__
-from riser_soil.accuracy.chain import COARSER_SOIL
-from riser_soil.accuracy.error_bars import FORETOLD, LARGE, ON_PATH, SAFETY, SMALLEST
+from riser_soil.accuracy.chain import ALL_COARSER, COARSER_SOIL
+from riser_soil.accuracy.error_bars import (
+    AT_REST,
+    BY_SLICE,
+    IN_MOTION,
+    LARGE,
+    MOST_SEEN,
+    ON_PATH,
+    ON_SOIL,
+    SAFETY,
+    SLICE,
+    SMALLEST,
+    SMALLEST_ON_SOIL,
+)
 
 PAGE = Path("docs") / "error_bars.md"
 EVERY_SCENE, EVERY_MISSED = (PAGE.with_name(f"error_bars_{name}.csv") for name in ("scenes", "missed"))
@@ -45,11 +57,18 @@ after the run. This page calls them coarser runs.
 | --- | --- |
 | 1 | steps two to four times as long, as long as the shortest period keeps 20 |
 | 2 | the same, twice the elements, on a rigid floor 16 times the penalty |
-| on soil, each on top of the one before: 1 | cells {cells:.2g} times as large |
-| 2, 3 | steps as above; half the elements, a quarter of the penalty |
+| on soil | cells and elements {all_cells:g} times as long, steps {all_steps:.2g} times, a quarter of the penalty |
+| on soil of fewer than three slices: 1, 2 | cells {cells:.2g} times as large, each time |
+| 3, 4 | steps as above; twice the elements, four times the penalty |
 
-Each difference between two runs has one source of error. A finer mesh shows the mesh's error whatever its order is,
-so bars hold where elements are far too long. Finer steps would cost more than the run.
+A finer mesh shows the mesh's error whatever its order is, so bars hold where elements are far too long. Finer steps
+would cost more than the run.
+
+**On soil** a pipe is pressed into one [slice](../riser_soil/accuracy/fine_slice.py) of the run's cells as deep as the
+riser settled, and by the same load into one of cells that resolve what touches, half of the run's at most. A
+settlement's bar is {slice:g} times that change and, as squares add up, {at_rest:g} times the coarser run's
+difference, in motion {in_motion:g}. Other bars are {by_slice:g} times that difference, up to
+{most:g} times as much where the slice changes by more.
 
 1. **Difference.** The root mean square of the differences in the extreme itself and in those of 16 windows of time in
    which the quantity comes within a fifth of its range to the extreme: two runs may agree in one extreme by chance.
@@ -60,11 +79,10 @@ so bars hold where elements are far too long. Finer steps would cost more than t
 3. **Between samples.** What falls between nodes and between steps, by the parabola through three samples, is added to
    mesh and time; what rings from step to step to the time. Largest moments and curvatures are taken between nodes by
    a cubic of the elements' own order, and need no addition.
-4. **Factor of safety.** {factors}; for cells of soil whose law depends on its path {on_path:g}. On cells wider than
-   what touches a riser's settlement is uncertain by at least {foretold:g} times what `check` foretells beyond it:
-   coarser ones do not show clay that yields on fine ones alone.
+4. **Factor of safety.** {factors}; on soil
+   {on_soil_factors}, and for a few slices of soil whose law depends on its path {on_path:g}.
 5. **Sum.** Different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
-   ([key_results.py](../riser_soil/accuracy/key_results.py)).
+   ([key_results.py](../riser_soil/accuracy/key_results.py)), on soil {smallest_on_soil:g}.
 
 The code: [error_bars.py](../riser_soil/accuracy/error_bars.py), [chain.py](../riser_soil/accuracy/chain.py).
 
@@ -93,7 +111,7 @@ leaves out those whose reference is not certain to {certain:.0%} of bar or error
 
 [Random scenes on soil](../benchmarks/error_bars/random_soils.py): risers laid on sections and blocks, heaved, pipes
 pressed in; elastic, plastic and cyclic. References have cells of a quarter or a third of the size, and more load steps.
-Both halves were seen while the way was chosen.
+Both halves of the first seed have chosen the way and its factors; those out of sample, of another seed, nothing.
 
 <!-- {soil_block} -->
 {on_soil}
@@ -127,15 +145,23 @@ Kind = Callable[[Judged], str]
 
 def page(calibration: list[JudgedScene], out: list[JudgedScene], on_soil: str) -> str:
     return TEXT.format(
-        soil_block=ON_SOIL,
+        soil_block=SOIL_BLOCK,
         on_soil=on_soil,
         version=__version__,
         date=datetime.date.today().isoformat(),
         python=platform.python_version(),
         cores=os.cpu_count(),
-        factors=", ".join(f"{factor:g} for the {source}" for source, factor in SAFETY.items()),
+        factors=_in_words(SAFETY),
+        on_soil_factors=_in_words(ON_SOIL),
         on_path=ON_PATH["soil"],
-        foretold=FORETOLD,
+        all_cells=1.0 / ALL_COARSER.factors["soil_mesh"],
+        all_steps=1.0 / ALL_COARSER.factors["time_step"],
+        slice=SLICE,
+        at_rest=AT_REST,
+        in_motion=IN_MOTION,
+        by_slice=BY_SLICE["soil"],
+        most=MOST_SEEN,
+        smallest_on_soil=SMALLEST_ON_SOIL,
         cells=1.0 / COARSER_SOIL.factors["soil_mesh"],
         large=LARGE["time"],
         smallest=SMALLEST,
@@ -153,9 +179,13 @@ def page(calibration: list[JudgedScene], out: list[JudgedScene], on_soil: str) -
     )
 
 
+def _in_words(factors: Mapping[str, float]) -> str:
+    return ", ".join(f"{factor:g} for the {source}" for source, factor in factors.items())
+
+
 def publish_on_soil(block: str) -> None:
     """Write the page's block on soil alone."""
-    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), {ON_SOIL: block}), encoding="utf-8")
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), {SOIL_BLOCK: block}), encoding="utf-8")
 
 
 def publish(calibration: list[JudgedScene], out: list[JudgedScene], on_soil: str) -> None:

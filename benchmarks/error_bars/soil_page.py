@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from statistics import median
 
 from mpi4py import MPI
@@ -10,7 +10,7 @@ from mpi4py import MPI
 from benchmarks.error_bars.calibration import Judged, JudgedScene, decided, ratios, share_inside
 from benchmarks.error_bars.random_soils import SOILS
 from benchmarks.error_bars.references import Reference
-from benchmarks.error_bars.scenes import Mapping
+from benchmarks.error_bars.scenes import Mapping as SceneMapping
 from demos.page import table
 from riser_soil.accuracy.key_results import SETTLEMENT
 from riser_soil.assembly import build, sized
@@ -21,13 +21,13 @@ ON_SOIL = "error bars on soil"  # block of the page
 WITHIN = 1.5  # factor that a settlement foretold is to keep to
 
 
-def soil_block(even: list[JudgedScene], odd: list[JudgedScene], known: dict[str, Reference]) -> str:
-    """known: references by scene."""
+def soil_block(columns: Mapping[str, list[JudgedScene]], known: dict[str, Reference]) -> str:
+    """columns: scenes by their heading; known: references by scene."""
     factors = forecast_factors(known)
     kept = sum(1.0 / WITHIN <= factor <= WITHIN for factor in factors.values())
     spread = f"{min(factors.values()):.2f} to {max(factors.values()):.2f}"
-    rows = [*zip(*(_cells(scenes) for scenes in (even, odd)), strict=True)]
-    figures = table(["on soil", "even numbers", "odd numbers"], _named(rows))
+    rows = [*zip(*(_cells(scenes) for scenes in columns.values()), strict=True)]
+    figures = table(["on soil", *columns], _named(rows))
     return (
         f"{figures}\n\nSettlement foretold over that of the reference, laid scenes: {spread}; {kept} of {len(factors)} "
         f"within {WITHIN:g}."
@@ -74,7 +74,7 @@ def forecast_factors(known: dict[str, Reference]) -> dict[str, float]:
     return {name: factor for name, factor in found.items() if factor is not None}
 
 
-def forecast_factor(mapping: Mapping, reference: Reference) -> float | None:
+def forecast_factor(mapping: SceneMapping, reference: Reference) -> float | None:
     """None of a pipe that is pressed in, and where the reference has no settlement."""
     scene = scene_from_mapping(mapping)
     settled = reference.get(f"{scene.stages[0].name}: {SETTLEMENT}")

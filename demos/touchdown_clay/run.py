@@ -64,10 +64,10 @@ def bars(done: Run) -> str:
         ("lay", "touchdown arc", "m", 1.0, 2),
         ("lay", "largest bending moment", "kN m", 1e-3, 4),
         ("lay", "soil settlement", "mm", 1e3, 1),
-        ("heave", "least touchdown arc", "m", 1.0, 1),
-        ("heave", "largest touchdown arc", "m", 1.0, 1),
-        ("heave", "largest bending moment", "kN m", 1e-3, 2),
-        ("heave", "soil settlement", "mm", 1e3, 0),
+        ("heave", "least touchdown arc", "m", 1.0, 2),
+        ("heave", "largest touchdown arc", "m", 1.0, 2),
+        ("heave", "largest bending moment", "kN m", 1e-3, 3),
+        ("heave", "soil settlement", "mm", 1e3, 1),
     ):
         each = found[stage, name]
         value, bar = (f"{scale * each[key]:.{digits}f}" for key in ("value", "bar"))

@@ -1,9 +1,11 @@
 """Comparison runs of a run in a chain, each varied in one source of error: longer steps, then more elements too.
 
 On a rigid floor the penalty goes with the elements: 16 times as stiff with elements half as long, so that both halve
-the length in which a riser sinks in beside an end, (4 EI/k)^(1/4). On soil its cells come first, then all else is
-coarser: contact grows cell by cell there, and finer ones would cost more than the run. Cells a little coarser tell by
-how much contact jumps. The penalty goes with the elements there, too: its share is a hundredth of the cells'.
+the length in which a riser sinks in beside an end, (4 EI/k)^(1/4).
+
+On soil one run is coarser in all its settings, as each takes near half of the first one's time, however coarse it is;
+finer cells are those of a slice (`fine_slice`). Of a few slices the cells are coarsened twice, as contact grows cell by
+cell and two runs agree by chance. Then elements are finer, as they cost little there, and the penalty with them.
 """
 
 from __future__ import annotations
@@ -13,12 +15,20 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from riser_soil.accuracy.element_sizes import CurveEnvelope
-from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, alone, error_bars, extremes_of
+from riser_soil.accuracy.error_bars import (
+    ComparisonRun,
+    ErrorBar,
+    RunValues,
+    SoilCells,
+    alone,
+    error_bars,
+    extremes_of,
+)
+from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
-from riser_soil.checks.settlement import BeyondCells, beyond_cells
 from riser_soil.core.snapshot import Instant, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
@@ -43,8 +53,9 @@ class Variation(NamedTuple):
 
 
 COARSER_SOIL = Variation("soil", {"soil_mesh": 0.6})
+ALL_COARSER = Variation("soil", {"soil_mesh": 0.5, "time_step": 2.0 / 3.0, "elements": 0.5, "penalty": 0.25})
 FINER_MESH = Variation("mesh", {"elements": 2.0, "penalty": 16.0})
-COARSER_MESH = Variation("mesh", {"elements": 0.5, "penalty": 0.25})
+FINER_MESH_ON_SOIL = Variation("mesh", {"elements": 2.0, "penalty": 4.0})
 # Steps that a comparison run leaves to the shortest period, as the mesh tells little on longer ones; how many times as
 # long they are at least, at most, and where nothing has a period.
 STEPS_LEFT, LONGER, LONGEST, USUAL = 20.0, 2.0, 4.0, 3.0
@@ -73,7 +84,9 @@ def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None
 def variations(scene: Scene) -> Sequence[Variation]:
     """For error bars of a run, as cheap as they can be."""
     longer = Variation("time", {"time_step": 1.0 / _longer(scene)})
-    return (longer, FINER_MESH) if scene.soil is None else (COARSER_SOIL, longer, COARSER_MESH)
+    if scene.soil is None:
+        return longer, FINER_MESH
+    return (ALL_COARSER,) if has_many_slices(scene) else (COARSER_SOIL, COARSER_SOIL, longer, FINER_MESH_ON_SOIL)
 
 
 def _longer(scene: Scene) -> float:
@@ -88,15 +101,23 @@ def _longer(scene: Scene) -> float:
 
 
 def bars_of(scene: Scene, run: RunValues, chain: Sequence[ComparisonRun]) -> list[ErrorBar]:
-    """The error bars of a run of the scene with its comparison runs."""
+    """The error bars of a run of the scene with its comparison runs; on soil a slice of it is computed for them."""
     rigid = scene.soil is None and isinstance(scene.seabed, RigidSeabed)
-    return error_bars(run, chain, rigid, scene.has_path_dependent_soil, _foretold(scene, run))
+    return error_bars(run, chain, rigid, None if scene.soil is None else _cells(scene, run))
 
 
-def _foretold(scene: Scene, run: RunValues) -> BeyondCells | None:
-    """What is foretold beyond the cells of a run that reports a settlement."""
-    settles = any(each.name == SETTLEMENT for each in run.reported.values())
-    return beyond_cells(sized(scene)) if settles else None
+def _cells(scene: Scene, run: RunValues) -> SoilCells:
+    if not has_many_slices(scene):
+        return SoilCells(scene.has_path_dependent_soil)
+    settled = {key: each.value for key, each in run.reported.items() if each.name == SETTLEMENT}
+    try:
+        fine = settlements_on_fine_cells(scene, list(settled.values()))
+    except (*OF_ALL, *OF_ONE):
+        fine = None
+    moving = frozenset(stage.name for stage in scene.stages if not isinstance(stage, StaticStage))
+    return SoilCells(
+        scene.has_path_dependent_soil, dict(zip(settled, fine or (), strict=fine is not None)), moving
+    )
 
 
 def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:

@@ -17,6 +17,12 @@ short waves that the steps do not resolve (`results.peaks`). Largest moments and
 Shares of different sources add up as squares do. With these factors the calibration (`benchmarks.error_bars`) finds the
 true error inside at least 95 % of the bars.
 
+On soil one run is coarser in all its settings, and a slice across the riser has finer cells (`fine_slice`). Its share
+is the soil's. Of a settlement it is by the slice, and by a part of the coarser run's difference, as a slice knows
+nothing of what lies along the riser. Others are uncertain by that difference, or by more, in so far as the settlement
+changes by more on fine cells than on coarse ones. Soil of a few slices has no slice that is cheaper than the run: there
+cells are coarsened twice.
+
 Extremes of key results over a stage and in windows of its time, and how far two runs are apart in them.
 
 Two runs may agree in one extreme by chance, where their difference changes its sign. So what counts is the mean square
@@ -32,21 +38,25 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import SETTLEMENT, TOUCHDOWN, KeyResult, key_results
-from riser_soil.checks.settlement import BeyondCells
+from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.core.arrays import Array
 from riser_soil.results.peaks import RunPeaks
 
 SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalty": "penalty"}
-SMALLEST = 5e-5  # bar told, over the quantity's scale
+SMALLEST, SMALLEST_ON_SOIL = 5e-5, 1e-4  # bar told, over the quantity's scale
 ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
 #: Orders in a contact force on a rigid floor, by a penalty. Beside an end that is held on it the riser sinks in within
 #: a length (4 EI/k)^(1/4) (beam on an elastic foundation), or an element where that is longer; what lies there, the end
 #: bears.
 CONTACT_FORCE, OF_CONTACT_FORCE = "largest contact force", {"mesh": 1.0, "penalty": 0.25}
 SAFETY = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}
+ON_SOIL = {"mesh": 1.5, "time": 1.5}
 ON_PATH = {"soil": 1.4}  # where the soil's law depends on its path: its errors jump more, as cells yield one by one
-FORETOLD = 1.25  # of what is foretold beyond the cells
+BY_SLICE = {"soil": 1.2}  # where a slice tells the settlement's error
+# Of a settlement: safety of what the slice tells; part of the coarser run's difference, at rest and in motion, where
+# the trough comes by many loads and a slice is pressed once.
+SLICE, AT_REST, IN_MOTION = 1.4, 0.35, 1.8
+MOST_SEEN = 2.0  # times at most that a difference counts by what the slice tells; where it fails, always
 LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
 
 Values = Mapping[str, float]  # of key results by their keys, in their units
@@ -91,37 +101,30 @@ class ErrorBar:
     order: Mapping[str, float] = field(default_factory=lambda: ORDER)
 
 
+@dataclass(frozen=True)
+class SoilCells:
+    """The soil of a run: whether its law depends on its path.
+
+    fine: settlements [m] on fine cells by their keys, as a slice tells them; none where it failed, None of soil that is
+    not told by a slice. moving: stages that are not static.
+    """
+
+    path_dependent: bool
+    fine: Values | None = None
+    moving: frozenset[str] = frozenset()
+
+
 def error_bars(
-    run: RunValues,
-    chain: Sequence[ComparisonRun],
-    rigid: bool,
-    path_dependent: bool,
-    foretold: BeyondCells | None = None,
+    run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, soil: SoilCells | None = None
 ) -> list[ErrorBar]:
-    """Of all key results. rigid: whether the ground is a rigid floor. path_dependent: whether its soil is. foretold: of
-    a riser on fine cells, where the run's are wider than what touches.
-    """
-    safety, least = SAFETY | (ON_PATH if path_dependent else {}), _beyond_cells(run, foretold)
-    return [
-        _bar(each, run, chain, orders(each.name, rigid), safety, least.get(key, 0.0))
-        for key, each in run.reported.items()
-    ]
+    """Of all key results. rigid: whether the ground is a rigid floor."""
+    return [_bar(each, run, chain, orders(each.name, rigid), soil) for each in run.reported.values()]
 
 
-def _beyond_cells(run: RunValues, foretold: BeyondCells | None) -> dict[str, float]:
-    """Errors at least of cells wider than what touches, by key: as the riser settles more on fine ones, and its
-    touchdown moves with that. At rest is the first stage that reports a settlement.
-
-    Such cells bear the pipe as a strip of their own width, and the settlement of a strip goes by the logarithm of its
-    width: each halving of the cells adds as much as the one before. Where the clay yields on fine cells alone, coarser
-    ones do not show it at all. The forecast does.
-    """
-    at_rest = next((each.value for each in run.reported.values() if each.name == SETTLEMENT), 0.0)
-    if foretold is None or not 0.0 < at_rest < foretold.settlement:
-        return {}
-    more, moves = foretold.settlement / at_rest - 1.0, foretold.touchdown_moves(at_rest)
-    settles = {key: more * abs(each.value) for key, each in run.reported.items() if each.name == SETTLEMENT}
-    return settles | {key: moves for key, each in run.reported.items() if each.name.endswith(TOUCHDOWN)}
+def _safety(soil: SoilCells | None) -> Mapping[str, float]:
+    if soil is None:
+        return SAFETY
+    return SAFETY | ON_SOIL | (BY_SLICE if soil.fine is not None else ON_PATH if soil.path_dependent else {})
 
 
 def _bar(
@@ -129,17 +132,38 @@ def _bar(
     run: RunValues,
     chain: Sequence[ComparisonRun],
     order: Mapping[str, float],
-    safety: Mapping[str, float],
-    on_cells: float,
+    soil: SoilCells | None,
 ) -> ErrorBar:
     found, unknown = _of_sources(key_result, run, chain, order)
-    between = gaps(key_result, run)
+    between, safety = gaps(key_result, run), _safety(soil)
     shares = {s: safety[s] * (between.get(s, 0.0) + found.get(s, 0.0)) for s in between | found}
-    if "soil" in shares:
-        shares["soil"] = max(shares["soil"], FORETOLD * on_cells)
+    if soil is not None and soil.fine is not None and "soil" in found:
+        shares["soil"] = _by_slice(key_result, run, chain, order, soil)
     if unknown:
         return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
-    return ErrorBar(key_result, math.hypot(*shares.values()) + SMALLEST * key_result.scale, shares, "", order)
+    smallest = SMALLEST if soil is None else SMALLEST_ON_SOIL
+    return ErrorBar(key_result, math.hypot(*shares.values()) + smallest * key_result.scale, shares, "", order)
+
+
+def _by_slice(
+    key_result: KeyResult,
+    run: RunValues,
+    chain: Sequence[ComparisonRun],
+    order: Mapping[str, float],
+    soil: SoilCells,
+) -> float:
+    """The soil's share, from a slice and a coarser run."""
+    assert soil.fine is not None
+    off = _of_sources(key_result, run, chain, order)[0]["soil"]
+    settled = run.reported.get(f"{key_result.stage}: {SETTLEMENT}")
+    if settled is None or settled.key not in soil.fine:
+        return BY_SLICE["soil"] * MOST_SEEN * off
+    finer = abs(soil.fine[settled.key] - settled.value)
+    if key_result.name == SETTLEMENT:
+        return math.hypot(SLICE * finer, (IN_MOTION if key_result.stage in soil.moving else AT_REST) * off)
+    coarser = _of_sources(settled, run, chain, order)[0].get("soil", 0.0)
+    seen = min(max(finer / coarser, 1.0), MOST_SEEN) if coarser > 0.0 else MOST_SEEN
+    return BY_SLICE["soil"] * seen * off
 
 
 def _of_sources(

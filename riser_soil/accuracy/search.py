@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from riser_soil.accuracy.chain import Variation, bars_of, comparison_runs, peaks_of, run_values, variations
 from riser_soil.accuracy.element_sizes import CurveEnvelope
-from riser_soil.accuracy.error_bars import ErrorBar, RunValues
+from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.key_results import key_results
 from riser_soil.accuracy.settings import SETTINGS, resolved, varied
 from riser_soil.assembly.graded_segments import broken, graded
@@ -58,8 +58,8 @@ def measured(scene: Scene, values: RunValues | None, comm: Any, longer: Variatio
     """Error bars of a run by comparison runs, elements and penalty apart; collective. values: the run's, on rank 0.
     longer: steps, if other than usual.
     """
-    usual = variations(scene)
-    chain = comparison_runs(scene, comm, [*_apart(usual if longer is None else _with(longer, usual))])
+    apart = [*_apart(variations(scene))]
+    chain = comparison_runs(scene, comm, apart if longer is None else _with(longer, apart))
     return _on_first(comm, lambda: bars_of(scene, _known(values), chain))
 
 
@@ -68,11 +68,9 @@ def _with(longer: Variation, usual: Sequence[Variation]) -> list[Variation]:
 
 
 def _apart(varying: Sequence[Variation]) -> Iterator[Variation]:
-    """The penalty after the elements that it goes with: a run may need one of them."""
-    for source, factors in varying:
-        apart = {name: factor for name, factor in factors.items() if name == "penalty" and len(factors) > 1}
-        yield Variation(source, {name: factor for name, factor in factors.items() if name not in apart})
-        yield from (Variation("penalty", {name: factor}) for name, factor in apart.items())
+    """Source by source: a run may need one of them."""
+    for _, factors in varying:
+        yield from (Variation(SOURCES[name], {name: factor}) for name, factor in factors.items())
 
 
 def _known(values: RunValues | None) -> RunValues:

@@ -14,14 +14,13 @@ secant through that.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.ground import contact_width
-from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.soil_sizes import touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
@@ -29,7 +28,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.touchdown_bend import TouchdownBend
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.soil import Block, GeneratedMesh, SoilScene
+from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.law import SoilLaw
 
@@ -75,43 +74,6 @@ def settled(scene: Scene, elements: Elements, depth: float, across: float = 0.0)
         overshoot = 0.5 * (overshoot + bend.overshoot)
         deepest = settlement(soil, replace(scales, weight=overshoot * scales.weight), depth, across)
     return Settled(by_weight, deepest, overshoot)
-
-
-@dataclass(frozen=True)
-class BeyondCells:
-    """What is foretold of a riser that comes down on cells wider than what touches, were they fine.
-
-    settlement: at its deepest place [m]; bend: of the touchdown there; overshoot: of that place over the depth at rest.
-    """
-
-    settlement: float
-    bend: TouchdownBend
-    overshoot: float
-
-    def touchdown_moves(self, settlement: float) -> float:
-        """How far along the riser its touchdown moves as it settles from so deep [m] to what is foretold."""
-        before = replace(self.bend, depth=settlement / self.overshoot)
-        return abs(self.bend.lift_off - before.lift_off)
-
-
-def beyond_cells(scene: Scene) -> BeyondCells | None:
-    """Of a scene whose sizes are numbers; None where cells resolve what touches, and where nothing is foretold: of
-    contact at nodes, of a mesh file, of a pipe that only lies.
-    """
-    soil, contact = scene.soil, scene.contact
-    if soil is None or contact is None or contact.at_nodes or not isinstance(soil.mesh, GeneratedMesh):
-        return None
-    assert isinstance(soil.block, Block)
-    elements = elements_of(scene)
-    scales, touchdown = scales_of(elements), forecast(scene, elements)
-    found = settled(scene, elements, soil.block.depth)
-    if found is None or touchdown is None or min(found.deepest, touchdown.H) <= 0.0:
-        return None
-    width = touching_width(replace(scales, weight=found.overshoot * scales.weight), soil.top_law)
-    if LIKE_CONTACT * soil.mesh.across <= width:
-        return None
-    bend = TouchdownBend(scales.weight, touchdown.H, _stiffness(elements), found.deepest / found.overshoot)
-    return BeyondCells(found.deepest, bend, found.overshoot)
 
 
 def _stiffness(elements: Elements) -> float:

@@ -26,6 +26,7 @@ from riser_soil.accuracy.error_bars import (
     ErrorBar,
     Extreme,
     RunValues,
+    SoilCells,
     alone,
     apart,
     divisor,
@@ -33,13 +34,11 @@ from riser_soil.accuracy.error_bars import (
     orders,
 )
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
-from riser_soil.accuracy.settings import SETTINGS, settings_reported
-from riser_soil.checks.settlement import BeyondCells
+from riser_soil.accuracy.settings import SETTINGS, resolved, settings_reported
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.riser.touchdown_bend import TouchdownBend
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
@@ -47,15 +46,17 @@ KEY = "hang: top tension"
 # As calibrated by the page of error bars, and the orders that it assumes.
 SAFETY, ON_PATH = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}, 1.4
 ORDER, SMALLEST = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}, 5e-5
+# On soil: of the coarser run and how often at most, of the slice beside it; of elements; the smallest bar.
+BY_SLICE, MOST_SEEN, SLICE, AT_REST, MESH_ON_SOIL, SMALLEST_ON_SOIL = 1.2, 2.0, 1.4, 0.35, 1.5, 1e-4
 SOIL = [name for name, scene in SCENES.items() if "soil" in scene]
 SOIL_MESH, PENALTY = (next(each for each in SETTINGS if each.name == name) for name in ("soil_mesh", "penalty"))
 QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 140 steps", "hose on a rigid floor")
 
 
-def bar_of(reported: float, peak: float, *comparison_runs: ComparisonRun, path_dependent: bool = False) -> ErrorBar:
+def bar_of(reported: float, peak: float, *comparison_runs: ComparisonRun, soil: SoilCells | None = None) -> ErrorBar:
     key_result = KeyResult("hang", "top tension", "N", reported, 1000.0)
     values = RunValues({KEY: key_result}, {KEY: peak}, {KEY: alone(peak)}, {KEY: peak})
-    (bar,) = error_bars(values, comparison_runs, rigid=False, path_dependent=path_dependent)
+    (bar,) = error_bars(values, comparison_runs, rigid=False, soil=soil)
     return bar
 
 
@@ -116,26 +117,46 @@ def test_of_two_coarser_runs_in_one_source_the_larger_share_counts() -> None:
         assert bar_of(1000.0, 1000.0, *chain).by_source["soil"] == pytest.approx(SAFETY["soil"])
 
 
-def settlements(*values: float) -> RunValues:
-    """Of stages one after the other [m]."""
-    keys = [KeyResult(f"stage {n}", SETTLEMENT, "m", value, 0.0) for n, value in enumerate(values)]
+def on_soil(tension: float = 1000.0, settled: float = 1e-3) -> RunValues:
+    """Of a stage in which a riser settles [m]."""
+    keys = [KeyResult("hang", "top tension", "N", tension, 0.0), KeyResult("hang", SETTLEMENT, "m", settled, 0.0)]
     known = {each.key: each.value for each in keys}
     return RunValues({each.key: each for each in keys}, known, {key: alone(x) for key, x in known.items()}, known)
 
 
-def test_settlement_is_uncertain_by_what_is_foretold_beyond_the_cells() -> None:
-    """As a part of that at rest, in later stages, too; where coarser cells show more than that, they count."""
-    run, coarser = settlements(1e-3, 2e-3), {key: alone(0.9 * x) for key, x in settlements(1e-3, 2e-3).of_nodes.items()}
-    coarse = [ComparisonRun("soil", 0.5, coarser)]
-    by_cells = [SAFETY["soil"] * 1e-4, SAFETY["soil"] * 2e-4]
-    for settlement, expected in ((3e-3, [2.5e-3, 5e-3]), (0.9e-3, by_cells), (1.01e-3, by_cells)):
-        foretold = BeyondCells(settlement, TouchdownBend(700.0, 2.0e4, 5.0e4, settlement / 1.2), 1.2)
-        found = error_bars(run, coarse, rigid=False, path_dependent=False, foretold=foretold)
-        assert [each.by_source["soil"] for each in found] == pytest.approx(expected)
+@pytest.mark.parametrize(
+    ("fine", "seen"), [(0.9e-3, 1.0), (1.3e-3, 1.5), (1.9e-3, MOST_SEEN), (1.01e-3, 1.0), (None, MOST_SEEN)]
+)
+def test_a_slice_tells_the_cells_share(fine: float | None, seen: float) -> None:
+    """Cells twice as wide settle 0.2 mm less than 1 mm, and change a tension by 1 N. Without a slice all counts twice;
+    else the settlement by the slice, and the tension once to twice as the slice's change is over that 0.2 mm.
+    """
+    run, coarser = on_soil(), on_soil(1001.0, 0.8e-3)
+    of_settlement = f"hang: {SETTLEMENT}"
+    soil = SoilCells(True, {} if fine is None else {of_settlement: fine})
+    found = error_bars(run, [ComparisonRun("soil", 0.5, coarser.peaks)], rigid=False, soil=soil)
+    tension, settlement = (each.by_source["soil"] for each in found)
+    assert tension == pytest.approx(BY_SLICE * seen * 1.0)
+    by_slice = BY_SLICE * seen * 0.2e-3 if fine is None else math.hypot(SLICE * (fine - 1e-3), AT_REST * 0.2e-3)
+    assert settlement == pytest.approx(by_slice)
+    assert found[0].bar == pytest.approx(tension + SMALLEST_ON_SOIL * 1000.0)
+
+
+def test_a_slice_is_pressed_once_and_a_trough_in_motion_is_not() -> None:
+    """There the coarser run's difference counts 1.8 times."""
+    soil = SoilCells(True, {f"hang: {SETTLEMENT}": 1e-3}, frozenset({"hang"}))
+    coarser = ComparisonRun("soil", 0.5, on_soil(1001.0, 0.8e-3).peaks)
+    _, settlement = error_bars(on_soil(), [coarser], rigid=False, soil=soil)
+    assert settlement.by_source["soil"] == pytest.approx(1.8 * 0.2e-3)
+
+
+def test_elements_on_soil_take_a_smaller_factor() -> None:
+    finer = comparison_run("mesh", 2.0, 1003.0)
+    assert bar_of(1000.0, 1000.0, finer, soil=SoilCells(False)).by_source["mesh"] == pytest.approx(MESH_ON_SOIL * 4.0)
 
 
 def test_bars_see_clay_that_yields_on_fine_cells_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A riser on cells of D/4 settles 1.2 mm, on fine ones 2.2 mm; coarser cells alone don't show that."""
+    """A riser on cells of D/4 settles 1.2 mm, on fine ones 2.2 mm, which a slice shows."""
     name = "laid on sections 4"
     known = references.read(references.ON_SOIL)[name]
 
@@ -144,8 +165,21 @@ def test_bars_see_clay_that_yields_on_fine_cells_alone(monkeypatch: pytest.Monke
         return found
 
     assert settled().inside
-    monkeypatch.setattr(chain, "beyond_cells", lambda scene: None)
+    monkeypatch.setattr("riser_soil.accuracy.error_bars.SLICE", 0.0)
     assert not settled().inside
+
+
+def test_a_slice_that_fails_leaves_wider_bars(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twice the coarser run's share."""
+
+    def fails(scene: Scene, settlements: object) -> None:
+        raise SolveError("no convergence")
+
+    monkeypatch.setattr(chain, "settlements_on_fine_cells", fails)
+    monkeypatch.setattr(chain, "has_many_slices", lambda scene: True)
+    scene = scene_from_mapping(SCENES["pipe pressed on clay"])
+    found = chain.bars_of(scene, on_soil(), [ComparisonRun("soil", 0.5, on_soil(1001.0, 0.8e-3).peaks)])
+    assert [each.by_source["soil"] for each in found] == pytest.approx([2.0 * BY_SLICE, 2.0 * BY_SLICE * 0.2e-3])
 
 
 def course(*windows: float, least: bool = False) -> Extreme:
@@ -178,7 +212,7 @@ def test_soil_that_depends_on_its_path_takes_a_larger_factor() -> None:
     scene = scene_from_mapping(SCENES["pipe pressed on elastic soil"] | {"soil": mixed})
     assert scene.has_path_dependent_soil
     coarser = of_order(1.0, 0.5, 1.0, "soil")
-    elastic, clay = (bar_of(1000.0, 1000.0, coarser, path_dependent=found) for found in (False, True))
+    elastic, clay = (bar_of(1000.0, 1000.0, coarser, soil=SoilCells(found)) for found in (False, True))
     assert (elastic.by_source["soil"], clay.by_source["soil"]) == pytest.approx((SAFETY["soil"], ON_PATH))
 
 
@@ -191,7 +225,7 @@ def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
     key_result = KeyResult("heave", "top tension", "N", 1000.0, 1000.0)
     key = key_result.key
     nodes, steps, smooth = {key: 1000.0}, {key: alone(1004.0)}, {key: 997.0}
-    (bar,) = error_bars(RunValues({key: key_result}, nodes, steps, smooth), [], rigid=False, path_dependent=False)
+    (bar,) = error_bars(RunValues({key: key_result}, nodes, steps, smooth), [], rigid=False)
     assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * (4.0 + 3.0))
 
 
@@ -276,14 +310,26 @@ def test_longer_steps_are_left_to_the_shortest_period(name: str, longer: float, 
     assert (1.0 / time.finer, mesh.finer) == pytest.approx((longer, 2.0))
 
 
-def test_soil_is_coarsened_first(looked_at: list[Scene]) -> None:
-    """Then the elements, and the penalty with them."""
+def test_on_soil_one_run_is_coarser_in_everything(looked_at: list[Scene]) -> None:
+    """Cells and elements twice as long, steps half as long again, a quarter of the penalty."""
+    scene = resolved(scene_from_mapping(SOILS["heaved on sections 4"]))
+    (found,) = chain.comparison_runs(scene, None)
+    (coarser,) = looked_at
+    assert found.source == "soil"
+    assert found.finer == pytest.approx(0.5)
+    for setting in SETTINGS:
+        ratio = {"time_step": 2.0 / 3.0, "penalty": 0.25}.get(setting.name, 0.5)
+        assert setting.fineness(coarser) == pytest.approx(ratio * setting.fineness(scene), rel=0.02)
+
+
+def test_cells_of_a_few_slices_are_coarsened_twice(looked_at: list[Scene]) -> None:
+    """Then elements are twice as many on a penalty four times as hard."""
     found = chain.comparison_runs(scene_from_mapping(SCENES["pipe pressed on clay"]), None)
-    assert [each.source for each in found] == ["soil", "mesh"]
-    assert [each.finer for each in found] == pytest.approx([0.6, 0.5])
-    coarser = f"soil cells of {0.025 / 0.6:.4g} m across the riser"
-    assert [settings_reported(each, [SOIL_MESH]) for each in looked_at] == [coarser, coarser]
-    assert PENALTY.fineness(looked_at[1]) == pytest.approx(0.25 * PENALTY.fineness(looked_at[0]))
+    assert [each.source for each in found] == ["soil", "soil", "mesh"]
+    assert [each.finer for each in found] == pytest.approx([0.6, 0.6, 2.0])
+    coarse = [f"soil cells of {0.025 / share:.4g} m across the riser" for share in (0.6, 0.36, 0.36)]
+    assert [settings_reported(each, [SOIL_MESH]) for each in looked_at] == coarse
+    assert PENALTY.fineness(looked_at[2]) == pytest.approx(4.0 * PENALTY.fineness(looked_at[1]))
 
 
 @pytest.fixture

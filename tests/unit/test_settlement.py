@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly.scales import Scales
-from riser_soil.checks.settlement import beyond_cells, chord_depth, foretold, secant_share, settlement
+from riser_soil.checks.settlement import chord_depth, foretold, secant_share, settlement
 from riser_soil.riser.touchdown_bend import TouchdownBend
-from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import SoilScene
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.linear_elastic import LinearElastic
@@ -93,18 +92,3 @@ def test_a_riser_settles_most_where_it_touches_down() -> None:
     assert found is not None
     assert found.overshoot > 1.05
     assert found.deepest > found.by_weight
-
-
-def test_what_wide_cells_hide_is_foretold() -> None:
-    """Under a riser that touches the clay by its surface; not where cells resolve what touches."""
-    scene = touchdown(LAY, su=6000.0) | {"contact": {"method": "surface"}}
-    expected = foretold(built(scene))
-    assert expected is not None
-    found = beyond_cells(scene_from_mapping(scene))
-    assert found is not None
-    assert (found.settlement, found.overshoot) == pytest.approx(expected[1:], rel=1e-9)
-    assert found.touchdown_moves(found.settlement) == 0.0
-    assert found.touchdown_moves(0.5 * found.settlement) > 0.0
-    assert beyond_cells(scene_from_mapping(scene | {"contact": {"method": "node"}})) is None
-    scene["soil"]["mesh"] |= {"size_at_riser": {"along": 0.5, "across": 0.01}}
-    assert beyond_cells(scene_from_mapping(scene)) is None
