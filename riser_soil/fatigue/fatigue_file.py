@@ -24,6 +24,7 @@ from riser_soil.core.quantities import (
 )
 from riser_soil.errors import SceneError
 from riser_soil.fatigue.sn_curve import REFERENCE_THICKNESS, CurveClass, Environment, SNCurve, curve_through, dnv_curve
+from riser_soil.results.read import Run
 from riser_soil.scene.document import parse, read_text
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.reader import error_of
@@ -171,8 +172,8 @@ def read_fatigue_file(file: Path) -> Fatigue:
 
 
 def run_folder(file: Path, case: FatigueCase) -> Path:
-    """A case's folder; relative ones lie beside the fatigue file."""
+    """A case's folder, or RUN/LINE of a run of several lines; relative ones lie beside the fatigue file."""
     folder = file.parent / case.run
-    if not folder.is_dir():
+    if not (folder.is_dir() or Run.is_there(folder)):
         raise SceneError(f"{file}: cases: there is no folder {folder}; run the case first, or correct its name")
     return folder

@@ -59,6 +59,11 @@ class Run:
             known = ", ".join(self.lines) or "none by name: it is a run of one riser"
             raise ResultsError(f"{self.folder}: has no line {line}; it has {known}")
 
+    @classmethod
+    def is_there(cls, place: Path) -> bool:
+        """Whether a place is a run's folder, or RUN/LINE."""
+        return cls._is_run(place) or (cls._is_run(place.parent) and place.name in cls(place.parent).lines)
+
     @staticmethod
     def _is_run(folder: Path) -> bool:
         return (folder / run_folder.SERIES).is_file()

@@ -102,7 +102,7 @@ def unstable_modes(
     bounds = _row_bounds(system)
     more = (-EPS if doubtful else EPS) * bounds
     mine = _of_this_rank(system, prescribed)
-    more[mine] += np.maximum(bounds[mine], SOFTEST * bounds.max())
+    more[mine] += np.maximum(bounds[mine], SOFTEST * bounds.max(initial=0.0))
     system.matrix.add_to_diagonal(more)
     return pivots.count()
 
@@ -131,7 +131,7 @@ def prescribe_free_turns(system: System, state: State, least: float) -> None:
     if prescribed.size:
         more, mine = system.numbering.zeros(), _of_this_rank(system, prescribed)
         sizes = np.abs(system.matrix.stored.diagonal())
-        more[mine] = np.maximum(sizes[mine], SOFTEST * sizes.max())
+        more[mine] = np.maximum(sizes[mine], SOFTEST * sizes.max(initial=0.0))
         system.matrix.add_to_diagonal(more)
 
 

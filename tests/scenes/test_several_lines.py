@@ -211,6 +211,7 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     written = {f"line_{name}.{kind}" for name in NAMES for kind in ("xdmf", "vtkhdf")}
     assert written <= {path.name for path in tmp_path.iterdir()}
     assert not (tmp_path / "riser.xdmf").exists()
+    assert [Run.is_there(tmp_path / name) for name in ("", "east", "west")] == [True, True, False]
     east = Run(tmp_path / "east")
     assert east.arc.shape == east["effective_tension"][-1].shape == (21,)
     assert east.dataset["effective_tension"].dims == ("time", "arc")
