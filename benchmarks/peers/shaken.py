@@ -36,8 +36,9 @@ def by_us(elements: int, time_step: float, force: float) -> case.Shaken:
 def by_moordyn(elements: int, time_step: float, force: float) -> case.Shaken:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "run.npz"
-        command = [THEIRS, "-m", "benchmarks.peers.shaken_by_moordyn", elements, time_step, force, path]
-        subprocess.run([str(word) for word in command], cwd=ROOT, check=True, capture_output=True)
+        told = f"save({elements}, {time_step!r}, {force!r}, {str(path)!r})"
+        command = [str(THEIRS), "-c", f"from benchmarks.peers.shaken_by_moordyn import save; {told}"]
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
         with np.load(path) as stored:
             return case.Shaken(stored["t"], stored["x"], float(stored["seconds"]))
 

@@ -1,11 +1,7 @@
-"""The riser shaken by its vortices by MoorDyn, in its own environment: `shaken_by_moordyn.py ELEMENTS STEP FORCE FILE`.
-
-Explicit Runge-Kutta of second order; the file gets times, places and the processor time of the time loop.
-"""
+"""The riser shaken by its vortices by MoorDyn, in its own environment: explicit Runge-Kutta of second order."""
 
 from __future__ import annotations
 
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -75,7 +71,6 @@ def run(elements: int, time_step: float, force: float) -> case.Shaken:
     return case.Shaken(case.RECORDS * (1.0 + np.arange(count)), np.array(places), seconds)
 
 
-if __name__ == "__main__":
-    elements, time_step, force, to = sys.argv[1:]
-    found = run(int(elements), float(time_step), float(force))
-    np.savez(to, **found._asdict())
+def save(elements: int, time_step: float, force: float, to: str) -> None:
+    """To a file of numpy's."""
+    np.savez(to, **run(elements, time_step, force)._asdict())

@@ -19,7 +19,7 @@ from riser_soil.accuracy.error_bars import (
     ComparisonRun,
     ErrorBar,
     RunValues,
-    SoilCells,
+    SoilOfRun,
     alone,
     error_bars,
     extremes_of,
@@ -106,18 +106,16 @@ def bars_of(scene: Scene, run: RunValues, chain: Sequence[ComparisonRun]) -> lis
     return error_bars(run, chain, rigid, None if scene.soil is None else _cells(scene, run))
 
 
-def _cells(scene: Scene, run: RunValues) -> SoilCells:
+def _cells(scene: Scene, run: RunValues) -> SoilOfRun:
     if not has_many_slices(scene):
-        return SoilCells(scene.has_path_dependent_soil)
+        return SoilOfRun(scene.has_path_dependent_soil)
     settled = {key: each.value for key, each in run.reported.items() if each.name == SETTLEMENT}
     try:
         fine = settlements_on_fine_cells(scene, list(settled.values()))
     except (*OF_ALL, *OF_ONE):
         fine = None
     moving = frozenset(stage.name for stage in scene.stages if not isinstance(stage, StaticStage))
-    return SoilCells(
-        scene.has_path_dependent_soil, dict(zip(settled, fine or (), strict=fine is not None)), moving
-    )
+    return SoilOfRun(scene.has_path_dependent_soil, dict(zip(settled, fine or (), strict=fine is not None)), moving)
 
 
 def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:

@@ -102,7 +102,7 @@ class ErrorBar:
 
 
 @dataclass(frozen=True)
-class SoilCells:
+class SoilOfRun:
     """The soil of a run: whether its law depends on its path.
 
     fine: settlements [m] on fine cells by their keys, as a slice tells them; none where it failed, None of soil that is
@@ -115,13 +115,13 @@ class SoilCells:
 
 
 def error_bars(
-    run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, soil: SoilCells | None = None
+    run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, soil: SoilOfRun | None = None
 ) -> list[ErrorBar]:
     """Of all key results. rigid: whether the ground is a rigid floor."""
     return [_bar(each, run, chain, orders(each.name, rigid), soil) for each in run.reported.values()]
 
 
-def _safety(soil: SoilCells | None) -> Mapping[str, float]:
+def _safety(soil: SoilOfRun | None) -> Mapping[str, float]:
     if soil is None:
         return SAFETY
     return SAFETY | ON_SOIL | (BY_SLICE if soil.fine is not None else ON_PATH if soil.path_dependent else {})
@@ -132,7 +132,7 @@ def _bar(
     run: RunValues,
     chain: Sequence[ComparisonRun],
     order: Mapping[str, float],
-    soil: SoilCells | None,
+    soil: SoilOfRun | None,
 ) -> ErrorBar:
     found, unknown = _of_sources(key_result, run, chain, order)
     between, safety = gaps(key_result, run), _safety(soil)
@@ -150,7 +150,7 @@ def _by_slice(
     run: RunValues,
     chain: Sequence[ComparisonRun],
     order: Mapping[str, float],
-    soil: SoilCells,
+    soil: SoilOfRun,
 ) -> float:
     """The soil's share, from a slice and a coarser run."""
     assert soil.fine is not None

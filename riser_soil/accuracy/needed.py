@@ -76,9 +76,7 @@ def doubtful(
     return any(_doubtful(bar, before, found, expected_of.get(bar.key_result.key), accuracy) for bar in bars)
 
 
-def _doubtful(
-    bar: ErrorBar, before: RunValues, found: RunValues, left: ErrorBar | None, accuracy: float
-) -> bool:
+def _doubtful(bar: ErrorBar, before: RunValues, found: RunValues, left: ErrorBar | None, accuracy: float) -> bool:
     key = bar.key_result.key
     if left is None or left.bar is None or bar.bar is None or key not in before.peaks or key not in found.peaks:
         return True
@@ -110,9 +108,7 @@ def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
         left -= math.fsum(shares.pop(source) ** 2 for source in small)
 
 
-def _expected(
-    bar: ErrorBar | None, before: RunValues, found: RunValues, factors: Factors, key: str
-) -> ErrorBar:
+def _expected(bar: ErrorBar | None, before: RunValues, found: RunValues, factors: Factors, key: str) -> ErrorBar:
     key_result = found.reported[key]
     if bar is None or bar.bar is None or key not in before.peaks:
         return ErrorBar(key_result, None, {}, (bar and bar.reason) or "the run before does not have it")

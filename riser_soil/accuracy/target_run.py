@@ -54,9 +54,7 @@ def _sought(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
             raise
 
 
-def _run_until(
-    accuracy: float, last: TriedSetting, folder: Path, force: bool, comm: Any
-) -> tuple[TriedSetting, str]:
+def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, comm: Any) -> tuple[TriedSetting, str]:
     """The last run, and why there is no finer one where it can't be run."""
     for number in range(RUNS):
         _tell(last, accuracy, comm)
@@ -76,9 +74,7 @@ def _run_until(
     return last, ""
 
 
-def _finer_run(
-    last: TriedSetting, accuracy: float, aim: float, folder: Path, force: bool, comm: Any
-) -> TriedSetting:
+def _finer_run(last: TriedSetting, accuracy: float, aim: float, folder: Path, force: bool, comm: Any) -> TriedSetting:
     by_source = needed(last.bars, aim)
     names = {source: name for name, source in SOURCES.items()}
     scene, peaks = finer(last.scene, {names[source]: factor for source, factor in by_source.items()}), RunPeaks()

@@ -26,7 +26,7 @@ from riser_soil.accuracy.error_bars import (
     ErrorBar,
     Extreme,
     RunValues,
-    SoilCells,
+    SoilOfRun,
     alone,
     apart,
     divisor,
@@ -53,7 +53,7 @@ SOIL_MESH, PENALTY = (next(each for each in SETTINGS if each.name == name) for n
 QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 140 steps", "hose on a rigid floor")
 
 
-def bar_of(reported: float, peak: float, *comparison_runs: ComparisonRun, soil: SoilCells | None = None) -> ErrorBar:
+def bar_of(reported: float, peak: float, *comparison_runs: ComparisonRun, soil: SoilOfRun | None = None) -> ErrorBar:
     key_result = KeyResult("hang", "top tension", "N", reported, 1000.0)
     values = RunValues({KEY: key_result}, {KEY: peak}, {KEY: alone(peak)}, {KEY: peak})
     (bar,) = error_bars(values, comparison_runs, rigid=False, soil=soil)
@@ -133,7 +133,7 @@ def test_a_slice_tells_the_cells_share(fine: float | None, seen: float) -> None:
     """
     run, coarser = on_soil(), on_soil(1001.0, 0.8e-3)
     of_settlement = f"hang: {SETTLEMENT}"
-    soil = SoilCells(True, {} if fine is None else {of_settlement: fine})
+    soil = SoilOfRun(True, {} if fine is None else {of_settlement: fine})
     found = error_bars(run, [ComparisonRun("soil", 0.5, coarser.peaks)], rigid=False, soil=soil)
     tension, settlement = (each.by_source["soil"] for each in found)
     assert tension == pytest.approx(BY_SLICE * seen * 1.0)
@@ -144,7 +144,7 @@ def test_a_slice_tells_the_cells_share(fine: float | None, seen: float) -> None:
 
 def test_a_slice_is_pressed_once_and_a_trough_in_motion_is_not() -> None:
     """There the coarser run's difference counts 1.8 times."""
-    soil = SoilCells(True, {f"hang: {SETTLEMENT}": 1e-3}, frozenset({"hang"}))
+    soil = SoilOfRun(True, {f"hang: {SETTLEMENT}": 1e-3}, frozenset({"hang"}))
     coarser = ComparisonRun("soil", 0.5, on_soil(1001.0, 0.8e-3).peaks)
     _, settlement = error_bars(on_soil(), [coarser], rigid=False, soil=soil)
     assert settlement.by_source["soil"] == pytest.approx(1.8 * 0.2e-3)
@@ -152,7 +152,7 @@ def test_a_slice_is_pressed_once_and_a_trough_in_motion_is_not() -> None:
 
 def test_elements_on_soil_take_a_smaller_factor() -> None:
     finer = comparison_run("mesh", 2.0, 1003.0)
-    assert bar_of(1000.0, 1000.0, finer, soil=SoilCells(False)).by_source["mesh"] == pytest.approx(MESH_ON_SOIL * 4.0)
+    assert bar_of(1000.0, 1000.0, finer, soil=SoilOfRun(False)).by_source["mesh"] == pytest.approx(MESH_ON_SOIL * 4.0)
 
 
 def test_bars_see_clay_that_yields_on_fine_cells_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -212,7 +212,7 @@ def test_soil_that_depends_on_its_path_takes_a_larger_factor() -> None:
     scene = scene_from_mapping(SCENES["pipe pressed on elastic soil"] | {"soil": mixed})
     assert scene.has_path_dependent_soil
     coarser = of_order(1.0, 0.5, 1.0, "soil")
-    elastic, clay = (bar_of(1000.0, 1000.0, coarser, soil=SoilCells(found)) for found in (False, True))
+    elastic, clay = (bar_of(1000.0, 1000.0, coarser, soil=SoilOfRun(found)) for found in (False, True))
     assert (elastic.by_source["soil"], clay.by_source["soil"]) == pytest.approx((SAFETY["soil"], ON_PATH))
 
 
@@ -250,9 +250,7 @@ def run_reported(tmp_path: Path, name: str, **more: Any) -> Any:
     return json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
 
 
-def test_bars_of_a_run_are_on_the_screen_and_in_its_summary(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_bars_of_a_run_are_on_the_screen_and_in_its_summary(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     reported = run_reported(tmp_path, "cantilever let go", output={"fields": []})
     screen = capsys.readouterr().out
     assert "motion: error bars" in screen
