@@ -62,7 +62,7 @@ class Soil:
         self.field = SoilField(grid)
         self.mesh: GatheredMesh = gather(grid)
         self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
-        self.cells = SoilCells(grid)
+        self.cells = SoilCells(grid, finite=moves)
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
         self._ground = _Ground(law, weight, K0, start == "geostatic")
         depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
@@ -74,7 +74,7 @@ class Soil:
         self._last: _Answer | None = None
         self._unloads = False
         self._volumes: Array = self.cells.gradients.weights.flatten()
-        self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
+        self._load = self._internal(self._initial, np.zeros(self.field.size)) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
         self._mesh_at = grid.nodes.points
         self._stored = self._lifted = 0.0
@@ -97,9 +97,9 @@ class Soil:
         self._unloads = True
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        found = self._answer(state).found
+        u, found = self._answer(state).u, self._answer(state).found
         by_strain = mandel.stiffness(self.law.bulk, self.law.shear) if self._unloads else found.tangent
-        values["soil"] += self.cells.stiffness(by_strain)
+        values["soil"] += self.cells.stiffness(u, found.stress, by_strain)
 
     def energy(self, state: State) -> Energy:
         """Strain energy by the law since the start, and potential of the unbalanced weight.
@@ -122,8 +122,8 @@ class Soil:
         stays at its limit, nothing where no plastic strain grows; backstress and elements in parallel add half the
         product of the changes of their own stress and strain.
         """
-        _, _, strain, found, _ = self._answer(after)
-        taken = self.cells.integral(found.stress, strain)
+        u, _, _, found, force = self._answer(after)
+        taken = float((force + self._load) @ u)
         by_scheme = 0.5 * self.cells.integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
         return Work(dissipated=taken - self._stores(found) + self._stored, by_scheme=by_scheme)
 
@@ -282,15 +282,15 @@ class Soil:
     def _new_answer(self, u: Array, dt: float) -> _Answer:
         strain = self.cells.strain(u)
         found = self.law.update(strain, self._found.history, dt)
-        return _Answer(u, dt, strain, found, self._internal(found.stress) - self._load)
+        return _Answer(u, dt, strain, found, self._internal(found.stress, u) - self._load)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""
         history, columns = self._found.history, self.law.columns
         return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
 
-    def _internal(self, stress: Array) -> Array:
-        return self.cells.internal_force(stress, self.field.size)
+    def _internal(self, stress: Array, u: Array) -> Array:
+        return self.cells.internal_force(stress, u)
 
     def _weight(self) -> Array:
         """Nodal forces [N] of the submerged weight, this rank's cells."""
