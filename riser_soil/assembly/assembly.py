@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.mesh_renewal import MeshRenewal
-    from riser_soil.contact.seabed_contact import Cushion, SeabedContact
+    from riser_soil.contact.seabed_contact import Cushion, Floor, SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
@@ -78,6 +78,7 @@ class Assembly:
     soil_friction: SoilFriction | None = None
     mesh_renewal: MeshRenewal | None = None
     cushion: Cushion | None = None
+    floor: Floor | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
     start_places: dict[str, Array] = field(default_factory=dict)
@@ -109,6 +110,11 @@ class Assembly:
         """The soil as it is solved for: whole, condensed, or none."""
         parts: tuple[Part | None, Part | None] = (self.condensed, self.soil if self.condensed is None else None)
         return [part for part in parts if part is not None]
+
+    @property
+    def laid_on(self) -> list[SeabedContact]:
+        """What bears the riser before the soil does."""
+        return [part for part in (self.cushion, self.floor) if part is not None]
 
     @property
     def lasting_parts(self) -> list[Part]:
@@ -234,8 +240,7 @@ class Assembly:
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
-        cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
-        on_ground = [*self.contacts, *self.frictions, *cushion]
+        on_ground = [*self.contacts, *self.frictions, *(self.laid_on if self.is_laid_in(stage) else [])]
         renewal = [] if self.mesh_renewal is None else [self.mesh_renewal]
         with_soil = [*self.soil_parts, *on_ground, *renewal]
         if self.condensed is not None:
@@ -330,6 +335,8 @@ def _add_ground(assembly: Assembly) -> None:
         if assembly.laying is not None or scene.stages[0].kind == "static":
             top = soil.surface.points
             assembly.cushion = ground.cushion_of(scene, contact, elements, top, assembly.comm)
+            if assembly.cushion is not None:
+                assembly.floor = ground.floor_of(scene, contact, elements, stiffness["soil"])
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
         assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)

@@ -33,8 +33,9 @@ NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 class Soil:
     """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step).
 
-    Each step is linear about the geometry where it starts: that at first, or for soil at large strain (`moves`) the one
-    that the steps before have left, see `large_strain`. Strength belongs to the material and moves along.
+    Each step is linear about the geometry at first, or for soil at large strain (`moves`) of finite strain, see
+    `finite_strain`, about the one that the steps before have left, see `large_strain`. Strength belongs to the material
+    and moves along.
 
     law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3],
     or by layers. start: "geostatic": vertical stress the weight above, horizontal K0 times that, in equilibrium with
@@ -74,7 +75,8 @@ class Soil:
         self._last: _Answer | None = None
         self._unloads = False
         self._volumes: Array = self.cells.gradients.weights.flatten()
-        self._load = self._internal(self._initial, np.zeros(self.field.size)) if start == "geostatic" else self._weight()
+        still = np.zeros(self.field.size)
+        self._load = self._internal(self._initial, still) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
         self._mesh_at = grid.nodes.points
         self._stored = self._lifted = 0.0
