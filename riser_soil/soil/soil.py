@@ -26,6 +26,7 @@ from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.soil_cells import SoilCells
 
 FOLDS = 0.1  # skewness of a cell
+LONGEST = 0.25  # strain of a cell in a step: stretched ones bear more, so that a pipe would sink too little
 SLOPE = ("slope_x", "slope_y", "slope_z")
 NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 
@@ -174,15 +175,23 @@ class Soil:
         return out
 
     def inadmissible(self, state: State) -> str:
-        """Where a step would fold a cell; collective."""
-        moved = self.points + self.field.own(state.u).reshape(-1, 3)
-        found = skewness(self.grid.family, moved, self.cells.nodes) if self.moves else np.ones(1)
-        worst = int(found.argmin()) if found.size else 0
-        mine = (float(found[worst]), moved[self.cells.nodes[worst]].mean(axis=0).tolist()) if found.size else (1.0, [])
-        least, at = min(self.grid.nodes.comm.allgather(mine))
-        if least > FOLDS:
+        """Where a step would fold a cell, or strain it too far; collective."""
+        if not self.moves:
             return ""
-        return "a cell of the soil at ({:.4g}, {:.4g}, {:.4g}) m would fold".format(*at)
+        moved, cells = self.points + self.field.own(state.u).reshape(-1, 3), self.cells.nodes
+        strain = np.empty(len(cells))
+        kernels.write_largest_strains(self.points, moved, cells, strain)
+        folded, far = (skewness(self.grid.family, moved, cells), FOLDS), (-strain, -LONGEST)
+        whys = "a cell of the soil at {} m would fold", "a cell of the soil at {} m would strain by more than a step may"
+        found = (self._beyond(*each, moved, why) for each, why in zip((folded, far), whys, strict=True))
+        return next(filter(None, [*found]), "")
+
+    def _beyond(self, values: Array, least: float, points: Array, why: str) -> str:
+        """Why, at the place of the least of the cells' values (nc,), where that is below `least`; collective."""
+        worst = int(values.argmin()) if values.size else 0
+        mine = (float(values[worst]), points[self.cells.nodes[worst]].mean(axis=0).tolist()) if values.size else (1.0, [])
+        lowest, at = min(self.grid.nodes.comm.allgather(mine))
+        return why.format("({:.4g}, {:.4g}, {:.4g})".format(*at)) if lowest <= least else ""
 
     def take_mesh(self, points: Array, made: BoolArray | None = None) -> None:
         """Go on with all nodes at points (n, 3) [m]; made (n,): those of new cells, all by default. Collective."""
