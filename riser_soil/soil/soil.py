@@ -181,17 +181,17 @@ class Soil:
         moved, cells = self.points + self.field.own(state.u).reshape(-1, 3), self.cells.nodes
         strain = np.empty(len(cells))
         kernels.write_largest_strains(self.points, moved, cells, strain)
-        folded, far = (skewness(self.grid.family, moved, cells), FOLDS), (-strain, -LONGEST)
-        whys = "a cell of the soil at {} m would fold", "a cell of the soil at {} m would strain by more than a step may"
-        found = (self._beyond(*each, moved, why) for each, why in zip((folded, far), whys, strict=True))
-        return next(filter(None, [*found]), "")
+        folds = self._beyond(skewness(self.grid.family, moved, cells), FOLDS, moved, "fold")
+        return folds or self._beyond(-strain, -LONGEST, moved, "strain by more than a step may")
 
-    def _beyond(self, values: Array, least: float, points: Array, why: str) -> str:
-        """Why, at the place of the least of the cells' values (nc,), where that is below `least`; collective."""
-        worst = int(values.argmin()) if values.size else 0
-        mine = (float(values[worst]), points[self.cells.nodes[worst]].mean(axis=0).tolist()) if values.size else (1.0, [])
+    def _beyond(self, values: Array, least: float, points: Array, what: str) -> str:
+        """What would become of the cell with the least value (nc,), where that is not above `least`; collective."""
+        mine: tuple[float, list[float]] = (1.0, [])
+        if values.size:
+            worst = int(values.argmin())
+            mine = float(values[worst]), points[self.cells.nodes[worst]].mean(axis=0).tolist()
         lowest, at = min(self.grid.nodes.comm.allgather(mine))
-        return why.format("({:.4g}, {:.4g}, {:.4g})".format(*at)) if lowest <= least else ""
+        return "a cell of the soil at ({:.4g}, {:.4g}, {:.4g}) m would ".format(*at) + what if lowest <= least else ""
 
     def take_mesh(self, points: Array, made: BoolArray | None = None) -> None:
         """Go on with all nodes at points (n, 3) [m]; made (n,): those of new cells, all by default. Collective."""
