@@ -113,6 +113,25 @@ def test_a_pipe_sinks_by_its_diameter() -> None:
     assert found.at(0.7) == pytest.approx(smooth(0.7), rel=0.07)
 
 
+def one_step_farther(way: float) -> float:
+    """V/(su D) of a pipe that lies D/20 deep in a thin layer of soft clay, after one step by so many diameters."""
+    soft, strong = (CLAY | {"su": su, "E_over_su": 300.0} for su in (300.0, 5.0e4))
+    layers = [{"to": 0.1 * D, "law": soft}, {"law": strong}]
+    scene = sinking(16, 0.05, 1, layers=layers, contact={"stiffness": 2.4e6})
+    del scene["soil"]["law"]
+    deeper = {end: [*place[:2], place[2] - way * D] for end, place in scene["stages"][0]["move"].items()}
+    on = {"name": "on", "kind": "static", "move": deeper}
+    return float(sink(scene | {"stages": [*scene["stages"], on]}, 1).V[-1])
+
+
+def test_a_long_step_into_a_thin_soft_layer_bears_more_than_a_short_one() -> None:
+    """Linear about its start it bears the less the longer it is, and a riser that lies there by its own weight finds no
+    balance.
+    """
+    short, long = one_step_farther(0.001), one_step_farther(0.005)
+    assert 1.05 < long / short < 1.6
+
+
 def cycles(scene: Mapping, path: Array, folder: Path) -> Array:
     """V/(su D) at each row of a path of embedments w/D that follows the scene's stage."""
     table = folder / "path.csv"
