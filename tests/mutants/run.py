@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 REPOSITORY = Path(__file__).parents[2]
+TESTS = REPOSITORY / "tests"
 AT = REPOSITORY / "build" / "mutants"
 COPY = AT / "copy"
 LONGEST = 600.0  # s, of a mutant's tests
@@ -41,15 +42,20 @@ class Place(NamedTuple):
 
     @property
     def files(self) -> list[str]:
-        """Tests of single pieces, but for those named with another folder."""
-        parts = (name.rpartition("/") for name in self.tests.split())
-        return [f"tests/{folder or 'unit'}/test_{name}.py" for folder, _, name in parts]
+        """Tests of single pieces, but for those named with another folder; those that are not there by their names."""
+        parts = [name.rpartition("/") for name in self.tests.split()]
+        return [_found(TESTS / (folder or "unit"), f"test_{name}.py") for folder, _, name in parts]
 
     def mutated(self, text: str) -> str:
         """The module's text as the mutant has it; ValueError unless the place is there once."""
         if text.count(self.old) != 1:
             raise ValueError(f"{self.path} has {text.count(self.old)} times, not once: {self.old}")
         return text.replace(self.old, self.new)
+
+
+def _found(folder: Path, name: str) -> str:
+    path = next(folder.rglob(name), folder / name)
+    return path.relative_to(REPOSITORY).as_posix()
 
 
 def places() -> Iterator[Place]:

@@ -16,7 +16,7 @@ from riser_soil.scene.document import parse
 from riser_soil.scene.explain import spot
 from riser_soil.scene.reader import scene_from_mapping
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 TEXT = (ROOT / "demos/touchdown_clay/scene.yaml").read_text(encoding="utf-8")
 
 

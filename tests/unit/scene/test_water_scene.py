@@ -19,7 +19,7 @@ from tests.support.riser_scenes import dynamic, static
 from tests.support.water_scenes import CURRENT, MIDDLE, scene_in
 
 AIRY = {"airy": {"height": 3.0, "period": 8.0}}
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("water", [None, {}, {"density": 1000.0}])
@@ -57,7 +57,7 @@ def test_current_is_there_at_once_where_dynamics_come_first() -> None:
 
 def test_a_current_imports_no_waves() -> None:
     code = (
-        "import sys; from tests.unit.test_water_scene import *; s = scene_in({'current': CURRENT});"
+        "import sys; from tests.unit.scene.test_water_scene import *; s = scene_in({'current': CURRENT});"
         "water_of(s, s.stages[1])(0.0, MIDDLE); print([m for m in sys.modules if 'riser_soil.sea.' in m])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)

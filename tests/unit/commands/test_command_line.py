@@ -19,7 +19,7 @@ from riser_soil.errors import Interruption, MeshError, ResultsError, RiserSoilEr
 from riser_soil.scene.scene import Scene
 from tests.support.on_ranks import HANGS
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
 SUMMARY = '{"finished": %s, "version": "0.1.0", "parts": {}, "stages": []}'
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-TESTS = Path(__file__).parents[1]
+TESTS = Path(__file__).parents[2]
 
 
 def imports(path: Path) -> list[ast.ImportFrom]:
@@ -21,7 +21,7 @@ def test_no_test_module_imports_from_another(path: Path) -> None:
     assert not [node.module for node in imports(path) if ".test_" in (node.module or "")]
 
 
-@pytest.mark.parametrize("path", sorted((TESTS / "unit").glob("*.py")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted((TESTS / "unit").rglob("*.py")), ids=lambda path: path.name)
 def test_no_number_is_imported_from_what_is_judged_by_it(path: Path) -> None:
     """A test would follow it, whatever it changes to."""
     named = [

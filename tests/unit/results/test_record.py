@@ -34,7 +34,7 @@ from tests.support.recorded_run import (
 from tests.support.small_disk import files_of_at_most
 from tests.support.vtk_reading import read_by_vtk
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def times_due(schedule: Schedule, steps: list[float]) -> list[float]:

@@ -18,7 +18,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
 from riser_soil.soil.clay import UndrainedClay
 
-SCENE = Path(__file__).parents[2] / "demos/pipe_segment/scene.yaml"
+SCENE = Path(__file__).parents[3] / "demos/pipe_segment/scene.yaml"
 SLICE = ("soil.mesh.size_at_riser=0.075", "soil.block.x=[0.1125, 0.1875]")
 COARSE = (*SLICE, "soil.block.y=[-0.6, 0.6]", "soil.block.depth=0.6")
 D = 0.3

@@ -19,7 +19,7 @@ from riser_soil.scene.dump import yaml_text
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from tests.support.coupled_scenes import Mapping
 
-PEER = Path(__file__).parents[2] / "benchmarks" / "peers" / "moordyn.py"
+PEER = Path(__file__).parents[3] / "benchmarks" / "peers" / "moordyn.py"
 DECK = """--------------------- MoorDyn Input File ---------------------
 A lazy wave of a power cable
 ---------------------- LINE TYPES ----------------------

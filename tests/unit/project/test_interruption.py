@@ -20,7 +20,7 @@ from riser_soil.interruption import agreeing, asked_to_end, check, handling_sign
 from riser_soil.results import Run
 from tests.support.on_ranks import environment
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 # The command in a scene that goes on for ever, which sends itself a signal after some accepted steps.
 ENDLESS = """
 import os, signal, sys

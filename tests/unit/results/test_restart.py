@@ -34,7 +34,7 @@ from riser_soil.whole_run import run
 from tests.support.equal_runs import unlike
 from tests.support.left_run import leave_after
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 ALL_KINDS = (  # seabed with memory, friction, waves, steps found on the way
     "stages.1.duration=0.6",
     "stages.1.time_step=auto",

@@ -334,7 +334,7 @@ def test_a_riser_with_two_free_ends_has_no_equilibrium(tmp_path: Path) -> None:
 @pytest.mark.verify
 def test_ranks_agree(tmp_path: Path) -> None:
     """On soil that yields."""
-    segment = Path(__file__).parents[2] / "demos/pipe_segment/scene.yaml"
+    segment = Path(__file__).parents[3] / "demos/pipe_segment/scene.yaml"
     common = "-m", "riser_soil", "run", str(segment), "--set", "stages.0.duration=24", "-o"
     for ranks in (1, 2):
         done = mpirun(ranks, *common, str(tmp_path / f"on_{ranks}"))

@@ -22,7 +22,7 @@ from riser_soil.scene.shapes import ArcShape
 from riser_soil.scene.soil import MeshFile
 from riser_soil.scene.stages import DynamicStage, GeneralizedAlphaScheme
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SCENES = {
     "bend": ROOT / "tests/scenes/bend45.yaml",
     "catenary": ROOT / "tests/scenes/catenary.yaml",

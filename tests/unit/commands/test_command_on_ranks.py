@@ -12,7 +12,7 @@ import pytest
 
 from tests.support.on_ranks import Job, mpirun
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
 
 # The command with a computation that fails on some ranks while the others wait in a collective call.

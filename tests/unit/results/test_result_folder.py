@@ -17,7 +17,7 @@ from riser_soil.results.folder import CHECKPOINT, FORMER, NAMES, FolderLock
 from riser_soil.results.ownership import prepare, refuse, sealed
 from tests.support.recorded_run import a_recorder, block, record, step
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("force", [False, True])
