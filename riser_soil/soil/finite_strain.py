@@ -34,7 +34,7 @@ _ROW, _COLUMN = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)  # of Mandel's components
 _SIZE = (1.0, 1.0, 1.0, _TWICE, _TWICE, _TWICE)
 
 
-class Workspace(NamedTuple):
+class StrainWorkspace(NamedTuple):
     """Of one point: 3 x 3 matrices F, C, A, M = A s A and S; 6 x 6 ones; B, DB (6, 3nn): strain E = ½(C − 1) by the
     displacements, and its moduli times B; h (3nn,): ∂ln J by the displacements.
     """
@@ -53,11 +53,11 @@ class Workspace(NamedTuple):
 
 
 @njit
-def workspace(nodes: int) -> Workspace:
+def workspace(nodes: int) -> StrainWorkspace:
     """For cells of so many nodes."""
     F, C, A, M, S = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     P, D, half = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    return Workspace(
+    return StrainWorkspace(
         F, C, A, M, S, P, D, half, np.empty((6, 3 * nodes)), np.empty((6, 3 * nodes)), np.empty(3 * nodes)
     )
 
@@ -245,7 +245,9 @@ def _write_growth(F: Array, A: Array, g: Array, h: Array) -> None:
 
 
 @njit
-def _add_stiffness(points: tuple[Array, Array, Array], stress: Array, moduli: Array, at: Workspace, K: Array) -> None:
+def _add_stiffness(
+    points: tuple[Array, Array, Array], stress: Array, moduli: Array, at: StrainWorkspace, K: Array
+) -> None:
     """Add to K (3nn, 3nn) that of points (nq, ...) with one change of volume: their full, weights and F."""
     full, weights, F = points
     nq, size = len(weights), K.shape[0]
@@ -283,7 +285,7 @@ def _write_operator(F: Array, g: Array, B: Array) -> None:
 
 
 @njit
-def _write_moduli(moduli: Array, at: Workspace) -> float:
+def _write_moduli(moduli: Array, at: StrainWorkspace) -> float:
     """D = Pᵀ dev C dev P + ∂S/∂E of the law's moduli C, P = ∂ε/∂E but for the change of volume, and what couples both,
     Pᵀ dev C 1/3 and its like from the left, in the first two rows of `half`; 1·C 1/9 is what belongs to that alone.
     """
@@ -332,7 +334,7 @@ def _write_pair(X: Array, Y: Array, factor: float, out: Array) -> None:
 
 
 @njit
-def _add_products(w: float, at: Workspace, left: Array, right: Array, K: Array) -> None:
+def _add_products(w: float, at: StrainWorkspace, left: Array, right: Array, K: Array) -> None:
     """Add w BᵀDB to K, w Bᵀ times the first row of `half` to left (3nn,), and times the second to right (3nn,)."""
     B, D, DB, half = at.B, at.D, at.DB, at.half
     size = K.shape[0]
