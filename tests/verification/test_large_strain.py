@@ -97,12 +97,12 @@ def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
     A being the segment of the pipe below the seabed.
     """
     heavy = 2.0e4  # N/m3
-    weightless, found = (sink(sinking(16, 0.5, 50, submerged_unit_weight=weight)) for weight in (0.0, heavy))
+    weightless, found = (sink(sinking(16, 0.5, 150, submerged_unit_weight=weight)) for weight in (0.0, heavy))
     for w, area in ((0.2, 0.112), (0.3, 0.198), (0.4, 0.293), (0.48, 0.373)):
         added = found.at(w) - weightless.at(w)
         before, after = np.interp((w - 0.02, w + 0.02), weightless.w, weightless.lift)
         power = (after - before) / 0.04 * heavy * D / SU
-        assert added == pytest.approx(power, rel=0.03)
+        assert added == pytest.approx(power, rel=0.05)
         assert added == pytest.approx(1.5 * heavy * area * D / SU, rel=0.1)
 
 
@@ -138,7 +138,7 @@ def cycles(scene: Mapping, path: Array, folder: Path) -> Array:
     rows = (f"{n}, 0, 0, {(path[0] - w) * D!r}" for n, w in enumerate(path))
     table.write_text("\n".join(["t [-], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")
     motion = {end: {"table": str(table)} for end in ("start", "end")}
-    stage = {"name": "cycles", "kind": "quasi-static", "duration": len(path) - 1, "time_step": 1, "motion": motion}
+    stage = {"name": "cycles", "kind": "quasi-static", "duration": len(path) - 1, "time_step": 0.25, "motion": motion}
     found = sink(scene | {"stages": [*scene["stages"], stage]}, len(scene["stages"]))
     return np.interp(np.arange(1.0, len(path)), found.t, found.V)
 
