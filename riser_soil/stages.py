@@ -352,7 +352,7 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
     absent = [*assembly.soil_parts, *assembly.on_soil]
     alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
     system = System(assembly.comm, alone, clock)
-    newton = Newton(system, replace(settings, line_search=assembly.floor is not None))
+    newton = Newton(system, replace(settings, line_search=False))
     with destroyed_together(assembly.comm, newton.destroy, system.destroy):
         try:
             size = system.numbering.size

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.mesh_renewal import MeshRenewal
-    from riser_soil.contact.seabed_contact import Cushion, Floor, SeabedContact
+    from riser_soil.contact.seabed_contact import Cushion, SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
@@ -63,7 +63,6 @@ class Assembly:
     condensed: CondensedSoil | None = None
     mesh_renewal: MeshRenewal | None = None
     cushion: Cushion | None = None
-    floor: Floor | None = None
     stage: Stage | None = None
 
     @property
@@ -159,11 +158,6 @@ class Assembly:
         """The soil as it is solved for: whole, condensed, or none."""
         parts: tuple[Part | None, Part | None] = (self.condensed, self.soil if self.condensed is None else None)
         return [part for part in parts if part is not None]
-
-    @property
-    def laid_on(self) -> list[SeabedContact]:
-        """What bears the riser before the soil does."""
-        return [part for part in (self.cushion, self.floor) if part is not None]
 
     @property
     def lasting_parts(self) -> list[Part]:
@@ -290,7 +284,8 @@ class Assembly:
     def _model(self, of_lines: Mapping[str, list[Part]], hung: list[Part]) -> Model:
         stage = self.stage
         assert stage is not None
-        on_ground = [*self.contacts, *self.frictions, *(self.laid_on if self.is_laid_in(stage) else [])]
+        cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
+        on_ground = [*self.contacts, *self.frictions, *cushion]
         renewal = [] if self.mesh_renewal is None else [self.mesh_renewal]
         with_soil = [*self.soil_parts, *on_ground, *renewal]
         if self.condensed is not None:
@@ -395,5 +390,3 @@ def _add_soil(assembly: Assembly, given: SoilScene) -> None:
     assembly.mesh_renewal = ground.mesh_renewal_of(soil, contact, own.soil_friction, line)
     if assembly.laying is not None or scene.stages[0].kind == "static":
         assembly.cushion = ground.cushion_of(scene, contact, elements, soil.surface.points, comm)
-        if assembly.cushion is not None:
-            assembly.floor = ground.floor_of(scene, contact, elements, own.contact_stiffness["soil"])

@@ -116,7 +116,9 @@ def _properties(scene: Scene, given: BodyScene) -> BodyProperties:
             vectors = given.inertia, given.centre_of_gravity, given.centre_of_buoyancy, given.drag_area
             J, low, high, drag = map(np.array, vectors)
             spin_drag, added_J, added = map(np.array, (given.rotational_drag, given.added_inertia, given.added_mass))
-            return BodyProperties(given.mass, J, low, given.volume, high, drag, spin_drag, added * displaced, added_J)
+            return BodyProperties(
+                given.mass, J, low, given.volume, high, drag, spin_drag, added * displaced, added_J
+            )
     assert_never(given)
 
 

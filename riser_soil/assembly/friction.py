@@ -27,7 +27,9 @@ MOBILISATION = 1.0 / 30.0  # of the outer diameter: the slide that mobilises fri
 FULL_AT = 0.1  # of su: the pressure from which on adhesion is full where no coefficient is given
 
 
-def friction_of(scene: Scene, settings: Contact, seabed: SeabedContact, elements: Elements) -> CoulombFriction | None:
+def friction_of(
+    scene: Scene, settings: Contact, seabed: SeabedContact, elements: Elements
+) -> CoulombFriction | None:
     """Friction on the seabed, where the scene asks for it."""
     if settings.friction is None:
         return None

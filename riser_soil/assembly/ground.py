@@ -24,7 +24,7 @@ from riser_soil.scene.soil_law import law_of, volumes, weight_of
 if TYPE_CHECKING:
     from riser_soil.contact.law import Penalty, SuctionLaw
     from riser_soil.contact.mesh_renewal import MeshRenewal
-    from riser_soil.contact.seabed_contact import Cushion, Floor, SeabedContact
+    from riser_soil.contact.seabed_contact import Cushion, SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.contact.surface_contact import SurfaceContact
@@ -39,7 +39,6 @@ GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within 
 POINTS_ACROSS, FINEST, COARSEST, ALONG = 4.0, 1.0 / 200.0, 1.0 / 16.0, 4.0
 NARROWEST_CORNER, WIDEST_CORNER = 1.0 / 3000.0, 1.0 / 300.0  # of the outer diameter; sharper ones cost iterations
 SHALLOWEST = 1.0 / 300.0  # soil that gains strength from nothing has at least that of this depth
-STIFF, CORNER = 0.1, 0.05  # of the cushion's depth: settlement w/E on stiff soil; corner of the floor there
 CUSHION, LEVEL = 0.01, 0.01  # of the diameter: how far it gives under the riser's weight; unevenness of a level top
 
 
@@ -125,7 +124,9 @@ def _surface_contact_of(
     )
 
 
-def mesh_renewal_of(soil: Soil, contact: SoilContact, friction: SoilFriction | None, line: Line) -> MeshRenewal | None:
+def mesh_renewal_of(
+    soil: Soil, contact: SoilContact, friction: SoilFriction | None, line: Line
+) -> MeshRenewal | None:
     """What renews the mesh of soil that moves: a block of hexahedra under a riser along x or y; collective."""
     from riser_soil.contact.surface_contact import SurfaceContact
 
@@ -190,19 +191,6 @@ def cushion_of(
         CUSHION * scales.diameter,
         contact.covering,
     )
-
-
-def floor_of(scene: Scene, contact: SoilContact, elements: Elements, stiffness: float) -> Floor | None:
-    """What a cushion ends on over soil that its own weight per length presses in by next to nothing."""
-    from riser_soil.contact.seabed_contact import Floor
-
-    assert scene.soil is not None
-    scales = scales_of(elements)
-    depth = CUSHION * scales.diameter
-    if scales.weight > STIFF * depth * scene.soil.top_law.surface_modulus(scales.diameter):
-        return None
-    radius = contact_radius(scene, elements)
-    return Floor(contact.line, radius, scene.seabed_level, stiffness, CORNER * depth, contact.covering)
 
 
 def seabed_law(seabed: Seabed, settings: ContactScene, elements: Elements, stiffness: dict[str, float]) -> NormalLaw:
@@ -299,3 +287,4 @@ def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[st
         case _:
             assert_never(scene.seabed)
     return out
+

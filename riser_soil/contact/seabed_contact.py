@@ -34,8 +34,6 @@ from riser_soil.riser.vectors import Vec
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.law import NormalLaw
 
-FINE = 5  # stations of an element on the floor under a cushion
-
 
 class Covering(NamedTuple):
     """What lies on the seabed in places, such as a block of soil; the seabed does not act there.
@@ -200,26 +198,6 @@ class Cushion(SeabedContact):
     def renew_kernel_data(self, start: float, end: float) -> None:
         super().renew_kernel_data(start, end)
         self._data.acting[:] = [(1.0 - min(t, 1.0)) ** 2 for t in (start, end)]
-
-
-class Floor(SeabedContact):
-    """Part "floor": a seabed as stiff as the contact with stiff soil [N/m2] at its level [m], of the share (1 - t)⁸.
-
-    A cushion gives where more than the weight presses, as at the edge of a block. What would have entered stiff soil
-    there before it begins to bear tears its cells. corner [m]: of the penalty.
-    """
-
-    name = "floor"
-
-    def __init__(
-        self, line: Line, radius: Array, level: float, stiffness: float, corner: float, soil: Covering
-    ) -> None:
-        law, fine = Penalty(stiffness, corner), stations.gauss(FINE)
-        super().__init__(line, radius, Plane.level(level), law, fine, beside(soil))
-
-    def renew_kernel_data(self, start: float, end: float) -> None:
-        super().renew_kernel_data(start, end)
-        self._data.acting[:] = [(1.0 - min(t, 1.0)) ** 8 for t in (start, end)]
 
 
 class BesideData(NamedTuple):

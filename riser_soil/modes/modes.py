@@ -212,7 +212,7 @@ def stages_up_to(scene: Scene, name: str | None) -> list[Stage]:
 
 def _linearised(assembly: Assembly, stage: Stage, clock: Timer) -> RiserAtRest:
     model, state = assembly.begin(stage), State.at_rest(stage.end, assembly.size)
-    at_rest = [part for part in model.parts if not any(part is each for each in assembly.laid_on)]
+    at_rest = [part for part in model.parts if part is not assembly.cushion]
     massive = _with_mass(assembly)
     system = System(assembly.comm, Model(model.lines, [*at_rest, *massive], model.others), clock)
     try:

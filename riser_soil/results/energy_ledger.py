@@ -80,13 +80,7 @@ class EnergyLedger:
 
 
 def _by_kind(turned: Mapping[str, Work]) -> list[tuple[str, Work]]:
-    return [(_kind(name), work) for name, work in turned.items()]
-
-
-def _kind(name: str) -> str:
-    if name in SPRINGS:
-        return "supports"
-    return "cushion" if name == "floor" else name.replace(" ", "_")
+    return [("supports" if name in SPRINGS else name.replace(" ", "_"), work) for name, work in turned.items()]
 
 
 def _losses(name: str, work: Work) -> list[tuple[str, float]]:

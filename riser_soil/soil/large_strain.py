@@ -1,10 +1,11 @@
 """Large strain: stress and history of cells whose nodes a step has moved, and the geometry from there on.
 
-Within a step strain is finite, see `finite_strain`. Once the step is accepted the law is asked again, with
+Within a step strain is linear about the geometry at its start. Once the step is accepted the law is asked again, with
 its history turned along by the step's spin, for strain by gradients of the geometry half way: these vanish where cells
 move as rigid bodies, by angles of any size, and follow volumes to third order. T. J. R. Hughes & J. Winget, Finite
 rotation effects in numerical integration of rate constitutive equations arising in large-deformation analysis,
-Int. J. Numer. Methods Eng. 15 (1980). What this stress lacks of balance the next step takes up.
+Int. J. Numer. Methods Eng. 15 (1980). What this stress lacks of balance, of second order in the step, the next step
+takes up.
 
 Transfer of what points of the soil hold to those of a new mesh.
 

@@ -26,7 +26,6 @@ from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.soil_cells import SoilCells
 
 FOLDS = 0.1  # skewness of a cell
-LONGEST = 0.25  # strain of a cell in a step: stretched ones bear more, so that a pipe would sink too little
 SLOPE = ("slope_x", "slope_y", "slope_z")
 NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 
@@ -34,9 +33,8 @@ NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 class Soil:
     """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step).
 
-    Each step is linear about the geometry at first, or for soil at large strain (`moves`) of finite strain, see
-    `finite_strain`, about the one that the steps before have left, see `large_strain`. Strength belongs to the material
-    and moves along.
+    Each step is linear about the geometry where it starts: that at first, or for soil at large strain (`moves`) the one
+    that the steps before have left, see `large_strain`. Strength belongs to the material and moves along.
 
     law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3],
     or by layers. start: "geostatic": vertical stress the weight above, horizontal K0 times that, in equilibrium with
@@ -64,7 +62,7 @@ class Soil:
         self.field = SoilField(grid)
         self.mesh: GatheredMesh = gather(grid)
         self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
-        self.cells = SoilCells(grid, finite=moves)
+        self.cells = SoilCells(grid)
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
         self._ground = _Ground(law, weight, K0, start == "geostatic")
         depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
@@ -76,8 +74,7 @@ class Soil:
         self._last: _Answer | None = None
         self._unloads = False
         self._volumes: Array = self.cells.gradients.weights.flatten()
-        still = np.zeros(self.field.size)
-        self._load = self._internal(self._initial, still) if start == "geostatic" else self._weight()
+        self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
         self._mesh_at = grid.nodes.points
         self._stored = self._lifted = 0.0
@@ -100,9 +97,9 @@ class Soil:
         self._unloads = True
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        u, found = self._answer(state).u, self._answer(state).found
+        found = self._answer(state).found
         by_strain = mandel.stiffness(self.law.bulk, self.law.shear) if self._unloads else found.tangent
-        values["soil"] += self.cells.stiffness(u, found.stress, by_strain)
+        values["soil"] += self.cells.stiffness(by_strain)
 
     def energy(self, state: State) -> Energy:
         """Strain energy by the law since the start, and potential of the unbalanced weight.
@@ -125,8 +122,8 @@ class Soil:
         stays at its limit, nothing where no plastic strain grows; backstress and elements in parallel add half the
         product of the changes of their own stress and strain.
         """
-        u, _, _, found, force = self._answer(after)
-        taken = float((force + self._load) @ u)
+        _, _, strain, found, _ = self._answer(after)
+        taken = self.cells.integral(found.stress, strain)
         by_scheme = 0.5 * self.cells.integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
         return Work(dissipated=taken - self._stores(found) + self._stored, by_scheme=by_scheme)
 
@@ -175,23 +172,15 @@ class Soil:
         return out
 
     def inadmissible(self, state: State) -> str:
-        """Where a step would fold a cell, or strain it too far; collective."""
-        if not self.moves:
+        """Where a step would fold a cell; collective."""
+        moved = self.points + self.field.own(state.u).reshape(-1, 3)
+        found = skewness(self.grid.family, moved, self.cells.nodes) if self.moves else np.ones(1)
+        worst = int(found.argmin()) if found.size else 0
+        mine = (float(found[worst]), moved[self.cells.nodes[worst]].mean(axis=0).tolist()) if found.size else (1.0, [])
+        least, at = min(self.grid.nodes.comm.allgather(mine))
+        if least > FOLDS:
             return ""
-        moved, cells = self.points + self.field.own(state.u).reshape(-1, 3), self.cells.nodes
-        strain = np.empty(len(cells))
-        kernels.write_largest_strains(self.points, moved, cells, strain)
-        folds = self._beyond(skewness(self.grid.family, moved, cells), FOLDS, moved, "fold")
-        return folds or self._beyond(-strain, -LONGEST, moved, "strain by more than a step may")
-
-    def _beyond(self, values: Array, least: float, points: Array, what: str) -> str:
-        """What would become of the cell with the least value (nc,), where that is not above `least`; collective."""
-        mine: tuple[float, list[float]] = (1.0, [])
-        if values.size:
-            worst = int(values.argmin())
-            mine = float(values[worst]), points[self.cells.nodes[worst]].mean(axis=0).tolist()
-        lowest, at = min(self.grid.nodes.comm.allgather(mine))
-        return "a cell of the soil at ({:.4g}, {:.4g}, {:.4g}) m would ".format(*at) + what if lowest <= least else ""
+        return "a cell of the soil at ({:.4g}, {:.4g}, {:.4g}) m would fold".format(*at)
 
     def take_mesh(self, points: Array, made: BoolArray | None = None) -> None:
         """Go on with all nodes at points (n, 3) [m]; made (n,): those of new cells, all by default. Collective."""
@@ -293,15 +282,15 @@ class Soil:
     def _new_answer(self, u: Array, dt: float) -> _Answer:
         strain = self.cells.strain(u)
         found = self.law.update(strain, self._found.history, dt)
-        return _Answer(u, dt, strain, found, self._internal(found.stress, u) - self._load)
+        return _Answer(u, dt, strain, found, self._internal(found.stress) - self._load)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""
         history, columns = self._found.history, self.law.columns
         return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
 
-    def _internal(self, stress: Array, u: Array) -> Array:
-        return self.cells.internal_force(stress, u)
+    def _internal(self, stress: Array) -> Array:
+        return self.cells.internal_force(stress, self.field.size)
 
     def _weight(self) -> Array:
         """Nodal forces [N] of the submerged weight, this rank's cells."""

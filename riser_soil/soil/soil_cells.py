@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.soil import finite_strain, kernels
+from riser_soil.soil import kernels
 from riser_soil.soil.families import Gradients, cell_gradients
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
 
@@ -18,12 +18,12 @@ class SoilCells:
     """Cells with nodes at points (n, 3), whose gradients are made anew where they have strained.
 
     nodes (nc, nn): of each cell. shape (nc, nq): of their quadrature points, whose values (n, ...) lie one after the
-    other. made_at (nc, nn, 3) [m]: the nodes as they were when the gradients were made. finite: whether strain within a
-    step is finite, see `finite_strain`, or linear. Construction is collective; MeshError if a cell is inverted.
+    other. made_at (nc, nn, 3) [m]: the nodes as they were when the gradients were made. Construction is collective;
+    MeshError if a cell is inverted.
     """
 
-    def __init__(self, grid: DistributedMesh, finite: bool = False) -> None:
-        self._family, self._shares, self._finite = grid.family, grid.shares(), finite
+    def __init__(self, grid: DistributedMesh) -> None:
+        self._family, self._shares = grid.family, grid.shares()
         self.nodes = np.ascontiguousarray(grid.nodes.cells)
         self.made_at = grid.nodes.points[self.nodes]
         self.gradients = on_all_ranks(grid.nodes.comm, lambda: self._gradients_of(self.made_at))
@@ -56,42 +56,24 @@ class SoilCells:
         if strained.size:
             self.make_anew(strained, at[strained])
 
-    def stiffness(self, u: Array, stress: Array, moduli: Array) -> Array:
-        """Matrices (nc, 3 nn, 3 nn) [N/m] of the cells at nodal displacements u (size,), by the stress (n, 6) and the
-        moduli (n, 6, 6) [Pa] at their points.
-        """
-        g, by_strain = self.gradients, moduli.reshape(*self.shape, 6, 6)
+    def stiffness(self, moduli: Array) -> Array:
+        """Matrices (nc, 3 nn, 3 nn) [N/m] of the cells by the moduli (n, 6, 6) [Pa] at their points."""
+        g = self.gradients
         if self._stiffness is None:
             self._stiffness = _Stiffness.unknown(g)
-        known, deformed, out = self._stiffness
-        if self._finite:
-            at = g.full, g.weights, self._together, self.nodes, u, stress.reshape(*self.shape, 6)
-            finite_strain.renew_stiffness(*at, by_strain, known, deformed, out)
-        else:
-            kernels.renew_stiffness(g.full, g.volume, g.weights, by_strain, known, out)
-        return out
-
-    @property
-    def _together(self) -> int:
-        """Points of a cell that have one change of volume."""
-        return self.shape[1] if self._family.mean_dilatation else 1
+        kernels.renew_stiffness(g.full, g.volume, g.weights, moduli.reshape(*self.shape, 6, 6), *self._stiffness)
+        return self._stiffness.matrices
 
     def strain(self, u: Array) -> Array:
         """Strain (n, 6) of nodal displacements u (size,)."""
         g, out = self.gradients, np.empty((*self.shape, 6))
-        if self._finite:
-            finite_strain.strain(g.full, g.weights, self._together, self.nodes, u, out)
-        else:
-            kernels.strain(g.full, g.volume, self.nodes, u, out)
+        kernels.strain(g.full, g.volume, self.nodes, u, out)
         return out.reshape(-1, 6)
 
-    def internal_force(self, stress: Array, u: Array) -> Array:
-        """Nodal forces (size,) [N] of a stress (n, 6) at nodal displacements u (size,)."""
-        g, of_points, out = self.gradients, stress.reshape(*self.shape, 6), np.zeros(u.size)
-        if self._finite:
-            finite_strain.add_internal_force(g.full, g.weights, self._together, self.nodes, u, of_points, out)
-        else:
-            kernels.add_internal_force(g.full, g.volume, g.weights, self.nodes, of_points, out)
+    def internal_force(self, stress: Array, size: int) -> Array:
+        """Nodal forces (size,) [N] of a stress (n, 6)."""
+        g, out = self.gradients, np.zeros(size)
+        kernels.add_internal_force(g.full, g.volume, g.weights, self.nodes, stress.reshape(*self.shape, 6), out)
         return out
 
     def weight(self, unit_weight: Array, size: int) -> Array:
@@ -126,15 +108,12 @@ class SoilCells:
 
 
 class _Stiffness(NamedTuple):
-    """Cell matrices (nc, 3nn, 3nn) [N/m], and the moduli (nc, nq, 6, 6) [Pa] and deformation gradients (nc, nq, 3, 3)
-    that they are of: most keep them.
-    """
+    """Cell matrices (nc, 3nn, 3nn) [N/m] and the moduli (nc, nq, 6, 6) [Pa] that they are of: most keep them."""
 
     moduli: Array
-    deformed: Array
     matrices: Array
 
     @classmethod
     def unknown(cls, gradients: Gradients) -> _Stiffness:
         nc, nq, nn, _ = gradients.full.shape
-        return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, nq, 3, 3)), np.zeros((nc, 3 * nn, 3 * nn)))
+        return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, 3 * nn, 3 * nn)))

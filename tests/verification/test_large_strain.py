@@ -97,12 +97,12 @@ def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
     A being the segment of the pipe below the seabed.
     """
     heavy = 2.0e4  # N/m3
-    weightless, found = (sink(sinking(16, 0.5, 150, submerged_unit_weight=weight)) for weight in (0.0, heavy))
+    weightless, found = (sink(sinking(16, 0.5, 50, submerged_unit_weight=weight)) for weight in (0.0, heavy))
     for w, area in ((0.2, 0.112), (0.3, 0.198), (0.4, 0.293), (0.48, 0.373)):
         added = found.at(w) - weightless.at(w)
         before, after = np.interp((w - 0.02, w + 0.02), weightless.w, weightless.lift)
         power = (after - before) / 0.04 * heavy * D / SU
-        assert added == pytest.approx(power, rel=0.05)
+        assert added == pytest.approx(power, rel=0.03)
         assert added == pytest.approx(1.5 * heavy * area * D / SU, rel=0.1)
 
 
@@ -113,32 +113,13 @@ def test_a_pipe_sinks_by_its_diameter() -> None:
     assert found.at(0.7) == pytest.approx(smooth(0.7), rel=0.07)
 
 
-def one_step_farther(way: float) -> float:
-    """V/(su D) of a pipe that lies D/20 deep in a thin layer of soft clay, after one step by so many diameters."""
-    soft, strong = (CLAY | {"su": su, "E_over_su": 300.0} for su in (300.0, 5.0e4))
-    layers = [{"to": 0.1 * D, "law": soft}, {"law": strong}]
-    scene = sinking(16, 0.05, 1, layers=layers, contact={"stiffness": 2.4e6})
-    del scene["soil"]["law"]
-    deeper = {end: [*place[:2], place[2] - way * D] for end, place in scene["stages"][0]["move"].items()}
-    on = {"name": "on", "kind": "static", "move": deeper}
-    return float(sink(scene | {"stages": [*scene["stages"], on]}, 1).V[-1])
-
-
-def test_a_long_step_into_a_thin_soft_layer_bears_more_than_a_short_one() -> None:
-    """Linear about its start it bears the less the longer it is, and a riser that lies there by its own weight finds no
-    balance.
-    """
-    short, long = one_step_farther(0.001), one_step_farther(0.005)
-    assert 1.05 < long / short < 1.6
-
-
 def cycles(scene: Mapping, path: Array, folder: Path) -> Array:
     """V/(su D) at each row of a path of embedments w/D that follows the scene's stage."""
     table = folder / "path.csv"
     rows = (f"{n}, 0, 0, {(path[0] - w) * D!r}" for n, w in enumerate(path))
     table.write_text("\n".join(["t [-], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")
     motion = {end: {"table": str(table)} for end in ("start", "end")}
-    stage = {"name": "cycles", "kind": "quasi-static", "duration": len(path) - 1, "time_step": 0.25, "motion": motion}
+    stage = {"name": "cycles", "kind": "quasi-static", "duration": len(path) - 1, "time_step": 1, "motion": motion}
     found = sink(scene | {"stages": [*scene["stages"], stage]}, len(scene["stages"]))
     return np.interp(np.arange(1.0, len(path)), found.t, found.V)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.contact.seabed_contact import Cushion, Floor, SeabedContact
+from riser_soil.contact.seabed_contact import Cushion
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes
@@ -15,7 +15,7 @@ from tests.support.covered_ground import beyond
 from tests.support.dense_chain import STATIC, residual, tangent
 from tests.support.differences import difference_tangent, error
 
-RADIUS, LEVEL, WEIGHT, DEPTH, STIFF = 0.15, -2.0, 700.0, 0.003, 6e8
+RADIUS, LEVEL, WEIGHT, DEPTH = 0.15, -2.0, 700.0, 0.003
 
 
 def lying(dimension: int = 2, above: float = 0.0, covered: float = np.inf) -> tuple[Line, Cushion]:
@@ -31,12 +31,7 @@ def at(line: Line, t: float, u: Array | None = None) -> State:
     return State(t, u, np.zeros(line.size), np.zeros(line.size))
 
 
-def floor(dimension: int = 2, above: float = 0.0) -> tuple[Line, Floor]:
-    line, _ = lying(dimension, above)
-    return line, Floor(line, np.full(5, RADIUS), LEVEL, STIFF, 1e-4, beyond(-1.0, np.inf))
-
-
-def borne(line: Line, cushion: SeabedContact, t: float) -> float:
+def borne(line: Line, cushion: Cushion, t: float) -> float:
     forces = residual([cushion], at(line, t))
     return -float(forces[line.translation_dofs[:, -1]].sum())
 
@@ -61,18 +56,3 @@ def test_the_tangent_is_the_slope_of_the_residual(dimension: int) -> None:
     state = at(line, 0.3, 2e-4 * random.normal(size=line.size))
     wanted = difference_tangent(cushion, state, STATIC, h=1e-6)
     assert error(tangent([cushion], state), wanted) < 1e-6
-
-
-@pytest.mark.parametrize(("t", "share"), [(0.0, 1.0), (0.25, 0.75**8), (0.5, 0.5**8), (1.0, 0.0)])
-def test_the_floor_is_as_stiff_as_stiff_soil_and_gives_way_to_it(t: float, share: float) -> None:
-    line, stop = floor(above=-1e-3)
-    assert borne(line, stop, t) == pytest.approx(share * STIFF * 1e-3 * 10.0, rel=1e-9)
-    assert borne(*floor(above=2e-4), t) == 0.0
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_the_tangent_of_the_floor_is_the_slope_of_its_residual(dimension: int) -> None:
-    line, stop = floor(dimension, above=-1e-3)
-    state = at(line, 0.3, 1e-5 * np.random.default_rng(3).normal(size=line.size))
-    wanted = difference_tangent(stop, state, STATIC, h=1e-7)
-    assert error(tangent([stop], state), wanted) < 1e-6

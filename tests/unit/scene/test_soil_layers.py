@@ -170,7 +170,7 @@ def test_geostatic_start_bears_the_weight_of_all_layers(kind: str) -> None:
     zero = np.zeros(soil.field.size)
     weighs = -Bench(loose, free).force(zero)
     assert np.abs(Bench(soil, free).force(zero)).max() <= 1e-12 * np.abs(weighs).max()
-    internal = soil._internal(soil._initial, zero)
+    internal = soil._internal(soil._initial)
     np.testing.assert_allclose(internal[free], weighs[free], atol=1e-9 * np.abs(weighs).max())
     assert weighs.sum() == pytest.approx(-(4.0e3 * 0.7 + 9.0e3 * 1.2 + 6.0e3 * 1.1), rel=1e-12)
     upper, middle, lower = 4.0e3 * 0.7**2 / 2.0, 2.8e3 * 1.2 + 9.0e3 * 1.2**2 / 2.0, 13.6e3 * 1.1 + 6.0e3 * 1.1**2 / 2.0
