@@ -51,7 +51,7 @@ TIGHT = 1e-10  # least share of the residual that a linear system solved by iter
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
-FLOWS = 4.0  # residual that a guess may leave over that of the linear response, to be taken instead
+FLOWS = 1.0  # residual that a guess may leave over that of the linear response, to be taken instead
 PATIENCE, LONGEST = 10, 4  # iterations in which a static residual halves that goes on; times as many at most
 
 
