@@ -24,7 +24,6 @@ from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.soil_sizes import ACROSS, BESIDE, ROUND, STRIP, touching_width
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import Timer
-from riser_soil.results.instants import InstantReader
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
@@ -152,8 +151,7 @@ class _Pressing(StatelessObserver):
     """Settlement [m] and load [N] after each load step, until one of them is reached."""
 
     def __init__(self, assembly: Assembly, settlement: float, load: float) -> None:
-        self._assembly, self._instants = assembly, InstantReader(assembly)
-        self._settlement, self._load = settlement, load
+        self._assembly, self._settlement, self._load = assembly, settlement, load
         self.settled, self.borne = [0.0], [0.0]
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
@@ -162,9 +160,8 @@ class _Pressing(StatelessObserver):
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         soil = self._assembly.recovered_soil()
         assert soil is not None
-        seen = self._instants.reported([self._instants.look(stepper)])
         self.settled.append(float(-soil.output_fields().displacement[:, 2].min()))
-        self.borne.append(float(np.atleast_2d(seen.touch.contact_force)[-1, 2]))
+        self.borne.append(self._assembly.ground_force(stepper.now))
         if self.settled[-1] >= self._settlement or self.borne[-1] >= self._load:
             raise _ReachedError
 

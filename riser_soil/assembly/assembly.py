@@ -16,7 +16,7 @@ from riser_soil.assembly.scales import Scales
 from riser_soil.assembly.soil_block import condensed_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
-from riser_soil.core.part import Field, LineField, Model, Part
+from riser_soil.core.part import Field, LineField, Model, Part, State
 from riser_soil.core.saved_state import Saved, gathered, restore_all
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
@@ -147,6 +147,10 @@ class Assembly:
     def contacts(self) -> list[RiserContact]:
         """Contact parts of all lines."""
         return [contact for own in self.lines.values() for contact in own.contacts]
+
+    def ground_force(self, state: State) -> float:
+        """Vertical force of all ground on the lines [N], upwards; on the rank that holds them."""
+        return sum(float(contact.force_on_riser(state)[2]) for contact in self.contacts)
 
     @property
     def frictions(self) -> list[CoulombFriction | SoilFriction]:

@@ -26,8 +26,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.riser import rotations
 from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffness
-from riser_soil.riser.vectors import matrix, scale, vector
-from riser_soil.sea.flows import Sea
+from riser_soil.riser.vectors import matrix, scale, skew, vector
+from riser_soil.sea.flows import Sea, SeaAtPoints
 
 STIFFER, LEAST = 10.0, 1e-6  # times the moment, of what holds a body as it is let go; its least force [N]
 
@@ -66,7 +66,7 @@ def _about_origin(mass: Array, inertia: Array, centre: Array) -> Array:
 
 
 def _skew(v: Array) -> Array:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    return np.array(skew(vector(v)))
 
 
 class Posture(NamedTuple):
@@ -254,7 +254,7 @@ class BodyDrag(BodyPart):
         self, body: MovingBody, given: BodyProperties, sea: Sea, rho: float, buoyancy: float, level: float, still: bool
     ) -> None:
         super().__init__(body)
-        self._given, self._sea, self._rho, self._buoyancy = given, sea, rho, buoyancy
+        self._given, self._water, self._rho, self._buoyancy = given, SeaAtPoints(sea, 1), rho, buoyancy
         self._level, self._still = level, still
         self._pushed = rho * given.volume + given.added_mass
 
@@ -265,7 +265,7 @@ class BodyDrag(BodyPart):
         given, at = self._given, posture(self.body, state)
         c = given.buoyancy_centre
         arm = at.R @ c
-        water = self._sea(state.t, (at.x + arm)[None])
+        water = self._water(state.t, (at.x + arm)[None])
         moved = np.concatenate([np.eye(3), -_skew(arm) @ at.H], axis=1)  # of the centre, by the dofs
         share, slope = wet(float(water.immersion[0]), given.radius) if np.isfinite(water.immersion[0]) else (1.0, 0.0)
         more = slope * water.immersion_gradient[0] @ moved

@@ -75,7 +75,6 @@ class HungReader:
             found |= {f"{pair.path}/{key}": value for key, value in zip(_OF_PAIR, pair.look(), strict=True)}
         return found
 
-
     def warnings(self, found: Mapping[str, Any]) -> list[str]:
         """Of rigid joints that gape, by what is known of the stage, see `HungExtremes`."""
         joints = () if self._joints is None else self._joints.joints

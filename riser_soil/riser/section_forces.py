@@ -74,9 +74,27 @@ def section_vector(
     line: Line, elements: Elements, state: State, residual: Array, viscous: Array | None = None
 ) -> Array:
     """The same as one vector, see `SectionForces.within`."""
-    now = line.once(LineTrials).now
-    now.move(state)
-    return BoundSections(line, elements, now.at, residual, viscous).found()
+    return line.once(_SectionsAtTrials).found(elements, state, residual, viscous)
+
+
+class _SectionsAtTrials:
+    """Section forces of a line at trial states, by kernels that are bound once."""
+
+    def __init__(self, line: Line) -> None:
+        self._line, self._trial = line, line.once(LineTrials).now
+        self._bound: dict[tuple[Elements, bool], tuple[BoundSections, Array, Array | None]] = {}
+
+    def found(self, elements: Elements, state: State, residual: Array, viscous: Array | None) -> Array:
+        key = elements, viscous is not None
+        if key not in self._bound:
+            own = np.empty(residual.shape), None if viscous is None else np.empty(viscous.shape)
+            self._bound[key] = BoundSections(self._line, elements, self._trial.at, *own), *own
+        sections, kept, kept_viscous = self._bound[key]
+        kept[...] = residual
+        if kept_viscous is not None:
+            kept_viscous[...] = viscous
+        self._trial.move(state)
+        return sections.found()
 
 
 class BoundSections:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 
@@ -115,12 +115,22 @@ class Sea:
         self._level, self.flows = math.inf if surface_level is None else surface_level, tuple(flows)
 
     def __call__(self, t: float, x: Array) -> WaterMotion:
-        motion, places = motion_workspace(len(x), 3), np.array(x, dtype=float, order="C")
-        for kernel in motion_of(self.kernel_data, motion, np.array([float(t)]), places):
-            kernel()
-        return motion
+        return SeaAtPoints(self, len(x))(t, x)
 
     @property
     def kernel_data(self) -> SeaData:
         """The same for compiled code."""
         return SeaData(self._level, tuple(flow.kernel_data for flow in self.flows))
+
+
+class SeaAtPoints:
+    """A `Water` at n points, its kernels bound once; what it finds stands until it is asked again."""
+
+    def __init__(self, sea: Sea, n: int) -> None:
+        self._motion, self._t, self._x = motion_workspace(n, 3), np.zeros(1), np.zeros((n, 3))
+        self._find = in_turn(*motion_of(sea.kernel_data, self._motion, self._t, self._x))
+
+    def __call__(self, t: float, x: Array) -> WaterMotion:
+        self._t[0], self._x[...] = t, x
+        self._find()
+        return self._motion

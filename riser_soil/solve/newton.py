@@ -51,7 +51,6 @@ TIGHT = 1e-10  # least share of the residual that a linear system solved by iter
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
-FLOWS = 1.0  # residual that a guess may leave over that of the linear response, to be taken instead
 PATIENCE, LONGEST = 10, 4  # iterations in which a static residual halves that goes on; times as many at most
 
 
@@ -125,13 +124,13 @@ class Newton(StepSolver):
             self._prefer_guess(self._step.with_prescribed(guess))
 
     def _prefer_guess(self, guess: Array) -> None:
-        """Take the guess, with the tangent's response, where it is about as near to balance as the linear response
-        alone: in what flows on as before, it knows which points yield.
+        """Take the guess, with the tangent's response, where it is nearer to balance than the linear response alone: in
+        what flows on as before, it knows which points yield.
         """
         linear = self._x
         left = self._norm_of(self.residual(linear))
         norm = self._respond_to(self._step.residual_of(guess)[1], guess)
-        if self._norm_of(self.residual(self._x)) < FLOWS * left:
+        if self._norm_of(self.residual(self._x)) < left:
             self._norms[-1] = norm
         else:
             self._x = linear

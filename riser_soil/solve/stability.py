@@ -102,7 +102,7 @@ def unstable_modes(
     bounds = _row_bounds(system)
     more = (-EPS if doubtful else EPS) * bounds
     mine = _of_this_rank(system, prescribed)
-    more[mine] += np.maximum(bounds[mine], SOFTEST * bounds.max(initial=0.0))
+    more[mine] += _not_soft(system, bounds, mine)
     system.matrix.add_to_diagonal(more)
     return pivots.count()
 
@@ -130,8 +130,7 @@ def prescribe_free_turns(system: System, state: State, least: float) -> None:
     prescribed = _one_dof_each(system, _neutral(system, state, least))
     if prescribed.size:
         more, mine = system.numbering.zeros(), _of_this_rank(system, prescribed)
-        sizes = np.abs(system.matrix.stored.diagonal())
-        more[mine] = np.maximum(sizes[mine], SOFTEST * sizes.max(initial=0.0))
+        more[mine] = _not_soft(system, np.abs(system.matrix.stored.diagonal()), mine)
         system.matrix.add_to_diagonal(more)
 
 
@@ -139,6 +138,12 @@ def _of_this_rank(system: System, rows: IntArray) -> IntArray:
     """Which of this rank's rows are among some of the system's."""
     first, owned = system.numbering.first, system.numbering.owned
     return np.asarray(rows[(rows >= first) & (rows < first + owned)] - first)
+
+
+def _not_soft(system: System, sizes: Array, rows: IntArray) -> Array:
+    """Sizes of some of this rank's rows, no less than `SOFTEST` of the largest of all ranks'; collective."""
+    largest = max(system.comm.allgather(float(sizes.max(initial=0.0))))
+    return np.asarray(np.maximum(sizes[rows], SOFTEST * largest))
 
 
 def _row_bounds(system: System) -> Array:

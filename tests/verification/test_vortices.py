@@ -150,7 +150,8 @@ def test_in_line_nothing_locks_in_a_slow_flow() -> None:
 # A riser under tension in a current that grows with height
 
 RISER, THIN, TOP = 60.0, 0.1, 0.6
-BY_MOORDYN = 0.967, 0.700  # Hz; largest A/D: MoorDyn 2.7.2, 160 elements, steps of 0.25 ms (benchmarks.peers.shaken)
+# Hz, by the same spectrum; largest A/D: MoorDyn 2.7.2, 160 elements, steps of 0.25 ms (benchmarks.peers.shaken).
+BY_MOORDYN = 0.967, 0.700
 
 
 def shear_of(elements: int = 40, dt: float = 0.02, duration: float = 60.0, **scheme: Any) -> Shaken:

@@ -12,7 +12,9 @@ from riser_soil.commands.app import app
 from riser_soil.errors import SceneError
 from riser_soil.moordyn.deck import read_deck
 from riser_soil.moordyn.whole_deck import whole_scene_of
+from riser_soil.scene.bodies import SolidBody
 from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.scene.riser import Support
 
 DECK = """--------------------- MoorDyn Input File ---------------------
 A spar on three lines, one of them in two parts, and a buoy
@@ -63,10 +65,13 @@ def test_a_whole_deck(tmp_path: Path) -> None:
     scene = scene_from_mapping(data)
     assert [*scene.lines] == ["line1", "line2", "line3", "line4", "line5"]
     assert [line.length for line in scene.lines.values()] == [110.0, 105.0, 212.0, 130.0, 100.0]
-    assert scene.lines["line3"].start.position == (-100.0, 173.2, -100.0)  # type: ignore[union-attr]
+    anchor = scene.lines["line3"].start
+    assert isinstance(anchor, Support)
+    assert anchor.position == (-100.0, 173.2, -100.0)
     body, point = scene.bodies["body1"], scene.bodies["point8"]
     assert (body.kind, body.position, body.mass, body.volume) == ("rigid", (0.0, 0.0, -30.0), 2.0e4, 80.0)
-    assert body.centre_of_gravity == (0.0, 0.0, -2.0)  # type: ignore[union-attr]
+    assert isinstance(body, SolidBody)
+    assert body.centre_of_gravity == (0.0, 0.0, -2.0)
     assert body.drag_area == (20.0, 20.0, 20.0)
     assert body.rotational_drag == (300.0, 300.0, 300.0)
     assert body.added_mass == (0.6, 0.6, 0.3)
