@@ -38,6 +38,7 @@ from tests.support.line_scenes import (
     spans,
 )
 from tests.support.riser_scenes import dynamic, static
+from tests.support.vtk_reading import read_by_vtk
 
 
 def ran(scene: dict[str, Any], folder: Path) -> Run:
@@ -213,6 +214,9 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert not (tmp_path / "riser.xdmf").exists()
     assert [Run.is_there(tmp_path / name) for name in ("", "east", "west")] == [True, True, False]
     east = Run(tmp_path / "east")
+    times, frames = read_by_vtk(tmp_path / "line_east.xdmf")
+    assert times[-1] == east.time[-1]
+    np.testing.assert_array_equal(frames[-1]["points"], east["position"][-1])
     assert east.arc.shape == east["effective_tension"][-1].shape == (21,)
     assert east.dataset["effective_tension"].dims == ("time", "arc")
     assert east.summary["stages"][1]["final"]["end"]["effective_tension"] == east["effective_tension"][-1, -1]
