@@ -144,7 +144,7 @@ def bend_radius(curvature: Array | float) -> Array:
 
 def angle_deg(tangent: Array) -> Array:
     """Angle of a tangent (..., 3) from the horizontal [deg]; positive where the riser rises with its arc."""
-    x, y, z = np.moveaxis(tangent, -1, 0)
+    x, y, z = np.moveaxis(tangent, -1, 0).copy()  # of strided numbers the last bit hangs on where numpy puts the result
     return np.asarray(np.degrees(np.arctan2(z, np.hypot(x, y))))
 
 
