@@ -28,8 +28,9 @@ from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, Stati
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.settling import Pressed, SinkingError, settle
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step, StepSolver
-from riser_soil.solve.step_control import AutoSteps, Control, PathSteps, StepControl, from_last_to_first
+from riser_soil.solve.step_control import AutoSteps, PathSteps, StepControl, from_last_to_first
 from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
@@ -39,6 +40,7 @@ MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step on soil m
 ROUND_OFF = 1e-9  # of a load step
 MOST_STEPS = 64  # of a stage, but for those that the scene asks for
 MOST_RELAXED = 1  # times in a static stage on clay
+MOST_SUNK = 1 / 40  # diameters by which the riser may sink in a static step on soil that moves
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
@@ -236,47 +238,95 @@ def _walk(run: StageRun, checkpoint: CheckpointWriter | None) -> State:
 
 
 def _static_step(run: StageRun) -> AcceptedStep:
-    """By Newton's method, in load steps that are halved a few times, else by dynamic relaxation.
+    """By Newton's method, on soil that moves else by settling, else in load steps that are halved a few times, else by
+    dynamic relaxation.
 
     Where relaxation does not get to the load factor that was missed, it all begins again with half the step. On clay,
     soil or a hysteretic seabed, it is tried MOST_RELAXED times: at the end of its strength it creeps on in ever shorter
     steps.
     """
     assembly, stepper, control = run.assembly, run.stepper, run.control
+    if assembly.scene.lines:  # settling and relaxation are one line's
+        return stepper.advance(control)
     seabed = assembly.scene.seabed
     on_clay = assembly.soil is not None or (seabed is not None and seabed.kind == "hysteretic")
-    if assembly.scene.lines:  # relaxation is one line's
-        return stepper.advance(control)
     while True:
+        if assembly.scene.soil_moves and (step := _followed_by_soil(run)):
+            return step
         try:
             return stepper.advance(control, MOST_CUTS if stepper.depends_on(control) else 0)
         except SolveError:
             run.relaxed += 1
             if on_clay and run.relaxed > MOST_RELAXED:
                 raise
-            if _relaxed(assembly, stepper, control, run.observer):
-                return stepper.advance(control, 0)
+        try:
+            _bring_to_rest(run, _relaxed)
+        except SolveError:
+            if not stepper.depends_on(control) or not control.cut():
+                raise
+            continue
+        return stepper.advance(control, 0)
 
 
-def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> bool:
-    """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved, and all
-    is as the last one left it.
+def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
+    """A step in which the riser sinks no farther than soil follows, by settling where there is no other; None where
+    that finds no step that converges.
     """
-    system, settings, weight = stepper.system, settings_of(assembly), assembly.scales.weight
-    left = gathered(owners(system.model))
+    stepper, longest = run.stepper, MOST_SUNK * run.assembly.scales.diameter
     try:
-        relaxed = relax(assembly.comm, system.model, assembly.line, weight, settings, system.clock, control.target)
+        step = stepper.advance(run.control, 0)
+        if _sunk(run.assembly, stepper.before, step.solution.state) <= longest:
+            return step
     except SolveError:
-        if not stepper.depends_on(control) or not control.cut():
-            raise
-        restore_all(owners(system.model), left)
+        pass
+    try:
+        _bring_to_rest(run, _settled)
+        return stepper.advance(run.control, 0)
+    except SinkingError:
+        raise
+    except SolveError:
+        return None
+
+
+def _sunk(assembly: Assembly, before: State, after: State) -> float:
+    """How far [m] the riser has sunk where it presses on the soil."""
+    contact, line = assembly.soil_contact, assembly.line
+    assert contact is not None
+    presses = contact.force_per_length(after) > 0.0
+    down = line.positions3(before)[:, 2] - line.positions3(after)[:, 2]
+    return float(down[presses].max(initial=0.0))
+
+
+def _bring_to_rest(run: StageRun, seek: Callable[[StageRun], RelaxationResult]) -> None:
+    """Find an equilibrium at the load factor that Newton's method missed; SolveError with all as the last step left it
+    where there is none.
+    """
+    stepper = run.stepper
+    left = gathered(owners(stepper.system.model))
+    try:
+        found = seek(run)
+    except SolveError:
+        restore_all(owners(stepper.system.model), left)
         stepper.newton.renew()
-        return False
-    stepper.newton.renew()  # relaxation has chosen patterns of its own
-    observer.relaxed(relaxed)
+        raise
+    stepper.newton.renew()  # the search has chosen patterns of its own
+    run.observer.relaxed(found)
     stepper.restart()
     stepper.newton.at_equilibrium = True
-    return True
+
+
+def _relaxed(run: StageRun) -> RelaxationResult:
+    assembly, system = run.assembly, run.stepper.system
+    settings, weight = settings_of(assembly), assembly.scales.weight
+    return relax(assembly.comm, system.model, assembly.line, weight, settings, system.clock, run.control.target)
+
+
+def _settled(run: StageRun) -> RelaxationResult:
+    assembly, system = run.assembly, run.stepper.system
+    contact, scales = assembly.soil_contact, assembly.scales
+    assert contact is not None
+    pressed = Pressed(assembly.line, contact.force_per_length, scales.weight, scales.diameter)
+    return settle(assembly.comm, system.model, pressed, settings_of(assembly), system.clock, run.control.target)
 
 
 def settings_of(assembly: Assembly) -> NewtonSettings:

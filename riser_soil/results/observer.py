@@ -279,16 +279,20 @@ class Observer:
             print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
-        """Dynamic relaxation was needed; its Newton iterations count with the next step."""
+        """Dynamic relaxation, or settling, was needed; its Newton iterations count with the next step."""
         self._relaxed += relaxed.iterations
-        if self._recorder is not None:
-            tally = self._recorder.summary.stages[-1]
-            tally.relaxations += 1
-            tally.branch_switches += relaxed.branch_switches
-            took = f"it took {relaxed.iterations} Newton iterations, counted with the next step"
-            print(f"dynamic relaxation was needed; {took}")
-            if relaxed.branch_switches:
-                print(f"it left {relaxed.branch_switches} unstable equilibrium(s) in the mode of buckling")
+        if self._recorder is None:
+            return
+        tally, took = self._recorder.summary.stages[-1], f"{relaxed.iterations} Newton iterations"
+        if relaxed.sunk:
+            tally.settlings += 1
+            print(f"the clay as it was did not bear the riser, which settled by {relaxed.sunk:.3g} m in {took}")
+            return
+        tally.relaxations += 1
+        tally.branch_switches += relaxed.branch_switches
+        print(f"dynamic relaxation was needed; it took {took}, counted with the next step")
+        if relaxed.branch_switches:
+            print(f"it left {relaxed.branch_switches} unstable equilibrium(s) in the mode of buckling")
 
     def finish(self) -> None:
         if self._recorder is not None:

@@ -116,6 +116,7 @@ class StageTally:
     most_newton_iterations: int = 0
     step_cuts: int = 0
     relaxations: int = 0
+    settlings: int = 0
     branch_switches: int = 0
     seen: Instant | None = None
     final: dict[str, Any] | None = None
@@ -171,6 +172,8 @@ class StageTally:
             return None
         if self.relaxations:
             return "relaxation"
+        if self.settlings:
+            return "settling"
         return "load steps" if self.step_cuts else "newton"
 
     def _finish(self) -> None:

@@ -1,4 +1,4 @@
-"""Artificial viscous drag for dynamic relaxation: the part "relaxation"."""
+"""Artificial viscous drag for dynamic relaxation and settling: the part "relaxation"."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ class Relaxation(LinePart):
 
     drag: N/m2, force per length and displacement in one step; large values allow small steps only. It may be changed
     between steps. The forces vanish with the increment, so that what it converges to is an equilibrium without it.
+    places (nn,): 1 at nodes that are dragged, else 0; all of them at first.
     """
 
     name, traits = "relaxation", Traits("F", symmetric=True)
@@ -24,14 +25,16 @@ class Relaxation(LinePart):
     def __init__(self, line: Line, drag: float) -> None:
         super().__init__(line)
         self.drag = drag
+        self.places = np.ones(line.nodes)
 
     def residual(self, state: State, forces: Forces) -> None:
         line = self.line
-        line.nodal(forces.force)[...] += self.drag * self._shares(line.tributary_length) * line.nodal(state.u)
+        line.nodal(forces.force)[...] += self.drag * self._shares() * line.nodal(state.u)
 
-    def _shares(self, length: Array) -> Array:
+    def _shares(self) -> Array:
         """Shares of the drag, by node or element and dof of a node [m, m3]."""
-        shares = np.repeat(length[:, None], self.line.ndof, axis=1)
+        length = self.line.tributary_length
+        shares = np.repeat((self.places * length)[:, None], self.line.ndof, axis=1)
         shares[:, self.line.dimension :] *= length[:, None] ** 2 / 12.0
         return shares
 
@@ -40,5 +43,5 @@ class Relaxation(LinePart):
         for end, nodes in ((0, slice(None, -1)), (line.ndof, slice(1, None))):
             dofs = np.arange(end, end + line.ndof)
             share = (0.5 * line.length / line.tributary_length[nodes])[:, None]
-            whole = self.drag * self._shares(line.tributary_length)[nodes]
+            whole = self.drag * self._shares()[nodes]
             values[line.name][:, dofs, dofs] += weights.force * share * whole

@@ -38,10 +38,13 @@ NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilib
 
 @dataclass
 class RelaxationResult:
-    """Result of dynamic relaxation: Newton iterations, and unstable equilibria left on the way."""
+    """Result of dynamic relaxation or settling: Newton iterations, unstable equilibria left on the way, and how far the
+    riser sank into clay [m] in steps of the soil.
+    """
 
     iterations: int = 0
     branch_switches: int = 0
+    sunk: float = 0.0
 
 
 def relax(
@@ -138,7 +141,7 @@ def _stable(newton: Newton, part: Relaxation, t: float, drag: float, surely: boo
     """Whether the tangent at the accepted state is stable with a drag; surely: round-off doesn't make it so."""
     usual, part.drag = part.drag, drag
     try:
-        return newton.unstable_modes(_still(newton.system, t), doubtful=surely) == 0
+        return newton.unstable_modes(at_rest(newton.system, t), doubtful=surely) == 0
     finally:
         part.drag = usual
 
@@ -152,27 +155,34 @@ def _stabilise(newton: Newton, part: Relaxation, t: float, least: bool = False) 
         part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag, surely=True))
 
 
-def _still(system: System, t: float) -> State:
+def at_rest(system: System, t: float) -> State:
+    """The accepted state at a load factor."""
     return State.at_rest(t, system.numbering.size)
 
 
 def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:
-    """A pseudo-time step with the given drag, committed.
+    """A pseudo-time step with the given drag, committed; see `step_against`."""
+    solution = step_against(system, newton, part, t, drag)
+    if drag > 0.0:
+        _pass_through(system, solution.state)
+    else:
+        system.commit(solution.state)
+    return solution
+
+
+def step_against(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:
+    """A pseudo-time step with the given drag from the accepted state.
 
     It must end in an equilibrium that is stable, with the drag where there is one: a longer step would not follow a
     riser that falls away from an unstable one, but return to it.
     """
     usual, part.drag = part.drag, drag
-    step = Step(Static(), _still(system, t), t, 0.0, None, np.zeros(system.numbering.size))
+    step = Step(Static(), at_rest(system, t), t, 0.0, None, np.zeros(system.numbering.size))
     try:
         solution = newton.solve(step)
         newton.require_stable(solution)
     finally:
         part.drag = usual
-    if drag > 0.0:
-        _pass_through(system, solution.state)
-    else:
-        system.commit(solution.state)
     return solution
 
 
@@ -196,8 +206,8 @@ def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstabl
     _pass_through(system, unstable.state)
     t, left = unstable.state.t, line.x.copy()
     _stabilise(newton, part, t, least=True)
-    mode = buckling_mode(system, part, line, _still(system, t), Static().weights(0.0))
-    moved = _still(system, t)
+    mode = buckling_mode(system, part, line, at_rest(system, t), Static().weights(0.0))
+    moved = at_rest(system, t)
     moved.u[:] = NUDGE * line.length.min() * mode
     _pass_through(system, moved)
     return left
