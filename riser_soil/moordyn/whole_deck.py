@@ -118,14 +118,14 @@ def _rigid(deck: Deck, row: DeckRow) -> dict[str, Any]:
         raise deck.error(row.line, f"body {row.words[0]} is turned; give its points in axes that are not")
     if len(row.words) < 14:
         raise deck.error(row.line, f"body {row.words[0]} has {len(row.words)} entries of 14; give all of them")
-    centre = _numbers(deck, row, 9, "CG")
+    centre = _centre(_numbers(deck, row, 9, "CG"))
     drag, added = (_numbers(deck, row, n, key) for n, key in ((12, "CdA"), (13, "Ca")))
     J = _numbers(deck, row, 10, "I")
     return {
         "kind": "rigid", "position": x, "mass": deck.number(row, 8, "Mass"), "inertia": _three(J),
-        "centre_of_gravity": centre if len(centre) == 3 else [0.0, 0.0, centre[0]],
-        "volume": deck.number(row, 11, "Volume"), "drag_area": _three(drag), "added_mass": _three(added),
-        "rotational_drag": _turning(drag),
+        "centre_of_gravity": centre, "volume": deck.number(row, 11, "Volume"),
+        "centre_of_buoyancy": centre,  # MoorDyn lets both act at CG
+        "drag_area": _three(drag), "added_mass": _three(added), "rotational_drag": _turning(drag),
     }  # fmt: skip
 
 
@@ -133,6 +133,10 @@ def _numbers(deck: Deck, row: DeckRow, column: int, what: str) -> list[float]:
     """Of a word such as 1.0|2.0|3.0."""
     words = row.words[column].split("|")
     return [deck.number(DeckRow(row.line, tuple(words)), n, what) for n in range(len(words))]
+
+
+def _centre(values: list[float]) -> list[float]:
+    return values if len(values) == 3 else [0.0, 0.0, values[0]]
 
 
 def _three(values: list[float]) -> list[float]:

@@ -71,7 +71,7 @@ def test_a_whole_deck(tmp_path: Path) -> None:
     body, point = scene.bodies["body1"], scene.bodies["point8"]
     assert (body.kind, body.position, body.mass, body.volume) == ("rigid", (0.0, 0.0, -30.0), 2.0e4, 80.0)
     assert isinstance(body, SolidBody)
-    assert body.centre_of_gravity == (0.0, 0.0, -2.0)
+    assert body.centre_of_gravity == body.centre_of_buoyancy == (0.0, 0.0, -2.0), "MoorDyn lets both act there"
     assert body.drag_area == (20.0, 20.0, 20.0)
     assert body.rotational_drag == (300.0, 300.0, 300.0)
     assert body.added_mass == (0.6, 0.6, 0.3)

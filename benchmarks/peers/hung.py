@@ -1,0 +1,101 @@
+"""Moorings with bodies, by riser_soil and by MoorDyn: table of docs/peers.md.
+
+Usage: python -m benchmarks.peers.hung [--results FOLDER] [--page]
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from benchmarks.peers.hung_decks import CASES, DURATION, RECORDS, Moved
+from benchmarks.peers.in_turn import ROOT, THEIRS
+from demos.compute import timed
+from demos.page import publish, script, table
+from riser_soil.core.arrays import Array
+from riser_soil.moordyn.deck import read_deck
+from riser_soil.moordyn.whole_deck import whole_scene_of
+
+OURS = (10, 0.1), (20, 0.05)  # segments of a part, step [s]
+PEERS = (10, 0.0005), (20, 0.00025)
+
+
+def scene_of(name: str, parts: int, time_step: float, folder: Path) -> dict[str, Any]:
+    """As it is imported, and shaken."""
+    case, deck = CASES[name], folder / "deck.txt"
+    deck.write_text(case.deck(parts, time_step), encoding="utf-8")
+    scene = whole_scene_of(read_deck(deck)).data
+    place = [*case.moved]
+    ((line, end),) = (
+        (line, end)
+        for line, given in scene["lines"].items()
+        for end in ("start", "end")
+        if given[end] != "free" and given[end]["position"] == place
+    )
+    swing = {"amplitude": [*case.amplitude], "period": case.period, "ramp": case.period}
+    moves = {"duration": DURATION, "time_step": time_step, "lines": {line: {"motion": {end: {"harmonic": swing}}}}}
+    scene["stages"].append({"name": "shaken", "kind": "dynamic", **moves})
+    return scene | {"output": {"interval": RECORDS, "fields": ["effective_tension"]}}
+
+
+def by_us(name: str, parts: int, time_step: float) -> Moved:
+    """The seconds to rest are those of a run with one step of motion, set-up and output included."""
+    with TemporaryDirectory() as place:
+        folder = Path(place)
+        scene = folder / "scene.yaml"
+        scene.write_text(json.dumps(scene_of(name, parts, time_step, folder)), encoding="utf-8")
+        short = f"stages.1.duration={time_step}"
+        to_rest = min(timed(scene, folder / "short", short)[1] for _ in range(2))
+        done, seconds = timed(scene, folder / "run")
+        last = int(np.flatnonzero(done["stage"] == 0)[-1])
+        lines = [done.of_line(line)["effective_tension"][last:, [1, -2]] for line in done.lines]
+        body = done[f"bodies/{CASES[name].body}/position"][last:]
+        return Moved(RECORDS * np.arange(len(body)), np.stack(lines, axis=1), body, to_rest, seconds - to_rest)
+
+
+def by_moordyn(name: str, parts: int, time_step: float) -> Moved:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "run.npz"
+        told = f"save({name!r}, {parts}, {time_step!r}, {str(path)!r})"
+        command = [str(THEIRS), "-c", f"from benchmarks.peers.hung_by_moordyn import save; {told}"]
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+        with np.load(path) as stored:
+            return Moved(**{key: stored[key] for key in Moved._fields})
+
+
+def off(found: Moved, reference: Moved) -> Array:
+    """Largest differences of tensions over the largest tension of their line: at rest, of least and largest ones in
+    motion.
+    """
+    largest = reference.tension.max(axis=(0, 2))[:, None]
+    pairs = zip(_looked_at(found.tension), _looked_at(reference.tension), strict=True)
+    return np.array([np.max(np.abs(a - b) / largest) for a, b in pairs])
+
+
+def _looked_at(tension: Array) -> tuple[Array, Array, Array]:
+    return tension[0], tension.min(axis=0), tension.max(axis=0)
+
+
+def main(results: Path, page: bool) -> None:
+    results.mkdir(parents=True, exist_ok=True)
+    rows = list[list[str]]()
+    for name in CASES:
+        ours = [by_us(name, *size) for size in OURS]
+        theirs = [by_moordyn(name, *size) for size in PEERS] if THEIRS.exists() else []
+        for program, sizes, runs in (("riser_soil", OURS, ours), ("MoorDyn", PEERS, theirs)):
+            for n, ((parts, step), found) in enumerate(zip(sizes, runs, strict=False)):
+                apart = ["–"] * 3 if found is ours[n] else [f"{100.0 * share:.2f} %" for share in off(found, ours[n])]
+                place = f"{found.body[0, 2]:.3f}, {np.ptp(found.body[:, 0]):.3f}"
+                cost = f"{found.seconds_to_rest:.1f}, {found.seconds:.1f}"
+                rows.append([f"{name}: {program}, {2 * parts} segments, {step:g} s", *apart, place, cost])
+    head = ["", "off at rest", "least tension", "largest", "z at rest, sway m", "s to rest, in motion"]
+    publish({"hung": table(head, rows)}, results, ROOT / "docs" / "peers.md" if page else None)
+
+
+if __name__ == "__main__":
+    script(main, __doc__, ROOT)

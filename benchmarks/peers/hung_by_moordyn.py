@@ -1,0 +1,50 @@
+"""Moorings with bodies by MoorDyn, in its own environment: its rest by dynamic relaxation, then an end moves."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from pathlib import Path
+
+import moordyn
+import numpy as np
+
+from benchmarks.peers.hung_decks import CASES, DURATION, RECORDS, Moved
+
+
+
+def run(name: str, parts: int, time_step: float) -> Moved:
+    case = CASES[name]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "deck.txt"
+        path.write_text(case.deck(parts, time_step), encoding="utf-8")
+        began = time.process_time()
+        system = moordyn.Create(str(path))
+        moordyn.SetVerbosity(system, moordyn.LEVEL_ERR)
+        moordyn.Init(system, case.place(0.0), [0.0] * 3)
+        to_rest = time.process_time() - began
+        lines = [moordyn.GetLine(system, number) for number in (1, 2, 3)]
+
+        def seen() -> tuple[list[list[float]], list[float]]:
+            ends = ((line, (1, moordyn.GetLineNumberNodes(line) - 2)) for line in lines)
+            pulls = [[float(np.linalg.norm(moordyn.GetLineNodeTen(line, n))) for n in at] for line, at in ends]
+            if case.body.startswith("body"):
+                return pulls, list(moordyn.GetBodyState(moordyn.GetBody(system, 1))[0][:3])
+            return pulls, list(moordyn.GetPointPos(moordyn.GetPoint(system, int(case.body[-1]))))
+
+        rows, often, began = [seen()], round(RECORDS / time_step), time.process_time()
+        for k in range(round(DURATION / time_step)):  # a jump of the end's speed would pull at the line
+            before, after = (case.place(n * time_step) for n in (k, k + 1))
+            speed = [(b - a) / time_step for a, b in zip(before, after, strict=True)]
+            moordyn.Step(system, before, speed, k * time_step, time_step)
+            if (k + 1) % often == 0:
+                rows.append(seen())
+        seconds = time.process_time() - began
+        moordyn.Close(system)
+    tension, body = zip(*rows, strict=True)
+    return Moved(RECORDS * np.arange(len(rows)), np.array(tension), np.array(body), to_rest, seconds)
+
+
+def save(name: str, parts: int, time_step: float, to: str) -> None:
+    """To a file of numpy's."""
+    np.savez(to, **run(name, parts, time_step)._asdict())
