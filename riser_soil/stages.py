@@ -17,6 +17,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.assembly.assembly import LETTING_GO
 from riser_soil.assembly.motions import corners
 from riser_soil.assembly.stage import scheme_of, times_to_hit
+from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import Adaptive, owners, with_role
@@ -289,12 +290,17 @@ def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
 
 
 def _sunk(assembly: Assembly, before: State, after: State) -> float:
-    """How far [m] the riser has sunk where it presses on the soil."""
-    contact, line = assembly.soil_contact, assembly.line
-    assert contact is not None
-    presses = contact.force_per_length(after) > 0.0
+    """How far [m] the riser has sunk where it presses on the soil; collective."""
+    line, presses = assembly.line, _pressing(assembly, after) > 0.0
     down = line.positions3(before)[:, 2] - line.positions3(after)[:, 2]
     return float(down[presses].max(initial=0.0))
+
+
+def _pressing(assembly: Assembly, state: State) -> Array:
+    """Force per length (nn,) [N/m] on the soil, the same on all ranks; collective."""
+    contact = assembly.soil_contact
+    assert contact is not None
+    return assembly.comm.allreduce(contact.force_per_length(state))
 
 
 def _bring_to_rest(run: StageRun, seek: Callable[[StageRun], RelaxationResult]) -> None:
@@ -323,9 +329,9 @@ def _relaxed(run: StageRun) -> RelaxationResult:
 
 def _settled(run: StageRun) -> RelaxationResult:
     assembly, system = run.assembly, run.stepper.system
-    contact, scales = assembly.soil_contact, assembly.scales
-    assert contact is not None
-    pressed = Pressed(assembly.line, contact.force_per_length, scales.weight, scales.diameter)
+    pressed = Pressed(
+        assembly.line, lambda state: _pressing(assembly, state), assembly.scales.weight, assembly.scales.diameter
+    )
     return settle(assembly.comm, system.model, pressed, settings_of(assembly), system.clock, run.control.target)
 
 

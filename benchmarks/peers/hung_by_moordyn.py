@@ -12,7 +12,6 @@ import numpy as np
 from benchmarks.peers.hung_decks import CASES, DURATION, RECORDS, Moved
 
 
-
 def run(name: str, parts: int, time_step: float) -> Moved:
     case = CASES[name]
     with tempfile.TemporaryDirectory() as folder:

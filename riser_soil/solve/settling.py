@@ -26,20 +26,20 @@ from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError
 
 LONGEST, ALLOWED = 1 / 200, 1 / 130  # diameters by which a step is to move the riser, and may
-DEEPEST = 2.0  # diameters by which it settles at a load factor at most
+DEEPEST, LOOKED_AT = 2.0, 0.1  # diameters by which it settles at a load factor at most; between looks whether it will
 NEARLY_BORNE = 0.01  # share of the weight on the drag from which equilibrium without it is tried
 STIFFEST = 1e6  # drag over the first
 FALLS, RISES = 0.4, 3.0  # factors of the drag after a step that moved less, and after one that failed
 
 
 class SinkingError(SolveError):
-    """The clay bears the riser at no depth looked at."""
+    """The riser sinks, and comes to no rest."""
 
 
 @dataclass(frozen=True)
 class Pressed:
-    """The line that sinks. force: per length (nn,) [N/m] on the soil in a state; weight: typical force per length
-    [N/m]; diameter [m].
+    """The line that sinks. force: per length (nn,) [N/m] on the soil in a state, the same on all ranks; weight: typical
+    force per length [N/m]; diameter [m].
     """
 
     line: Line
@@ -68,13 +68,23 @@ class _Settling:
         self._done, self._stiffest, self._least = RelaxationResult(), STIFFEST * part.drag, 0.0
 
     def to_rest(self) -> RelaxationResult:
-        nearly = NEARLY_BORNE
-        while self._done.sunk < DEEPEST * self._pressed.diameter:
+        nearly, missing = NEARLY_BORNE, self._sink()
+        looked = self._done.sunk, missing
+        while True:
             missing = self._sink()
             if missing < nearly:
                 nearly = 0.5 * missing
                 if self._step(0.0) is not None:
                     return self._done
+            since = self._done.sunk - looked[0]
+            if since > LOOKED_AT * self._pressed.diameter:
+                self._require_end(missing, (looked[1] - missing) / since)
+                looked = self._done.sunk, missing
+
+    def _require_end(self, missing: float, gained: float) -> None:
+        """SinkingError where all will not be borne at DEEPEST, even if each metre gains as much as of late."""
+        if missing <= gained * (DEEPEST * self._pressed.diameter - self._done.sunk):
+            return
         arc = float(self._pressed.line.arc[self._part.places > 0.0].mean())
         raise SinkingError(
             f"the riser sinks on at arc {arc:.4g} m: by {self._done.sunk:.3g} m at t = {self._t:.6g}, where the soil "
@@ -107,7 +117,8 @@ class _Settling:
             if drag:
                 self._least, part.drag = 0.5 * RISES * drag, RISES * drag
             if part.drag > self._stiffest:
-                raise SolveError(f"the riser does not settle even in tiny steps: {failure}") from failure
+                sort = SinkingError if self._done.sunk else SolveError
+                raise sort(f"the riser does not settle even in tiny steps: {failure}") from failure
             return None
         self._done.iterations += solution.iterations
         translations = part.line.nodal(solution.state.u)[:, : part.line.dimension]

@@ -39,7 +39,7 @@ def struck() -> Mapping:
 
 def reported(done: subprocess.CompletedProcess[str]) -> str:
     """The one line that a failed run tells; Open MPI adds its own about the rank that ended the job."""
-    mine = [line for line in done.stderr.splitlines() if re.search(r"converge|relaxation|finished run", line)]
+    mine = [line for line in done.stderr.splitlines() if re.search(r"converge|relaxation|settle|finished run", line)]
     assert len(mine) == 1, done.stderr
     assert "Traceback" not in done.stderr
     return mine[0]

@@ -62,5 +62,6 @@ def test_steps_half_as_long_settle_the_pipe_as_deep(monkeypatch: pytest.MonkeyPa
 def test_a_pipe_that_nothing_bears_is_told_to_sink_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """Eight times su D in all: beyond a twentieth of a diameter it is not waited for here."""
     monkeypatch.setattr(settling, "DEEPEST", 0.05)
-    with pytest.raises(SolveError, match=r"sinks on at arc 9\.15 m: by 0\.01\d+ m at t = .* bears 0\.\d+ of"):
+    monkeypatch.setattr(settling, "LOOKED_AT", 0.02)
+    with pytest.raises(SolveError, match=r"sinks on at arc 9\.15 m: by 0\.00\d+ m at t = .* bears 0\.\d+ of"):
         Rested(8.0)
