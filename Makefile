@@ -65,6 +65,7 @@ bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn an
 	$(PYTHON) -m benchmarks.peers --page
 	$(PYTHON) -m benchmarks.peers.clay --page
 	$(PYTHON) -m benchmarks.peers.shaken --page
+	$(PYTHON) -m benchmarks.peers.hung --page
 
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page

@@ -5,6 +5,7 @@ Usage: python -m benchmarks.peers.hung [--results FOLDER] [--page]
 
 from __future__ import annotations
 
+import itertools
 import json
 import subprocess
 from pathlib import Path
@@ -84,16 +85,13 @@ def _looked_at(tension: Array) -> tuple[Array, Array, Array]:
 def main(results: Path, page: bool) -> None:
     results.mkdir(parents=True, exist_ok=True)
     rows = list[list[str]]()
-    for name in CASES:
-        ours = [by_us(name, *size) for size in OURS]
-        theirs = [by_moordyn(name, *size) for size in PEERS] if THEIRS.exists() else []
-        for program, sizes, runs in (("riser_soil", OURS, ours), ("MoorDyn", PEERS, theirs)):
-            for n, ((parts, step), found) in enumerate(zip(sizes, runs, strict=False)):
-                apart = ["–"] * 3 if found is ours[n] else [f"{100.0 * share:.2f} %" for share in off(found, ours[n])]
-                place = f"{found.body[0, 2]:.3f}, {np.ptp(found.body[:, 0]):.3f}"
-                cost = f"{found.seconds_to_rest:.1f}, {found.seconds:.1f}"
-                rows.append([f"{name}: {program}, {2 * parts} segments, {step:g} s", *apart, place, cost])
-    head = ["", "off at rest", "least tension", "largest", "z at rest, sway m", "s to rest, in motion"]
+    sizes = list(zip(OURS, PEERS, strict=True))
+    for name, ((parts, ours), (_, theirs)) in itertools.product(CASES, sizes):
+        found, reference = by_us(name, parts, ours), by_moordyn(name, parts, theirs)
+        apart = (f"{100.0 * share:.2f}" for share in off(found, reference))
+        seconds = (f"{a:.1f}/{b:.1f}" for a, b in zip(found[-2:], reference[-2:], strict=True))
+        rows.append([name, str(2 * parts), f"{ours:g}/{theirs:g}", *apart, *seconds])
+    head = ["", "segments", "steps s", "% off at rest", "least", "largest", "processor s to rest", "in motion"]
     publish({"hung": table(head, rows)}, results, ROOT / "docs" / "peers.md" if page else None)
 
 
