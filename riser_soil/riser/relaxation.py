@@ -25,7 +25,7 @@ class Relaxation(LinePart):
     def __init__(self, line: Line, drag: float) -> None:
         super().__init__(line)
         self.drag = drag
-        self.places = np.ones(line.nodes)
+        self.places: Array = np.ones(line.nodes)
 
     def residual(self, state: State, forces: Forces) -> None:
         line = self.line

@@ -66,6 +66,7 @@ class _Settling:
     def __init__(self, system: System, newton: Newton, part: Relaxation, pressed: Pressed, t: float) -> None:
         self._system, self._newton, self._part, self._pressed, self._t = system, newton, part, pressed, t
         self._done, self._stiffest, self._least = RelaxationResult(), STIFFEST * part.drag, 0.0
+        self._too_far = np.inf  # m, by which a step with the drag before moved the riser
 
     def to_rest(self) -> RelaxationResult:
         nearly, missing = NEARLY_BORNE, self._sink()
@@ -98,6 +99,7 @@ class _Settling:
         part.places = 1.0 * (self._pressed.force(self._at_rest) > 0.0)
         if not part.places.any():
             raise SolveError("the riser touches nothing that it could settle in")
+        self._too_far = np.inf
         while (moved := self._step(part.drag)) is None:
             pass
         lengths, farthest = part.line.tributary_length, float(moved.max())
@@ -124,6 +126,9 @@ class _Settling:
         translations = part.line.nodal(solution.state.u)[:, : part.line.dimension]
         moved: Array = part.places * np.abs(translations).max(axis=1)
         if drag and moved.max() > ALLOWED * self._pressed.diameter:
+            if moved.max() > 0.9 * self._too_far:
+                raise SolveError("the riser's supports move it farther than soil follows in a step")
+            self._too_far = moved.max()
             part.drag *= moved.max() / self._longest
             return None
         self._system.commit(solution.state)

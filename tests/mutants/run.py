@@ -65,8 +65,9 @@ def places() -> Iterator[Place]:
 
 
 def not_copied(folder: str, names: list[str]) -> set[str]:
-    """What was made from the sources; the package has a folder of results, too."""
-    made = {"build", "__pycache__"} | ({"results"} if "__init__.py" not in names else set())
+    """What was made from the sources; package and tests have folders of that name that were not."""
+    sources = Path(folder).relative_to(REPOSITORY).parts[:1] in (("riser_soil",), ("tests",))
+    made = {"build", "__pycache__"} | (set() if sources else {"results"})
     return {name for name in names if name in made or name.startswith(".")}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from riser_soil import stages
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
@@ -51,6 +52,7 @@ def test_a_pipe_settles_to_where_one_that_is_pushed_bears_its_weight() -> None:
     assert pushed.at(rested.w) == pytest.approx(rested.V, rel=0.02)
 
 
+@pytest.mark.verify
 def test_steps_half_as_long_settle_the_pipe_as_deep(monkeypatch: pytest.MonkeyPatch) -> None:
     """To 1 %, 0.3 % of the load."""
     usual = Rested(2.7)
@@ -65,3 +67,14 @@ def test_a_pipe_that_nothing_bears_is_told_to_sink_on(monkeypatch: pytest.Monkey
     monkeypatch.setattr(settling, "LOOKED_AT", 0.02)
     with pytest.raises(SolveError, match=r"sinks on at arc 9\.15 m: by 0\.00\d+ m at t = .* bears 0\.\d+ of"):
         Rested(8.0)
+
+
+@pytest.mark.verify
+def test_a_pipe_that_its_supports_push_far_does_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By D/30 a step, farther than a riser may sink of itself."""
+    monkeypatch.setattr(stages, "PRESSED_BY", 1 / 30)
+    found = sink(sinking(CELLS, 0.1, 3))
+    print(found.w, found.V)
+    assert found.w[-1] == pytest.approx(0.1)
+    assert found.w.size < 12, "load steps, some of them cut"
+    assert found.V[-1] == pytest.approx(sink(sinking(CELLS, 0.1, 40)).V[-1], rel=0.1)
