@@ -1,0 +1,84 @@
+"""Error against processor time: a panel for each figure, a line for each method, the reference's uncertainty dotted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from matplotlib.axes import Axes
+from matplotlib.colors import TABLEAU_COLORS
+from matplotlib.ticker import FuncFormatter
+
+from benchmarks.soil_precision.errors import Row, series, uncertainty
+from benchmarks.soil_precision.ladders import LADDERS
+from demos.page import block
+from riser_soil.plots.curves import save, sheet
+
+LEAST, MOST = 3.0e-4, 3.0  # errors that are drawn
+
+
+class Panel(NamedTuple):
+    """A figure of a scene, by a norm."""
+
+    scene: str
+    figure: str
+    norm: str
+    title: str
+
+
+PANELS = (
+    Panel("pushed", "capacity", "relative", "pushed pipe: capacity at 0.2 D"),
+    Panel("pushed", "largest stress", "relative", "pushed pipe: largest mean stress"),
+    Panel("pushed", "trough", "RMS", "pushed pipe: trough, RMS"),
+    Panel("laid", "settlement", "relative", "laid riser: settlement"),
+    Panel("laid", "trench depth", "relative", "heaved riser: trench depth"),
+    Panel("laid", "largest moment", "relative", "heaved riser: largest moment"),
+    Panel("elastic", "settlement along", "RMS", "on elastic soil: settlement, RMS"),
+)
+METHODS = list(dict.fromkeys(method for ladder in LADDERS.values() for method in ladder.methods))
+MARKERS = "osD^vP*Xd<p"
+COLOURS = [*TABLEAU_COLORS, "black"]
+SHADES = ("black", "tab:red", "tab:blue", "tab:green")  # of programs
+
+
+def draw(rows: Sequence[Row], peers: str, file: Path) -> None:
+    """peers: the page that compares other programs."""
+    figure, panels = sheet(2, 4, width=15.0, height=3.9)
+    for axes, panel in zip(panels, PANELS, strict=False):
+        _draw_panel(axes, rows, panel)
+    _draw_peers(panels[len(PANELS)], peers)
+    for axes in panels:
+        axes.set(xscale="log", yscale="log")
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
+    for axes in panels[::4]:
+        axes.set_ylabel("error")
+    for axes in panels[4:]:
+        axes.set_xlabel("processor time [s]")
+    drawn = [axes.get_legend_handles_labels() for axes in panels[: len(PANELS)]]
+    known = {label: line for lines, labels in drawn for line, label in zip(lines, labels, strict=True)}
+    figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=5)
+    save(figure, file)
+
+
+def _draw_panel(axes: Axes, rows: Sequence[Row], panel: Panel) -> None:
+    for method, known in series(rows, *panel[:3]).items():
+        number = METHODS.index(method)
+        errors = [min(max(row.error, LEAST), MOST) for row in known]
+        seconds = [row.seconds for row in known]
+        axes.plot(seconds, errors, f"-{MARKERS[number]}", color=COLOURS[number], label=method, markersize=5)
+    axes.axhline(uncertainty(rows, *panel[:3]), color="0.3", linestyle=":", label="the reference's own uncertainty")
+    axes.set_title(panel.title, fontsize=10)
+
+
+def _draw_peers(axes: Axes, peers: str) -> None:
+    """From the table of a pipe pressed into clay: how far each program's force is off the finest mesh's."""
+    found: dict[str, list[tuple[float, float]]] = {}
+    for line in block(peers, "clay").splitlines()[2:]:
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        found.setdefault(cells[1], []).append((float(cells[-1]), 0.01 * float(cells[-3].removesuffix("%"))))
+    for number, (program, points) in enumerate(found.items()):
+        seconds, errors = zip(*(point for point in points if point[1] > 0.0), strict=True)
+        axes.plot(seconds, errors, ".--", color=SHADES[number], linewidth=1.2, label=program)
+    axes.legend(fontsize=8, loc="upper right")
+    axes.set_title("pressed pipe beside CalculiX: force", fontsize=10)
