@@ -15,7 +15,7 @@ from benchmarks.soil_precision.ladders import LADDERS
 from demos.page import block
 from riser_soil.plots.curves import save, sheet
 
-LEAST, MOST = 3.0e-4, 3.0  # errors that are drawn
+LEAST, MOST, COLUMNS = 3.0e-4, 3.0, 4  # errors that are drawn
 
 
 class Panel(NamedTuple):
@@ -28,13 +28,17 @@ class Panel(NamedTuple):
 
 
 PANELS = (
-    Panel("pushed", "capacity", "relative", "pushed pipe: capacity at 0.2 D"),
-    Panel("pushed", "largest stress", "relative", "pushed pipe: largest mean stress"),
-    Panel("pushed", "trough", "RMS", "pushed pipe: trough, RMS"),
+    Panel("pushed", "capacity at 0.05 D", "relative", "pushed pipe: capacity at 0.05 D"),
+    Panel("pushed", "capacity at 0.2 D", "relative", "pushed pipe: capacity at 0.2 D"),
+    Panel("pushed", "trough", "RMS", "pushed pipe: trough across it, RMS"),
     Panel("laid", "settlement", "relative", "laid riser: settlement"),
     Panel("laid", "trench depth", "relative", "heaved riser: trench depth"),
+    Panel("laid", "trench along", "largest", "heaved riser: trench along it, largest"),
+    Panel("laid", "largest stress", "relative", "laid riser: largest von Mises stress"),
     Panel("laid", "largest moment", "relative", "heaved riser: largest moment"),
-    Panel("elastic", "settlement along", "RMS", "on elastic soil: settlement, RMS"),
+    Panel("elastic", "settlement", "relative", "laid on elastic soil: settlement"),
+    Panel("elastic", "largest stress", "relative", "laid on elastic soil: largest von Mises stress"),
+    Panel("elastic", "largest moment", "relative", "heaved on elastic soil: largest moment"),
 )
 METHODS = list(dict.fromkeys(method for ladder in LADDERS.values() for method in ladder.methods))
 MARKERS = "osD^vP*Xd<p"
@@ -44,16 +48,16 @@ SHADES = ("black", "tab:red", "tab:blue", "tab:green")  # of programs
 
 def draw(rows: Sequence[Row], peers: str, file: Path) -> None:
     """peers: the page that compares other programs."""
-    figure, panels = sheet(2, 4, width=15.0, height=3.9)
+    figure, panels = sheet(3, COLUMNS, width=15.0, height=3.3)
     for axes, panel in zip(panels, PANELS, strict=False):
         _draw_panel(axes, rows, panel)
     _draw_peers(panels[len(PANELS)], peers)
     for axes in panels:
         axes.set(xscale="log", yscale="log")
         axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
-    for axes in panels[::4]:
+    for axes in panels[::COLUMNS]:
         axes.set_ylabel("error")
-    for axes in panels[4:]:
+    for axes in panels[-COLUMNS:]:
         axes.set_xlabel("processor time [s]")
     drawn = [axes.get_legend_handles_labels() for axes in panels[: len(PANELS)]]
     known = {label: line for lines, labels in drawn for line, label in zip(lines, labels, strict=True)}

@@ -40,8 +40,8 @@ def _down(ends: Mapping, depth: float) -> Mapping:
 
 
 def laid(n: int, method: Mapping, law: Mapping = CLAY) -> Mapping:
-    """A riser of 30 m comes down on a block of 7 m of clay, and is heaved for a period."""
-    size = 2.4 / n
+    """A riser of 30 m comes down on a block of 6 m of clay, and is heaved for a period."""
+    size = 1.2 / n**0.5  # along the riser, where fields are smoother [m]
     fine, coarse = {"length": 12.0, "element_length": 0.5 * size}, {"length": 18.0, "element_length": [0.5 * size, 1.5]}
     harmonic = {"amplitude": [0.0, 0.0, HEAVE], "period": PERIOD, "ramp": 0.5 * PERIOD}
     heave: Mapping = {"name": "heave", "kind": "dynamic", "duration": PERIOD, "time_step": PERIOD / 32.0}
