@@ -15,32 +15,35 @@ from benchmarks.soil_precision.ladders import LADDERS
 from demos.page import block
 from riser_soil.plots.curves import save, sheet
 
-LEAST, MOST, COLUMNS = 3.0e-4, 3.0, 4  # errors that are drawn
+COLUMNS = 4
+SECONDS, ERRORS = (1.0, 250.0), (4.0e-4, 5.0)  # that are drawn
 
 
 class Panel(NamedTuple):
-    """A figure of a scene, by a norm."""
+    """A figure of a scene, by a norm; told: whether the page's table has it."""
 
     scene: str
     figure: str
     norm: str
     title: str
+    told: bool = False
 
 
 PANELS = (
-    Panel("pushed", "capacity at 0.05 D", "relative", "pushed pipe: capacity at 0.05 D"),
-    Panel("pushed", "capacity at 0.2 D", "relative", "pushed pipe: capacity at 0.2 D"),
+    Panel("pushed", "capacity at 0.05 D", "relative", "pushed pipe: capacity at 0.05 D", True),
+    Panel("pushed", "capacity at 0.2 D", "relative", "pushed pipe: capacity at 0.2 D", True),
     Panel("pushed", "trough", "RMS", "pushed pipe: trough across it, RMS"),
-    Panel("laid", "settlement", "relative", "laid riser: settlement"),
-    Panel("laid", "trench depth", "relative", "heaved riser: trench depth"),
+    Panel("laid", "settlement", "relative", "laid riser: settlement", True),
+    Panel("laid", "trench depth", "relative", "heaved riser: trench depth", True),
     Panel("laid", "trench along", "largest", "heaved riser: trench along it, largest"),
-    Panel("laid", "largest stress", "relative", "laid riser: largest von Mises stress"),
-    Panel("laid", "largest moment", "relative", "heaved riser: largest moment"),
+    Panel("laid", "largest stress", "relative", "laid riser: largest von Mises stress", True),
+    Panel("laid", "largest moment", "relative", "heaved riser: largest moment", True),
     Panel("elastic", "settlement", "relative", "laid on elastic soil: settlement"),
     Panel("elastic", "largest stress", "relative", "laid on elastic soil: largest von Mises stress"),
     Panel("elastic", "largest moment", "relative", "heaved on elastic soil: largest moment"),
 )
 METHODS = list(dict.fromkeys(method for ladder in LADDERS.values() for method in ladder.methods))
+OWN = "the reference's own uncertainty"
 MARKERS = "osD^vP*Xd<p"
 COLOURS = [*TABLEAU_COLORS, "black"]
 SHADES = ("black", "tab:red", "tab:blue", "tab:green")  # of programs
@@ -53,7 +56,8 @@ def draw(rows: Sequence[Row], peers: str, file: Path) -> None:
         _draw_panel(axes, rows, panel)
     _draw_peers(panels[len(PANELS)], peers)
     for axes in panels:
-        axes.set(xscale="log", yscale="log")
+        axes.set(xscale="log", yscale="log", xlim=SECONDS, ylim=ERRORS)
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
     for axes in panels[::COLUMNS]:
         axes.set_ylabel("error")
@@ -61,17 +65,18 @@ def draw(rows: Sequence[Row], peers: str, file: Path) -> None:
         axes.set_xlabel("processor time [s]")
     drawn = [axes.get_legend_handles_labels() for axes in panels[: len(PANELS)]]
     known = {label: line for lines, labels in drawn for line, label in zip(lines, labels, strict=True)}
-    figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=5)
+    names = [name for name in (*METHODS, OWN) if name in known]
+    figure.legend([known[name] for name in names], names, loc="outside lower center", ncols=len(names))
     save(figure, file)
 
 
 def _draw_panel(axes: Axes, rows: Sequence[Row], panel: Panel) -> None:
     for method, known in series(rows, *panel[:3]).items():
         number = METHODS.index(method)
-        errors = [min(max(row.error, LEAST), MOST) for row in known]
         seconds = [row.seconds for row in known]
+        errors = [max(row.error, ERRORS[0]) for row in known]
         axes.plot(seconds, errors, f"-{MARKERS[number]}", color=COLOURS[number], label=method, markersize=5)
-    axes.axhline(uncertainty(rows, *panel[:3]), color="0.3", linestyle=":", label="the reference's own uncertainty")
+    axes.axhline(uncertainty(rows, *panel[:3]), color="0.3", linestyle=":", label=OWN)
     axes.set_title(panel.title, fontsize=10)
 
 

@@ -6,6 +6,7 @@ import csv
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf, nan
 
 import numpy as np
 
@@ -51,25 +52,25 @@ def rms(values: Sequence[float], reference: Sequence[float]) -> float:
 
 
 def judged(runs: Sequence[Measured]) -> list[Row]:
-    """Rows of all runs that have an answer, but for the references themselves."""
+    """Rows of all runs but the references themselves; errors of those that failed are infinite."""
     known = {(run.scene, run.method, run.n): run for run in runs}
     references = {scene: known[scene, ladder.best, ladder.reference[0]] for scene, ladder in LADDERS.items()}
     return [row for run in runs if run is not references[run.scene] for row in _rows(run, references[run.scene])]
 
 
 def _rows(run: Measured, reference: Measured) -> list[Row]:
-    rows = [
-        _row(run, name, "relative", value, relative(value, reference.figures[name]))
-        for name, value in run.figures.items()
-    ]
-    for name, values in run.curves.items():
-        for word, norm in (("largest", largest), ("RMS", rms)):
-            rows.append(_row(run, name, word, float("nan"), norm(values, reference.curves[name])))
+    def row(figure: str, norm: str, value: float, error: float) -> Row:
+        return Row(run.scene, run.method, run.n, run.seconds, figure, norm, value, inf if run.reason else error)
+
+    rows = []
+    for name, true in reference.figures.items():
+        value = run.figures.get(name, nan)
+        rows.append(row(name, "relative", value, relative(value, true)))
+    for name, along in reference.curves.items():
+        values = run.curves.get(name, along)
+        rows.append(row(name, "largest", nan, largest(values, along)))
+        rows.append(row(name, "RMS", nan, rms(values, along)))
     return rows
-
-
-def _row(run: Measured, figure: str, norm: str, value: float, error: float) -> Row:
-    return Row(run.scene, run.method, run.n, run.seconds, figure, norm, value, error)
 
 
 def uncertainty(rows: Sequence[Row], scene: str, figure: str, norm: str) -> float:

@@ -35,14 +35,18 @@ def write(runs: Sequence[Measured]) -> None:
 def cheapest_table(rows: Sequence[Row]) -> str:
     """By figure, the reference's uncertainty and the cheapest method of each accuracy."""
     head = ["figure", "reference ±", *(f"{100.0 * accuracy:g} % by" for accuracy in ACCURACIES)]
-    return table(head, [_line(rows, panel) for panel in PANELS])
+    return table(head, [_line(rows, panel) for panel in PANELS if panel.told])
 
 
 def _line(rows: Sequence[Row], panel: Panel) -> list[str]:
     known = [row for found in series(rows, *panel[:3]).values() for row in found]
-    best = [cheapest(known, accuracy) for accuracy in ACCURACIES]
-    cells = ["–" if row is None else f"{row.method}, D/{row.n}, {row.seconds:.1f} s" for row in best]
-    return [panel.title, f"{100.0 * uncertainty(rows, *panel[:3]):.1f} %", *cells]
+    own = uncertainty(rows, *panel[:3])
+    cells = [_cell(cheapest(known, accuracy)) if accuracy > own else "not judged" for accuracy in ACCURACIES]
+    return [panel.title, f"{100.0 * own:.1f} %", *cells]
+
+
+def _cell(row: Row | None) -> str:
+    return "none" if row is None else f"{row.method}, D/{row.n}, {row.seconds:.1f} s"
 
 
 def made(runs: Sequence[Measured]) -> str:
