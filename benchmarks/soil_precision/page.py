@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.metadata
-import os
 import platform
 from collections.abc import Sequence
 from datetime import date
@@ -34,7 +33,7 @@ def write(runs: Sequence[Measured]) -> None:
 
 def cheapest_table(rows: Sequence[Row]) -> str:
     """By figure, the reference's uncertainty and the cheapest method of each accuracy."""
-    head = ["figure", "reference ±", *(f"{100.0 * accuracy:g} % by" for accuracy in ACCURACIES)]
+    head = ["figure", "±", *(f"{100.0 * accuracy:g} % by (cells, s)" for accuracy in ACCURACIES)]
     return table(head, [_line(rows, panel) for panel in PANELS if panel.told])
 
 
@@ -42,11 +41,11 @@ def _line(rows: Sequence[Row], panel: Panel) -> list[str]:
     known = [row for found in series(rows, *panel[:3]).values() for row in found]
     own = uncertainty(rows, *panel[:3])
     cells = [_cell(cheapest(known, accuracy)) if accuracy > own else "not judged" for accuracy in ACCURACIES]
-    return [panel.title, f"{100.0 * own:.1f} %", *cells]
+    return [panel.figure, f"{100.0 * own:.1f} %", *cells]
 
 
 def _cell(row: Row | None) -> str:
-    return "none" if row is None else f"{row.method}, D/{row.n}, {row.seconds:.1f} s"
+    return "none" if row is None else f"{row.method}, D/{row.n}, {row.seconds:.1f}"
 
 
 def made(runs: Sequence[Measured]) -> str:
@@ -54,7 +53,7 @@ def made(runs: Sequence[Measured]) -> str:
     seconds = sum(run.seconds for run in runs)
     dolfinx = importlib.metadata.version("fenics-dolfinx")
     return (
-        f"`make precision`: {seconds / 60.0:.0f} minutes on one of {os.cpu_count()} shared cores ({_processor()}), "
+        f"`make precision`, {seconds / 60.0:.0f} minutes on a shared core ({_processor()}), "
         f"{date.today()}; riser_soil {__version__}, Python {platform.python_version()}, dolfinx {dolfinx}."
     )
 
