@@ -33,14 +33,14 @@ def write(runs: Sequence[Measured]) -> None:
 
 def cheapest_table(rows: Sequence[Row]) -> str:
     """By figure, the reference's uncertainty and the cheapest method of each accuracy."""
-    head = ["figure", "±", *(f"{100.0 * accuracy:g} % by (cells, s)" for accuracy in ACCURACIES)]
+    head = ["figure", "±", *(f"{100.0 * accuracy:g} % by" for accuracy in ACCURACIES)]
     return table(head, [_line(rows, panel) for panel in PANELS if panel.told])
 
 
 def _line(rows: Sequence[Row], panel: Panel) -> list[str]:
     known = [row for found in series(rows, *panel[:3]).values() for row in found]
     own = uncertainty(rows, *panel[:3])
-    cells = [_cell(cheapest(known, accuracy)) if accuracy > own else "not judged" for accuracy in ACCURACIES]
+    cells = [_cell(cheapest(known, accuracy)) if accuracy > own else "–" for accuracy in ACCURACIES]
     return [panel.figure, f"{100.0 * own:.1f} %", *cells]
 
 
