@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz mutants bench bench-peers parts bars asked quality verify-fresh docs dist docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz mutants bench bench-peers parts bars asked precision quality verify-fresh docs dist docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -75,6 +75,9 @@ bars: setup ## error bars of 211 scenes beside their true errors: docs/error_bar
 
 asked: setup ## scenes that ask for 1 %, whether they reach it and what it costs beside the best by hand: docs/asked_accuracy.md
 	$(PYTHON) -m benchmarks.asked_accuracy
+
+precision: setup ## error of soil's results against processor time, by method: docs/soil_precision.md; half an hour
+	$(PYTHON) -m benchmarks.soil_precision
 
 quality: stress bars asked parts ## those four and a study of the first scene: docs/quality.md
 	$(PYTHON) -m benchmarks.quality
