@@ -19,7 +19,6 @@ from benchmarks.peers.judge import RANGE, TENSIONS, Judged, apart, cheapest, con
 from benchmarks.peers.measure import read
 from benchmarks.peers.refinement import FINEST, PROGRAMS
 from demos.page import csv_table, publish, table
-from riser_soil.results.stage_records import peak
 
 PAGE, PLOT = ROOT / "docs" / "peers.md", ROOT / "docs" / "peers.png"
 TARGETS = (0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001)
@@ -66,7 +65,6 @@ def main(results: Path, cases: Sequence[str], page: bool) -> None:
     for each in compared:
         name, judged = each.case.name, each.judged()
         blocks |= {
-            f"{name} at rest": rest_page(each),
             f"{name} finest": finest_page(each),
             f"{name} cost": cost_page(judged, apart(each.voices)),
         }
@@ -87,16 +85,6 @@ def _compared(case: Case, results: Path) -> Compared:
         if runs:
             found[program.name] = runs
     return Compared(case, found)
-
-
-def rest_page(compared: Compared) -> str:
-    """On each finest mesh, one record from the start, when the end has hardly moved: not all tell forces before."""
-    rows = []
-    for name in compared.finest:
-        (elements, _), run = list(compared.found[name].items())[-1]
-        moment = float(peak(run.arc, run.moment[1]))
-        rows.append([name, str(elements), f"{run.moved[1]:.2f}", f"{run.held[1]:.2f}", f"{moment:.2f}"])
-    return table(["at rest", "elements", "top tension N", "bottom tension N", "largest moment N.m"], rows)
 
 
 def finest_page(compared: Compared) -> str:

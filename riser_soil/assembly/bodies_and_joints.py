@@ -114,10 +114,10 @@ def _properties(scene: Scene, given: BodyScene) -> BodyProperties:
             return BodyProperties(given.mass, none, none, given.volume, none, drag, none, added, none)
         case SolidBody():
             vectors = given.inertia, given.centre_of_gravity, given.centre_of_buoyancy, given.drag_area
-            J, low, high, drag = map(np.array, vectors)
-            spin_drag, added_J, added = map(np.array, (given.rotational_drag, given.added_inertia, given.added_mass))
+            J, low, high, by_axes = map(np.array, vectors)
+            spin_drag, added_J, share = map(np.array, (given.rotational_drag, given.added_inertia, given.added_mass))
             return BodyProperties(
-                given.mass, J, low, given.volume, high, drag, spin_drag, added * displaced, added_J
+                given.mass, J, low, given.volume, high, by_axes, spin_drag, share * displaced, added_J
             )
     assert_never(given)
 
