@@ -71,6 +71,7 @@ class Soil:
         self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful))
         self._check_start(self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
+        self._in_balance = self._found.stress  # as the last step left it, before cells that moved asked the law again
         self._last: _Answer | None = None
         self._unloads = False
         self._volumes: Array = self.cells.gradients.weights.flatten()
@@ -135,6 +136,7 @@ class Soil:
         """Soil that has not moved, and whose history has not changed, answers as before."""
         u, dt, _, found, _ = self._answer(state)
         self._stored, self._lifted = self._stores(found), self._lifted - float(self._load @ u)
+        self._in_balance = found.stress
         if u.any() and self.moves:
             found = self._move(u, dt)
         if u.any() or not np.array_equal(found.history, self._found.history):
@@ -265,8 +267,10 @@ class Soil:
         return self.cells.mean(mandel.von_mises(self._found.stress - self._initial))
 
     def _invariants(self) -> tuple[Array, Array, Array, Array]:
-        """Of the committed stress, (n,) each, in the order of `SoilSnapshot`."""
-        stress = self._found.stress
+        """Of the stress in balance, (n,) each, in the order of `SoilSnapshot`. What the law answers to cells that moved
+        lacks balance in the square of the step over the cell, in the mean stress of clay many times its strength.
+        """
+        stress = self._in_balance
         strength_used = self.law.overstress(stress)
         return -mandel.mean(stress), mandel.von_mises(stress), strength_used, self._plastic_strain()
 
@@ -317,15 +321,18 @@ class Soil:
         """What the gradients are made of, and the last mesh, where cells move."""
         if not self.moves:
             return {}
-        kept = {"made_at": self.cells.made_at, "mesh_at": self._mesh_at, "depth": self._depth, "volumes": self._volumes}
+        kept = {"in_balance": self._in_balance, "made_at": self.cells.made_at, "mesh_at": self._mesh_at}
+        kept |= {"depth": self._depth, "volumes": self._volumes}
         return {name: values.copy() for name, values in kept.items()}
 
     def restore(self, saved: Saved) -> None:
         self._found, self._last = self._found._replace(**within(saved, "law")), None
+        self._in_balance = self._found.stress
         self._stored, self._lifted = (float(joules) for joules in saved["energy"])
         if self.moves:
             self.cells.make_anew(np.arange(len(self.cells.nodes)), saved["made_at"])
             self._depth, self._volumes = saved["depth"].copy(), saved["volumes"].copy()
+            self._in_balance = saved["in_balance"].copy()
             self._mesh_at = saved["mesh_at"].copy()
             self._take_material()
             self._load = self._held + self._weight()

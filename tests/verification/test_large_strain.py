@@ -13,7 +13,11 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Timer
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher, built
 from tests.support.on_ranks import mpirun
 from tests.support.sinking_pipe import CLAY, SU, D, Sunk, sink, sinking
 
@@ -215,3 +219,14 @@ def test_a_pipe_swept_by_its_diameter_pushes_its_berm_along() -> None:
     require_breakout(found, 1.0)
     late = found.H[found.t > 0.3]
     assert 1.4 < late.min() <= late.max() < 1.75
+
+
+@pytest.mark.parametrize("cells", [8, 12])
+def test_mean_stress_under_a_pipe_hangs_on_no_cells(cells: int) -> None:
+    """The largest of a cell in a slice pushed in by 0.2 D: 4 su, below the pressure of 5.6 su that presses there, by
+    which von Mises' deviator may differ from it. What the law answers to moved cells has 14 su on twelve.
+    """
+    assembly = built(sinking(cells, 0.2, 40))
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
+    assert assembly.soil is not None
+    assert assembly.soil.output_fields().mean_stress.max() / SU == pytest.approx(3.9, rel=0.05)
