@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from scipy.optimize import fsolve
+from scipy.optimize import least_squares, root
 
 from riser_soil.core.arrays import Array
 
@@ -73,12 +73,23 @@ def pulls(a: Array, b: Array, w: float, EA: float, L: float) -> tuple[Array, Arr
     """Forces (2,) [N] of an elastic catenary from a up to b, (2,) [m] along x and z, on what holds it at a and at b."""
     dx, dz = b - a
 
-    def off(force: Array) -> Array:
-        x, z = spans(abs(float(force[0])) + 1e-9, float(force[1]), w, EA, L)
+    chord = float(np.hypot(dx, dz))
+    weight, taut = abs(w) * L, EA * max(chord / L - 1.0, 0.0)
+    scale, steep = weight + taut, (max(abs(dx), 1e-3 * chord) / chord, dz / chord)
+
+    def force(u: Array) -> tuple[float, float]:
+        return scale * math.exp(u[0]), scale * u[1]
+
+    def off(u: Array) -> Array:
+        x, z = spans(*force(u), w, EA, L)
         return np.array([x - abs(dx), z - dz])
 
-    H, V = fsolve(off, abs(w) * L * np.array([0.5, 0.7]), xtol=1e-12)
-    ahead = float(np.sign(dx)) * abs(H)
+    slack = np.array([math.log(0.5), 0.7])
+    start = np.array([math.log(taut * steep[0] / scale), (taut * steep[1] + 0.5 * weight) / scale]) if taut else slack
+    found = root(off, start, tol=1e-13).x  # as near as round-off lets it, of which it complains
+    assert np.abs(off(found)).max() < 1e-9, "m"
+    H, V = force(found)
+    ahead = float(np.sign(dx)) * H
     return np.array([ahead, V - w * L]), np.array([-ahead, -V])
 
 
@@ -140,7 +151,8 @@ def lazy_s_by_catenaries() -> tuple[Array, dict[str, tuple[float, float]]]:
         moment = levers[:, 0] * forces[:, 1] - levers[:, 1] * forces[:, 0]
         return np.append(forces.sum(axis=0), moment.sum())
 
-    at = fsolve(unbalanced, np.array([-60.0, -72.0, 0.0]), xtol=1e-12)
-    assert np.abs(unbalanced(at)).max() < 1e-3
+    tight = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15, "diff_step": 1e-6}
+    at = least_squares(unbalanced, np.array([-60.0, -72.0, 0.1]), x_scale=np.array([1.0, 1.0, 0.1]), **tight).x
+    assert np.abs(unbalanced(at)).max() < 1e-3, "of 90 kN"
     ends = {name: [float(np.linalg.norm(force)) for force in hung(at)[name][1:]] for name in LAZY_S}
     return at, {name: (two[1], two[0]) if LAZY_S[name][5] else (two[0], two[1]) for name, two in ends.items()}

@@ -9,10 +9,11 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import MatrixBlock, Model, State, Traits, Weights
+from riser_soil.core.part import Forces, MatrixBlock, Model, State, Traits, Weights
 from riser_soil.core.roles import Adaptive
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton_progress import ResidualNorm
 from riser_soil.solve.solver import NewtonSettings, Solution, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor, Springs
@@ -115,3 +116,18 @@ def test_what_comes_to_touch_within_a_step_gets_its_place_at_once() -> None:
     assert found.state.u == pytest.approx(whole.state.u, rel=1e-9)
     assert found.iterations == whole.iterations
     assert found.norms == pytest.approx(whole.norms, rel=1e-6, abs=1e-9)
+
+
+def test_forces_in_play_are_the_largest_of_reactions_inertia_and_contact() -> None:
+    """Of four masses the first is held; what acts on the others is no reaction."""
+    chain = Chain(np.arange(4.0), prescribed=True)
+    system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 100.0)]), Timer.new())
+    try:
+        norm = ResidualNorm(system)
+        reaction, inertia, contact = (np.array(each) for each in ([3.0, 0, 0, 9.0], [0, 0, 0, 4.0], [0, 5.0, 0, 12.0]))
+        none = np.zeros(4)
+        assert norm.in_play(Forces(none, reaction, none)) == pytest.approx(3.0)
+        assert norm.in_play(Forces(inertia, reaction, none)) == pytest.approx(4.0)
+        assert norm.in_play(Forces(inertia, reaction, contact)) == pytest.approx(13.0)
+    finally:
+        system.destroy()
