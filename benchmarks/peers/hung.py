@@ -1,4 +1,4 @@
-"""Moorings with bodies, by riser_soil and by MoorDyn: table of docs/peers.md.
+"""Moorings with bodies, by riser_soil, MoorDyn and, at rest, CableDyn: table of docs/peers.md.
 
 Usage: python -m benchmarks.peers.hung [--results FOLDER] [--page]
 """
@@ -54,19 +54,32 @@ def by_us(name: str, parts: int, time_step: float) -> Moved:
         to_rest = min(timed(scene, folder / "short", short)[1] for _ in range(2))
         done, seconds = timed(scene, folder / "run")
         last = int(np.flatnonzero(done["stage"] == 0)[-1])
-        lines = [done.of_line(line)["effective_tension"][last:, [1, -2]] for line in done.lines]
+        lines = [done.of_line(line)["effective_tension"][last:] for line in done.lines]
+        inner, ends = np.stack([each[:, [1, -2]] for each in lines], axis=1), [each[0, [0, -1]] for each in lines]
         body = done[f"bodies/{CASES[name].body}/position"][last:]
-        return Moved(RECORDS * np.arange(len(body)), np.stack(lines, axis=1), body, to_rest, seconds - to_rest)
+        return Moved(RECORDS * np.arange(len(body)), inner, body, np.array(ends), to_rest, seconds - to_rest)
 
 
 def by_moordyn(name: str, parts: int, time_step: float) -> Moved:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "run.npz"
-        told = f"save({name!r}, {parts}, {time_step!r}, {str(path)!r})"
-        command = [str(THEIRS), "-c", f"from benchmarks.peers.hung_by_moordyn import save; {told}"]
-        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+        _save_theirs("moordyn", path, name, parts, time_step)
         with np.load(path) as stored:
             return Moved(**{key: stored[key] for key in Moved._fields})
+
+
+def by_cabledyn(name: str, parts: int) -> Array:
+    """Tensions at the lines' ends at rest (3, 2), the smaller one first [N]."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "rest.npy"
+        _save_theirs("cabledyn", path, name, parts)
+        return np.asarray(np.load(path))
+
+
+def _save_theirs(program: str, path: Path, *given: object) -> None:
+    told = ", ".join(repr(each) for each in (*given, str(path)))
+    command = [str(THEIRS), "-c", f"from benchmarks.peers.hung_by_{program} import save; save({told})"]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
 
 
 def off(found: Moved, reference: Moved) -> Array:
@@ -90,8 +103,13 @@ def main(results: Path, page: bool) -> None:
         found, reference = by_us(name, parts, ours), by_moordyn(name, parts, theirs)
         apart = (f"{100.0 * share:.2f}" for share in off(found, reference))
         seconds = (f"{a:.1f}/{b:.1f}" for a, b in zip(found[-2:], reference[-2:], strict=True))
-        rows.append([name, str(2 * parts), f"{ours:g}/{theirs:g}", *apart, *seconds])
-    head = ["", "segments", "steps s", "% off at rest", "least", "largest", "processor s to rest", "in motion"]
+        beside = "–"
+        if CASES[name].bodies:
+            cabledyn = by_cabledyn(name, parts)
+            beside = f"{100.0 * np.max(np.abs(np.sort(found.ends) / cabledyn - 1.0)):.4f}"
+        rows.append([name, str(2 * parts), f"{ours:g}/{theirs:g}", *apart, beside, *seconds])
+    off_moordyn = ["% off MoorDyn at rest", "least", "largest"]
+    head = ["", "segments", "steps s", *off_moordyn, "CableDyn at rest", "processor s to rest", "in motion"]
     publish({"hung": table(head, rows)}, results, ROOT / "docs" / "peers.md" if page else None)
 
 

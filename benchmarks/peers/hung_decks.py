@@ -15,12 +15,14 @@ DURATION, RECORDS = 30.0, 0.1  # s
 
 class Moved(NamedTuple):
     """At rest and in motion: t (nt,) [s] from rest, 0, on; tension (nt, 3, 2) of the lines, at the nodes beside their
-    ends [N]; body (nt, 3), the body's place [m]; processor seconds to rest, and of the motion.
+    ends [N]; body (nt, 3), the body's place [m]; ends (3, 2): tensions at the ends themselves, at rest [N]; processor
+    seconds to rest, and of the motion.
     """
 
     t: Array
     tension: Array
     body: Array
+    ends: Array
     seconds_to_rest: float
     seconds: float
 
