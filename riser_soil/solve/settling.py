@@ -29,6 +29,7 @@ LONGEST, ALLOWED = 1 / 200, 1 / 130  # diameters by which a step is to move the 
 DEEPEST, LOOKED_AT = 2.0, 0.1  # diameters by which it settles at a load factor at most; between looks whether it will
 NEARLY_BORNE = 0.01  # share of the weight on the drag from which equilibrium without it is tried
 STIFFEST = 1e6  # drag over the first
+MOST_STEPS = 1000
 FALLS, RISES = 0.4, 3.0  # factors of the drag after a step that moved less, and after one that failed
 
 
@@ -71,7 +72,7 @@ class _Settling:
     def to_rest(self) -> RelaxationResult:
         nearly, missing = NEARLY_BORNE, self._sink()
         looked = self._done.sunk, missing
-        while True:
+        for _ in range(MOST_STEPS):
             missing = self._sink()
             if missing < nearly:
                 nearly = 0.5 * missing
@@ -81,6 +82,10 @@ class _Settling:
             if since > LOOKED_AT * self._pressed.diameter:
                 self._require_end(missing, (looked[1] - missing) / since)
                 looked = self._done.sunk, missing
+        raise SinkingError(
+            f"the riser creeps on where it touches the soil: {missing:.2g} of what presses there is not borne after "
+            f"{MOST_STEPS} steps, in which it sank by {self._done.sunk:.3g} m, at t = {self._t:.6g}"
+        )
 
     def _require_end(self, missing: float, gained: float) -> None:
         """SinkingError where all will not be borne at DEEPEST, even if each metre gains as much as of late."""

@@ -78,3 +78,9 @@ def test_a_pipe_that_its_supports_push_far_does_not_settle(monkeypatch: pytest.M
     assert found.w[-1] == pytest.approx(0.1)
     assert found.w.size < 12, "load steps, some of them cut"
     assert found.V[-1] == pytest.approx(sink(sinking(CELLS, 0.1, 40)).V[-1], rel=0.1)
+
+
+def test_a_pipe_that_creeps_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(settling, "MOST_STEPS", 2)
+    with pytest.raises(SolveError, match=r"creeps on .* not borne after 2 steps"):
+        Rested(2.7)
