@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.peers.hung_decks import CASES, DURATION, RECORDS, Moved
+from benchmarks.peers.hung_decks import AT, CASES, DURATION, RECORDS, Moved
 from benchmarks.peers.in_turn import ROOT, THEIRS
 from demos.compute import timed
 from demos.page import publish, script, table
@@ -54,10 +54,8 @@ def by_us(name: str, parts: int, time_step: float) -> Moved:
         to_rest = min(timed(scene, folder / "short", short)[1] for _ in range(2))
         done, seconds = timed(scene, folder / "run")
         last = int(np.flatnonzero(done["stage"] == 0)[-1])
-        lines = [done.of_line(line)["effective_tension"][last:] for line in done.lines]
-        inner, ends = np.stack([each[:, [1, -2]] for each in lines], axis=1), [each[0, [0, -1]] for each in lines]
-        body = done[f"bodies/{CASES[name].body}/position"][last:]
-        return Moved(RECORDS * np.arange(len(body)), inner, body, np.array(ends), to_rest, seconds - to_rest)
+        tension = np.stack([done.of_line(line)["effective_tension"][last:, AT] for line in done.lines], axis=1)
+        return Moved(tension, to_rest, seconds - to_rest)
 
 
 def by_moordyn(name: str, parts: int, time_step: float) -> Moved:
@@ -83,11 +81,11 @@ def _save_theirs(program: str, path: Path, *given: object) -> None:
 
 
 def off(found: Moved, reference: Moved) -> Array:
-    """Largest differences of tensions over the largest tension of their line: at rest, of least and largest ones in
-    motion.
+    """Largest differences of tensions beside the ends over the line's largest there: at rest, of least and largest ones
+    in motion.
     """
-    largest = reference.tension.max(axis=(0, 2))[:, None]
-    pairs = zip(_looked_at(found.tension), _looked_at(reference.tension), strict=True)
+    mine, theirs = (each.tension[..., 1:-1] for each in (found, reference))
+    largest, pairs = theirs.max(axis=(0, 2))[:, None], zip(_looked_at(mine), _looked_at(theirs), strict=True)
     return np.array([np.max(np.abs(a - b) / largest) for a, b in pairs])
 
 
@@ -106,7 +104,7 @@ def main(results: Path, page: bool) -> None:
         beside = "–"
         if CASES[name].bodies:
             cabledyn = by_cabledyn(name, parts)
-            beside = f"{100.0 * np.max(np.abs(np.sort(found.ends) / cabledyn - 1.0)):.4f}"
+            beside = f"{100.0 * np.max(np.abs(np.sort(found.tension[0, :, [0, -1]].T) / cabledyn - 1.0)):.4f}"
         rows.append([name, str(2 * parts), f"{ours:g}/{theirs:g}", *apart, beside, *seconds])
     off_moordyn = ["% off MoorDyn at rest", "least", "largest"]
     head = ["", "segments", "steps s", *off_moordyn, "CableDyn at rest", "processor s to rest", "in motion"]

@@ -9,7 +9,7 @@ from pathlib import Path
 import moordyn
 import numpy as np
 
-from benchmarks.peers.hung_decks import CASES, DURATION, RECORDS, Moved
+from benchmarks.peers.hung_decks import AT, CASES, DURATION, RECORDS, Moved
 
 
 def run(name: str, parts: int, time_step: float) -> Moved:
@@ -24,16 +24,11 @@ def run(name: str, parts: int, time_step: float) -> Moved:
         to_rest = time.process_time() - began
         lines = [moordyn.GetLine(system, number) for number in (1, 2, 3)]
 
-        def pulls(inner: int) -> list[list[float]]:
-            ends = ((line, (inner, moordyn.GetLineNumberNodes(line) - 1 - inner)) for line in lines)
-            return [[float(np.linalg.norm(moordyn.GetLineNodeTen(line, n))) for n in at] for line, at in ends]
+        def seen() -> list[list[float]]:
+            """At an end, of the segment there."""
+            nodes = ((line, moordyn.GetLineNumberNodes(line)) for line in lines)
+            return [[float(np.linalg.norm(moordyn.GetLineNodeTen(line, at % n))) for at in AT] for line, n in nodes]
 
-        def seen() -> tuple[list[list[float]], list[float]]:
-            if case.body.startswith("body"):
-                return pulls(1), list(moordyn.GetBodyState(moordyn.GetBody(system, 1))[0][:3])
-            return pulls(1), list(moordyn.GetPointPos(moordyn.GetPoint(system, int(case.body[-1]))))
-
-        ends = np.array(pulls(0))  # those of the end segments
         rows, often, began = [seen()], round(RECORDS / time_step), time.process_time()
         for k in range(round(DURATION / time_step)):  # a jump of the end's speed would pull at the line
             before, after = (case.place(n * time_step) for n in (k, k + 1))
@@ -43,8 +38,7 @@ def run(name: str, parts: int, time_step: float) -> Moved:
                 rows.append(seen())
         seconds = time.process_time() - began
         moordyn.Close(system)
-    tension, body = zip(*rows, strict=True)
-    return Moved(RECORDS * np.arange(len(rows)), np.array(tension), np.array(body), ends, to_rest, seconds)
+    return Moved(np.array(rows), to_rest, seconds)
 
 
 def save(name: str, parts: int, time_step: float, to: str) -> None:

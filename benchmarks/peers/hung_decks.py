@@ -11,18 +11,15 @@ from typing import NamedTuple
 from riser_soil.core.arrays import Array
 
 DURATION, RECORDS = 30.0, 0.1  # s
+AT = (0, 1, -2, -1)  # nodes of a line: its ends, and those beside them
 
 
 class Moved(NamedTuple):
-    """At rest and in motion: t (nt,) [s] from rest, 0, on; tension (nt, 3, 2) of the lines, at the nodes beside their
-    ends [N]; body (nt, 3), the body's place [m]; ends (3, 2): tensions at the ends themselves, at rest [N]; processor
-    seconds to rest, and of the motion.
+    """Tension (nt, 3, 4) of the lines at AT [N], at rest and every RECORDS s from there; processor seconds to rest, and
+    of the motion.
     """
 
-    t: Array
     tension: Array
-    body: Array
-    ends: Array
     seconds_to_rest: float
     seconds: float
 
@@ -66,7 +63,7 @@ RK2 tScheme
 
 class Hung(NamedTuple):
     """A case. lines: with their segments per part, {0} of one or {1} of two. moved: place [m] of the coupled point,
-    which swings by the amplitude [m] in a period [s], ramped over the first. body: its name in the scene.
+    which swings by the amplitude [m] in a period [s], ramped over the first.
     """
 
     types: str
@@ -77,7 +74,6 @@ class Hung(NamedTuple):
     moved: tuple[float, float, float]
     amplitude: tuple[float, float, float]
     period: float
-    body: str
 
     def deck(self, parts: int, time_step: float) -> str:
         head = HEAD.format(types=self.types) + (BODIES.format(bodies=self.bodies) if self.bodies else "")
@@ -106,7 +102,6 @@ CASES = {
         (100.0, 0.0, -100.0),
         (2.0, 0.0, 0.0),
         10.0,
-        "point4",
     ),
     "a lazy S over an arch": Hung(
         """pipe 0.2 60.0 3.0e8 -0.8 2.0e3 1.1 1.0 0.05 0.0
@@ -125,6 +120,5 @@ rope 0.1 12.0 4.0e7 -0.8 10.0 1.2 1.0 0.05 0.0""",
         (0.0, 0.0, -5.0),
         (1.0, 0.0, 1.5),
         9.0,
-        "body1",
     ),
 }

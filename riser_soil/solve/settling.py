@@ -67,7 +67,6 @@ class _Settling:
     def __init__(self, system: System, newton: Newton, part: Relaxation, pressed: Pressed, t: float) -> None:
         self._system, self._newton, self._part, self._pressed, self._t = system, newton, part, pressed, t
         self._done, self._stiffest, self._least = RelaxationResult(), STIFFEST * part.drag, 0.0
-        self._too_far = np.inf  # m, by which a step with the drag before moved the riser
 
     def to_rest(self) -> RelaxationResult:
         nearly, missing = NEARLY_BORNE, self._sink()
@@ -104,7 +103,6 @@ class _Settling:
         part.places = 1.0 * (self._pressed.force(self._at_rest) > 0.0)
         if not part.places.any():
             raise SolveError("the riser touches nothing that it could settle in")
-        self._too_far = np.inf
         while (moved := self._step(part.drag)) is None:
             pass
         lengths, farthest = part.line.tributary_length, float(moved.max())
@@ -122,22 +120,23 @@ class _Settling:
             solution = step_against(self._system, self._newton, part, self._t, drag)
         except NotConvergedError as failure:
             if drag:
-                self._least, part.drag = 0.5 * RISES * drag, RISES * drag
-            if part.drag > self._stiffest:
-                sort = SinkingError if self._done.sunk else SolveError
-                raise sort(f"the riser does not settle even in tiny steps: {failure}") from failure
+                self._least = 0.5 * RISES * drag
+                self._stiffen(RISES, str(failure))
             return None
         self._done.iterations += solution.iterations
         translations = part.line.nodal(solution.state.u)[:, : part.line.dimension]
         moved: Array = part.places * np.abs(translations).max(axis=1)
         if drag and moved.max() > ALLOWED * self._pressed.diameter:
-            if moved.max() > 0.9 * self._too_far:
-                raise SolveError("the riser's supports move it farther than soil follows in a step")
-            self._too_far = moved.max()
-            part.drag *= moved.max() / self._longest
+            self._stiffen(float(moved.max()) / self._longest, "its supports move it farther than soil follows")
             return None
         self._system.commit(solution.state)
         return moved
+
+    def _stiffen(self, by: float, reason: str) -> None:
+        self._part.drag *= by
+        if self._part.drag > self._stiffest:
+            sort = SinkingError if self._done.sunk else SolveError
+            raise sort(f"the riser does not settle even in tiny steps: {reason}")
 
     @property
     def _longest(self) -> float:
