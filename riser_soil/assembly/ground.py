@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from riser_soil.seabed.law import NormalLaw
     from riser_soil.soil.condensed import SoilSurface
     from riser_soil.soil.grid import DistributedMesh
+    from riser_soil.soil.harmonic_mesh import HarmonicMesh
+    from riser_soil.soil.sections import Sections
     from riser_soil.soil.soil import Soil
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
@@ -127,19 +129,30 @@ def _surface_contact_of(
 def mesh_renewal_of(
     soil: Soil, contact: SoilContact, friction: SoilFriction | None, line: Line
 ) -> MeshRenewal | None:
-    """What renews the mesh of soil that moves: a block of hexahedra under a riser along x or y; collective."""
+    """What renews the mesh of soil that moves under the pipe's cylinder."""
     from riser_soil.contact.surface_contact import SurfaceContact
 
     if not soil.moves or not isinstance(contact, SurfaceContact):
         return None
     from riser_soil.contact.mesh_renewal import MeshRenewal
+
+    across = abs(float(line.direction[1])) > abs(float(line.direction[0]))
+    mesh = _mesh_made_anew(soil, int(across)) if soil.grid.nodes.comm.rank == 0 else None
+    return MeshRenewal(soil, contact, friction, mesh)
+
+
+def _mesh_made_anew(soil: Soil, along: int) -> Sections | HarmonicMesh:
+    """Its sections where its nodes form a grid, the riser along x (0) or y (1)."""
     from riser_soil.soil.sections import sections_of
 
-    comm, across = soil.grid.nodes.comm, abs(float(line.direction[1])) > abs(float(line.direction[0]))
-    sections = sections_of(soil.mesh.points, int(across)) if comm.rank == 0 else None
-    if not comm.bcast(sections is not None):
-        return None
-    return MeshRenewal(soil, contact, friction, sections)
+    mesh, top = soil.mesh, soil.surface
+    sections = sections_of(mesh.points, along)
+    if sections is not None:
+        return sections
+    from riser_soil.soil.harmonic_mesh import HarmonicMesh
+
+    facets = (top.global_index[::3] // 3)[top.facets]
+    return HarmonicMesh(soil.grid.family, mesh.points, mesh.cells, facets, soil.grid.supported(mesh.points))
 
 
 def contact_width(scales: Scales, E: float) -> float:

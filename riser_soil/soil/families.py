@@ -20,6 +20,8 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import MeshError
 
+FOLDS = 0.1  # skewness of a cell
+
 
 @dataclass(frozen=True)
 class Family:
@@ -54,7 +56,7 @@ class Family:
 
     def values(self, points: Array) -> Array:
         """Shape functions (nq, nn)."""
-        return np.asarray(_tabulate(self.cell, self.degree, points)[0, :, :, 0])
+        return np.asarray(tabulate(self.cell, self.degree, points)[0, :, :, 0])
 
     def gradients(self, points: Array) -> Array:
         """Derivatives of the shape functions on the reference cell (nq, nn, 3); in a plane (nq, nn, 2)."""
@@ -62,10 +64,11 @@ class Family:
 
 
 def _reference_gradients(cell: basix.CellType, degree: int, points: Array) -> Array:
-    return np.ascontiguousarray(np.moveaxis(_tabulate(cell, degree, points)[1:, :, :, 0], 0, 2))
+    return np.ascontiguousarray(np.moveaxis(tabulate(cell, degree, points)[1:, :, :, 0], 0, 2))
 
 
-def _tabulate(cell: basix.CellType, degree: int, points: Array) -> Array:
+def tabulate(cell: basix.CellType, degree: int, points: Array) -> Array:
+    """Lagrange shape functions and their derivatives (1 + d, n, nn, 1) at places (n, d) of a reference cell."""
     element = basix.create_element(basix.ElementFamily.P, cell, degree, basix.LagrangeVariant.gll_warped)
     table: Array = element.tabulate(1, points)
     return table

@@ -184,7 +184,7 @@ def return_elements(
 @njit
 def write_largest_strains(before: Array, after: Array, cells: IntArray, out: Array) -> None:
     """Write the largest strain (nc,) of each cell, half of the change of squared lengths over these, of lines between
-    two of its nodes at points (n, 3) before and after.
+    two of its nodes: before at (nc, nn, 3), after at points (n, 3).
     """
     for c in range(cells.shape[0]):
         most = 0.0
@@ -192,7 +192,7 @@ def write_largest_strains(before: Array, after: Array, cells: IntArray, out: Arr
             for b in range(a):
                 was = now = 0.0
                 for i in range(3):
-                    was += (before[cells[c, a], i] - before[cells[c, b], i]) ** 2
+                    was += (before[c, a, i] - before[c, b, i]) ** 2
                     now += (after[cells[c, a], i] - after[cells[c, b], i]) ** 2
                 most = max(most, abs(now - was) / was)
         out[c] = 0.5 * most

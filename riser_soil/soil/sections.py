@@ -9,7 +9,9 @@ equation in a nonuniform triangle mesh, J. Comput. Phys. 1 (1966).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -17,10 +19,27 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.soil.families import QUAD4, skewness
+from riser_soil.soil.families import FOLDS, QUAD4, skewness
 
 SAME = 1e-6  # of the block's size: coordinates nearer to each other are those of one plane of the grid
+MOST_RAISED = 0.5  # of the ways that surface nodes have gone, for the soil below
 MOST_PASSES, SETTLED = 30, 1e-6  # of Winslow's equations; movement of a pass over the smallest cell
+
+
+class Pressing(NamedTuple):
+    """What a new surface asks of the pipe: gaps (n,) [m] between it and points (n, 3); points (n, 3), those near it at
+    given gaps (n,); and the gap from which on a node is free of it.
+    """
+
+    gaps: Callable[[Array], Array]
+    brought_to: Callable[[Array, Array], Array]
+    clear: float
+
+    def kept_clear(self, refilled: Callable[[BoolArray], Array], free: BoolArray) -> Array:
+        """A surface whose free nodes (n,) are raised; one that would be raised to the pipe stays."""
+        out = refilled(free)
+        close = free & (self.gaps(out) < self.clear)
+        return self.kept_clear(refilled, free & ~close) if close.any() else out
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +53,28 @@ class Sections:
     layers: Array
     across: int
 
-    @property
-    def surface(self) -> IntArray:
-        """Nodes (ns, nc) of the top."""
-        return self.nodes[:, :, -1]
+    def renewed(self, points: Array, worn: BoolArray, pipe: Pressing) -> tuple[Array, BoolArray]:
+        """All nodes (n, 3), and which of them (n,) are those of new sections: of those with worn ones (n,)."""
+        out, made = points.copy(), np.zeros(len(points), dtype=bool)
+        for section in self.nodes:
+            new = self._renewed(points[section], pipe) if worn[section].any() else None
+            if new is not None:
+                out[section], made[section] = new, True
+        return out, made
 
-    def renewed(self, at: Array, top: Array) -> Array:
+    def _renewed(self, at: Array, pipe: Pressing) -> Array | None:
+        """New nodes of a section (nc, nl, 3), none of whose cells is folded; None where there is no such way."""
+        line = at[:, -1]
+        gaps = pipe.gaps(line)
+        for top, beside in (spread(line, self.columns, gaps), at_columns(line, self.columns, gaps, self.across)):
+            brought = pipe.brought_to(top, beside)
+            full = pipe.kept_clear(lambda free: refilled(line, brought, free, self.across), beside > pipe.clear)  # noqa: B023
+            new = self.beneath(at, full)
+            if self.skewness(new) > FOLDS:
+                return new
+        return None
+
+    def beneath(self, at: Array, top: Array) -> Array:
         """A section's nodes (nc, nl, 3): those of the surface at (nc, 3), the inner ones as these ask."""
         at = at.copy()
         at[:, -1] = top
@@ -97,7 +132,7 @@ def at_columns(line: Array, places: Array, beside: Array, across: int) -> tuple[
 
 def refilled(line: Array, top: Array, free: BoolArray, across: int) -> Array:
     """A new surface line `top` (nc, 3) with as much soil below it as below the old one: its free nodes (nc,) are raised
-    by a share of the ways that they have gone, half at most, as corners are cut off on these.
+    by a share of the ways that they have gone, as corners are cut off on these.
     """
     before, after = line[:, [across, 2]], top[:, [across, 2]]
     along = np.zeros_like(after)
@@ -107,7 +142,7 @@ def refilled(line: Array, top: Array, free: BoolArray, across: int) -> Array:
     lost, swept = _below(before) - _below(after), float(ways @ width)
     if swept == 0.0:
         return top
-    raised = ways * min(max(lost / swept, -0.5), 0.5)
+    raised = ways * min(max(lost / swept, -MOST_RAISED), MOST_RAISED)
     out, up = top.copy(), along / np.where(width > 0.0, width, 1.0)[:, None]
     out[:, across] -= raised * up[:, 1]
     out[:, 2] += raised * up[:, 0]

@@ -16,7 +16,7 @@ from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
-from riser_soil.soil.families import skewness
+from riser_soil.soil.families import FOLDS, skewness
 from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.large_strain import carried_rows, moved_on, nearest_rows
@@ -25,7 +25,6 @@ from riser_soil.soil.layered import LayeredWeight
 from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.soil_cells import SoilCells
 
-FOLDS = 0.1  # skewness of a cell
 SLOPE = ("slope_x", "slope_y", "slope_z")
 NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 
@@ -77,7 +76,7 @@ class Soil:
         self._volumes: Array = self.cells.gradients.weights.flatten()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
-        self._mesh_at = grid.nodes.points
+        self._mesh_at = grid.nodes.points[grid.nodes.cells]  # corners (nc, nn, 3) of the cells when they were made
         self._stored = self._lifted = 0.0
 
     def _take_material(self) -> None:
@@ -203,8 +202,8 @@ class Soil:
         self._depth = self._depth_at(before, after)
         history = self._history_beyond_weight(before)
         history[new_points] = carried_rows(self.grid, here, there, history, self.law.columns)
-        self._mesh_at = np.where(made[:, None], after, self._mesh_at)
-        self.cells.make_anew(np.flatnonzero(new), after[self.cells.nodes[new]])
+        self._mesh_at[new] = after[self.cells.nodes[new]]
+        self.cells.make_anew(np.flatnonzero(new), self._mesh_at[new])
         self._volumes[new_points] = self.cells.gradients.weights.ravel()[new_points]
         self._take_material()
         self._load, self._last = self._held + self._weight(), None

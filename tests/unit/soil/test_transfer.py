@@ -80,8 +80,8 @@ def test_a_lip_that_leans_over_is_cut_where_cells_along_it_would_fold() -> None:
     at[4:6, -1, 1:] = [[0.070, -0.004], [0.088, 0.010]]
     along, _ = spread(at[:, -1], sections.columns, 0.0 * y)
     back, beside = at_columns(at[:, -1], sections.columns, y, across=1)
-    assert sections.skewness(sections.renewed(at, along)) < 0.1
-    assert sections.skewness(sections.renewed(at, back)) > 0.1
+    assert sections.skewness(sections.beneath(at, along)) < 0.1
+    assert sections.skewness(sections.beneath(at, back)) > 0.1
     np.testing.assert_array_equal(back[:, 1], y)
     assert back[:, 2].max() > 0.015
     np.testing.assert_allclose(beside[10:], y[10:], atol=1e-12)
