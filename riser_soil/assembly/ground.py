@@ -145,14 +145,12 @@ def _mesh_made_anew(soil: Soil, along: int) -> Sections | HarmonicMesh:
     """Its sections where its nodes form a grid, the riser along x (0) or y (1)."""
     from riser_soil.soil.sections import sections_of
 
-    mesh, top = soil.mesh, soil.surface
-    sections = sections_of(mesh.points, along)
+    sections = sections_of(soil.mesh.points, along)
     if sections is not None:
         return sections
     from riser_soil.soil.harmonic_mesh import HarmonicMesh
 
-    facets = (top.global_index[::3] // 3)[top.facets]
-    return HarmonicMesh(soil.grid.family, mesh.points, mesh.cells, facets, soil.grid.supported(mesh.points))
+    return HarmonicMesh.of(soil.grid, soil.mesh, soil.surface)
 
 
 def contact_width(scales: Scales, E: float) -> float:

@@ -22,12 +22,14 @@ from scipy.spatial import cKDTree
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.soil.families import FOLDS, Family, skewness, tabulate
+from riser_soil.soil.field import GatheredMesh
+from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.sections import MOST_RAISED, Pressing
+from riser_soil.soil.surface import SoilTop
 
 BESIDE = 1.001  # radii of a simplex about its middle, within which it may hold a place
 FLAT = 1e-12  # of a simplex' size: a volume that is none
 
-SIDES = {10: ((4, 2, 3), (5, 1, 3), (6, 1, 2), (7, 0, 3), (8, 0, 2), (9, 0, 1)), 8: ()}  # middle and ends, by nodes
 TETRAHEDRA = {  # of a cell, by its nodes
     10: (
         *((0, 9, 8, 7), (1, 9, 6, 5), (2, 8, 6, 4), (3, 7, 5, 4)),
@@ -82,11 +84,18 @@ class HarmonicMesh:
     facets: IntArray
     held: BoolArray
 
+    @classmethod
+    def of(cls, grid: DistributedMesh, mesh: GatheredMesh, top: SoilTop) -> HarmonicMesh:
+        """Of a whole mesh, gathered, and its top."""
+        facets = (top.global_index[::3] // 3)[top.facets]
+        return cls(grid.family, mesh.points, mesh.cells, facets, grid.supported(mesh.points))
+
     def renewed(self, points: Array, worn: BoolArray, pipe: Pressing) -> tuple[Array, BoolArray]:
-        """All nodes (n, 3), and which of them (n,) are those of new cells: worn ones (n,); none where a new cell would
-        be folded.
+        """All nodes (n, 3), and which of them (n,) go to new places: those of cells with worn ones (n,); none where a
+        new cell would be folded.
         """
-        free = self._with_middles(worn)
+        free = np.zeros_like(worn)
+        free[self.cells[worn[self.cells].any(axis=1)]] = True
         cells = self.cells[free[self.cells].any(axis=1)]
         out, at_first = self._surface(points, free & self._top, pipe)
         numbers = np.flatnonzero(free & ~self._top)
@@ -95,10 +104,9 @@ class HarmonicMesh:
         number, shares = _located(self.first[numbers], now, tetrahedra)
         out[numbers] = np.einsum("nk,nki->ni", shares, points[tetrahedra[number]])
         out[self.held] = points[self.held]
-        self._straighten(out, free)
         if skewness(self.family, out, cells).min(initial=1.0) > FOLDS:
             return out, free
-        return points, np.zeros(len(points), dtype=bool)
+        return points, np.zeros_like(free)
 
     @cached_property
     def _top(self) -> BoolArray:
@@ -107,32 +115,14 @@ class HarmonicMesh:
         out[self.facets] = True
         return out
 
-    @cached_property
-    def _sides(self) -> IntArray:
-        """Sides (ns, 3) of the cells that have a node in their middle: this, and their ends."""
-        sides = np.array(SIDES[self.cells.shape[1]], dtype=np.int64).reshape(-1, 3)
-        return np.unique(self.cells[:, sides].reshape(-1, 3), axis=0)
-
-    def _with_middles(self, worn: BoolArray) -> BoolArray:
-        """Worn nodes, those in the middle of a side as soon as one of its ends is."""
-        middle, a, b = self._sides.T
-        out = worn.copy()
-        out[middle] = worn[a] | worn[b]
-        return out
-
-    def _straighten(self, out: Array, free: BoolArray) -> None:
-        """Free nodes in the middle of sides below the top go midway between the ends."""
-        middle, a, b = self._sides[free[self._sides[:, 0]] & ~self._top[self._sides[:, 0]]].T
-        out[middle] = 0.5 * (out[a] + out[b])
-
     def _surface(self, points: Array, free: BoolArray, pipe: Pressing) -> tuple[Array, Array]:
         """All nodes, the free ones of the top (n,) spread anew along it; and where these places were at first."""
         out, at_first, numbers = points.copy(), self.first.copy(), np.flatnonzero(free)
         if not len(numbers):
             return out, at_first
         facets = Facets.of(self.facets[free[self.facets].any(axis=1)])
-        may = _may_move(numbers, self.held)
-        now, then = (_harmonic(at, self.first, facets.triangles, may)[:, :2] for at in (points, self.first))
+        may, in_plan = _may_move(numbers, self.held)[:, :2], self.first[:, :2]
+        now, then = (_harmonic(at, in_plan, facets.triangles, may) for at in (points, self.first))
         at_first[numbers] = facets.values(self.first, *facets.located(now[numbers], then))
         gaps, place = pipe.gaps(points), facets.located(then[numbers], now)
         beside = facets.values(gaps[:, None], *place)[:, 0]
@@ -210,15 +200,14 @@ def _may_move(numbers: IntArray, held: BoolArray) -> BoolArray:
 
 
 def _harmonic(at: Array, values: Array, pieces: IntArray, free: BoolArray) -> Array:
-    """Values (n, 3) at nodes, free ones (n, 3) by the harmonic field between the others, nodes at (n, 3)."""
+    """Values (n, k) at nodes, free ones (n, k) by the harmonic fields between the others; nodes at (n, 3)."""
     out = values.copy()
     stiffness = _laplacian(at, pieces)
-    for axis in range(3):
-        asked, rest = np.flatnonzero(free[:, axis]), np.flatnonzero(~free[:, axis])
+    for k in range(values.shape[1]):
+        asked, rest = np.flatnonzero(free[:, k]), np.flatnonzero(~free[:, k])
         if len(asked):
             rows = stiffness[asked]
-            load = rows[:, rest] @ values[rest, axis]
-            out[asked, axis] = splu(rows[:, asked].tocsc()).solve(-load)
+            out[asked, k] = splu(rows[:, asked].tocsc()).solve(-rows[:, rest] @ values[rest, k])
     return out
 
 

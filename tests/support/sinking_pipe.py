@@ -49,6 +49,15 @@ def sinking(cells: int, depth: float, steps: int, law: Mapping = CLAY, **more: A
     }
 
 
+def sinking_into_tetrahedra(cells: int, depth: float, steps: int, **more: Any) -> Mapping:
+    """The same on tetrahedra, so many across the pipe, in a slice of two."""
+    scene = sinking(cells, depth, steps, **more)
+    size = D / cells
+    block = scene["soil"]["block"] | {"x": [0.5 * D - size, 0.5 * D + size]}
+    mesh = {"kind": "tet", "size_at_riser": size, "size_far": D}
+    return scene | {"soil": scene["soil"] | {"block": block, "mesh": mesh}}
+
+
 @dataclass(frozen=True, eq=False)
 class Sunk:
     """Step by step: embedment over D, loads down and to the side (+y) per length over su D, Newton iterations, the
