@@ -137,11 +137,11 @@ def _small_strain(assembly: Assembly) -> Iterator[str]:
 
 
 def _unrenewed(assembly: Assembly) -> Iterator[str]:
-    """Cells that move and can't be made anew."""
+    """Cells that move and are not made anew."""
     if assembly.scene.soil_moves and assembly.mesh_renewal is None:
         yield (
-            "the soil's cells move with it, and this mesh can't be renewed on the way: a run ends where one folds, as "
-            "where the pipe sinks in by some 0.3 diameters; hexahedra under a riser along x or y are renewed"
+            "the soil's cells move with it, and under contact at nodes get no new mesh on the way: a run ends where "
+            "one folds, as where the pipe sinks in by some 0.3 diameters; take contact.method: surface"
         )
 
 

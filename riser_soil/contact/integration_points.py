@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from riser_soil.contact.facets import triangular
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.carried import carried
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 
@@ -139,9 +139,9 @@ class PointMemory:
         self.numbers, self.rows = numbers[changed][order], rows[changed][order]
 
     def go_over(self, numbers: IntArray, before: Array, after: Array) -> None:
-        """Points (n,) that lay at places (n, 3) lie at others now: each takes the row of that which was nearest."""
+        """Points (n,) that lay at places (n, 3) lie at others now: what is kept stays where it was, see `carried`."""
         if len(self.numbers):
-            self.keep(numbers, self.at(numbers[cKDTree(before).query(after)[1]]))
+            self.keep(numbers, carried(before, self.at(numbers), after))
 
     def state(self) -> Saved:
         return {"numbers": self.numbers, "rows": self.rows}

@@ -174,7 +174,7 @@ class SuctionLaw(CompiledLaw):
 
     penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
 
-    History (..., 1): largest opening [m] since the last touch, inf before the first.
+    History (..., 1): largest opening [m] since the last touch, `reach` where nothing holds.
     """
 
     penalty: Penalty
@@ -200,4 +200,4 @@ class SuctionLaw(CompiledLaw):
         return self.penalty.start
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
-        return np.full((*shape, 1), np.inf)
+        return np.full((*shape, 1), self.reach)

@@ -1,4 +1,4 @@
-"""New meshes of cells in no order: what is undisturbed stays, what is drawn aside comes back, and the volume is kept."""
+"""New meshes of cells in no order: what is undisturbed stays, what is drawn aside comes back, volume is kept."""
 
 from __future__ import annotations
 
