@@ -11,8 +11,6 @@ from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # what fineness costs, as a power
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to
 MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 10.0}  # from one setting to the next
-#: Finer cells by more than that, in a scene's first setting, are beyond what a machine bears: soil grows by the cube.
-BEYOND = {"soil": 2.0}
 BY_CHANCE = 0.25  # of a share, that is left at least where two runs agree
 NOT_KNOWN = 2.0  # finer in mesh and time, where a bar is not known
 DOUBT = 0.5  # of the accuracy, below which it does not matter how two runs are apart
@@ -22,17 +20,8 @@ Factors = Mapping[str, float]  # by source: how many times as fine
 
 
 def needed(bars: Sequence[ErrorBar], accuracy: float) -> Factors:
-    """For all bars to keep to the accuracy, a share of their quantities' scales, at the least cost; at most `MOST`, and
-    nothing in a source that is out of reach.
-    """
-    found, lost = _asked(bars, accuracy), out_of_reach(bars, accuracy)
-    return {source: min(factor, MOST[source]) for source, factor in found.items() if source not in lost}
-
-
-def out_of_reach(bars: Sequence[ErrorBar], accuracy: float) -> list[str]:
-    """Sources that would have to be finer than can be."""
-    found = _asked(bars, accuracy)
-    return [source for source, most in BEYOND.items() if found.get(source, 1.0) > most]
+    """For all bars to keep to the accuracy, a share of their quantities' scales, at the least cost; at most `MOST`."""
+    return {source: min(factor, MOST[source]) for source, factor in _asked(bars, accuracy).items()}
 
 
 def too_dear(bars: Sequence[ErrorBar], accuracy: float, runs: int) -> float:
@@ -59,8 +48,7 @@ def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, fact
 
     Each source's share falls by its order. A source that is finer alone has the share by which it tells the two runs
     apart, by Richardson's extrapolation, be it more or less; of several none has more than if it were alone. But as
-    runs may agree by chance, and sources hide one another, a part of each stays. Of the soil it is all: in its meshes
-    contact grows cell by cell, and two agree by chance often.
+    runs may agree by chance, and sources hide one another, a part of each stays. Of the soil it is all.
     """
     known = {bar.key_result.key: bar for bar in bars}
     return [_expected(known.get(key), before, found, factors, key) for key in found.reported]

@@ -2,7 +2,8 @@
 
 A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
 bars are left is foretold from the trial before, and measured by comparison runs of the run where that is doubtful
-(`needed.doubtful`). Where they miss the accuracy, a finer run follows, unless the runs that are left would, too.
+(`needed.doubtful`). Where they miss the accuracy, a finer run follows, unless the runs that are left would, too, or it
+would take too long.
 """
 
 from __future__ import annotations
@@ -13,10 +14,11 @@ from typing import Any
 
 from riser_soil.accuracy.barred_run import LEFT, print_bars, values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
-from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, out_of_reach, too_dear
+from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, too_dear
 from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measured, trial
 from riser_soil.accuracy.settings import settings_of, settings_reported
 from riser_soil.assembly.packages import communicator_of
+from riser_soil.checks.estimate import size_of
 from riser_soil.checks.limits import in_words
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
 from riser_soil.interruption import handling_signals
@@ -26,6 +28,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
 
 RUNS = 3  # at most that are to reach the accuracy
+LONGEST = 1800.0  # s on one core, of a run that follows another: soil's price grows by the cube of its fineness
 CLOSER = 0.7  # of what the run before aimed at, as its bars fell by less than their orders
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"
 
@@ -59,43 +62,54 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
     for number in range(RUNS):
         _tell(last, accuracy, comm)
         try:
-            last = _finer_run(last, accuracy, CLOSER**number * accuracy, folder, force or number > 0, comm)
+            factors, scene = _finer_scene(last, CLOSER**number * accuracy)
+            foretold = size_of(scene).seconds
+            if number > 0 and foretold > LONGEST:
+                return last, f"; a finer run would take some {in_words(foretold)}, more than {in_words(LONGEST)}"
+            last = _finer_run(scene, last, factors, accuracy, folder, force or number > 0, comm)
         except (SceneError, MeshError) as err:
             if number == 0:
                 raise
             return last, f"; a finer one can't be run: {err}"
         if largest(last.bars)[0] <= accuracy:
             break
-        if lost := out_of_reach(last.bars, accuracy):
-            return last, f"; what the {lost[0]} asks for is out of reach"
         if times := too_dear(last.bars, accuracy, RUNS - 1 - number):
             taken = in_words(times * last.seconds)
             return last, f"; to reach it would take at least {times:.0f} times as long, {taken}"
     return last, ""
 
 
-def _finer_run(last: TriedSetting, accuracy: float, aim: float, folder: Path, force: bool, comm: Any) -> TriedSetting:
-    by_source = needed(last.bars, aim)
+def _finer_scene(last: TriedSetting, aim: float) -> tuple[Factors, Scene]:
+    """The scene in the setting that the bars of the last ask for, and how many times as fine that is, by source."""
+    factors = needed(last.bars, aim)
     names = {source: name for name, source in SOURCES.items()}
-    scene, peaks = finer(last.scene, {names[source]: factor for source, factor in by_source.items()}), RunPeaks()
+    return factors, finer(last.scene, {names[source]: factor for source, factor in factors.items()})
+
+
+def _finer_run(
+    scene: Scene, last: TriedSetting, factors: Factors, accuracy: float, folder: Path, force: bool, comm: Any
+) -> TriedSetting:
+    peaks = RunPeaks()
     since = time.perf_counter()
     run(scene, folder, force, peaks)
     taken = time.perf_counter() - since
     values = values_of_run(folder, peaks) if comm.rank == 0 else None
-    bars = comm.bcast(_foretold(last, values, by_source, accuracy))
+    bars = comm.bcast(_foretold(last, values, factors, accuracy))
     if bars is None:
         bars = _measured(scene, values, folder, comm)
     return TriedSetting(scene, values, bars, taken)
 
 
 def _foretold(
-    last: TriedSetting, values: RunValues | None, by_source: Factors, accuracy: float
+    last: TriedSetting, values: RunValues | None, factors: Factors, accuracy: float
 ) -> list[ErrorBar] | None:
-    """The run's bars, from those of the one before; None where that is doubtful, and on other ranks."""
-    if values is None:
+    """The run's bars, from those of the one before; None where that is doubtful, and on other ranks. Finer cells of
+    soil are: in them contact grows cell by cell.
+    """
+    if values is None or factors.get("soil", 1.0) > 1.0:
         return None
     assert last.values is not None
-    left = expected(last.bars, last.values, values, by_source)
+    left = expected(last.bars, last.values, values, factors)
     return None if doubtful(last.bars, last.values, values, left, accuracy) else left
 
 

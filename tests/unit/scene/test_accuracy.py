@@ -188,6 +188,15 @@ def test_a_run_too_large_to_follow_leaves_the_one_before(tmp_path: Path, monkeyp
     assert summary(tmp_path / "run")["accuracy"]["reached"] is False
 
 
+def test_a_run_that_would_take_too_long_to_follow_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first is run whatever it takes."""
+    monkeypatch.setattr(target_run, "LONGEST", 0.0)
+    scene = scene_from_mapping(asking("cantilever under a sudden load", "20 %"))
+    with pytest.raises(AccuracyError, match=r"was not reached: .*; a finer run would take some .*, more than 0 s"):
+        run_to_accuracy(scene, tmp_path / "run")
+    assert summary(tmp_path / "run")["finished"]
+
+
 def test_a_finished_run_is_refused_before_the_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = scene_from_mapping(asking("cantilever, tip load"))
     run_to_accuracy(scene, tmp_path / "run")
