@@ -33,7 +33,7 @@ def _solver(**keys: str) -> Mapping:
 
 SMALL, WHOLE, SECTIONS = _soil(strain="small"), _soil(symmetry="whole"), _soil(model="sections")
 NODES: Mapping = {"contact": "node"}
-TETRAHEDRA = SMALL | {"kind": "tet"}
+TETRAHEDRA: Mapping = {"kind": "tet"}
 
 #: Contact is on the surface, of half by symmetry at large strain on hexahedra, where a method does not say else.
 LADDERS = {

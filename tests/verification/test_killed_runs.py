@@ -41,6 +41,13 @@ def soil() -> Scene:
     return scene_from_mapping(scene | {"output": {"checkpoint": OFTEN}})
 
 
+def sections() -> Scene:
+    """Cyclic clay at large strain, in sections."""
+    scene = touchdown(LAY, heave(0.8), su=1500.0)
+    scene["soil"] |= {"model": "sections", "law": scene["soil"]["law"] | {"kind": "iwan"}}
+    return scene_from_mapping(scene | {"contact": {"method": "surface"}, "output": {"checkpoint": OFTEN}})
+
+
 def killed(scene: Scene, out: Path, after: float, on_the_way: bool) -> None:
     """The run of a process of its own, so many seconds after its beginning, or after its first checkpoint."""
     child = os.fork()
@@ -71,7 +78,7 @@ def look(out: Path) -> int:
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize(("make", "kills"), [(riser, 100), (soil, 20)], ids=["riser", "soil"])
+@pytest.mark.parametrize(("make", "kills"), [(riser, 100), (soil, 20), (sections, 8)], ids=["riser", "soil", "sections"])
 def test_every_killed_run_goes_on_to_the_same_end(make: Callable[[], Scene], kills: int, tmp_path: Path) -> None:
     scene, chance, gone_on = make(), random.Random(kills), 0
     run(scene, tmp_path / "alone")  # kernels are there from now on
