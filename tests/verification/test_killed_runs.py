@@ -78,7 +78,9 @@ def look(out: Path) -> int:
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize(("make", "kills"), [(riser, 100), (soil, 20), (sections, 8)], ids=["riser", "soil", "sections"])
+@pytest.mark.parametrize(
+    ("make", "kills"), [(riser, 100), (soil, 20), (sections, 8)], ids=["riser", "soil", "sections"]
+)
 def test_every_killed_run_goes_on_to_the_same_end(make: Callable[[], Scene], kills: int, tmp_path: Path) -> None:
     scene, chance, gone_on = make(), random.Random(kills), 0
     run(scene, tmp_path / "alone")  # kernels are there from now on
