@@ -63,9 +63,7 @@ Scene by scene: [asked_accuracy_random.csv](asked_accuracy_random.csv).
 ## On soil
 
 The calibration's {count_on_soil} scenes on soil, elastic and yielding, ask for {accuracy_on_soil:g} %; block and law
-stay as they are. Key results whose reference is not certain to {certain_on_soil:g} % are left out. Where the soil's
-cells would have to be less than half as large as those of `mesh: auto`, the run reports that the accuracy is out of
-reach.
+stay as they are. Key results whose reference is not certain to {certain_on_soil:g} % are left out.
 
 {figures_on_soil}
 
