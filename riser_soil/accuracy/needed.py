@@ -24,6 +24,11 @@ def needed(bars: Sequence[ErrorBar], accuracy: float) -> Factors:
     return {source: min(factor, MOST[source]) for source, factor in _asked(bars, accuracy).items()}
 
 
+def times_as_long(factors: Factors) -> float:
+    """That a run takes which is finer by factors."""
+    return math.prod(factor ** COST[source] for source, factor in factors.items())
+
+
 def too_dear(bars: Sequence[ErrorBar], accuracy: float, runs: int) -> float:
     """How many times as many elements and steps all bars ask for together, where so many runs, each at most so much
     finer as `MOST`, don't get there in mesh or time; 0 where they do.

@@ -14,11 +14,10 @@ from typing import Any
 
 from riser_soil.accuracy.barred_run import LEFT, print_bars, values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
-from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, too_dear
+from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, times_as_long, too_dear
 from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measured, trial
 from riser_soil.accuracy.settings import settings_of, settings_reported
 from riser_soil.assembly.packages import communicator_of
-from riser_soil.checks.estimate import size_of
 from riser_soil.checks.limits import in_words
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
 from riser_soil.interruption import handling_signals
@@ -28,7 +27,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
 
 RUNS = 3  # at most that are to reach the accuracy
-LONGEST = 1800.0  # s on one core, of a run that follows another: soil's price grows by the cube of its fineness
+LONGEST = 1800.0  # s, of a run that follows another: soil's price grows by the cube of its fineness
 CLOSER = 0.7  # of what the run before aimed at, as its bars fell by less than their orders
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"
 
@@ -63,8 +62,8 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
         _tell(last, accuracy, comm)
         try:
             factors, scene = _finer_scene(last, CLOSER**number * accuracy)
-            foretold = size_of(scene).seconds
-            if number > 0 and foretold > LONGEST:
+            foretold = comm.bcast(last.seconds * times_as_long(factors))
+            if foretold > LONGEST:
                 return last, f"; a finer run would take some {in_words(foretold)}, more than {in_words(LONGEST)}"
             last = _finer_run(scene, last, factors, accuracy, folder, force or number > 0, comm)
         except (SceneError, MeshError) as err:

@@ -8,7 +8,7 @@ import pytest
 
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues, alone
 from riser_soil.accuracy.key_results import KeyResult
-from riser_soil.accuracy.needed import doubtful, expected, largest, needed, too_dear
+from riser_soil.accuracy.needed import doubtful, expected, largest, needed, times_as_long, too_dear
 
 VALUE = 1000.0
 ORDERS = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}  # in which shares fall
@@ -80,7 +80,7 @@ def test_soil_is_at_most_twice_as_fine_in_the_next_run() -> None:
     assert needed([bar(soil=0.015)], 0.01)["soil"] == pytest.approx(0.015 / (MARGIN * 0.01 - SMALLEST))
     found = needed([bar(soil=0.03, time=0.03)], 0.01)
     assert found["soil"] == 2.0
-    assert found["time"] > 1.0
+    assert times_as_long(found) == pytest.approx(8.0 * found["time"])
 
 
 def test_what_the_runs_that_are_left_can_not_reach_is_too_dear() -> None:
