@@ -124,8 +124,9 @@ class HarmonicMesh:
         may, in_plan = _may_move(numbers, self.held)[:, :2], self.first[:, :2]
         now, then = (_harmonic(at, in_plan, facets.triangles, may) for at in (points, self.first))
         at_first[numbers] = facets.values(self.first, *facets.located(now[numbers], then))
-        gaps, place = pipe.gaps(points), facets.located(then[numbers], now)
-        beside = facets.values(gaps[:, None], *place)[:, 0]
+        place, gaps, near = facets.located(then[numbers], now), np.zeros((len(points), 1)), np.unique(facets.nodes)
+        gaps[near, 0] = pipe.gaps(points[near])
+        beside = facets.values(gaps, *place)[:, 0]
         out[numbers] = pipe.brought_to(facets.values(points, *place), beside)
         above = np.zeros(len(points), dtype=bool)
         above[numbers] = beside > pipe.clear

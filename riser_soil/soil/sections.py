@@ -37,9 +37,13 @@ class Pressing(NamedTuple):
 
     def kept_clear(self, refilled: Callable[[BoolArray], Array], free: BoolArray) -> Array:
         """A surface whose free nodes (n,) are raised; one that would be raised to the pipe stays."""
-        out = refilled(free)
-        close = free & (self.gaps(out) < self.clear)
-        return self.kept_clear(refilled, free & ~close) if close.any() else out
+        out, raised = refilled(free), np.flatnonzero(free)
+        close = raised[self.gaps(out[raised]) < self.clear]
+        if not len(close):
+            return out
+        left = free.copy()
+        left[close] = False
+        return self.kept_clear(refilled, left)
 
 
 @dataclass(frozen=True, eq=False)
