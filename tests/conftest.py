@@ -5,6 +5,7 @@ as gmsh remembers how it found Ctrl-C. What runs keep for others of their compli
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 
@@ -14,6 +15,8 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 os.environ["RISER_SOIL_COMPLIANCE"] = "off"
 
 from hypothesis import settings
+
+gc.set_threshold(100_000, 10, 10)  # in what compiling kernels makes a search for garbage takes a tenth of its time
 
 settings.register_profile("unhurried", deadline=None)  # nothing hangs on how busy the machine is
 settings.load_profile("unhurried")
