@@ -39,7 +39,7 @@ demos: demo ## that demo and the others (demos/*/README.md), with their tables a
 	$(PYTHON) -m demos.trench.run
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
-	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile
+	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 lint: setup
 	$(PYTHON) -m ruff check .
