@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz mutants bench bench-peers parts bars asked precision quality verify-fresh docs dist docker pins clean
+.PHONY: help setup demo demos test quick lint verify stress fuzz mutants bench bench-peers parts bars asked precision quality verify-fresh docs dist docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -38,8 +38,11 @@ demos: demo ## that demo and the others (demos/*/README.md), with their tables a
 	$(PYTHON) -m demos.pipe_segment.run
 	$(PYTHON) -m demos.trench.run
 
-test: lint ## linters, types, and the quick tests, some of them on two ranks
-	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile
+test: setup ## linters, types, and the quick tests, some of them on two ranks
+	@$(MAKE) --no-print-directory -j2 lint quick # types are checked beside the tests, which leave cores now and then
+
+quick: setup
+	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 
 lint: setup
 	$(PYTHON) -m ruff check .

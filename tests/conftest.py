@@ -1,19 +1,34 @@
 """What all tests share: a process that Ctrl-C interrupts. What a script starts in the background ignores it, and passes
 that on to all that it starts; a handler, though, ends where another program begins. Before anything else is imported,
 as gmsh remembers how it found Ctrl-C. What runs keep for others of their compliance is not kept, nor read.
+
+Files that take long stand in long_files.txt, and are the first that workers take, so that none is left with one at the
+end. Those that start ranks stand apart: ranks that wait leave their cores to other workers.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
+from pathlib import Path
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 os.environ["RISER_SOIL_COMPLIANCE"] = "off"
 
+import pytest
 from hypothesis import settings
+
+gc.set_threshold(100_000, 10, 10)  # in what compiling kernels makes a search for garbage takes a tenth of its time
 
 settings.register_profile("unhurried", deadline=None)  # nothing hangs on how busy the machine is
 settings.load_profile("unhurried")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    tests = Path(__file__).parent
+    long = [tests / name for name in (tests / "long_files.txt").read_text(encoding="utf-8").splitlines()]
+    places = {path: n for n, path in enumerate(long)}
+    items.sort(key=lambda item: places.get(item.path, len(long)))

@@ -32,7 +32,7 @@ import numba
 from llvmlite import binding as llvm
 from numba.core import event
 
-from riser_soil.core.kernel_cache import PACKAGE, CacheByTypes, caching_in
+from riser_soil.core.kernel_cache import PACKAGE, CacheByTypes, caching_in, first_alone
 
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
@@ -58,7 +58,7 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
 def entry(function: Callable[[int], None]) -> Any:
     """Compile a function of one address, to be called by its own; its machine code stays on disk."""
     since, counted = time.process_time(), _announcer.seconds
-    with caching_in(str(FOLDER)):
+    with caching_in(str(FOLDER)), first_alone(FOLDER, f"{function.__module__}.{function.__qualname__}"):
         made = numba.cfunc(numba.types.void(numba.types.intp), cache=True, **OPTIONS)(function)
     if _announcer.seconds > counted:  # it wasn't there
         _announcer.seconds = counted + time.process_time() - since

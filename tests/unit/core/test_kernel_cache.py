@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from tests.support.on_ranks import HANGS, environment
+from tests.support.on_ranks import HANGS, Job, environment
 
 NUMBERS = """
 from typing import NamedTuple
@@ -102,6 +106,39 @@ except ValueError as err:
     print(*err.args)
 """
 
+SLOW = """
+import sys
+from loop import Counter, event, twice
+from hard import Hard
+
+class Slow(event.Listener):
+    def on_start(self, event):
+        print("compiling", flush=True)
+        sys.stdin.readline()
+
+    def on_end(self, event):
+        pass
+
+event.register("numba:compile", Slow())
+print("begun", flush=True)
+print(twice((Hard(1.5),)), flush=True)
+sys.stdin.readline()
+"""
+ONCE = """
+import sys
+from pathlib import Path
+from riser_soil.core.kernel_cache import first_alone
+
+print("begun", flush=True)
+with first_alone(Path.cwd(), "once"):
+    print("made" if Path("made").exists() else "first", flush=True)
+    sys.stdin.readline()
+    Path("made").touch()
+sys.stdin.readline()
+"""
+AT_ONCE = 0.5  # s, in which a process that does not wait would go on
+SOON = 60.0  # s: less than a process is waited for that does not end
+
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
@@ -111,6 +148,12 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def around(folder: Path) -> dict[str, str]:
+    """The environment of a process that finds a folder's modules, with a cache of its own."""
+    path = os.pathsep.join([str(folder), *sys.path])
+    return environment() | {"NUMBA_CACHE_DIR": str(folder / "cache"), "PYTHONPATH": path}
+
+
 def called(folder: Path, *names: str) -> list[str]:
     """Results of calls with the numbers of some modules; how many were compiled, whether `soft` was imported."""
     return printed(folder, "-c", CALL, *names)
@@ -118,10 +161,8 @@ def called(folder: Path, *names: str) -> list[str]:
 
 def printed(folder: Path, *words: str) -> list[str]:
     """What Python prints, with a cache of its own."""
-    around = environment() | {"NUMBA_CACHE_DIR": str(folder / "cache")}
-    around["PYTHONPATH"] = os.pathsep.join([str(folder), *sys.path])
-    call = [sys.executable, *words]
-    done = subprocess.run(call, env=around, cwd=folder, capture_output=True, text=True, timeout=HANGS, check=False)
+    call, given = [sys.executable, *words], around(folder)
+    done = subprocess.run(call, env=given, cwd=folder, capture_output=True, text=True, timeout=HANGS, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout.split()
 
@@ -158,3 +199,57 @@ def test_processes_that_compile_for_different_types_at_once_do_not_mix_them_up(f
     printed(folder, "two.py", "3", "late")
     assert printed(folder, "two.py", "3.5", "alone") == ["7.0"]
     assert printed(folder, "two.py", "3", "alone") == ["6"]
+
+
+@contextmanager
+def started(folder: Path, script: str) -> Iterator[subprocess.Popen[str]]:
+    """A process that has said that it has begun, and waits for a line where the script does."""
+    streams: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with Job([sys.executable, "-c", script], folder, around(folder), **streams) as job:
+        assert said(job.process) == "begun"
+        yield job.process
+
+
+def said(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    began, line = time.monotonic(), process.stdout.readline().strip()
+    assert time.monotonic() - began < SOON
+    return line
+
+
+def answer(process: subprocess.Popen[str]) -> None:
+    assert process.stdin is not None
+    process.stdin.write("\n")
+    process.stdin.flush()
+
+
+def test_what_one_process_compiles_others_wait_for(folder: Path) -> None:
+    with started(folder, SLOW) as first:
+        assert said(first) == "compiling"
+        with started(folder, SLOW) as second:
+            time.sleep(AT_ONCE)
+            answer(first)
+            assert said(first) == "3.0"
+            assert said(second) == "3.0"
+
+
+def test_a_process_that_ends_while_it_compiles_holds_up_nobody(folder: Path) -> None:
+    with started(folder, SLOW) as first:
+        assert said(first) == "compiling"
+        with started(folder, SLOW) as second:
+            time.sleep(AT_ONCE)
+            first.kill()
+            assert said(second) == "compiling"
+            answer(second)
+            assert said(second) == "3.0"
+
+
+def test_what_is_done_alone_at_first_is_done_at_once_later(tmp_path: Path) -> None:
+    with started(tmp_path, ONCE) as first:
+        assert said(first) == "first"
+        with started(tmp_path, ONCE) as second:
+            time.sleep(AT_ONCE)
+            answer(first)
+            assert said(second) == "made"
+            with started(tmp_path, ONCE) as third:
+                assert said(third) == "made"

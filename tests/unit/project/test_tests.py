@@ -37,3 +37,10 @@ def test_the_index_of_what_tests_share_has_each_module_once() -> None:
     support = TESTS / "support"
     named = re.findall(r"`(\w+)`", (support / "README.md").read_text(encoding="utf-8"))
     assert sorted(named) == sorted(path.stem for path in support.glob("*.py"))
+
+
+def test_files_that_take_long_are_there() -> None:
+    """Workers begin with them: one that has another name now would be among the last."""
+    names = (TESTS / "long_files.txt").read_text(encoding="utf-8").splitlines()
+    assert len(set(names)) == len(names)
+    assert [name for name in names if not (TESTS / name).is_file()] == []
