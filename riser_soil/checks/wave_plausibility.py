@@ -11,7 +11,7 @@ from riser_soil.checks.inventory import has_dynamics
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.wave_kinds import Airy, Regular, WaveKind
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import wave_number
 
 # Height over Miche's breaking height from which linear theory is well off: Stokes's crests are a tenth higher there.
 STEEP = 0.5
