@@ -17,9 +17,9 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State, Traits
 from riser_soil.riser import hermite
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.line import UP, Line
-from riser_soil.riser.load_kernels import GivenForces
+from riser_soil.riser.line_part import CompiledPart
+from riser_soil.riser.loads import GivenForces
 
 
 @dataclass(frozen=True)

@@ -24,10 +24,9 @@ from riser_soil.riser.beam3d import (
     strain_of,
     write_forces,
 )
-from riser_soil.riser.corotation import SpatialNodalForces, rate, rate_variation
+from riser_soil.riser.corotation import NO_LOAD, SpatialNodalForces, rate, rate_variation
 from riser_soil.riser.rotations import rows_to_increments
 from riser_soil.riser.strain3d import Stiffness, linear_stress, strain_change_variation, total
-from riser_soil.riser.uniform_load import NO_LOAD
 from riser_soil.riser.vectors import (
     Vec,
     add,

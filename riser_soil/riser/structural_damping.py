@@ -11,10 +11,10 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits, Work
 from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, rotations
 from riser_soil.riser.beam import in_plane, in_space
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.vectors import matrix, matvec, vector

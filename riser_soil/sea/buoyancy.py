@@ -13,8 +13,8 @@ from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.part import Traits
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import (
     LineForces,
     LineWeights,

@@ -26,7 +26,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Traits
-from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.sea.morison_kernels import StillWaterData, still_water
 from riser_soil.sea.moving_water_kernels import MovingWaterData, moving_water
 from riser_soil.sea.pipe import Pipe

@@ -14,9 +14,9 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits
 from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.hermite import Size
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import keep
 from riser_soil.riser.stations import POINTS
 from riser_soil.sea import through_kernels

@@ -12,11 +12,10 @@ from riser_soil.riser import shapes
 from riser_soil.riser.attachments import Attachments, PointAttachment, masses
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.contents import Flow, InnerFlow, SlugTrain
-from riser_soil.riser.ends import End, SupportRotation
-from riser_soil.riser.inertia import Inertia
+from riser_soil.riser.inertia import Inertia, RotaryInertia
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End, SupportRotation
 from riser_soil.riser.loads import AppliedLoad, PointLoads
-from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from riser_soil.riser.structural_damping import StructuralDamping
