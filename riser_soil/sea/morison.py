@@ -55,11 +55,8 @@ class WaterLoads:
         """See `LinePart.kernel_data`."""
         if self.water is None and not self.pipe.points_alone:
             return still_water(self.pipe, self.drag, self.mass)
-        return self.seen_in(self.water or FlowAtStations(self.pipe))
-
-    def seen_in(self, water: FlowAtStations) -> MovingWaterData:
-        """In water that need not stand still nor cover all."""
-        found = moving_water(water.stream, self.pipe, self.drag, self.mass)._replace(dissipative=self.dissipative)
+        stream = (self.water or FlowAtStations(self.pipe)).stream
+        found = moving_water(stream, self.pipe, self.drag, self.mass)._replace(dissipative=self.dissipative)
         if self.pushed is not None:
             found = found._replace(pushed=self.pushed)
         return found if self.span is None else found._replace(partly=True, span=self.span)

@@ -22,7 +22,7 @@ from riser_soil.riser.hermite import Size
 from riser_soil.sea import through_kernels
 from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import write_drag_derivatives
-from riser_soil.sea.moving_water_kernels import FlowDerivatives, FlowWorkspace, MovingWaterData
+from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData
 from riser_soil.sea.through_kernels import write_derivatives, write_resistance
 
 Rows = Sequence[tuple[float, float]]
@@ -92,20 +92,21 @@ def _write_resistance(law: ReynoldsTables, side: int, m: int, g: int, at: FlowWo
 
 @write_derivatives.of(ReynoldsTables)
 def _write_derivatives(
-    law: ReynoldsTables, m: int, g: int, at: FlowWorkspace, stretch: float, weight: float, by: FlowDerivatives, D: Size
+    law: ReynoldsTables, m: int, g: int, v: Array, tau: Array, stretch: float, weight: float,
+    by_v: Array, by_slope: Array, D: Size,
 ) -> None:
     """As of a constant coefficient, and by its change."""
     n, pair = np.empty(len(D)), np.zeros(2)
-    speed, along = _across(at.through, at.tau, n, D)
+    speed, along = _across(v, tau, n, D)
     pair[0], change = coefficient(law, m, speed)
-    write_drag_derivatives(at.through, at.tau, stretch, pair, weight, by.by_v, by.by_slope, D)
+    write_drag_derivatives(v, tau, stretch, pair, weight, by_v, by_slope, D)
     if change == 0.0:
         return
     for i in range(len(D)):
         for j in range(len(D)):
             dyad = weight * change / speed * n[i] * n[j]
-            by.by_v[i, j] += dyad
-            by.by_slope[i, j] -= along / stretch * dyad
+            by_v[i, j] += dyad
+            by_slope[i, j] -= along / stretch * dyad
 
 
 def reynolds_drag(loads: WaterLoads, tables: ReynoldsTables) -> Morison:

@@ -25,7 +25,6 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.moving_water_kernels import (
-    FlowDerivatives,
     FlowWorkspace,
     MovingWaterData,
     move,
@@ -50,9 +49,10 @@ def write_resistance(law: tuple, side: int, m: int, g: int, at: FlowWorkspace, D
 
 @by_type
 def write_derivatives(
-    law: tuple, m: int, g: int, at: FlowWorkspace, stretch: float, weight: float, by: FlowDerivatives, D: Size
+    law: tuple, m: int, g: int, v: Array, tau: Array, stretch: float, weight: float,
+    by_v: Array, by_slope: Array, D: Size,
 ) -> None:
-    """Write its derivatives `by_v` and `by_slope`, where a step ends, times a weight."""
+    """Write its weighted derivatives (d, d) by the velocity through the water and the axis' slope, at a step's end."""
 
 
 @njit
@@ -108,7 +108,8 @@ def _differentiate(
     """Write the weighted derivatives of the force at a station whose resistance is known."""
     flow, p, steep = part.flow, m * part.flow.stream.share.shape[1] + g, wetting(part.flow, water, m, g)
     workspace, by = flow.workspace, flow.by
-    write_derivatives(part.law, m, g, workspace, stretch, weight * wet(flow, water, m, g), by, D)
+    share = weight * wet(flow, water, m, g)
+    write_derivatives(part.law, m, g, workspace.through, workspace.tau, stretch, share, by.by_v, by.by_slope, D)
     for i in range(len(D)):
         for j in range(len(D)):
             followed = weight * steep * workspace.force[i] * water.immersion_gradient[p, j]

@@ -23,7 +23,7 @@ from riser_soil.sea import through_kernels
 from riser_soil.sea import vortex_law as law
 from riser_soil.sea.morison import WaterLoads
 from riser_soil.sea.morison_law import write_drag, write_drag_derivatives
-from riser_soil.sea.moving_water_kernels import FlowDerivatives, FlowWorkspace, MovingWaterData
+from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData
 from riser_soil.sea.stream_kernels import END, see_end, update
 from riser_soil.sea.through_kernels import resist, write_derivatives, write_resistance
 
@@ -111,13 +111,14 @@ def _write_resistance(push: Push, side: int, m: int, g: int, at: FlowWorkspace, 
 
 @write_derivatives.of(Push)
 def _write_derivatives(
-    push: Push, m: int, g: int, at: FlowWorkspace, stretch: float, weight: float, by: FlowDerivatives, D: Size
+    push: Push, m: int, g: int, v: Array, tau: Array, stretch: float, weight: float,
+    by_v: Array, by_slope: Array, D: Size,
 ) -> None:
     k = weight * push.lift[m] * math.cos(push.phases[END, m, g])
     if push.in_line:
-        write_drag_derivatives(at.through, at.tau, stretch, (k, 0.0), 1.0, by.by_v, by.by_slope, D)
+        write_drag_derivatives(v, tau, stretch, (k, 0.0), 1.0, by_v, by_slope, D)
     else:
-        law.write_derivatives(at.through, at.tau, stretch, k, by.by_v, by.by_slope)
+        law.write_derivatives(v, tau, stretch, k, by_v, by_slope)
 
 
 @njit
