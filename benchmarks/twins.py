@@ -19,9 +19,9 @@ from benchmarks.stage import TimedStage
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Weights
 from riser_soil.riser.beam import Beam
+from riser_soil.riser.inertia import RotaryInertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.midpoint_directors import directors
-from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.structural_damping import StructuralDamping
 
 COUNT, REPEATS = 100, 300

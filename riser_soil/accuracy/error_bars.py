@@ -13,7 +13,7 @@ has not reached its order yet: the divisor falls towards 1 as it grows. A source
 Differences are those of the extremes and of their course in time together (`apart`). What falls between the
 run's nodes is the mesh's, between its steps the time step's, as is what alternates from step to step around an extreme:
 short waves that the steps do not resolve (`results.peaks`). Largest moments and curvatures are told between nodes
-(`riser.bending_peaks`). Of two comparison runs in one source, one coarser than the other, the larger share counts.
+(`riser.section_kernels`). Of two comparison runs in one source, one coarser than the other, the larger share counts.
 Shares of different sources add up as squares do. With these factors the calibration (`benchmarks.error_bars`) finds the
 true error inside at least 95 % of the bars.
 

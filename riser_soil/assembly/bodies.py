@@ -17,7 +17,7 @@ from riser_soil.riser.sections import Elements
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Dry
-    from riser_soil.sea.moving_water import WaterLoads
+    from riser_soil.sea.morison import WaterLoads
     from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.reynolds_drag import ReynoldsTables
     from riser_soil.sea.vortex_law import Shedding
@@ -120,8 +120,8 @@ class PipeInWater(Body):
 
     @property
     def still(self) -> WaterLoads:
+        from riser_soil.sea.morison import WaterLoads
         from riser_soil.sea.morison_law import drag_coefficients
-        from riser_soil.sea.moving_water import WaterLoads
 
         drag = drag_coefficients(self.rho, self.elements.outer_diameter, *self.elements.drag.T)
         return WaterLoads(self.pipe, drag, self.mass)
@@ -168,7 +168,7 @@ class ModulesInWater(Body):
 
     @property
     def still(self) -> WaterLoads:
-        from riser_soil.sea.moving_water import WaterLoads
+        from riser_soil.sea.morison import WaterLoads
         from riser_soil.sea.pipe import alike
 
         return WaterLoads(self.pipe, alike(0.5 * self.rho * self._of("drag_area")), self.mass)

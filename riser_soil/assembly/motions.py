@@ -11,8 +11,8 @@ import numpy as np
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.quantities import Vector
-from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End, Motion, SupportRotation
 from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.rao import TRANSLATIONS
 from riser_soil.scene.riser import Support

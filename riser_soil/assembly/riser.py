@@ -13,8 +13,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State
 from riser_soil.errors import SceneError
 from riser_soil.riser import sections, shapes
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import UP, Line
+from riser_soil.riser.line_ends import End
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.springs import EndSpring
 from riser_soil.scene.line_types import LineType

@@ -17,9 +17,8 @@ from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMos
 
 if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
-    from riser_soil.sea.changing_current import ChangingCurrent
     from riser_soil.sea.components import Components
-    from riser_soil.sea.current import SteadyCurrent
+    from riser_soil.sea.current import ChangingCurrent, SteadyCurrent
     from riser_soil.sea.flows import Sea
     from riser_soil.sea.steady_flow import SteadyFlow
     from riser_soil.sea.steady_wave import SteadyWave
@@ -141,15 +140,13 @@ def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent | Chan
     """It grows with the load factor in a first static stage, but where a scene begins with the end of another run; else
     it is there in full.
     """
+    from riser_soil.sea.current import ChangingCurrent, SteadyCurrent
+
     grows = isinstance(stage, StaticStage) and stage.name == scene.stages[0].name and scene.initial is None
     level = np.unique([z for _, profile in given.each for z, _, _ in profile])
     velocity = np.array([_at_levels(np.array(profile), level) for _, profile in given.each])
     if given.history is None:
-        from riser_soil.sea.current import SteadyCurrent
-
         return SteadyCurrent(level, velocity[0], grows)
-    from riser_soil.sea.changing_current import ChangingCurrent
-
     time, runs = np.array([each.time for each in given.history]), isinstance(stage, DynamicStage)
     return ChangingCurrent(level, time, velocity, wave_clock(scene, stage), runs, grows)
 

@@ -21,9 +21,9 @@ NO_DRAG = ((1.0, 0.0),)
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Buoyancy
-    from riser_soil.sea.morison import Morison
-    from riser_soil.sea.moving_water import FlowAtStations, WaterLoads
+    from riser_soil.sea.morison import Morison, WaterLoads
     from riser_soil.sea.reynolds_drag import ReynoldsTables
+    from riser_soil.sea.stream_kernels import FlowAtStations
     from riser_soil.sea.vortex_law import Shedding
     from riser_soil.sea.vortices import Vortices
 
@@ -99,10 +99,9 @@ class _BodyLoads:
     @cached_property
     def _flow(self) -> FlowAtStations:
         """The water around the pipe, which may stand still."""
-        from riser_soil.sea.flows import Sea
-        from riser_soil.sea.moving_water import FlowAtStations
+        from riser_soil.sea.stream_kernels import FlowAtStations
 
-        return FlowAtStations(self.body.pipe, water_of(self.scene, self.stage) or Sea(None))
+        return FlowAtStations(self.body.pipe, water_of(self.scene, self.stage))
 
     @cached_property
     def surface(self) -> FlowAtStations | None:
@@ -111,8 +110,7 @@ class _BodyLoads:
 
     @property
     def morison(self) -> Morison:
-        from riser_soil.sea.morison import Morison
-        from riser_soil.sea.moving_water import pushed_masses
+        from riser_soil.sea.morison import Morison, pushed_masses
 
         body, loads = self.body, self.body.still
         if self.stream is not None:
@@ -123,7 +121,7 @@ class _BodyLoads:
 
     def _through(self, dissipative: bool) -> WaterLoads:
         """Of what moves through the water, where it is wet."""
-        from riser_soil.sea.moving_water import through
+        from riser_soil.sea.morison import through
 
         return through(self._flow, None if self.surface is None else self.body.span, dissipative)
 

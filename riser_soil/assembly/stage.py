@@ -149,7 +149,7 @@ def _inertia(line: Line, elements: Elements, attachments: Sequence[PointAttachme
 
     parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
     if line.dimension == 3 or elements.rotary_inertia.any():
-        from riser_soil.riser.rotary_inertia import RotaryInertia
+        from riser_soil.riser.inertia import RotaryInertia
 
         parts.append(RotaryInertia(line, elements.rotary_inertia, elements.polar_inertia))
     return parts

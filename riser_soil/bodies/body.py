@@ -11,9 +11,9 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
+from riser_soil.riser.line import Trial
 from riser_soil.riser.line_kernels import write_magnitudes
 from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
-from riser_soil.riser.trial import Trial
 
 AXES = ("x", "y", "z")
 NO_ENDS: Array = np.zeros((0, 2, 3, 3))

@@ -32,7 +32,8 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.riser import rotations
 from riser_soil.riser.line import Line
-from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation, moment_stiffness
+from riser_soil.riser.rotations import moment_stiffness
+from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
 from riser_soil.riser.vectors import (
     Mat,
     add,

@@ -25,7 +25,8 @@ from riser_soil.bodies.wet_sphere import radius_of, wet, wet_height
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.riser import rotations
-from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffness
+from riser_soil.riser.rotations import moment_stiffness
+from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.vectors import matrix, scale, skew, vector
 from riser_soil.sea.flows import Sea, SeaAtPoints
 

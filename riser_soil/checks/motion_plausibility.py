@@ -10,7 +10,7 @@ import numpy as np
 
 from riser_soil.assembly.motions import LOOKS, end_places, instants, periods_of, set_motion, vessels_of
 from riser_soil.core.arrays import Array
-from riser_soil.riser.ends import End
+from riser_soil.riser.line_ends import End
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, StaticStage

@@ -11,7 +11,6 @@ from riser_soil.checks.inventory import has_dynamics
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.wave_kinds import Airy, Regular, WaveKind
-from riser_soil.sea.dispersion import wave_number
 
 # Height over Miche's breaking height from which linear theory is well off: Stokes's crests are a tenth higher there.
 STEEP = 0.5
@@ -25,6 +24,8 @@ OTHER_DEPTH = 0.05
 
 def wave_warnings(scene: Scene) -> Iterator[str]:
     """Warnings about the waves, each with its numbers."""
+    from riser_soil.sea.components import wave_number
+
     assert scene.water is not None
     assert scene.water.waves is not None
     waves, h = scene.water.waves, scene.water_depth

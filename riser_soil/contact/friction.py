@@ -22,8 +22,8 @@ from riser_soil.core.part import State, Traits
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
-from riser_soil.riser.compiled_part import BoundPart, CompiledPart
 from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.line_part import BoundPart, CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import (
     Mat,

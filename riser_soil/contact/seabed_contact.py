@@ -21,14 +21,13 @@ from riser_soil.contact.seabed_kernels import (
 )
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.part import State, Traits
 from riser_soil.core.roles import Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import bound
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.vectors import Vec
 from riser_soil.seabed.grounds import Ground, Plane

@@ -90,6 +90,11 @@ class Bound:
         self._call(self.row)
 
 
+def bound(stub: Any, data: tuple[Any, ...], *arguments: Packed) -> Bound:
+    """The kernel that a function chosen by type has for this data, bound to it and to its other arguments."""
+    return Bound(stub.kernels[type(data)], Packed(data), *arguments)
+
+
 class Calls(NamedTuple):
     """Bound kernels for compiled code: addresses of functions and of where those of their arguments lie (n,).
 

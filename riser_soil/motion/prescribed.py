@@ -12,7 +12,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.smooth_step import smooth_step
-from riser_soil.riser.ends import Kinematics, Motion, SupportRotation
+from riser_soil.riser.line_ends import Kinematics, Motion, SupportRotation
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly

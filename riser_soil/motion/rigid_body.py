@@ -11,7 +11,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import rotations
-from riser_soil.riser.ends import Kinematics, SupportRotation
+from riser_soil.riser.line_ends import Kinematics, SupportRotation
 from riser_soil.riser.vectors import matrix, vector
 
 SixDegreeMotion = Callable[[float], Kinematics]

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.motion.prescribed import ramped
-from riser_soil.riser.ends import Kinematics
+from riser_soil.riser.line_ends import Kinematics
 
 TURN = 2.0 * np.pi
 

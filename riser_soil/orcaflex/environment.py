@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.orcaflex.data_file import FORCE, MASS, Item, unit_vector
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import wave_number
 from riser_soil.sea.spectra import mean_period
 
 _DEPTHS = ("WaterDepth", "SeabedOriginDepth")

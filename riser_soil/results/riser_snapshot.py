@@ -7,10 +7,9 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import ExtremeAlong, RiserSnapshot, WallSnapshot
-from riser_soil.riser import bending_peaks
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import add_at_ends, at_most, viscous_residual
-from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.section_kernels import SectionForces, largest_between_nodes
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.wall_stress import WallSections, bending_stress, hoop_and_radial_stress, largest_von_mises
 from riser_soil.solve.time_stepper import TimeStepper
@@ -94,7 +93,7 @@ def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[ExtremeAl
         return ExtremeAlong(unknown, unknown), unknown
     rows = (allowed * values for values in (inside.curvature_beside, inside.curvature_slope))
     each = zip(*(row.reshape(-1, *allowed.shape[:1], 2) for row in rows), strict=True)
-    found = [bending_peaks.largest(assembly.line.arc, *row) for row in each]
+    found = [largest_between_nodes(assembly.line.arc, *row) for row in each]
     used, arc, e = (np.reshape(values, shape) for values in zip(*found, strict=True))
     radius = np.divide(allowed[e, 0], used, out=np.full(shape, np.inf), where=used > 0.0)
     return ExtremeAlong(used[()], arc[()]), radius[()]

@@ -15,11 +15,13 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits
 from riser_soil.riser import hermite
-from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import UP, Line
-from riser_soil.riser.load_kernels import GivenForces
+from riser_soil.riser.line_part import CompiledPart
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,17 @@ def _at_ends(line: Line, attachments: Sequence[PointAttachment], values: Sequenc
     return sums
 
 
+class GivenForces(NamedTuple):
+    """Residual of group F: conjugate to q (ne, 4, d), of what acts within elements; to the dofs of nodes (nn, ndof).
+
+    potential: whether they are weights, whose potential counts as stored.
+    """
+
+    F: Array
+    nodal: Array
+    potential: bool
+
+
 def _weights(line: Line, attachments: Sequence[PointAttachment]) -> GivenForces:
     """Weight less buoyancy."""
     F, nodal, up = np.zeros((line.length.size, 4, line.dimension)), np.zeros((line.nodes, line.ndof)), UP @ line.basis
@@ -117,3 +130,38 @@ class Attachments(CompiledPart):
 
     def nodal_forces(self, state: State) -> Array | None:
         return self.forces_on_nodes(state) if self._weights.nodal.any() else None
+
+
+@njit
+def add_given(F: Array, nodal: Array, out: LineForces) -> None:
+    """Add given residuals, see `GivenForces`."""
+    for e in range(F.shape[0]):
+        for k in range(4):
+            for i in range(F.shape[2]):
+                out.force_q[e, k, i] += F[e, k, i]
+    for n in range(nodal.shape[0]):
+        for i in range(nodal.shape[1]):
+            out.force[n, i] += nodal[n, i]
+
+
+@add_forces.of(GivenForces)
+def _given_forces(part: GivenForces, at: Configuration, out: LineForces) -> None:
+    add_given(part.F, part.nodal, out)
+
+
+@add_tangent.of(GivenForces)
+def _given_tangent(part: GivenForces, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    """The loads do not change."""
+
+
+@add_energy.of(GivenForces)
+def _given_energy(part: GivenForces, at: Configuration, energy: Array) -> None:
+    if not part.potential:
+        return
+    for e in range(at.q.shape[0]):
+        for k in range(4):
+            for i in range(at.q.shape[2]):
+                energy[2] += part.F[e, k, i] * at.q[e, k, i]
+    for n in range(at.x.shape[0]):
+        for i in range(at.x.shape[1]):
+            energy[2] += part.nodal[n, i] * at.x[n, i]

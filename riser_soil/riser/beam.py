@@ -10,11 +10,11 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Traits
-from riser_soil.riser import beam2d, beam3d, rotations, uniform_load
-from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser import beam2d, beam3d, rotations
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialFrames
@@ -94,7 +94,8 @@ class Beam(CompiledPart):
 
 
 @njit
-def _corotated(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
+def seen_in_plane(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
+    """Element e, seen from its own frame."""
     found: beam2d.PlanarCorotated = beam2d.corotate(at.chord[e], at.end_angle[e, 0], at.end_angle[e, 1])
     return found
 
@@ -103,9 +104,9 @@ def _corotated(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
 def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -> None:
     f = np.empty(6)
     for e in range(part.length.size):
-        seen = _corotated(at, e)
+        seen = seen_in_plane(at, e)
         beam2d.write_element_forces(e, seen, part.reference, part.section, f)
-        uniform_load.add_element_forces(seen, part.length[e], part.load[e], f)
+        beam2d.add_load_forces(seen, part.length[e], part.load[e], f)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
@@ -124,9 +125,9 @@ def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces
 def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     f, own = np.empty(6), np.empty((6, 6))
     for e in range(part.length.size):
-        seen = _corotated(at, e)
+        seen = seen_in_plane(at, e)
         beam2d.write_element(e, seen, part.reference, part.section, f, own)
-        uniform_load.add_element_tangent(seen, part.length[e], part.load[e], own)
+        beam2d.add_load_tangent(seen, part.length[e], part.load[e], own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
@@ -148,10 +149,10 @@ def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, we
 @add_energy.of(PlanarBeam)
 def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> None:
     for e in range(part.length.size):
-        seen, x = _corotated(at, e), at.x
+        seen, x = seen_in_plane(at, e), at.x
         energy[1] += beam2d.element_energy(e, seen, part.reference, part.section)
         p, z = 0.5 * (x[e, 0] + x[e + 1, 0]), 0.5 * (x[e, 1] + x[e + 1, 1])
-        energy[2] += uniform_load.element_potential(seen, part.length[e], part.load[e], p, z)
+        energy[2] += beam2d.load_potential(seen, part.length[e], part.load[e], p, z)
 
 
 @add_energy.of(SpatialBeam)

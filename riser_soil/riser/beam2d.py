@@ -20,6 +20,13 @@ half its square slope, averaged over the element, is the shallow-arch term of th
 which makes the two-node element fourth-order accurate on curved lines.
 Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), chapter
 7.
+
+Uniform load w per unstressed length L. As the element bows from its chord by the cubic with theta_1 and theta_2, the
+load has, with its component w.n across the chord, the potential
+
+    V = -w.(x1 + x2) L/2 - (theta_1 - theta_2) w.n L^2/12
+
+theta_1 - theta_2 does not change as the chord turns, so V depends on the chord by its direction alone.
 """
 
 import math
@@ -229,3 +236,59 @@ def bow_slopes(a: float, b: float) -> tuple[float, float]:
 def end_moments(EI_per_L: float, a: float, b: float) -> tuple[float, float]:
     """Moments (N m) conjugate to the end rotations a and b of a cubic deflection."""
     return EI_per_L * (4.0 * a + 2.0 * b), EI_per_L * (2.0 * a + 4.0 * b)
+
+
+@njit
+def _load_in_axes(at: PlanarCorotated, w: Array) -> tuple[float, float]:
+    """The load along the chord and across it."""
+    c, s = at.axis
+    return c * w[0] + s * w[1], c * w[1] - s * w[0]
+
+
+@njit
+def load_potential(at: PlanarCorotated, L: float, w: Array, middle_p: float, middle_z: float) -> float:
+    """V [J] of one element, its middle (x1 + x2)/2 at (p, z) [m]."""
+    _, across = _load_in_axes(at, w)
+    return -L * (w[0] * middle_p + w[1] * middle_z) - L * L / 12.0 * (at.theta1 - at.theta2) * across
+
+
+@njit
+def add_load_forces(at: PlanarCorotated, L: float, w: Array, f: Array) -> None:
+    """Add the residual of one element to f (6,)."""
+    along, across = _load_in_axes(at, w)
+    twelfth = L * L / 12.0
+    spun = twelfth * (at.theta1 - at.theta2) * along / at.length  # by the chord's turning, over its length
+    p, z = -spun * at.axis[1], spun * at.axis[0]
+    f[0] -= 0.5 * L * w[0] + p
+    f[1] -= 0.5 * L * w[1] + z
+    f[2] -= twelfth * across
+    f[3] -= 0.5 * L * w[0] - p
+    f[4] -= 0.5 * L * w[1] - z
+    f[5] += twelfth * across
+
+
+@njit
+def add_load_tangent(at: PlanarCorotated, L: float, w: Array, K: Array) -> None:
+    """Add the derivative of the residual of one element to K (6, 6)."""
+    along, across = _load_in_axes(at, w)
+    c, s = at.axis
+    twelfth, spread = L * L / 12.0, at.theta1 - at.theta2
+    bend = twelfth * spread / (at.length * at.length)
+    even, odd = bend * across, bend * along  # by n n and by (e n + n e) of the chord's unit vector e and its normal n
+    pp = even * s * s + 2.0 * odd * c * s
+    zz = even * c * c - 2.0 * odd * c * s
+    pz = -even * c * s - odd * (c * c - s * s)
+    turned = twelfth * along / at.length
+    for end in range(2):
+        sign = 2 * end - 1.0
+        for other in range(2):
+            both, i, j = sign * (2 * other - 1.0), 3 * end, 3 * other
+            K[i, j] += both * pp
+            K[i, j + 1] += both * pz
+            K[i + 1, j] += both * pz
+            K[i + 1, j + 1] += both * zz
+            mixed = -both * turned
+            K[i, j + 2] += mixed * -s
+            K[i + 1, j + 2] += mixed * c
+            K[j + 2, i] += mixed * -s
+            K[j + 2, i + 1] += mixed * c

@@ -16,10 +16,15 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.corotation import (
+    BowLoad,
     SpatialCorotated,
     SpatialNodalForces,
     SwingTwist,
+    bow_load,
+    bow_potential,
+    chord_force,
     corotate,
+    end_moment,
     frame_spin,
     lengthen,
     moment,
@@ -29,6 +34,7 @@ from riser_soil.riser.corotation import (
     rate,
     split,
     turn,
+    turned,
 )
 from riser_soil.riser.strain3d import (
     Station,
@@ -45,7 +51,6 @@ from riser_soil.riser.strain3d import (
     stress,
     stress_change,
 )
-from riser_soil.riser.uniform_load import BowLoad, bow_load, bow_potential, chord_force, end_moment, turned
 from riser_soil.riser.vectors import Mat, Vec, add, dot, matrix, scale, sub, vecmat, vector
 
 STILL = (0.0, 0.0, 0.0)
@@ -150,7 +155,7 @@ def element_energy(e: int, at: Shape, ref: SpatialReference, section: SpatialSec
 
 @njit
 def element_potential(at: Shape, L: float, w: Vec, middle: Vec) -> float:
-    """Potential [J] of a load w per length [N/m] on an element with this middle: `uniform_load`."""
+    """Potential [J] of a load w per length [N/m] on an element with this middle: `corotation`."""
     potential: float = bow_potential(bow_load(at.frame.axes, L, w), at.end1.angles, at.end2.angles)
     return potential - L * dot(w, middle)
 

@@ -30,10 +30,10 @@ from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Traits
 from riser_soil.riser import hermite
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_mass_to, add_weighed
 from riser_soil.riser.line import UP, Line
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.riser.stations import gauss
 

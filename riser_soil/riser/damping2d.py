@@ -19,7 +19,6 @@ from riser_soil.riser.beam2d import (
     Vec2,
     bow_slopes,
     configuration_variation,
-    corotate,
     element_at,
     nodal_forces,
     stress_variation,
@@ -90,9 +89,7 @@ def _vary(
 @njit
 def write_element_forces(
     e: int,
-    chord: Array,
-    direction1: Array,
-    direction2: Array,
+    at: PlanarCorotated,
     ref: PlanarReference,
     viscosity: PlanarSection,
     chord_rate: Array,
@@ -100,9 +97,8 @@ def write_element_forces(
     f: Array,
 ) -> None:
     """Write viscous forces f (6,) of element e for rates of the chords (ne, 2), m/s, and of the nodes' angles (nn,),
-    rad/s; chords (ne, 2) and tangent directions (ne,) of both ends, rad.
+    rad/s.
     """
-    at = corotate(chord[e], direction1[e], direction2[e])
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
     element = element_at(ref, viscosity, e)
     N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
@@ -112,9 +108,7 @@ def write_element_forces(
 @njit
 def write_element_tangent(
     e: int,
-    chord: Array,
-    direction1: Array,
-    direction2: Array,
+    at: PlanarCorotated,
     ref: PlanarReference,
     viscosity: PlanarSection,
     chord_rate: Array,
@@ -123,7 +117,6 @@ def write_element_tangent(
     K: Array,
 ) -> None:
     """Write their derivative K (6, 6) by displacements and angles, which the rates follow by shift_v [1/s]."""
-    at = corotate(chord[e], direction1[e], direction2[e])
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
     element = element_at(ref, viscosity, e)
     N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)

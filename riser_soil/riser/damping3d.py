@@ -19,15 +19,13 @@ from riser_soil.riser.beam3d import (
     forces_change,
     move,
     respond,
-    shape,
     stiffness,
     strain_of,
     write_forces,
 )
-from riser_soil.riser.corotation import SpatialNodalForces, rate, rate_variation
+from riser_soil.riser.corotation import NO_LOAD, SpatialNodalForces, rate, rate_variation
 from riser_soil.riser.rotations import rows_to_increments
 from riser_soil.riser.strain3d import Stiffness, linear_stress, strain_change_variation, total
-from riser_soil.riser.uniform_load import NO_LOAD
 from riser_soil.riser.vectors import (
     Vec,
     add,
@@ -104,19 +102,16 @@ def _vary(
 
 @njit
 def _element(
-    D: Stiffness, chord: Array, frame1: Array, frame2: Array, chord_rate: Array, spin1: Array, spin2: Array
-) -> tuple[Shape, ElementVelocities, SpatialResponse]:
-    at = shape(D.L, vector(chord), matrix(frame1), matrix(frame2))
+    D: Stiffness, at: Shape, chord_rate: Array, spin1: Array, spin2: Array
+) -> tuple[ElementVelocities, SpatialResponse]:
     flow = _flow(at, vector(chord_rate), vector(spin1), vector(spin2))
-    return at, flow, _respond(D, at, flow)
+    return flow, _respond(D, at, flow)
 
 
 @njit
 def write_element_forces(
     e: int,
-    chord: Array,
-    frame1: Array,
-    frame2: Array,
+    at: Shape,
     ref: SpatialReference,
     viscosity: SpatialSection,
     chord_rate: Array,
@@ -125,10 +120,10 @@ def write_element_forces(
 ) -> None:
     """Write viscous forces f (12,) of element e, conjugate to displacements and spatial spins.
 
-    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.write_element_forces`.
+    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities.
     """
     D = stiffness(ref, viscosity, e)
-    at, _, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
+    _, response = _element(D, at, chord_rate[e], spin[e], spin[e + 1])
     write_forces(at.frame.axes, response.forces, f)
 
 
@@ -166,9 +161,7 @@ def _shift_columns(
 @njit
 def write_element_tangent(
     e: int,
-    chord: Array,
-    frame1: Array,
-    frame2: Array,
+    at: Shape,
     ref: SpatialReference,
     viscosity: SpatialSection,
     chord_rate: Array,
@@ -182,7 +175,7 @@ def write_element_tangent(
     Velocities and body-axes angular velocities follow by shift_v [1/s].
     """
     D = stiffness(ref, viscosity, e)
-    at, flow, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
+    flow, response = _element(D, at, chord_rate[e], spin[e], spin[e + 1])
     _shift_columns(D, at, flow, response, shift_v, K)
     for end in range(2):
         n, first = e + end, 3 + 6 * end

@@ -23,6 +23,8 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
 
+NO_FRAMES = np.empty((0, 3, 3))
+
 
 class PlanarOrientation:
     """Trial orientation of a plane line. angle (nn,) [rad], initial angle of element ends alpha0 (ne, 2)."""
@@ -49,6 +51,11 @@ class PlanarOrientation:
     def first_wound(self) -> int:
         """First element whose ends differ by more than half a turn; ne without any."""
         return int(first_wound(self.end_angle))
+
+    @property
+    def end_frames(self) -> tuple[Array, Array]:
+        """No section frames, as there is one stiffness."""
+        return NO_FRAMES, NO_FRAMES
 
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
@@ -119,6 +126,20 @@ class PlanarFrames:
 
     def restore(self, saved: Saved) -> None:
         self.angle = saved["angle"]
+
+
+def initial_frames(rotation: Array, T0: Array, basis: Array) -> PlanarFrames | SpatialFrames:
+    """Frames of a line with axes basis (3, d), see `Layout`: in a plane by angles from the first axis to the second.
+
+    In space body axes are those of the unstressed line at its start, so that the first rotation dof there is spin about
+    the axis.
+    """
+    if basis.shape[1] == 3:
+        axes = T0[0, 0]
+        return SpatialFrames(rotation @ axes, axes.T @ T0)
+    first, second = np.ascontiguousarray(basis.T)
+    turned, tangent = rotation @ first, T0[..., 0]
+    return PlanarFrames(*(np.arctan2(along @ second, along @ first) for along in (turned, tangent)))
 
 
 @njit

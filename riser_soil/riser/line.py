@@ -6,48 +6,71 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray, as_list
+from riser_soil.core.compiled import fixed
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite, line_kernels
-from riser_soil.riser.directors import Frames, PlanarFrames
-from riser_soil.riser.ends import End
-from riser_soil.riser.line_ends import LineEnds, free_turns, unit_lengths
+from riser_soil.riser.directors import Frames, Orientation, initial_frames
+from riser_soil.riser.line_ends import End, LineEnds, free_turns, unit_lengths
 from riser_soil.riser.line_kernels import after_increments, write_folded, write_magnitudes
-from riser_soil.riser.spatial_directors import SpatialFrames
-from riser_soil.riser.trial import Trial
+from riser_soil.riser.shapes import Layout
 
 UP = np.array([0.0, 0.0, 1.0])
 Made = TypeVar("Made")
 
 
-@dataclass(frozen=True, eq=False)
-class Layout:
-    """A line before any load: unstressed shape and initial configuration, in global axes.
-
-    arc: (nn,) arc length of the nodes, from the start. outer_diameter: (ne,).
-    T0: (ne, 2, 3, 3) unstressed frames at element ends, columns tangent and two normals. chord0: (ne, 3)
-    unstressed chords.
-    position: (nn, 3) and rotation: (nn, 3, 3) of the initial configuration; rotation turns T0 to its frames
-    there.
+class Trial:
+    """The line at a trial state: x (nn, d), chord (ne, d); on demand its orientation, which `turning` makes, and rates
+    of q.
     """
 
-    arc: Array
-    outer_diameter: Array
-    T0: Array
-    chord0: Array
-    position: Array
-    rotation: Array
+    def __init__(
+        self, state: State, x: Array, chord: Array, turning: Callable[[], Orientation], rates: tuple[Array, Array]
+    ) -> None:
+        self.state, self.x, self.chord, self._turning = state, x, chord, turning
+        self._v, self._a = rates
+        self._kept: dict[Hashable, Any] = {}
+
+    def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
+        """A value that a part computes at this trial, cached under a key of its own."""
+        if key not in self._kept:
+            self._kept[key] = make(self)
+        return self._kept[key]
+
+    @cached_property
+    def turn(self) -> Orientation:
+        """Orientation of the nodes; where a step was solved in compiled code, nobody may ask for it."""
+        return self._turning()
+
+    @cached_property
+    def q(self) -> Array:
+        """q (ne, 4, d)."""
+        q: Array = hermite.interleave(self.x, self.turn.tangent, fixed(self.x.shape[1]))
+        return q
+
+    @cached_property
+    def q_rate(self) -> Array:
+        """q' (ne, 4, d)."""
+        return self.turn.motion(self._v, self._a)[0]
+
+    def pull_back(self, F: Array) -> Array:
+        """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
+        return np.asarray(hermite.pull_back(F, self.turn.P))
+
+    def add_turning(self, out: Array, weight: float, F: Array) -> None:
+        """Add to out (ne, n, n) weight times the derivative of `pull_back` at fixed F (ne, 4, d)."""
+        geometric = self.turn.geometric(F[:, 1::2])
+        hermite.add_geometric(out, weight, geometric, self.x.shape[1])
 
 
 class Line:
@@ -82,9 +105,7 @@ class Line:
         self.turning_axes = np.eye(3) if dimension == 3 else self.normal[:, None]
         self._check_plane(layout)
         self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
-        self.frames: Frames = (
-            _planar_frames(layout, self.direction) if dimension == 2 else _spatial_frames(layout)
-        )
+        self.frames: Frames = initial_frames(layout.rotation, layout.T0, self.basis)
         self.x: Array = (layout.position - self.origin) @ self.basis
         self.chord: Array = np.diff(self.x, axis=0)
         self._ends = LineEnds(start, end, self.arc.size, self.frames, self.origin, self.basis, self.turning_axes)
@@ -324,22 +345,3 @@ class Line:
             else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
         )
         return f"{self.name} node at arc {self.arc[node]:.6g} m, {names[dof]}"
-
-
-def _planar_frames(layout: Layout, direction: Array) -> PlanarFrames:
-    """Angles from d towards z."""
-    turned = layout.rotation @ direction
-    tangent = layout.T0[..., 0]
-    return PlanarFrames(_angle(turned, direction), _angle(tangent, direction))
-
-
-def _angle(vectors: Array, direction: Array) -> Array:
-    return np.asarray(np.arctan2(vectors @ UP, vectors @ direction))
-
-
-def _spatial_frames(layout: Layout) -> SpatialFrames:
-    """Body axes are those of the unstressed line at its start, so that the first rotation dof there is spin
-    about the axis.
-    """
-    axes = layout.T0[0, 0]
-    return SpatialFrames(layout.rotation @ axes, axes.T @ layout.T0)

@@ -6,17 +6,57 @@ the loads do not depend on the direction.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.directors import Frames, Orientation
-from riser_soil.riser.ends import End, Motion, SupportRotation
-from riser_soil.riser.line_kernels import motion_in_axes, spread_motion
 from riser_soil.riser.spatial_directors import SpatialOrientation
+
+Kinematics = tuple[Array, Array, Array]
+Motion = Callable[[float], Kinematics]
+"""Seconds since the stage began (load factor in statics) -> position, velocity, acceleration (3,) in global
+axes.
+"""
+
+
+class SupportRotation(NamedTuple):
+    """A support turned from where it is at the stage's beginning, each (3,) in global axes.
+
+    rotation: rotation vector [rad]; about one axis it may count whole turns. angular_velocity [rad/s],
+    angular_acceleration [rad/s2].
+    """
+
+    rotation: Array
+    angular_velocity: Array
+    angular_acceleration: Array
+
+
+@dataclass
+class End:
+    """Boundary condition of an end.
+
+    motion, when given, moves the prescribed position; without it the end stays where it is. turning, of the seconds
+    since the stage began, turns the support: a fixed rotation turns with it, and so does the rest direction of a
+    rotational spring. A free rotation is not affected. heaves: whether a prescribed end is free to move up and down, so
+    that the horizontal part of its motion alone moves it.
+    """
+
+    prescribed: bool
+    rotation_fixed: bool = False
+    motion: Motion | None = None
+    turning: Callable[[float], SupportRotation] | None = None
+    heaves: bool = False
+
+    def held(self, dimension: int) -> int:
+        """How many of its coordinates are prescribed, the vertical one being the last."""
+        return (dimension - self.heaves) if self.prescribed else 0
 
 
 class LineEnds:
@@ -78,7 +118,7 @@ class LineEnds:
         reach: by end, the share (nn,) that each node takes.
         """
         for node, motion, held in self._moving():
-            spread_motion(moved, node, self._motion(node, motion, t, x)[0], held, reach[node])
+            _spread_motion(moved, node, self._motion(node, motion, t, x)[0], held, reach[node])
 
     def prescribe(self, t: float, x: Array, u: Array, v: Array, a: Array) -> None:
         """Write increments, rates and accelerations of prescribed dofs into the field's slices; nodes at x (nn, d)."""
@@ -101,7 +141,7 @@ class LineEnds:
         """Increment, velocity and acceleration (3, d) by which a motion moves its node; kept for its time and place."""
         kept = self._moved.get(node)
         if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not x:
-            moved = motion_in_axes(np.array(motion(t)), self._origin, self._basis, x[node])
+            moved = _motion_in_axes(np.array(motion(t)), self._origin, self._basis, x[node])
             kept = self._moved[node] = motion, t, x, moved
         return kept[3]
 
@@ -127,6 +167,30 @@ class LineEnds:
     def restore(self, saved: Saved) -> None:
         nodes = [node for node, _ in self._ends]
         self._supports, self._bases = (dict(zip(nodes, saved[name], strict=True)) for name in ("supports", "bases"))
+
+
+@njit
+def _spread_motion(moved: Array, node: int, to: Array, held: int, reach: Array) -> None:
+    """Add the rest of a node's motion to what is held of it to the increments (nn, ndof), each node by its share."""
+    for i in range(held):
+        rest = to[i] - moved[node, i]
+        for n in range(moved.shape[0]):
+            moved[n, i] += reach[n] * rest
+
+
+@njit
+def _motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> Array:
+    """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
+    where the node is, `start` (d,).
+    """
+    out = np.zeros((3, basis.shape[1]))
+    for k in range(3):
+        for i in range(basis.shape[1]):
+            for j in range(3):
+                out[k, i] += (motion[k, j] - (origin[j] if k == 0 else 0.0)) * basis[j, i]
+    for i in range(basis.shape[1]):
+        out[0, i] -= start[i]
+    return out
 
 
 STILL = 1e-9  # of the line's length, or a radian: what moves less does not move

@@ -1,4 +1,4 @@
-"""Kernels of the riser's line: places after increments, motion of ends, folded elements and what is said of them."""
+"""Kernels of the riser's line: places after increments, folded elements and what is said of them."""
 
 from __future__ import annotations
 
@@ -8,30 +8,6 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-
-
-@njit
-def spread_motion(moved: Array, node: int, to: Array, held: int, reach: Array) -> None:
-    """Add the rest of a node's motion to what is held of it to the increments (nn, ndof), each node by its share."""
-    for i in range(held):
-        rest = to[i] - moved[node, i]
-        for n in range(moved.shape[0]):
-            moved[n, i] += reach[n] * rest
-
-
-@njit
-def motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> Array:
-    """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
-    where the node is, `start` (d,).
-    """
-    out = np.zeros((3, basis.shape[1]))
-    for k in range(3):
-        for i in range(basis.shape[1]):
-            for j in range(3):
-                out[k, i] += (motion[k, j] - (origin[j] if k == 0 else 0.0)) * basis[j, i]
-    for i in range(basis.shape[1]):
-        out[0, i] -= start[i]
-    return out
 
 
 @njit

@@ -8,13 +8,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State, Traits, Work
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
-from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.attachments import GivenForces, add_given
+from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line import Line
-from riser_soil.riser.load_kernels import GivenForces, SpatialMoments
+from riser_soil.riser.line_part import CompiledPart
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.rotations import moment_stiffness
+from riser_soil.riser.vectors import matrix, matvec, transpose, vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +43,15 @@ class _Share(NamedTuple):
     load: AppliedLoad
     at: int | slice
     values: Array
+
+
+class SpatialMoments(NamedTuple):
+    """`GivenForces`, and moments (k, 3) of fixed axes at nodes (k,)."""
+
+    F: Array
+    nodal: Array
+    node: IntArray
+    moment: Array
 
 
 class PointLoads(CompiledPart):
@@ -119,3 +132,31 @@ class PointLoads(CompiledPart):
 def _in_plane(moment: Array, line: Line) -> Array:
     """A moment in global axes as what is conjugate to a node's dofs (3,)."""
     return np.array([0.0, 0.0, moment @ line.normal])
+
+
+@add_forces.of(SpatialMoments)
+def _moment_forces(part: SpatialMoments, at: SpatialConfiguration, out: LineForces) -> None:
+    add_given(part.F, part.nodal, out)
+    for k in range(part.node.size):
+        n = part.node[k]
+        conjugate = matvec(transpose(matrix(at.H[n])), vector(part.moment[k]))
+        for i in range(3):
+            out.force[n, 3 + i] -= conjugate[i]
+
+
+@add_tangent.of(SpatialMoments)
+def _moment_tangent(
+    part: SpatialMoments, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    for k in range(part.node.size):
+        n = part.node[k]
+        e, first = (n, 3) if n < K.shape[0] else (n - 1, 9)
+        change = moment_stiffness(matrix(at.Rn[n]), vector(at.Theta[n]), vector(part.moment[k]))
+        for i in range(3):
+            for j in range(3):
+                K[e, first + i, first + j] -= weights.force * change[i][j]
+
+
+@add_energy.of(SpatialMoments)
+def _moment_energy(part: SpatialMoments, at: SpatialConfiguration, energy: Array) -> None:
+    """They have no potential."""

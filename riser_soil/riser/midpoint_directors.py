@@ -17,8 +17,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.directors import Frames, PlanarFrames
-from riser_soil.riser.rotations import exp_coefficients
-from riser_soil.riser.spatial_directors import SpatialFrames, moment_stiffness, node_frames
+from riser_soil.riser.rotations import exp_coefficients, moment_stiffness
+from riser_soil.riser.spatial_directors import SpatialFrames, node_frames
 from riser_soil.riser.vectors import (
     Vec,
     add,

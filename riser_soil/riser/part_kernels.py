@@ -6,12 +6,11 @@ calls them, and so does `CompiledPart`, by which a part has a system's methods.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
@@ -47,11 +46,6 @@ def forces_of(line: Line) -> LineForces:
     conjugate = (np.zeros((ne, 4, line.dimension)) for _ in range(3))
     of_elements = (np.zeros((ne, 2 * line.ndof)) for _ in range(2))
     return LineForces(*conjugate, *of_elements, *(np.zeros((line.nodes, line.ndof)) for _ in range(3)))
-
-
-def bound(stub: Any, data: tuple[Any, ...], *arguments: Packed) -> Bound:
-    """The kernel for this data, bound to it and to its other arguments."""
-    return Bound(stub.kernels[type(data)], Packed(data), *arguments)
 
 
 @bound_by_type

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Packed
+from riser_soil.core.bound import Packed, bound
 from riser_soil.core.part import State
 from riser_soil.riser.configuration import base_of, place, workspace_for, write_rates
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import bound
 
 
 class LineBase:

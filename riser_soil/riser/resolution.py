@@ -22,11 +22,10 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
-from riser_soil.riser.line import Line
-from riser_soil.riser.section_forces import end_forces, section_frames
+from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.section_forces import end_forces
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation
-from riser_soil.riser.trial import Trial
 from riser_soil.riser.vectors import (
     Vec,
     add,
@@ -60,7 +59,7 @@ def misfit(line: Line, elements: Elements, state: State, residual: Array) -> Ben
     """residual (ne, 2 ndof): from `section_forces.element_residual`, less its viscous share."""
     trial = line.trial(state)
     tangent, out = trial.turn.tangent, (np.empty(line.length.size), np.empty(line.length.size))
-    stiffness = *section_frames(trial), *elements.flexibility, elements.larger_EI
+    stiffness = *trial.turn.end_frames, *elements.flexibility, elements.larger_EI
     on_ends = end_forces(line, trial, residual)
     _write_misfits(line.length, *on_ends, line.basis, tangent, _turns(line, trial), *stiffness, *out)
     i, j = (int(values.argmax()) for values in out)
@@ -86,7 +85,7 @@ def _write_misfits(
     """Write the misfits (ne,) of the elements by the formula with shear, and by the trapezoidal rule.
 
     force, moment (ne, 2, 3): on the elements' ends; basis (3, d): axes of the tangents (ne, 2, d) there; turn: of
-    `_turns`; first, second: of `section_frames`; y, z (ne,): 1/EI.
+    `_turns`; first, second: `end_frames`; y, z (ne,): 1/EI.
     """
     ne, size = len(length), np.empty(2)
     k, slope = np.empty((2, 3)), np.empty((2, 3))

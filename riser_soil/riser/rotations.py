@@ -31,8 +31,10 @@ from riser_soil.riser.vectors import (
     matadd,
     matrix,
     matscale,
+    matvec,
     outer,
     skew,
+    transpose,
     vecmat,
     vector,
 )
@@ -232,3 +234,9 @@ def tangent_to_increments(e: int, f: Array, K: Array, H: Array, Rn: Array, Theta
         n, at = e + end, 3 + 6 * end
         moment = vector(f[at : at + 3])
         _end_to_increments(K, at, moment, matrix(H[n]), matrix(Rn[n]), vector(Theta[n]))
+
+
+@njit
+def moment_stiffness(Rn: Mat, Theta: Vec, m: Vec) -> Mat:
+    """d(H^T m)/dTheta at fixed spatial moment m."""
+    return right_tangent_derivative(Theta, matvec(transpose(Rn), m))

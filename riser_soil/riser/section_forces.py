@@ -12,13 +12,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound, Packed, in_turn
+from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import State
-from riser_soil.riser.compiled_part import LineTrials
 from riser_soil.riser.configuration import Configuration, PlanarConfiguration, write_moment_maps
-from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart, overrides
-from riser_soil.riser.part_kernels import bound
+from riser_soil.riser.directors import NO_FRAMES
+from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.line_part import LinePart, LineTrials, overrides
 from riser_soil.riser.section_kernels import (
     SectionForces,
     SectionInput,
@@ -27,10 +26,8 @@ from riser_soil.riser.section_kernels import (
     write_section_forces,
 )
 from riser_soil.riser.sections import Elements
-from riser_soil.riser.spatial_directors import SpatialOrientation
-from riser_soil.riser.trial import Trial
 
-NOTHING, NO_FRAMES = np.empty((0, 0)), np.empty((0, 3, 3))
+NOTHING = np.empty((0, 0))
 
 
 def element_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array:
@@ -118,13 +115,6 @@ class BoundSections:
         """See `SectionForces.within`."""
         self._put()
         return self._out.copy()
-
-
-def section_frames(trial: Trial) -> tuple[Array, Array]:
-    """Section frames (ne, 3, 3) at the elements' ends; none in a plane, where there is one stiffness."""
-    if isinstance(trial.turn, SpatialOrientation):
-        return trial.turn.frame1, trial.turn.frame2
-    return NO_FRAMES, NO_FRAMES
 
 
 def add_at_ends(line: Line, state: State, nodal: Array, inside: SectionForces) -> None:

@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.riser.line import Layout
 
 X = np.array([1.0, 0.0, 0.0])
 UP = np.array([0.0, 0.0, 1.0])
@@ -29,6 +28,25 @@ class Curve:
     @property
     def chord(self) -> Array:
         return np.diff(self.position, axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """A line before any load: unstressed shape and initial configuration, in global axes.
+
+    arc: (nn,) arc length of the nodes, from the start. outer_diameter: (ne,).
+    T0: (ne, 2, 3, 3) unstressed frames at element ends, columns tangent and two normals. chord0: (ne, 3)
+    unstressed chords.
+    position: (nn, 3) and rotation: (nn, 3, 3) of the initial configuration; rotation turns T0 to its frames
+    there.
+    """
+
+    arc: Array
+    outer_diameter: Array
+    T0: Array
+    chord0: Array
+    position: Array
+    rotation: Array
 
 
 def straight(arc: Array, start: npt.ArrayLike = (0.0, 0.0, 0.0), direction: npt.ArrayLike = X) -> Curve:

@@ -57,6 +57,11 @@ class SpatialOrientation:
         """First element whose ends turn by increments that differ by more than half a turn; ne without any."""
         return int(first_wound(self.Theta))
 
+    @property
+    def end_frames(self) -> tuple[Array, Array]:
+        """Section frames (ne, 3, 3) at the elements' first and second ends."""
+        return self.frame1, self.frame2
+
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
         rate, acceleration = (np.empty((len(self.T0), 4, 3)) for _ in range(2))
@@ -266,12 +271,6 @@ def write_maps(
 
 
 @njit
-def moment_stiffness(Rn: Mat, Theta: Vec, m: Vec) -> Mat:
-    """d(H^T m)/dTheta at fixed spatial moment m."""
-    return rotations.right_tangent_derivative(Theta, matvec(transpose(Rn), m))
-
-
-@njit
 def write_geometric(Rn: Array, H: Array, Theta: Array, t: Array, F: Array, G: Array) -> None:
     """Write d(H^T (t x F))/dTheta (ne, 2, 3, 3) at fixed F (ne, 2, 3): H turns, and so does t."""
     for e in range(t.shape[0]):
@@ -279,5 +278,5 @@ def write_geometric(Rn: Array, H: Array, Theta: Array, t: Array, F: Array, G: Ar
             node, spin = e + side, matrix(H[e + side])
             tangent, force = vector(t[e, side]), vector(F[e, side])
             turning = matmul(transpose(spin), matmul(matmul(skew(force), skew(tangent)), spin))
-            lever = moment_stiffness(matrix(Rn[node]), vector(Theta[node]), cross(tangent, force))
+            lever = rotations.moment_stiffness(matrix(Rn[node]), vector(Theta[node]), cross(tangent, force))
             store(matadd(turning, lever), G[e, side])

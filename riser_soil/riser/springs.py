@@ -10,11 +10,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Traits
 from riser_soil.riser import rotations
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
-from riser_soil.riser.spatial_directors import moment_stiffness
 from riser_soil.riser.vectors import Vec, add, dot, matadd, matmul, matrix, matscale, matvec, scale, transpose, vector
 
 
@@ -110,7 +109,7 @@ def _spatial_tangent(part: SpatialSpring, at: SpatialConfiguration, maps: Maps, 
     e, first = (0, 3) if n == 0 else (n - 1, 9)
     H, turn = matrix(at.H[n]), _turned(at, n, part.support)
     material = matscale(part.stiffness, matmul(transpose(H), matmul(rotations.left_tangent_inverse(turn), H)))
-    turning = moment_stiffness(matrix(at.Rn[n]), vector(at.Theta[n]), scale(part.stiffness, turn))
+    turning = rotations.moment_stiffness(matrix(at.Rn[n]), vector(at.Theta[n]), scale(part.stiffness, turn))
     change = matadd(material, turning)
     for i in range(3):
         for j in range(3):

@@ -10,11 +10,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits, Work
 from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, rotations
-from riser_soil.riser.beam import in_plane, in_space
-from riser_soil.riser.compiled_part import CompiledPart
+from riser_soil.riser.beam import in_plane, in_space, seen_in_plane
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.vectors import matrix, matvec, vector
@@ -78,32 +78,21 @@ def _write_chord_rates(v: Array, out: Array) -> None:
 
 @add_forces.of(PlanarViscosity)
 def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForces) -> None:
-    f, first, second = np.empty(6), at.end_angle[:, 0], at.end_angle[:, 1]
+    f = np.empty(6)
     _write_chord_rates(at.v, part.chord_rate)
     for e in range(at.chord.shape[0]):
-        damping2d.write_element_forces(
-            e, at.chord, first, second, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f
-        )
+        seen = seen_in_plane(at, e)
+        damping2d.write_element_forces(e, seen, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
 
 @add_tangent.of(PlanarViscosity)
 def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    own, first, second = np.empty((6, 6)), at.end_angle[:, 0], at.end_angle[:, 1]
+    own = np.empty((6, 6))
     for e in range(at.chord.shape[0]):
-        damping2d.write_element_tangent(
-            e,
-            at.chord,
-            first,
-            second,
-            part.reference,
-            part.viscosity,
-            part.chord_rate,
-            at.v[:, 2],
-            maps.shift_v,
-            own,
-        )
+        seen, rates = seen_in_plane(at, e), (part.chord_rate, at.v[:, 2])
+        damping2d.write_element_tangent(e, seen, part.reference, part.viscosity, *rates, maps.shift_v, own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
@@ -117,9 +106,8 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
         spin = matvec(matrix(at.frames[n]), vector(at.v[n, 3:]))
         part.spin[n, 0], part.spin[n, 1], part.spin[n, 2] = spin
     for e in range(at.chord.shape[0]):
-        damping3d.write_element_forces(
-            e, at.chord, at.frame1, at.frame2, part.reference, part.viscosity, part.chord_rate, part.spin, f
-        )
+        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference)
+        damping3d.write_element_forces(e, seen, part.reference, part.viscosity, part.chord_rate, part.spin, f)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
@@ -130,20 +118,10 @@ def _spatial_tangent(
     part: SpatialViscosity, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
 ) -> None:
     own, nodes = np.empty((12, 12)), damping3d.NodeRotations(at.frames, at.H, at.Rn, at.Theta)
+    rates = part.chord_rate, part.spin
     for e in range(at.chord.shape[0]):
-        damping3d.write_element_tangent(
-            e,
-            at.chord,
-            at.frame1,
-            at.frame2,
-            part.reference,
-            part.viscosity,
-            part.chord_rate,
-            part.spin,
-            nodes,
-            maps.shift_v,
-            own,
-        )
+        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference)
+        damping3d.write_element_tangent(e, seen, part.reference, part.viscosity, *rates, nodes, maps.shift_v, own)
         for i in range(12):
             for j in range(12):
                 K[e, i, j] += weights.force * own[i, j]

@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.part import Traits
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import (
     LineForces,
     LineWeights,
@@ -24,25 +24,18 @@ from riser_soil.riser.part_kernels import (
     add_work,
     find_water,
 )
-from riser_soil.riser.stations import element_workspace
 from riser_soil.sea import waterline
 from riser_soil.sea.flows import WaterMotion
-from riser_soil.sea.moving_water import FlowAtStations
-from riser_soil.sea.stream_kernels import SeenWater, Stream, see_end, see_start, update
-from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
+from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, see_end, see_start, update
+from riser_soil.sea.waterline import dry_height, wet_share, wet_slope
 
 
 class DryStationData(NamedTuple):
-    """Lost buoyancy by the dry share at the stations of a pipe; element (ne,): of the line, in which its own lie. span
-    (ne, ng) [m]: widths of the sections; displaced (ne,): weight of the displaced water [N/m]; flat: see `Buoyancy`.
-    Workspace for one station and one element.
+    """Lost buoyancy by the dry share at the stations of a pipe. span (ne, ng) [m]: widths of the sections; displaced
+    (ne,): weight of the displaced water [N/m]; flat: see `Buoyancy`. Workspace for one station and one element.
     """
 
     stream: Stream
-    seen: SeenWater
-    element: IntArray
-    at: stations.Stations
-    share: Array
     span: Array
     displaced: Array
     flat: bool
@@ -58,9 +51,7 @@ class DryPipeData(NamedTuple):
     """
 
     stream: Stream
-    seen: SeenWater
     points: waterline.FinePoints
-    at: stations.Stations
     length: Array
     width: Array
     displaced: Array
@@ -81,7 +72,7 @@ def _find_water(part: DryStationData | DryPipeData, at: Configuration) -> None:
 @njit
 def _lost(part: DryStationData, water: WaterMotion, m: int, g: int) -> float:
     """Force per length on a station, downwards."""
-    h = water.immersion[m * part.share.shape[1] + g]
+    h = water.immersion[m * part.stream.share.shape[1] + g]
     lost: float = part.displaced[m] * (1.0 - wet_share(h, part.span[m, g]))
     return lost
 
@@ -89,26 +80,25 @@ def _lost(part: DryStationData, water: WaterMotion, m: int, g: int) -> float:
 @add_forces.of(DryStationData)
 def _station_forces(part: DryStationData, at: Configuration, out: LineForces) -> None:
     see_end(part.stream, at.q)
-    for m in range(part.element.size):
-        for g in range(part.share.shape[1]):
-            part.f[len(at.D) - 1] = _lost(part, part.seen.end, m, g)
-            p = m * part.share.shape[1] + g
-            stations.add_integrand_at(part.at.weighted, p, as_tuple(part.f, at.D), out.force_q, part.element[m], at.D)
+    for m in range(part.stream.element.size):
+        for g in range(part.stream.share.shape[1]):
+            part.f[len(at.D) - 1] = _lost(part, part.stream.seen.end, m, g)
+            add_at_station(part.stream, m, g, as_tuple(part.f, at.D), out.force_q)
 
 
 @add_tangent.of(DryStationData)
 def _station_tangent(part: DryStationData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    water, up = part.seen.end, len(at.D) - 1
-    for m in range(part.element.size):
-        e = part.element[m]
+    water, up = part.stream.seen.end, len(at.D) - 1
+    for m in range(part.stream.element.size):
+        e = part.stream.element[m]
         part.change[:] = 0.0
-        for g in range(part.share.shape[1]):
-            p = m * part.share.shape[1] + g
+        for g in range(part.stream.share.shape[1]):
+            p = m * part.stream.share.shape[1] + g
             slope = -weights.force * part.displaced[m] * wet_slope(water.immersion[p], part.span[m, g])
             for j in range(len(at.D)):
                 part.by_x[up, j] = slope * water.immersion_gradient[p, j]
-            sunk = part.at.N[m, g], part.by_x, maps.place_rows[e]
-            add_weighed(part.change, part.at.weighted[m, g], (sunk,), at.D, at.R)
+            sunk = part.stream.at.N[m, g], part.by_x, maps.place_rows[e]
+            add_weighed(part.change, part.stream.at.weighted[m, g], (sunk,), at.D, at.R)
         add_pulled_back(K[e], at.P[e], part.change, at.D, at.R)
 
 
@@ -116,10 +106,10 @@ def _station_tangent(part: DryStationData, at: Configuration, maps: Maps, weight
 def _station_energy(part: DryStationData, at: Configuration, energy: Array) -> None:
     if not part.flat:
         return
-    for m in range(part.element.size):
-        for g in range(part.share.shape[1]):
-            h = part.seen.end.immersion[m * part.share.shape[1] + g]
-            energy[2] += part.share[m, g] * part.displaced[m] * dry_height(h, part.span[m, g])
+    for m in range(part.stream.element.size):
+        for g in range(part.stream.share.shape[1]):
+            h = part.stream.seen.end.immersion[m * part.stream.share.shape[1] + g]
+            energy[2] += part.stream.share[m, g] * part.displaced[m] * dry_height(h, part.span[m, g])
 
 
 @add_work.of(DryStationData)
@@ -128,13 +118,13 @@ def _station_work(part: DryStationData, first: Configuration, last: Configuratio
         return
     see_start(part.stream, first.q)
     up = len(last.D) - 1
-    for m in range(part.element.size):
-        e = part.element[m]
-        for g in range(part.share.shape[1]):
-            risen, lost = 0.0, _lost(part, part.seen.start, m, g) + _lost(part, part.seen.end, m, g)
+    for m in range(part.stream.element.size):
+        e = part.stream.element[m]
+        for g in range(part.stream.share.shape[1]):
+            risen, lost = 0.0, _lost(part, part.stream.seen.start, m, g) + _lost(part, part.stream.seen.end, m, g)
             for a in range(4):
-                risen += part.at.N[m, g, a] * (last.q[e, a, up] - first.q[e, a, up])
-            work[1] -= 0.5 * part.share[m, g] * lost * risen
+                risen += part.stream.at.N[m, g, a] * (last.q[e, a, up] - first.q[e, a, up])
+            work[1] -= 0.5 * part.stream.share[m, g] * lost * risen
 
 
 @njit
@@ -146,7 +136,7 @@ def _element(part: DryPipeData, at: Configuration, water: WaterMotion, e: int) -
     for g in range(ng):
         part.heights[g] = 0.0
         for a in range(4):
-            part.heights[g] += part.at.N[e, g, a] * part.z[a]
+            part.heights[g] += part.stream.at.N[e, g, a] * part.z[a]
     h = water.immersion[e * ng : (e + 1) * ng]
     return waterline.WetElement(part.z, h, part.heights, part.length[e], part.width[e])
 
@@ -156,7 +146,7 @@ def _pipe_forces(part: DryPipeData, at: Configuration, out: LineForces) -> None:
     see_end(part.stream, at.q)
     up = len(at.D) - 1
     for e in range(part.length.size):
-        waterline.write_dry_lengths(part.points, _element(part, at, part.seen.end, e), part.dry)
+        waterline.write_dry_lengths(part.points, _element(part, at, part.stream.seen.end, e), part.dry)
         for a in range(4):
             out.force_q[e, a, up] += part.displaced[e] * part.dry[a]
 
@@ -165,9 +155,9 @@ def _pipe_forces(part: DryPipeData, at: Configuration, out: LineForces) -> None:
 def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     ng = part.heights.size
     for e in range(part.length.size):
-        weight, N = weights.force * part.displaced[e], part.at.N[e]
-        gradient = part.seen.end.immersion_gradient[e * ng : (e + 1) * ng]
-        wet = _element(part, at, part.seen.end, e)
+        weight, N = weights.force * part.displaced[e], part.stream.at.N[e]
+        gradient = part.stream.seen.end.immersion_gradient[e * ng : (e + 1) * ng]
+        wet = _element(part, at, part.stream.seen.end, e)
         waterline.add_element_tangent(K[e], part.points, wet, N, gradient, weight, at.P[e], part.workspace, at.D, at.R)
 
 
@@ -175,7 +165,8 @@ def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: Lin
 def _pipe_energy(part: DryPipeData, at: Configuration, energy: Array) -> None:
     if part.flat:
         for e in range(part.length.size):
-            energy[2] += part.displaced[e] * waterline.dry_potential(part.points, _element(part, at, part.seen.end, e))
+            wet = _element(part, at, part.stream.seen.end, e)
+            energy[2] += part.displaced[e] * waterline.dry_potential(part.points, wet)
 
 
 @add_work.of(DryPipeData)
@@ -185,8 +176,8 @@ def _pipe_work(part: DryPipeData, first: Configuration, last: Configuration, wor
     see_start(part.stream, first.q)
     up = len(last.D) - 1
     for e in range(part.length.size):
-        waterline.write_dry_lengths(part.points, _element(part, first, part.seen.start, e), part.before)
-        waterline.write_dry_lengths(part.points, _element(part, last, part.seen.end, e), part.dry)
+        waterline.write_dry_lengths(part.points, _element(part, first, part.stream.seen.start, e), part.before)
+        waterline.write_dry_lengths(part.points, _element(part, last, part.stream.seen.end, e), part.dry)
         for a in range(4):
             risen = last.q[e, a, up] - first.q[e, a, up]
             work[1] -= 0.5 * part.displaced[e] * (part.before[a] + part.dry[a]) * risen
@@ -202,19 +193,16 @@ def dry_stations(span: Array, displaced: Array) -> Dry:
     """By the dry share at the stations of a pipe, see `DryStationData`."""
 
     def data(water: FlowAtStations, flat: bool) -> DryStationData:
-        pipe, seen, d = water.pipe, water.in_loop, water.pipe.line.dimension
+        line = water.pipe.line
+        d = line.dimension
         return DryStationData(
-            stream=seen.stream,
-            seen=seen.seen,
-            element=pipe.element,
-            at=pipe.at,
-            share=pipe.share,
+            stream=water.stream,
             span=span,
             displaced=displaced,
             flat=flat,
             f=np.zeros(d),
             by_x=np.zeros((d, d)),
-            change=element_workspace(2 * pipe.line.ndof, fixed(d)),
+            change=stations.element_workspace(2 * line.ndof, fixed(d)),
         )
 
     return data
@@ -238,7 +226,7 @@ class Buoyancy(CompiledPart):
         return self._dry(self._water, self._flat)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        update(self._water.in_loop.seen, start, end)
+        update(self._water.stream.seen, start, end)
 
 
 # Fine points that a section's width holds at least, so that an upright pipe gets wet evenly; an element has no more
@@ -253,20 +241,18 @@ def dry_pipe(displaced: Array) -> Dry:
     """
 
     def data(water: FlowAtStations, flat: bool) -> DryPipeData:
-        pipe, seen, ng = water.pipe, water.in_loop, water.pipe.share.shape[1]
-        L, D = pipe.line.length, pipe.line.outer_diameter
+        line, ng = water.pipe.line, water.pipe.share.shape[1]
+        L, D = line.length, line.outer_diameter
         apart = 0.5 * np.pi * L  # times n, at most, between neighbours of n Gauss-Legendre points
         n = min(MOST, max(4, math.ceil(WITHIN_WIDTH * float(np.max(apart / np.maximum(D, 1e-9 * apart))))))
         return DryPipeData(
-            stream=seen.stream,
-            seen=seen.seen,
+            stream=water.stream,
             points=waterline.fine_points(n),
-            at=pipe.at,
             length=L,
             width=np.maximum(D, WITHIN_WIDTH * apart / n),
             displaced=displaced,
             flat=flat,
-            workspace=waterline.tangent_workspace(ng, 2 * pipe.line.ndof, fixed(pipe.line.dimension)),
+            workspace=waterline.tangent_workspace(ng, 2 * line.ndof, fixed(line.dimension)),
             z=np.zeros(4),
             heights=np.zeros(ng),
             dry=np.zeros(4),

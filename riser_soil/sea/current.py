@@ -1,8 +1,14 @@
-"""Steady current profile over height."""
+"""Current by height, steady or changing in time.
+
+A changing one has profiles by height at given times, and a cubic spline in time through them. The spline is level at
+the first time and at the last one, and goes on so: the rate, which is the water's acceleration, has no jumps. As the
+current is level and the same all along a height, it carries nothing with it.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -63,3 +69,85 @@ def _add_current(current: CurrentData, motion: WaterMotion, t: Array, x: Array) 
         for i in range(2):
             motion.velocity[p, i] += factor * values[p, i]
             motion.velocity_gradient[p, i, 2] += factor * slopes[p, i]
+
+
+class ChangingCurrentData(NamedTuple):
+    """A `ChangingCurrent`. rate (k, m, 2): of the spline at the given times [m/s2]."""
+
+    level: Array
+    time: Array
+    velocity: Array
+    rate: Array
+    clock: float
+    runs: bool
+    grows: bool
+
+
+@dataclass(frozen=True, eq=False)
+class ChangingCurrent:
+    """A current by height and time, constant before the first time and after the last.
+
+    level (m,) [m] and time (k,) [s], increasing; velocity (k, m, 2) [m/s] towards x and y. clock: what the time is
+    counted on shows when the stage begins [s]; runs: whether it goes on through the stage, which then is a dynamic one;
+    grows: as of `SteadyCurrent`.
+    """
+
+    level: Array
+    time: Array
+    velocity: Array
+    clock: float = 0.0
+    runs: bool = True
+    grows: bool = False
+
+    @cached_property
+    def kernel_data(self) -> ChangingCurrentData:
+        rate = spline_rates(self.time, self.velocity)
+        return ChangingCurrentData(self.level, self.time, self.velocity, rate, self.clock, self.runs, self.grows)
+
+
+def spline_rates(time: Array, value: Array) -> Array:
+    """Rates (k, ...) at increasing times (k,) of the cubic spline through values (k, ...), level at both ends.
+
+    Its second derivatives agree at the times within: s_(i-1)/h_i + 2 s_i (1/h_i + 1/h_(i+1)) + s_(i+1)/h_(i+1) =
+    3 (d_i/h_i + d_(i+1)/h_(i+1)), with h the spans between the times and d the differences of the values over them.
+    """
+    inverse = 1.0 / np.diff(time)
+    steep = (np.diff(value, axis=0).T * inverse**2).T
+    left, right = inverse[:-1], inverse[1:]
+    matrix = np.diag(2.0 * (left + right)) + np.diag(right[:-1], 1) + np.diag(right[:-1], -1)
+    rates = np.zeros(value.shape)
+    within = 3.0 * (steep[:-1] + steep[1:])
+    rates[1:-1] = np.linalg.solve(matrix, within.reshape(len(within), value[0].size)).reshape(within.shape)
+    return rates
+
+
+@add_flow.of(ChangingCurrentData)
+def _add_changing(current: ChangingCurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
+    velocity, rate = _at_time(current, current.clock + t[0] if current.runs else current.clock)
+    u, shear = at_heights(x[:, 2], current.level, velocity)
+    du, shear_rate = at_heights(x[:, 2], current.level, rate)
+    factor, moves = t[0] if current.grows else 1.0, 1.0 if current.runs else 0.0
+    for p in range(x.shape[0]):
+        for i in range(2):
+            motion.velocity[p, i] += factor * u[p, i]
+            motion.velocity_gradient[p, i, 2] += factor * shear[p, i]
+            motion.acceleration[p, i] += moves * du[p, i]
+            motion.acceleration_gradient[p, i, 2] += moves * shear_rate[p, i]
+
+
+@njit
+def _at_time(current: ChangingCurrentData, t: float) -> tuple[Array, Array]:
+    """Velocity (m, 2) and its rate [m/s2] at the levels."""
+    time = current.time
+    b = min(max(int(np.searchsorted(time, t, side="right")), 1), time.size - 1)
+    a, h = b - 1, time[b] - time[b - 1]
+    s = min(max((t - time[a]) / h, 0.0), 1.0)
+    velocity, rate = np.empty(current.velocity.shape[1:]), np.empty(current.velocity.shape[1:])
+    for m in range(len(velocity)):
+        for i in range(2):
+            rise = current.velocity[b, m, i] - current.velocity[a, m, i]
+            first, last = h * current.rate[a, m, i], h * current.rate[b, m, i]
+            bow, turn = 3.0 * rise - 2.0 * first - last, first + last - 2.0 * rise
+            velocity[m, i] = current.velocity[a, m, i] + s * (first + s * (bow + s * turn))
+            rate[m, i] = (first + s * (2.0 * bow + 3.0 * s * turn)) / h
+    return velocity, rate

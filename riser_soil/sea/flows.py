@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound, Packed, in_turn
+from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 
@@ -50,7 +50,7 @@ def add_flow(flow: tuple, motion: WaterMotion, t: Array, x: Array) -> None:
 def motion_of(sea: SeaData, motion: WaterMotion, t: Array, x: Array) -> list[Bound]:
     """Kernels that write the water's motion at time t (1,) and points x (n, 3), as these then are."""
     out, when, places = Packed(motion), Packed(t), Packed(x)
-    flows = (Bound(add_flow.kernels[type(flow)], Packed(flow), out, when, places) for flow in sea.flows)
+    flows = (bound(add_flow, flow, out, when, places) for flow in sea.flows)
     return [Bound(write_at_rest, out, Packed(sea.level), places), *flows]
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
@@ -24,8 +24,8 @@ from riser_soil.riser.part_kernels import (
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.stream_kernels import SeenWater, Stream, WaterInLoop, see_end, see_start
-from riser_soil.sea.wet_section import wet_share, wet_slope
+from riser_soil.sea.stream_kernels import Stream, add_at_station, see_end, see_start
+from riser_soil.sea.waterline import wet_share, wet_slope
 
 
 class FlowWorkspace(NamedTuple):
@@ -57,16 +57,11 @@ class FlowDerivatives(NamedTuple):
 class MovingWaterData(NamedTuple):
     """Loads of the water on what moves in it, see `WaterLoads`.
 
-    element (ne,): of the line, in which those of the pipe lie. pushed (ne, 2): mass on which the water's acceleration
-    acts. partly: whether it acts on the wet share alone, of sections of width span (ne, ng). alike: whether what moves
-    is alike in all directions.
+    pushed (ne, 2): mass on which the water's acceleration acts. partly: whether it acts on the wet share alone, of
+    sections of width span (ne, ng). alike: whether what moves is alike in all directions.
     """
 
     stream: Stream
-    seen: SeenWater
-    element: IntArray
-    at: stations.Stations
-    share: Array
     drag: Array
     mass: Array
     pushed: Array
@@ -80,16 +75,12 @@ class MovingWaterData(NamedTuple):
     change: Array
 
 
-def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> MovingWaterData:
+def moving_water(stream: Stream, pipe: Pipe, drag: Array, mass: Array) -> MovingWaterData:
     """Drag and added mass in water that stands still, or on the motion through it."""
     d, n = pipe.line.dimension, 2 * pipe.line.ndof
     workspace, first = (FlowWorkspace(*(np.zeros(d) for _ in FlowWorkspace._fields)) for _ in range(2))
     return MovingWaterData(
-        stream=water.stream,
-        seen=water.seen,
-        element=pipe.element,
-        at=pipe.at,
-        share=pipe.share,
+        stream=stream,
         drag=drag,
         mass=mass,
         pushed=np.zeros_like(mass),
@@ -107,9 +98,9 @@ def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> Mo
 @njit
 def move(part: MovingWaterData, at: Configuration, m: int, g: int, workspace: FlowWorkspace) -> float:
     """Motion and tangent of the pipe at a station; the stretch |x'|."""
-    e, p = part.element[m], m * part.share.shape[1] + g
-    v, a = stations.value_at(part.at.N, p, at.rate, e, at.D), stations.value_at(part.at.N, p, at.acceleration, e, at.D)
-    tau, stretch = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, at.D)
+    e, p, N = part.stream.element[m], m * part.stream.share.shape[1] + g, part.stream.at.N
+    v, a = stations.value_at(N, p, at.rate, e, at.D), stations.value_at(N, p, at.acceleration, e, at.D)
+    tau, stretch = stations.unit_tangent_at(part.stream.at.dN, p, at.chord, at.tangent, e, at.D)
     for i in range(len(at.D)):
         workspace.v[i], workspace.a[i], workspace.tau[i] = v[i], a[i], 0.0 if part.alike else tau[i]
     return stretch
@@ -118,7 +109,7 @@ def move(part: MovingWaterData, at: Configuration, m: int, g: int, workspace: Fl
 @njit
 def _resist(part: MovingWaterData, water: WaterMotion, m: int, g: int, workspace: FlowWorkspace, D: Size) -> None:
     """Resistance at a station in motion, as if it were wet."""
-    p = m * part.share.shape[1] + g
+    p = m * part.stream.share.shape[1] + g
     for i in range(len(D)):
         workspace.through[i] = workspace.v[i] - water.velocity[p, i]
     law.write_added(workspace.a, workspace.tau, part.mass[m], workspace.inertia, D)
@@ -133,8 +124,17 @@ def wet(part: MovingWaterData, water: WaterMotion, m: int, g: int) -> float:
     """The wet share of a station."""
     if not part.partly:
         return 1.0
-    share: float = wet_share(water.immersion[m * part.share.shape[1] + g], part.span[m, g])
+    share: float = wet_share(water.immersion[m * part.stream.share.shape[1] + g], part.span[m, g])
     return share
+
+
+@njit
+def wetting(part: MovingWaterData, water: WaterMotion, m: int, g: int) -> float:
+    """The derivative of a station's wet share by its immersion [1/m]."""
+    if not part.partly:
+        return 0.0
+    slope: float = wet_slope(water.immersion[m * part.stream.share.shape[1] + g], part.span[m, g])
+    return slope
 
 
 @find_water.of(MovingWaterData)
@@ -145,19 +145,17 @@ def _find_water(part: MovingWaterData, at: Configuration) -> None:
 @add_forces.of(MovingWaterData)
 def _forces(part: MovingWaterData, at: Configuration, out: LineForces) -> None:
     see_end(part.stream, at.q)
-    workspace, water = part.workspace, part.seen.end
-    for m in range(part.element.size):
-        e = part.element[m]
-        for g in range(part.share.shape[1]):
+    workspace, water = part.workspace, part.stream.seen.end
+    for m in range(part.stream.element.size):
+        for g in range(part.stream.share.shape[1]):
             move(part, at, m, g, workspace)
             _resist(part, water, m, g, workspace, at.D)
             share = wet(part, water, m, g)
             for i in range(len(at.D)):
                 workspace.inertia[i] *= share
                 workspace.force[i] *= share
-            p = m * part.share.shape[1] + g
-            stations.add_integrand_at(part.at.weighted, p, as_tuple(workspace.inertia, at.D), out.inertia_q, e, at.D)
-            stations.add_integrand_at(part.at.weighted, p, as_tuple(workspace.force, at.D), out.force_q, e, at.D)
+            add_at_station(part.stream, m, g, as_tuple(workspace.inertia, at.D), out.inertia_q)
+            add_at_station(part.stream, m, g, as_tuple(workspace.force, at.D), out.force_q)
 
 
 @add_tangent.of(MovingWaterData)
@@ -172,15 +170,15 @@ def _tangent(part: MovingWaterData, at: Configuration, maps: Maps, weights: Line
 def _add_mass(part: MovingWaterData, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
     """The tangent at rest but for drag and what the water's own motion brings: the mass alone."""
     by, workspace, D = part.by, part.workspace, at.D
-    for m in range(part.element.size):
-        e = part.element[m]
+    for m in range(part.stream.element.size):
+        e = part.stream.element[m]
         part.change[:] = 0.0
-        for g in range(part.share.shape[1]):
+        for g in range(part.stream.share.shape[1]):
             stretch = move(part, at, m, g, workspace)
-            mass, share = part.mass[m], weight * wet(part, part.seen.end, m, g)
+            mass, share = part.mass[m], weight * wet(part, part.stream.seen.end, m, g)
             law.write_added_derivatives(workspace.a, workspace.tau, stretch, mass, share, by.by_a, by.by_slope, D)
-            moved = part.at.N[m, g], by.by_a, maps.acceleration_rows[e]
-            add_weighed(part.change, part.at.weighted[m, g], (moved,), D, at.R)
+            moved = part.stream.at.N[m, g], by.by_a, maps.acceleration_rows[e]
+            add_weighed(part.change, part.stream.at.weighted[m, g], (moved,), D, at.R)
         add_pulled_back(K[e], at.P[e], part.change, D, at.R)
 
 
@@ -189,17 +187,17 @@ def _add_whole_tangent(
     part: MovingWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array
 ) -> None:
     by = part.by
-    for m in range(part.element.size):
-        e = part.element[m]
+    for m in range(part.stream.element.size):
+        e = part.stream.element[m]
         part.change[:] = 0.0
-        for g in range(part.share.shape[1]):
+        for g in range(part.stream.share.shape[1]):
             stretch = move(part, at, m, g, part.workspace)
-            _resist(part, part.seen.end, m, g, part.workspace, at.D)
-            _differentiate(part, part.seen.end, m, g, stretch, weights, at.D)
-            N, places = part.at.N[m, g], maps.place_rows[e]
-            placed = (part.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
+            _resist(part, part.stream.seen.end, m, g, part.workspace, at.D)
+            _differentiate(part, part.stream.seen.end, m, g, stretch, weights, at.D)
+            N, places = part.stream.at.N[m, g], maps.place_rows[e]
+            placed = (part.stream.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
             moved = (N, by.by_v, maps.rate_rows[e]), (N, by.by_a, maps.acceleration_rows[e])
-            add_weighed(part.change, part.at.weighted[m, g], (*placed, *moved), at.D, at.R)
+            add_weighed(part.change, part.stream.at.weighted[m, g], (*placed, *moved), at.D, at.R)
         add_pulled_back(K[e], at.P[e], part.change, at.D, at.R)
 
 
@@ -208,10 +206,8 @@ def _differentiate(
     part: MovingWaterData, water: WaterMotion, m: int, g: int, stretch: float, weights: LineWeights, D: Size
 ) -> None:
     """Write the weighted derivatives of the force at a station whose resistance is known."""
-    workspace, by, p = part.workspace, part.by, m * part.share.shape[1] + g
-    share, steep = wet(part, water, m, g), 0.0
-    if part.partly:
-        steep = wet_slope(water.immersion[p], part.span[m, g])
+    workspace, by, p = part.workspace, part.by, m * part.stream.share.shape[1] + g
+    share, steep = wet(part, water, m, g), wetting(part, water, m, g)
     axis, force = (workspace.tau, stretch), share * weights.force
     law.write_drag_derivatives(workspace.through, *axis, part.drag[m], force, by.by_v, by.by_slope, D)
     law.write_added_derivatives(workspace.a, *axis, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
@@ -230,11 +226,11 @@ def _differentiate(
 def _energy(part: MovingWaterData, at: Configuration, energy: Array) -> None:
     """Kinetic energy of the added mass at the pipe's own velocity, wet as the forces have found it last."""
     workspace = part.workspace
-    for m in range(part.element.size):
-        for g in range(part.share.shape[1]):
+    for m in range(part.stream.element.size):
+        for g in range(part.stream.share.shape[1]):
             move(part, at, m, g, workspace)
             law.write_added(workspace.v, workspace.tau, part.mass[m], workspace.f, at.D)
-            share = part.share[m, g] * wet(part, part.seen.end, m, g)
+            share = part.stream.share[m, g] * wet(part, part.stream.seen.end, m, g)
             for i in range(len(at.D)):
                 energy[0] += 0.5 * share * workspace.v[i] * workspace.f[i]
 
@@ -243,16 +239,16 @@ def _energy(part: MovingWaterData, at: Configuration, energy: Array) -> None:
 def _work(part: MovingWaterData, first: Configuration, last: Configuration, work: Array) -> None:
     """See `Morison`."""
     see_start(part.stream, first.q)
-    resisted, changed, seen = 0.0, 0.0, part.seen
-    for m in range(part.element.size):
-        for g in range(part.share.shape[1]):
+    resisted, changed, seen = 0.0, 0.0, part.stream.seen
+    for m in range(part.stream.element.size):
+        for g in range(part.stream.share.shape[1]):
             move(part, first, m, g, part.first)
             _resist(part, seen.start, m, g, part.first, last.D)
             move(part, last, m, g, part.workspace)
             _resist(part, seen.end, m, g, part.workspace, last.D)
             before, after = wet(part, seen.start, m, g), wet(part, seen.end, m, g)
-            resisted += part.share[m, g] * resisted_at(part, first, last, m, g, before, after)
-            changed += part.share[m, g] * _changed(part, m, before, after, last.D)
+            resisted += part.stream.share[m, g] * resisted_at(part, first, last, m, g, before, after)
+            changed += part.stream.share[m, g] * _changed(part, m, before, after, last.D)
     if part.dissipative:
         work[0] += resisted
     else:
@@ -266,9 +262,9 @@ def resisted_at(
     part: MovingWaterData, first: Configuration, last: Configuration, m: int, g: int, before: float, after: float
 ) -> float:
     """Work per length against the mean force of a step, at a station."""
-    e, p, total = part.element[m], m * part.share.shape[1] + g, 0.0
-    began = stations.value_at(part.at.N, p, first.q, e, last.D)
-    ended = stations.value_at(part.at.N, p, last.q, e, last.D)
+    e, p, total = part.stream.element[m], m * part.stream.share.shape[1] + g, 0.0
+    began = stations.value_at(part.stream.at.N, p, first.q, e, last.D)
+    ended = stations.value_at(part.stream.at.N, p, last.q, e, last.D)
     for i in range(len(last.D)):
         mean = 0.5 * (before * part.first.force[i] + after * part.workspace.force[i])
         total += mean * (ended[i] - began[i])

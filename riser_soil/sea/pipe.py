@@ -4,7 +4,7 @@ At velocity v and acceleration a, a module of drag area Cd A and volume V with a
 
     1/2 rho Cd A |v| v + Ca rho V a,
 
-and in accelerating water it feels rho V (1 + Ca) u', as a pipe does (`moving_water`): its loads are those of a pipe
+and in accelerating water it feels rho V (1 + Ca) u', as a pipe does (`morison`): its loads are those of a pipe
 without a direction, given per module instead of per length, at one station each. In section forces, the water's force
 on a module at the riser's very end counts with the last element.
 """
@@ -60,7 +60,7 @@ class Pipe:
 
     @property
     def span(self) -> Array:
-        """Widths (ne, ng) [m] of sections that get wet as lying ones do, see `wet_section`: the diameter, but no less
+        """Widths (ne, ng) [m] of sections that get wet as lying ones do, see `waterline`: the diameter, but no less
         than the arc length that a station stands for, along which an upright pipe gets wet.
         """
         return np.maximum(self.line.outer_diameter[:, None], self.share)

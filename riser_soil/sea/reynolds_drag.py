@@ -20,10 +20,9 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import Size
 from riser_soil.sea import through_kernels
-from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import write_drag_derivatives
-from riser_soil.sea.moving_water import WaterLoads
-from riser_soil.sea.moving_water_kernels import MovingWaterData
+from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData
 from riser_soil.sea.through_kernels import write_derivatives, write_resistance
 
 Rows = Sequence[tuple[float, float]]
@@ -84,32 +83,22 @@ def _across(v: Array, tau: Array, n: Array, D: Size) -> tuple[float, float]:
 
 
 @write_resistance.of(ReynoldsTables)
-def _write_resistance(
-    tables: ReynoldsTables, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size
-) -> None:
-    speed, _ = _across(v, tau, f, D)
-    c, _ = coefficient(tables, m, speed)
+def _write_resistance(law: ReynoldsTables, side: int, m: int, g: int, at: FlowWorkspace, D: Size) -> None:
+    speed, _ = _across(at.through, at.tau, at.force, D)
+    c, _ = coefficient(law, m, speed)
     for i in range(len(D)):
-        f[i] *= c * speed
+        at.force[i] *= c * speed
 
 
 @write_derivatives.of(ReynoldsTables)
 def _write_derivatives(
-    tables: ReynoldsTables,
-    m: int,
-    g: int,
-    v: Array,
-    tau: Array,
-    stretch: float,
-    weight: float,
-    by_v: Array,
-    by_slope: Array,
-    D: Size,
+    law: ReynoldsTables, m: int, g: int, v: Array, tau: Array, stretch: float, weight: float,
+    by_v: Array, by_slope: Array, D: Size,
 ) -> None:
     """As of a constant coefficient, and by its change."""
     n, pair = np.empty(len(D)), np.zeros(2)
     speed, along = _across(v, tau, n, D)
-    pair[0], change = coefficient(tables, m, speed)
+    pair[0], change = coefficient(law, m, speed)
     write_drag_derivatives(v, tau, stretch, pair, weight, by_v, by_slope, D)
     if change == 0.0:
         return

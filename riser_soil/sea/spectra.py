@@ -7,8 +7,7 @@ from functools import cache
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.sea.components import Components, alike, drawn
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import Components, alike, drawn, wave_number
 
 # Frequencies of a sea's components, over the peak's. What lies outside is 0.0 % below and 0.1 to 0.2 % above of the
 # spectrum's energy (gamma 7 to 1).

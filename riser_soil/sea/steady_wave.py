@@ -24,7 +24,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import wave_number
 
 AIRY, STOKES, STREAM = "airy", "stokes", "stream-function"
 FIFTH = 5

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from riser_soil.core.bound import Bound, Calls, Packed, call_each, calls
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import stations
 from riser_soil.riser.hermite import Size
-from riser_soil.sea.flows import SeaData, WaterMotion, motion_of, motion_workspace, write_in_plane
+from riser_soil.sea.flows import Sea, SeaData, WaterMotion, motion_of, motion_workspace, write_in_plane
 from riser_soil.sea.pipe import Pipe
 
 START, END = 0, 1
@@ -36,29 +36,35 @@ class SeenWater(NamedTuple):
 class Stream(NamedTuple):
     """The sea that a pipe is in. find_start, find_end: its motion where a step starts and ends, at the stations x.
 
-    element (ne,) and N (ne, ng, 4): those of the line that the stations lie in; origin (3,) and basis (3, d) of the
-    line; x (n, 3): stations of a trial.
+    element (ne,): of the line, in which those of the pipe lie; at, share (ne, ng): its stations, see `Pipe`;
+    origin (3,) and basis (3, d) of the line; x (n, 3): stations of a trial.
     """
 
     find_start: Calls
     find_end: Calls
     seen: SeenWater
     element: IntArray
-    N: Array
+    at: stations.Stations
+    share: Array
     origin: Array
     basis: Array
     x: Array
     D: Size
 
 
-class WaterInLoop(NamedTuple):
-    """A `Stream`, and what it sees. All parts that act at the same stations share them."""
+class FlowAtStations:
+    """The sea around a pipe, still water by default: its motion at the stations, shared by all parts that act there."""
 
-    stream: Stream
-    seen: SeenWater
+    def __init__(self, pipe: Pipe, sea: Sea | None = None) -> None:
+        self.pipe, self._sea = pipe, sea or Sea(None)
+
+    @cached_property
+    def stream(self) -> Stream:
+        """For kernels, which find the motion once for trials that differ in rates alone."""
+        return _stream(self.pipe, self._sea.kernel_data)
 
 
-def water_in_loop(pipe: Pipe, sea: SeaData) -> WaterInLoop:
+def _stream(pipe: Pipe, sea: SeaData) -> Stream:
     """The sea around a pipe, its motion found nowhere yet."""
     line, n = pipe.line, pipe.share.size
     motions = (motion_workspace(n, line.dimension) for _ in range(2))
@@ -66,8 +72,8 @@ def water_in_loop(pipe: Pipe, sea: SeaData) -> WaterInLoop:
     basis, x = np.ascontiguousarray(line.basis), np.zeros((n, 3))
     find_start = calls(*_finding(sea, seen.start, seen.t[:1], x, basis))
     find_end = calls(*_finding(sea, seen.end, seen.t[1:], x, basis))
-    at = pipe.element, pipe.at.N, line.origin, basis, x
-    return WaterInLoop(Stream(find_start, find_end, seen, *at, fixed(line.dimension)), seen)
+    at = pipe.element, pipe.at, pipe.share, line.origin, basis, x
+    return Stream(find_start, find_end, seen, *at, fixed(line.dimension))
 
 
 def _finding(sea: SeaData, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
@@ -110,12 +116,19 @@ def see_end(stream: Stream, q: Array) -> None:
 
 
 @njit
+def add_at_station(stream: Stream, m: int, g: int, f: tuple[float, ...], F: Array) -> None:
+    """Add to F (ne, 4, d) of the line what the force per length f (d,) at a station of the pipe has in it."""
+    p = m * stream.share.shape[1] + g
+    stations.add_integrand_at(stream.at.weighted, p, f, F, stream.element[m], stream.D)
+
+
+@njit
 def _place(stream: Stream, q: Array) -> None:
     """Write the stations' places in global axes."""
-    for m in range(stream.N.shape[0]):
-        for g in range(stream.N.shape[1]):
-            p = m * stream.N.shape[1] + g
-            inside = stations.value_at(stream.N, p, q, stream.element[m], stream.D)
+    for m in range(stream.at.N.shape[0]):
+        for g in range(stream.at.N.shape[1]):
+            p = m * stream.at.N.shape[1] + g
+            inside = stations.value_at(stream.at.N, p, q, stream.element[m], stream.D)
             for i in range(3):
                 x = stream.origin[i]
                 for a in range(len(stream.D)):

@@ -12,7 +12,6 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
-from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import (
@@ -25,11 +24,15 @@ from riser_soil.riser.part_kernels import (
     find_water,
 )
 from riser_soil.sea.flows import WaterMotion
-from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData, move, resisted_at, wet
-from riser_soil.sea.stream_kernels import see_end, see_start
-from riser_soil.sea.wet_section import wet_slope
-
-START, END = 0, 1  # of a step
+from riser_soil.sea.moving_water_kernels import (
+    FlowWorkspace,
+    MovingWaterData,
+    move,
+    resisted_at,
+    wet,
+    wetting,
+)
+from riser_soil.sea.stream_kernels import END, START, add_at_station, see_end, see_start
 
 
 class ThroughData(NamedTuple):
@@ -40,26 +43,16 @@ class ThroughData(NamedTuple):
 
 
 @by_type
-def write_resistance(law: tuple, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
-    """Write the resistance f (d,) per length at station g of element m, where a step starts or ends; v: velocity
-    through the water.
-    """
+def write_resistance(law: tuple, side: int, m: int, g: int, at: FlowWorkspace, D: Size) -> None:
+    """Write the resistance per length, `force`, at station g of element m, where a step starts or ends."""
 
 
 @by_type
 def write_derivatives(
-    law: tuple,
-    m: int,
-    g: int,
-    v: Array,
-    tau: Array,
-    stretch: float,
-    weight: float,
-    by_v: Array,
-    by_slope: Array,
-    D: Size,
+    law: tuple, m: int, g: int, v: Array, tau: Array, stretch: float, weight: float,
+    by_v: Array, by_slope: Array, D: Size,
 ) -> None:
-    """Write its derivatives (d, d) by v and by the axis' slope x', where a step ends, times a weight."""
+    """Write its weighted derivatives (d, d) by the velocity through the water and the axis' slope, at a step's end."""
 
 
 @njit
@@ -67,10 +60,10 @@ def resist(
     part: ThroughData, at: Configuration, water: WaterMotion, side: int, m: int, g: int, workspace: FlowWorkspace
 ) -> float:
     """Write motion and resistance at a station, as if it were wet; the stretch |x'|."""
-    stretch, p = move(part.flow, at, m, g, workspace), m * part.flow.share.shape[1] + g
+    stretch, p = move(part.flow, at, m, g, workspace), m * part.flow.stream.share.shape[1] + g
     for i in range(len(at.D)):
         workspace.through[i] = workspace.v[i] - water.velocity[p, i]
-    write_resistance(part.law, side, m, g, workspace.through, workspace.tau, workspace.force, at.D)
+    write_resistance(part.law, side, m, g, workspace, at.D)
     return stretch
 
 
@@ -81,32 +74,30 @@ def _find_water(part: ThroughData, at: Configuration) -> None:
 def _forces(part: ThroughData, at: Configuration, out: LineForces) -> None:
     flow = part.flow
     see_end(flow.stream, at.q)
-    workspace, water = flow.workspace, flow.seen.end
-    for m in range(flow.element.size):
-        e = flow.element[m]
-        for g in range(flow.share.shape[1]):
+    workspace, water = flow.workspace, flow.stream.seen.end
+    for m in range(flow.stream.element.size):
+        for g in range(flow.stream.share.shape[1]):
             resist(part, at, water, END, m, g, workspace)
             share = wet(flow, water, m, g)
             for i in range(len(at.D)):
                 workspace.force[i] *= share
-            p = m * flow.share.shape[1] + g
-            stations.add_integrand_at(flow.at.weighted, p, as_tuple(workspace.force, at.D), out.force_q, e, at.D)
+            add_at_station(flow.stream, m, g, as_tuple(workspace.force, at.D), out.force_q)
 
 
 def _tangent(part: ThroughData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     if weights.force == 0.0:
         return
     flow, by = part.flow, part.flow.by
-    for m in range(flow.element.size):
-        e = flow.element[m]
+    for m in range(flow.stream.element.size):
+        e = flow.stream.element[m]
         flow.change[:] = 0.0
-        for g in range(flow.share.shape[1]):
-            stretch = resist(part, at, flow.seen.end, END, m, g, flow.workspace)
-            _differentiate(part, flow.seen.end, m, g, stretch, weights.force, at.D)
-            N, places = flow.at.N[m, g], maps.place_rows[e]
-            placed = (flow.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
+        for g in range(flow.stream.share.shape[1]):
+            stretch = resist(part, at, flow.stream.seen.end, END, m, g, flow.workspace)
+            _differentiate(part, flow.stream.seen.end, m, g, stretch, weights.force, at.D)
+            N, places = flow.stream.at.N[m, g], maps.place_rows[e]
+            placed = (flow.stream.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
             moved = (N, by.by_v, maps.rate_rows[e])
-            add_weighed(flow.change, flow.at.weighted[m, g], (*placed, moved), at.D, at.R)
+            add_weighed(flow.change, flow.stream.at.weighted[m, g], (*placed, moved), at.D, at.R)
         add_pulled_back(K[e], at.P[e], flow.change, at.D, at.R)
 
 
@@ -115,10 +106,8 @@ def _differentiate(
     part: ThroughData, water: WaterMotion, m: int, g: int, stretch: float, weight: float, D: Size
 ) -> None:
     """Write the weighted derivatives of the force at a station whose resistance is known."""
-    flow, p, steep = part.flow, m * part.flow.share.shape[1] + g, 0.0
+    flow, p, steep = part.flow, m * part.flow.stream.share.shape[1] + g, wetting(part.flow, water, m, g)
     workspace, by = flow.workspace, flow.by
-    if flow.partly:
-        steep = wet_slope(water.immersion[p], flow.span[m, g])
     share = weight * wet(flow, water, m, g)
     write_derivatives(part.law, m, g, workspace.through, workspace.tau, stretch, share, by.by_v, by.by_slope, D)
     for i in range(len(D)):
@@ -135,14 +124,14 @@ def _energy(part: ThroughData, at: Configuration, energy: Array) -> None:
 
 def _work(part: ThroughData, first: Configuration, last: Configuration, work: Array) -> None:
     """See `Morison`."""
-    flow, seen, resisted = part.flow, part.flow.seen, 0.0
+    flow, seen, resisted = part.flow, part.flow.stream.seen, 0.0
     see_start(flow.stream, first.q)
-    for m in range(flow.element.size):
-        for g in range(flow.share.shape[1]):
+    for m in range(flow.stream.element.size):
+        for g in range(flow.stream.share.shape[1]):
             resist(part, first, seen.start, START, m, g, flow.first)
             resist(part, last, seen.end, END, m, g, flow.workspace)
             before, after = wet(flow, seen.start, m, g), wet(flow, seen.end, m, g)
-            resisted += flow.share[m, g] * resisted_at(flow, first, last, m, g, before, after)
+            resisted += flow.stream.share[m, g] * resisted_at(flow, first, last, m, g, before, after)
     if flow.dissipative:
         work[0] += resisted
     else:

@@ -14,19 +14,18 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits
 from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful
-from riser_soil.riser.compiled_part import CompiledPart
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.hermite import Size
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import keep
 from riser_soil.riser.stations import POINTS
 from riser_soil.sea import through_kernels
 from riser_soil.sea import vortex_law as law
+from riser_soil.sea.morison import WaterLoads
 from riser_soil.sea.morison_law import write_drag, write_drag_derivatives
-from riser_soil.sea.moving_water import WaterLoads
-from riser_soil.sea.moving_water_kernels import MovingWaterData
-from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.stream_kernels import see_end, update
-from riser_soil.sea.through_kernels import END, resist, write_derivatives, write_resistance
+from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData
+from riser_soil.sea.stream_kernels import END, see_end, update
+from riser_soil.sea.through_kernels import resist, write_derivatives, write_resistance
 
 
 class Push(NamedTuple):
@@ -51,7 +50,7 @@ class VortexData(NamedTuple):
 class Vortices(CompiledPart):
     """Force of the vortices on the pipe (group F), whose wake is kept from step to step; all is external work.
 
-    loads: as of `moving_water.through`. in_line: whether it acts in line with the flow, or across it.
+    loads: as of `morison.through`. in_line: whether it acts in line with the flow, or across it.
     """
 
     traits = Traits("F", symmetric=False, follows=True, path_dependent=True, roles=(Stateful, Starting))
@@ -59,17 +58,17 @@ class Vortices(CompiledPart):
     def __init__(self, loads: WaterLoads, shed: law.Shedding, in_line: bool = False) -> None:
         super().__init__(loads.pipe.line)
         self.name = "vortices in line" if in_line else "vortices"
-        self._loads, self._shed, self._in_line, self._wake = loads, shed, in_line, _new_wake(loads.pipe)
+        self._loads, self._shed, self._in_line, self._wake = loads, shed, in_line, _new_wake(loads)
 
     def make_kernel_data(self) -> VortexData:
         flow = self._loads.kernel_data()
         assert isinstance(flow, MovingWaterData)
-        push = Push(self._shed.lift, np.zeros((2, *flow.share.shape)), self._in_line)
+        push = Push(self._shed.lift, np.zeros((2, *flow.stream.share.shape)), self._in_line)
         return VortexData(flow, push, self._shed, self._wake)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         """Phases are known before a step, when the wake is kept where it starts."""
-        update(self._data.flow.seen, start, end)
+        update(self._data.flow.stream.seen, start, end)
         for phases, t in zip(self._data.law.phases, (start, end), strict=True):
             phases[:] = law.phases_at(self._wake, t)
 
@@ -91,9 +90,9 @@ class Vortices(CompiledPart):
             values[:] = saved[name]
 
 
-def _new_wake(pipe: Pipe) -> law.Wake:
+def _new_wake(loads: WaterLoads) -> law.Wake:
     """Phases once around along the line, so that no shape is left out; the rates follow."""
-    line, shape = pipe.line, pipe.share.shape
+    line, shape = loads.pipe.line, loads.pipe.share.shape
     arc = line.arc[:-1, None] + line.length[:, None] * POINTS
     return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
 
@@ -102,26 +101,18 @@ through_kernels.with_kernels(VortexData)
 
 
 @write_resistance.of(Push)
-def _write_resistance(push: Push, side: int, m: int, g: int, v: Array, tau: Array, f: Array, D: Size) -> None:
+def _write_resistance(push: Push, side: int, m: int, g: int, at: FlowWorkspace, D: Size) -> None:
     k = push.lift[m] * math.cos(push.phases[side, m, g])
     if push.in_line:
-        write_drag(v, tau, (k, 0.0), f, D)
+        write_drag(at.through, at.tau, (k, 0.0), at.force, D)
     else:
-        law.write_resistance(v, tau, k, f)
+        law.write_resistance(at.through, at.tau, k, at.force)
 
 
 @write_derivatives.of(Push)
 def _write_derivatives(
-    push: Push,
-    m: int,
-    g: int,
-    v: Array,
-    tau: Array,
-    stretch: float,
-    weight: float,
-    by_v: Array,
-    by_slope: Array,
-    D: Size,
+    push: Push, m: int, g: int, v: Array, tau: Array, stretch: float, weight: float,
+    by_v: Array, by_slope: Array, D: Size,
 ) -> None:
     k = weight * push.lift[m] * math.cos(push.phases[END, m, g])
     if push.in_line:
@@ -133,11 +124,11 @@ def _write_derivatives(
 @njit
 def _shed(part: VortexData, at: Configuration, moves: float) -> None:
     """Keep the wake behind a pipe of this share of its motion."""
-    flow, wake, t = part.flow, part.wake, part.flow.seen.t[END]
+    flow, wake, t = part.flow, part.wake, part.flow.stream.seen.t[END]
     see_end(flow.stream, at.q)
-    for m in range(flow.element.size):
-        for g in range(flow.share.shape[1]):
-            resist(part, at, flow.seen.end, END, m, g, flow.workspace)
+    for m in range(flow.stream.element.size):
+        for g in range(flow.stream.share.shape[1]):
+            resist(part, at, flow.stream.seen.end, END, m, g, flow.workspace)
             workspace, phase = flow.workspace, part.law.phases[END, m, g]
             for i in range(len(at.D)):
                 workspace.v[i] *= moves

@@ -1,4 +1,10 @@
-"""Quadrature at the waterline: lost buoyancy of partly submerged elements, with its tangent.
+"""Wetting: the submerged share of a lying circular pipe, and lost buoyancy of partly submerged elements.
+
+At immersion h, the height of the surface above the pipe's axis, the wet share of a section of diameter b is
+
+    S(h) = 1/2 + (eta sqrt(1 - eta^2) + asin(eta))/pi,    eta = 2 h/b within -1..1,
+
+0 above and 1 below: Archimedes' law for a level surface. S is continuous with its slope.
 
 At a fine point xi of an element, of quadrature weight w, the height of the surface is interpolated quadratically from
 that above the element's stations, with the weights `lag` (n, ng).
@@ -6,6 +12,7 @@ that above the element's stations, with the weights `lag` (n, ng).
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +22,34 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.rows import add_pulled_back
 from riser_soil.riser.hermite import Size, shape
 from riser_soil.riser.stations import POINTS
-from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
+
+
+@njit
+def wet_share(h: float, b: float) -> float:
+    """S, from 0 to 1."""
+    if abs(2.0 * h) >= b:
+        return 1.0 if h > 0.0 else 0.0
+    eta = 2.0 * h / b
+    return 0.5 + (eta * math.sqrt(1.0 - eta * eta) + math.asin(eta)) / math.pi
+
+
+@njit
+def wet_slope(h: float, b: float) -> float:
+    """dS/dh [1/m]."""
+    if abs(2.0 * h) >= b:
+        return 0.0
+    eta = 2.0 * h / b
+    return 4.0 / math.pi * math.sqrt(1.0 - eta * eta) / b
+
+
+@njit
+def dry_height(h: float, b: float) -> float:
+    """Integral of 1 - S from h up to full immersion [m]; -h above the water."""
+    if abs(2.0 * h) >= b:
+        return max(-h, 0.0)
+    eta = 2.0 * h / b
+    across = math.sqrt(1.0 - eta * eta)
+    return 0.5 * b * ((eta * math.asin(eta) + across - across**3 / 3.0) / math.pi - 0.5 * eta)
 
 
 class FinePoints(NamedTuple):

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.bound import Bound, Packed, in_turn
+from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.configuration import Configuration, maps_for, write_maps
@@ -25,7 +25,6 @@ from riser_soil.riser.part_kernels import (
     add_energy,
     add_forces,
     add_tangent,
-    bound,
     clear,
     collect,
     find_water,

@@ -10,9 +10,8 @@ import numpy as np
 
 from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, as_list
-from riser_soil.core.bound import Bound, Packed, calls, in_turn
+from riser_soil.core.bound import Bound, Packed, bound, calls, in_turn
 from riser_soil.core.part import State, Weights, Work
-from riser_soil.riser.compiled_part import CompiledPart, LineTrials
 from riser_soil.riser.configuration import (
     maps_for,
     place,
@@ -23,14 +22,13 @@ from riser_soil.riser.configuration import (
     write_turning,
 )
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart, overrides
+from riser_soil.riser.line_part import CompiledPart, LinePart, LineTrials, overrides
 from riser_soil.riser.part_kernels import (
     LineWeights,
     add_energy,
     add_forces,
     add_tangent,
     add_work,
-    bound,
     clear,
     collect,
     forces_of,

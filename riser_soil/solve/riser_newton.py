@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
-from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
-from riser_soil.riser.part_kernels import bound
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.riser.section_forces import nodal_residual
 from riser_soil.riser.sections import Elements

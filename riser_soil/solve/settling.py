@@ -20,8 +20,7 @@ from riser_soil.core.roles import Renewing, with_role
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
-from riser_soil.riser.relaxation import Relaxation
-from riser_soil.solve.dynamic_relaxation import RelaxationResult, at_rest, step_against
+from riser_soil.solve.dynamic_relaxation import Relaxation, RelaxationResult, at_rest, step_against
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError
 

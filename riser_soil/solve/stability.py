@@ -34,7 +34,6 @@ from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
-from riser_soil.riser.relaxation import Relaxation
 from riser_soil.solve import chain
 from riser_soil.solve.chain import ChainFactors, is_chain
 
@@ -201,7 +200,7 @@ def stabilising_drag(drag: float, stable: Callable[[float], bool]) -> float:
     return drag
 
 
-def buckling_mode(system: System, part: Relaxation, line: Line, state: State, weights: Weights) -> Array:
+def buckling_mode(system: System, part: Part, line: Line, state: State, weights: Weights) -> Array:
     """Increments (size,) of the mode, its largest displacement of the line +1 m; `part` has the drag s. Collective."""
     parts = judged_parts(system)
     assert parts is not None

@@ -14,8 +14,8 @@ from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import Catenary, catenary
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 from riser_soil.riser.section_forces import element_residual, section_forces
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements

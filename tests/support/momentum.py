@@ -7,10 +7,9 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.riser.hermite import weigh
-from riser_soil.riser.inertia import Inertia
+from riser_soil.riser.inertia import Inertia, RotaryInertia
 from riser_soil.riser.midpoint_directors import directors
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia
-from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.solve.time_stepper import TimeStepper
 

@@ -12,8 +12,8 @@ from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Weights
 from riser_soil.riser import shapes
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 from riser_soil.soil.surface import SoilTop
 
 WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)

@@ -1,4 +1,4 @@
-"""Formulas of elements in a plane, for all elements of a line: `riser.beam2d`, `riser.planar_load`."""
+"""Formulas of elements in a plane, for all elements of a line: `riser.beam2d`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser import beam2d, uniform_load
+from riser_soil.riser import beam2d
 
 
 @njit
@@ -48,7 +48,7 @@ def load_potential(chord: Array, direction1: Array, direction2: Array, middle: A
     V = np.empty(len(chord))
     for e in range(len(chord)):
         at = beam2d.corotate(chord[e], direction1[e], direction2[e])
-        V[e] = uniform_load.element_potential(at, L[e], w[e], middle[e, 0], middle[e, 1])
+        V[e] = beam2d.load_potential(at, L[e], w[e], middle[e, 0], middle[e, 1])
     return V
 
 
@@ -57,7 +57,7 @@ def load_forces(chord: Array, direction1: Array, direction2: Array, L: Array, w:
     """Residual (ne, 6); arguments as in `load_potential`."""
     f = np.zeros((len(chord), 6))
     for e in range(len(chord)):
-        uniform_load.add_element_forces(beam2d.corotate(chord[e], direction1[e], direction2[e]), L[e], w[e], f[e])
+        beam2d.add_load_forces(beam2d.corotate(chord[e], direction1[e], direction2[e]), L[e], w[e], f[e])
     return f
 
 
@@ -70,4 +70,4 @@ def add_load_tangent(
     for e in range(len(chord)):
         for i in range(2):
             own[i] = weight * w[e, i]
-        uniform_load.add_element_tangent(beam2d.corotate(chord[e], direction1[e], direction2[e]), L[e], own, out[e])
+        beam2d.add_load_tangent(beam2d.corotate(chord[e], direction1[e], direction2[e]), L[e], own, out[e])

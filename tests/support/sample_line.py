@@ -12,17 +12,15 @@ from riser_soil.riser import shapes
 from riser_soil.riser.attachments import Attachments, PointAttachment, masses
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.contents import Flow, InnerFlow, SlugTrain
-from riser_soil.riser.ends import End, SupportRotation
-from riser_soil.riser.inertia import Inertia
+from riser_soil.riser.inertia import Inertia, RotaryInertia
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End, SupportRotation
 from riser_soil.riser.loads import AppliedLoad, PointLoads
-from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from riser_soil.riser.structural_damping import StructuralDamping
-from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
 
 DIRECTION = np.array([0.6, 0.8, 0.0])

@@ -13,10 +13,10 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.attachments import PointAttachment
 from riser_soil.sea.buoyancy import Buoyancy, dry_pipe, dry_stations
 from riser_soil.sea.flows import Sea, WaterMotion, add_flow
-from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison import Morison, WaterLoads, pushed_masses
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import FlowAtStations, WaterLoads, pushed_masses
 from riser_soil.sea.pipe import Pipe, alike, diameters, pipe_at
+from riser_soil.sea.stream_kernels import FlowAtStations
 from tests.support.sample_line import DIRECTION, RHO, UP, Sample
 
 LEVEL = 5.2

@@ -25,7 +25,7 @@ def strain_energy(
 def load_potential(
     chord: Array, frame1: Array, frame2: Array, middle: Array, ref: beam3d.SpatialReference, load: Array
 ) -> Array:
-    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3): `uniform_load`."""
+    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3): `corotation`."""
     V = np.empty(len(chord))
     for e in range(len(chord)):
         at, w = beam3d.element_shape(e, chord, frame1, frame2, ref), vector(load[e])

@@ -8,14 +8,16 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
-from riser_soil.sea.through_kernels import END, write_derivatives, write_resistance
+from riser_soil.sea.moving_water_kernels import FlowWorkspace
+from riser_soil.sea.stream_kernels import END
+from riser_soil.sea.through_kernels import write_derivatives, write_resistance
 
 
 def resistance(law: Any, v: Array, tau: Array) -> Array:
     """Of a law (d,) where a step ends, at the velocity v (d,) of a pipe along tau (d,)."""
-    f = np.empty_like(v)
-    write_resistance.kernels[type(law)](law, END, 0, 0, v, tau, f, fixed(v.size))
-    return f
+    at = FlowWorkspace(*np.empty((7, v.size)))._replace(through=v, tau=tau)
+    write_resistance.kernels[type(law)](law, END, 0, 0, at, fixed(v.size))
+    return at.force
 
 
 def derivatives(law: Any, v: Array, tau: Array) -> tuple[Array, Array]:

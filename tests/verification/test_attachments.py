@@ -15,10 +15,10 @@ from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.attachments import PointAttachment, masses
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.hermite import consistent_mass
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, section_forces
 from riser_soil.riser.section_kernels import SectionForces

@@ -13,8 +13,8 @@ from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import catenary
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.section_forces import element_residual, section_forces
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.sea.wet_section import wet_share
+from riser_soil.sea.waterline import wet_share
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
 

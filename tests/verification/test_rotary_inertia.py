@@ -10,9 +10,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.inertia import Inertia
+from riser_soil.riser.inertia import Inertia, RotaryInertia
 from riser_soil.riser.line import End, Line
-from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import tangent
 from tests.support.driven_stage import built, take

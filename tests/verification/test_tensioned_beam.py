@@ -10,13 +10,12 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
-from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import added_masses
-from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
 from tests.support.dense_chain import solve, tangent
 

@@ -14,8 +14,8 @@ from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes, stations
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 from riser_soil.seabed.bearing import Strength
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import Profile

@@ -9,8 +9,8 @@ from riser_soil.contact.seabed_contact import Cushion
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 from tests.support.covered_ground import beyond
 from tests.support.dense_chain import STATIC, residual, tangent
 from tests.support.differences import difference_tangent, error

@@ -20,7 +20,7 @@ from riser_soil.motion.prescribed import (
 )
 from riser_soil.motion.rigid_body import CarriedEnd, CarriedSupport
 from riser_soil.riser import rotations
-from riser_soil.riser.ends import Motion, SupportRotation
+from riser_soil.riser.line_ends import Motion, SupportRotation
 
 ORIGIN, AMPLITUDE = np.array([1.0, 2.0, 3.0]), np.array([0.5, 0.0, -1.5])
 PHASES = np.array([0.7, -0.2, 2.0])

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.riser.ends import End
+from riser_soil.riser.line_ends import End
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping

@@ -17,7 +17,7 @@ from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.motion.vessel import RaoTable
 from riser_soil.riser import rotations
-from riser_soil.riser.ends import SupportRotation
+from riser_soil.riser.line_ends import SupportRotation
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension

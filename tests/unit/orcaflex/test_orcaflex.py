@@ -19,7 +19,7 @@ from riser_soil.orcaflex.data_file import read_data
 from riser_soil.orcaflex.scene_of import scene_of
 from riser_soil.scene.rao import MODES, Rao, read_rao
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import wave_number
 from riser_soil.sea.spectra import mean_period
 from tests.support.orcaflex_data import data_text
 

@@ -16,7 +16,6 @@ from riser_soil.riser import (
     corotation,
     rotations,
     strain3d,
-    uniform_load,
 )
 from riser_soil.riser.vectors import isotropic, matrix, vector
 from tests.support import planar_elements, spatial_elements
@@ -303,7 +302,7 @@ LEFT_OUT = {
     "swing and twist": (beam3d, "moment_variation", lambda *_: beam3d.STILL),
     "gradients of the strains": (beam3d, "conjugate_change", lambda *_: (beam3d.STILL, beam3d.STILL)),
     "torque rate": (beam3d, "stress_change", lambda D, _, __, change: strain3d.linear_stress(D, change)),
-    "turn under the load": (beam3d, "turned", lambda *_: uniform_load.NO_LOAD),
+    "turn under the load": (beam3d, "turned", lambda *_: corotation.NO_LOAD),
     "load along the chord": (beam3d, "chord_force", lambda *_: beam3d.STILL),
 }
 

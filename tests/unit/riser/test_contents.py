@@ -17,10 +17,10 @@ from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.contents import Flow, FlowMatrices, InnerFlow, SlugTrain
-from riser_soil.riser.ends import End
 from riser_soil.riser.hermite import consistent_mass
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Initial, Scene

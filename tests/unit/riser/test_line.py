@@ -12,11 +12,11 @@ from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.bending_peaks import largest
-from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.section_forces import add_at_ends, element_residual, section_forces
+from riser_soil.riser.section_kernels import largest_between_nodes
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from tests.support.dense_chain import solve
@@ -181,9 +181,9 @@ def test_largest_moment_under_an_even_load_lies_between_nodes(dimension: int) ->
     middle = 50.0 * 12.0**2 / 8.0
     at_nodes = np.stack([found.bending_moment[:-1], found.bending_moment[1:]], axis=1)
     assert at_nodes.max() == pytest.approx(0.96 * middle, rel=1e-3)
-    moment, arc, element = largest(line.arc, at_nodes, found.moment_slope)
+    moment, arc, element = largest_between_nodes(line.arc, at_nodes, found.moment_slope)
     assert (moment, arc, element) == (pytest.approx(middle, rel=1e-3), pytest.approx(6.0, abs=1e-3), 2)
-    curvature, arc, _ = largest(line.arc, found.curvature_beside, found.curvature_slope)
+    curvature, arc, _ = largest_between_nodes(line.arc, found.curvature_beside, found.curvature_slope)
     assert (curvature, arc) == (pytest.approx(middle / 2.0e6, rel=1e-3), pytest.approx(6.0, abs=1e-3))
 
 
@@ -198,7 +198,7 @@ def test_largest_moment_under_a_point_load_is_not_overshot(dimension: int) -> No
     state = State.at_rest(1.0, line.size)
     found = section_forces(line, e, state, element_residual(line, parts, state))
     at_nodes = np.stack([found.bending_moment[:-1], found.bending_moment[1:]], axis=1)
-    moment, arc, _ = largest(line.arc, at_nodes, found.moment_slope)
+    moment, arc, _ = largest_between_nodes(line.arc, at_nodes, found.moment_slope)
     assert (moment, arc) == (found.bending_moment[2], pytest.approx(4.8))
     assert moment == pytest.approx(50.0 * 4.8 * 7.2 / 12.0, rel=1e-3)
 

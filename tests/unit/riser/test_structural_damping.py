@@ -9,8 +9,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.sections import MeshedSegment, Surroundings, elements
 from riser_soil.riser.spatial_directors import SpatialOrientation

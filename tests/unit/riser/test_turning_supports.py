@@ -11,8 +11,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
 from riser_soil.riser import rotations
-from riser_soil.riser.ends import End, SupportRotation
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End, SupportRotation
 from riser_soil.riser.springs import EndSpring
 from tests.support.sample_line import DIRECTION, UP, Sample, sample
 

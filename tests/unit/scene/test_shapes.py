@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_ends import End
 
 ARC = np.linspace(0.0, 10.0, 11)
 EAST, NORTH, UP = np.eye(3)

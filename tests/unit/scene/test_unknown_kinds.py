@@ -17,7 +17,7 @@ from riser_soil.assembly.scales import Scales
 from riser_soil.assembly.shape import initial_shape, unstressed_shape
 from riser_soil.assembly.stage import scheme_of
 from riser_soil.errors import SceneError
-from riser_soil.riser.ends import End
+from riser_soil.riser.line_ends import End
 from riser_soil.riser.shapes import straight
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.reader import scene_from_mapping

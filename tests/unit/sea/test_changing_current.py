@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -16,13 +14,12 @@ from riser_soil.assembly.stage import times_to_hit
 from riser_soil.errors import SceneError
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.stages import DynamicStage
-from riser_soil.sea.changing_current import ChangingCurrent, spline_rates
+from riser_soil.sea.current import ChangingCurrent, spline_rates
 from riser_soil.sea.flows import Sea
 from riser_soil.sea.morison import Morison
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
-from tests.support.on_ranks import ROOT
 from tests.support.riser_scenes import dynamic, riser_scene, stage_histories
 from tests.support.sample_line import sample
 from tests.support.water_scenes import MIDDLE, scene_in
@@ -158,13 +155,3 @@ def test_bad_input_is_reported_in_a_line(current: dict[str, Any], reported: str)
     with pytest.raises(SceneError, match=reported) as raised:
         scene_in({"current": current})
     assert "\n" not in str(raised.value)
-
-
-def test_a_steady_current_imports_nothing_of_it() -> None:
-    code = (
-        "import sys; from riser_soil.assembly.sea import water_of; from tests.support.water_scenes import *;"
-        "s = scene_in({'current': CURRENT});"
-        "water_of(s, s.stages[1])(0.0, MIDDLE); print('riser_soil.sea.changing_current' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert done.stdout.split() == ["False"]

@@ -8,11 +8,10 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
-from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
-from riser_soil.sea.morison import Morison
+from riser_soil.riser.line_ends import End
+from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
 from tests.support.dense_chain import residual
 from tests.support.sample_line import sample

@@ -14,9 +14,8 @@ from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.components import regular
 from riser_soil.sea.flows import Sea, WaterMotion, add_flow
-from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import WaterLoads
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.waves import WaveField
 from tests.support import sample_water

@@ -14,10 +14,10 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import reynolds_drag as law
 from riser_soil.sea.flows import Sea
-from riser_soil.sea.morison import Morison
+from riser_soil.sea.morison import Morison, WaterLoads, through
 from riser_soil.sea.morison_law import drag_coefficients
-from riser_soil.sea.moving_water import FlowAtStations, WaterLoads, through
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.stream_kernels import FlowAtStations
 from tests.support import sample_water
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent

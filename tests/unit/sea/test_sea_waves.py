@@ -9,9 +9,8 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.sea import waves
-from riser_soil.sea.components import Components, regular
+from riser_soil.sea.components import Components, regular, wave_number
 from riser_soil.sea.current import SteadyCurrent, at_heights
-from riser_soil.sea.dispersion import wave_number
 from riser_soil.sea.flows import Sea, WaterMotion
 from riser_soil.sea.waves import WaveField
 

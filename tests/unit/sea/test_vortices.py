@@ -13,8 +13,9 @@ from riser_soil.core.part import Forces, State, Weights
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import vortex_law as law
-from riser_soil.sea.moving_water import FlowAtStations, through
+from riser_soil.sea.morison import through
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.stream_kernels import FlowAtStations
 from riser_soil.sea.vortices import Push, Vortices
 from tests.support import sample_water
 from tests.support.coupled_scenes import Mapping

@@ -15,9 +15,9 @@ from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.buoyancy import Buoyancy, dry_pipe
 from riser_soil.sea.flows import Sea, WaterMotion, add_flow
-from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
+from riser_soil.sea.stream_kernels import FlowAtStations
+from riser_soil.sea.waterline import dry_height, wet_share, wet_slope
 from tests.support.dense_chain import residual
 
 D, L, LEVEL, WEIGHT = 0.6, 6.0, 2.0, 2000.0

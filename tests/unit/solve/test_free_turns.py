@@ -12,7 +12,7 @@ from scipy.sparse import csr_matrix
 from riser_soil.assembly import Assembly
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
-from riser_soil.riser.ends import End
+from riser_soil.riser.line_ends import End
 from riser_soil.solve import stability
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings

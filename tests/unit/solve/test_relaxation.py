@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.part import Forces, State, Weights
-from riser_soil.riser.relaxation import Relaxation
+from riser_soil.solve.dynamic_relaxation import Relaxation
 from tests.support.sample_line import sample
 
 DRAG = 700.0
