@@ -13,7 +13,7 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene, Solver
 from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
-from tests.support.sinking_pipe import sinking
+from tests.support.sinking_pipe import sinking, sinking_into_tetrahedra
 
 ROOT = Path(__file__).parents[2]
 MIDPOINT = "stages.1.scheme={midpoint: {}}"
@@ -72,6 +72,11 @@ def sinks_into_clay() -> Scene:
     return scene_from_mapping(sinking(6, 0.2, 16, law, contact=friction, submerged_unit_weight=5.0e3))
 
 
+def sinks_into_tetrahedra() -> Scene:
+    friction = {"friction": {"axial": 0.3, "lateral": 0.3}}
+    return scene_from_mapping(sinking_into_tetrahedra(4, 0.1, 12, contact=friction))
+
+
 SHORT = {
     "first scene": (lambda: shortened("demos/first_scene.yaml", 1.0), (5,)),
     "catenary": (lambda: shortened("demos/catenary/scene.yaml", 1.0), (1, 6)),
@@ -86,6 +91,7 @@ SHORT = {
     "condensed soil": (condensed_soil, (4, 10)),
     "laid and lifted on clay": (laid_and_lifted_on_clay, (10,)),
     "sinks into clay": (sinks_into_clay, (5, 12)),
+    "sinks into tetrahedra": (sinks_into_tetrahedra, (5, 9)),
     "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
@@ -96,7 +102,8 @@ SHORT = {
 }
 
 
-LONG = "waves", "plastic clay in space", "touchdown in sections", "kept factors"  # to compute, or to compile
+#: To compute, or to compile.
+LONG = "waves", "plastic clay in space", "touchdown in sections", "kept factors", "sinks into tetrahedra"
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 
 
