@@ -76,7 +76,7 @@ def test_failed_step_is_reported_with_its_place_and_keeps_all_before(ranks: int,
 def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path) -> None:
     """717 N/m lie on clay that bears some 46 N/m at its surface: no answer is right."""
     scene = lying_pipe(su=30.0)
-    scene["solver"]["min_load_step"] = 0.03
+    scene["solver"]["min_load_step"] = 0.06
     done = command(tmp_path, ranks, scene)
     assert done.returncode == FAILED
     line = reported(done)
@@ -89,7 +89,7 @@ def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path)
     run = Run(tmp_path / "out")
     assert not run.finished
     (lay,) = run.summary["stages"]
-    assert lay["steps"] < 2.0 / 0.03  # load steps, each of part of the weight
+    assert lay["steps"] < 2.0 / 0.06  # load steps, each of part of the weight
 
 
 def test_soil_loaded_below_its_capacity_is_none(tmp_path: Path) -> None:
