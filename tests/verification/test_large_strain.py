@@ -172,6 +172,22 @@ def test_cycles_and_landings_bring_no_noise(tmp_path: Path) -> None:
 
 
 @pytest.mark.verify
+def test_secant_stiffness_is_near_randolph_and_quiggins(tmp_path: Path) -> None:
+    """Over the load, after uplifts of 0.001, 0.01 and 0.1 D: 200/(1 + 200 uplift/D) by their hyperbola, K_max 200. The
+    least ones hang on the clay's stiffness, which K_max stands for.
+    """
+    path, uplifts = np.array([0.3, 0.299, 0.3, 0.29, 0.3, 0.2, 0.3]), np.array([0.001, 0.01, 0.1])
+    found = []
+    for stiff in (400.0, 1000.0):
+        V = cycles(sinking(8, 0.3, 60, CLAY | {"kind": "iwan", "E_over_su": stiff}), path, tmp_path)
+        found.append((V[1::2] - V[::2]) / V[1::2] / uplifts)
+    soft, firm = found
+    published = 200.0 / (1.0 + 200.0 * uplifts)
+    np.testing.assert_allclose(soft[1:], published[1:], rtol=0.06)
+    assert soft[0] < published[0] < firm[0]
+
+
+@pytest.mark.verify
 def test_a_pipe_pulled_out_leaves_the_soil() -> None:
     """Suction holds it back by less than its cap of 2 su D, then lets go."""
     scene = sinking(8, 0.3, 60, contact={"suction": {"cap": 2.0 * SU * D, "reach": 0.05}})
