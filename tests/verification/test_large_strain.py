@@ -272,8 +272,8 @@ def test_a_pipe_swept_by_its_diameter_pushes_its_berm_along() -> None:
 @pytest.mark.parametrize("scene", [sinking(8, 0.2, 40), sinking(12, 0.2, 40), sinking_into_tetrahedra(6, 0.2, 40)])
 def test_mean_stress_under_a_pipe_hangs_on_no_cells(scene: Mapping) -> None:
     """The largest of a cell in a slice pushed in by 0.2 D: 4 su, below the pressure of 5.6 su that presses there, by
-    which von Mises' deviator may differ from it. What the law answers to moved cells has 14 su on twelve. Hexahedra have
-    3.95, tetrahedra, other ones by version of gmsh, 4.2 to 4.35.
+    which von Mises' deviator may differ from it. What the law answers to moved cells has 14 su on twelve. Hexahedra
+    have 3.95, tetrahedra, other ones by version of gmsh, 4.2 to 4.35.
     """
     assembly = built(scene)
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
