@@ -71,12 +71,15 @@ class Sections:
         line = at[:, -1]
         gaps = pipe.gaps(line)
         for top, beside in (spread(line, self.columns, gaps), at_columns(line, self.columns, gaps, self.across)):
-            brought = pipe.brought_to(top, beside)
-            full = pipe.kept_clear(lambda free: refilled(line, brought, free, self.across), beside > pipe.clear)  # noqa: B023
-            new = self.beneath(at, full)
+            new = self.beneath(at, self._at_pipe(line, top, beside, pipe))
             if self.skewness(new) > FOLDS:
                 return new
         return None
+
+    def _at_pipe(self, line: Array, top: Array, beside: Array, pipe: Pressing) -> Array:
+        """A surface (nc, 3) at gaps (nc,) from the pipe, with as much soil below it as below the line before."""
+        brought = pipe.brought_to(top, beside)
+        return pipe.kept_clear(lambda free: refilled(line, brought, free, self.across), beside > pipe.clear)
 
     def beneath(self, at: Array, top: Array) -> Array:
         """A section's nodes (nc, nl, 3): those of the surface at (nc, 3), the inner ones as these ask."""

@@ -76,7 +76,7 @@ class Soil:
         self._volumes: Array = self.cells.gradients.weights.flatten()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
-        self._mesh_at = grid.nodes.points[grid.nodes.cells]  # corners (nc, nn, 3) of the cells when they were made
+        self._mesh_at = self.cells.made_at.copy() if moves else np.empty(0)  # (nc, nn, 3): nodes of cells when made
         self._stored = self._lifted = 0.0
 
     def _take_material(self) -> None:

@@ -43,25 +43,18 @@ def require_a_load_that_rises(found: Sunk) -> None:
     assert fallen(found) < 0.005
 
 
-def test_a_pipe_sinks_to_a_fifth_of_its_diameter() -> None:
-    """On cells of D/8 the load climbs in stairs as cell after cell touches."""
-    found = sink(sinking(8, 0.2, 40))
+@pytest.mark.parametrize(
+    ("scene", "lost"), [(sinking(8, 0.2, 40), 2e-3), (sinking_into_tetrahedra(6, 0.2, 40), 2e-4)], ids=["hex", "tet"]
+)
+def test_a_pipe_sinks_to_a_fifth_of_its_diameter(scene: Mapping, lost: float) -> None:
+    """On hexahedra of D/8 the load climbs in stairs as cell after cell touches. lost: share of the soil's volume."""
+    found = sink(scene)
     for w in (0.1, 0.15, 0.2):
         assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
     require_a_load_that_rises(found)
     assert found.renewals > 0
     assert found.iterations.mean() < 5.0
-    assert found.area == pytest.approx(1.0, abs=2e-3)
-
-
-def test_a_pipe_sinks_into_tetrahedra() -> None:
-    found = sink(sinking_into_tetrahedra(6, 0.2, 40))
-    for w in (0.1, 0.15, 0.2):
-        assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
-    require_a_load_that_rises(found)
-    assert found.renewals > 0
-    assert found.iterations.mean() < 5.0
-    assert found.area == pytest.approx(1.0, abs=2e-4)
+    assert found.area == pytest.approx(1.0, abs=lost)
 
 
 @pytest.mark.verify
@@ -269,8 +262,11 @@ def test_a_pipe_swept_by_its_diameter_pushes_its_berm_along() -> None:
     assert 1.4 < late.min() <= late.max() < 1.75
 
 
-@pytest.mark.parametrize("scene", [sinking(8, 0.2, 40), sinking(12, 0.2, 40), sinking_into_tetrahedra(6, 0.2, 40)])
-def test_mean_stress_under_a_pipe_hangs_on_no_cells(scene: Mapping) -> None:
+@pytest.mark.parametrize(
+    ("scene", "largest"),
+    [(sinking(8, 0.2, 40), 3.9), (sinking(12, 0.2, 40), 3.9), (sinking_into_tetrahedra(6, 0.2, 40), 4.25)],
+)
+def test_mean_stress_under_a_pipe_hangs_on_no_cells(scene: Mapping, largest: float) -> None:
     """The largest of a cell in a slice pushed in by 0.2 D: 4 su, below the pressure of 5.6 su that presses there, by
     which von Mises' deviator may differ from it. What the law answers to moved cells has 14 su on twelve. Hexahedra
     have 3.95, tetrahedra, other ones by version of gmsh, 4.2 to 4.35.
@@ -281,6 +277,6 @@ def test_mean_stress_under_a_pipe_hangs_on_no_cells(scene: Mapping) -> None:
     assert soil is not None
     assert resumed is not None
     found = soil.output_fields().mean_stress
-    assert found.max() / SU == pytest.approx(4.15, rel=0.07)
+    assert found.max() / SU == pytest.approx(largest, rel=0.05)
     resumed.restore(soil.state())
     assert np.array_equal(resumed.output_fields().mean_stress, found)
