@@ -67,7 +67,8 @@ def _reported(bar: ErrorBar) -> dict[str, Any]:
     key_result = bar.key_result
     reported: dict[str, Any] = {"stage": key_result.stage, "name": key_result.name, "unit": key_result.unit}
     reported |= {"value": key_result.value, "bar": bar.bar, "by_source": dict(bar.by_source)}
-    return reported | ({"reason": bar.reason} if bar.reason else {})
+    reported |= {"reason": bar.reason} if bar.reason else {}
+    return reported | ({"line": key_result.line} if key_result.line else {})
 
 
 def print_bars(bars: list[ErrorBar], share: float, console: Console | None = None, what: str = "error bars") -> None:
@@ -89,5 +90,5 @@ def _table(stage: str, bars: list[ErrorBar]) -> Table:
         shares = (f"{bar.by_source[source]:.2g}" if source in bar.by_source else "-" for source in sources)
         whole = "not known" if bar.bar is None else f"{bar.bar:.2g}"
         key_result = bar.key_result
-        table.add_row(f"{key_result.name}, {key_result.unit}", f"{key_result.value:.6g}", whole, *shares)
+        table.add_row(f"{key_result.label}, {key_result.unit}", f"{key_result.value:.6g}", whole, *shares)
     return table

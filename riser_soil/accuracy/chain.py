@@ -29,7 +29,7 @@ from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
-from riser_soil.core.snapshot import Instant, instants_at
+from riser_soil.core.snapshot import Instants, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
 from riser_soil.interruption import agreeing
@@ -204,7 +204,8 @@ class PeakObserver(StatelessObserver):
     """Follows a comparison_run: `peaks` has what the summary of a run would have of it; on rank 0."""
 
     def __init__(self, assembly: Assembly, envelope: CurveEnvelope | None = None) -> None:
-        self._assembly, self._instants = assembly, InstantReader(assembly)
+        self._assembly = assembly
+        self._instants = {line: InstantReader(own) for line, own in assembly.by_line.items()}
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
@@ -213,9 +214,9 @@ class PeakObserver(StatelessObserver):
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         first = not self.peaks.stages
         self._schedule.begin_stage(stage.kind)
-        self.peaks.begin_stage(stage.name, stage.kind, stage.end)
+        self.peaks.begin_stage(stage.name, stage.kind, stage.end, self._instants)
         if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
-            self.peaks.stages[-1].update([0.0], self._seen(stepper))  # not followed: no shape that a step has found
+            self.peaks.record([0.0], self._seen(stepper))  # not followed: no shape that a step has found
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Of a committed step; collective where there is soil."""
@@ -224,11 +225,11 @@ class PeakObserver(StatelessObserver):
         if self._assembly.comm.rank == 0:
             seen = self._seen(stepper)
             self.peaks.record([step.t], seen, soil)
-            if self._envelope is not None and (last or self.peaks.stages[-1].kind != "static"):
-                self._envelope.follow(instants_at(seen, 0))
+            if self._envelope is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
+                self._envelope.follow(instants_at(seen[""], 0))
 
     def relaxed(self, relaxed: object) -> None:
         pass
 
-    def _seen(self, stepper: TimeStepper) -> Instant:
-        return self._instants.reported([self._instants.look(stepper)])
+    def _seen(self, stepper: TimeStepper) -> Instants:
+        return {line: reader.reported([reader.look(stepper)]) for line, reader in self._instants.items()}

@@ -20,8 +20,6 @@ def run_as_asked(
     """
     if restart and force:
         raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
-    if error_bars and scene.lines:
-        raise SceneError("--error-bars: they are not there yet for several lines; leave it out")
     scene, more = in_numbers(scene)
     if scene.accuracy is not None:
         from riser_soil.accuracy.target_run import run_to_accuracy

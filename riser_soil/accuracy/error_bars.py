@@ -227,9 +227,9 @@ Extremes = Mapping[str, Extreme]  # of key results by their keys, in their units
 
 
 def extremes_of(peaks: RunPeaks) -> dict[str, Extreme]:
-    stages = {stage.name: stage for stage in peaks.stages}
+    stages = {(own.name, line): own for of_lines in peaks.stages for line, own in of_lines.items()}
     return {
-        key: Extreme(each.value, stages[each.stage].in_windows(each.figure, each.which), each.which == "min")
+        key: Extreme(each.value, stages[each.stage, each.line].in_windows(each.figure, each.which), each.which == "min")
         for key, each in key_results(peaks.reported("peaks")).items()
     }
 

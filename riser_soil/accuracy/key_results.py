@@ -36,6 +36,7 @@ class KeyResult:
     """A key result of one stage: value and floor of its scale in `unit` (SI).
 
     figure, which: the summary's figure that it is, and whether its min or max; of a static stage, the value at its end.
+    line: of several lines.
     """
 
     stage: str
@@ -45,6 +46,7 @@ class KeyResult:
     floor: float
     figure: str = ""
     which: str = ""
+    line: str = ""
 
     @property
     def scale(self) -> float:
@@ -54,7 +56,12 @@ class KeyResult:
     @property
     def key(self) -> str:
         """What it is called among those of a run."""
-        return f"{self.stage}: {self.name}"
+        return f"{self.stage}: {self.label}"
+
+    @property
+    def label(self) -> str:
+        """What it is called among those of a stage."""
+        return f"{self.line} {self.name}".strip()
 
     def relative(self, difference: float) -> float:
         """Size of a difference in `unit` over the scale; 0 for none, inf where there is no scale."""
@@ -65,10 +72,16 @@ class KeyResult:
 
 def key_results(summary: Reported) -> dict[str, KeyResult]:
     """Key results by their keys, stage by stage, of a summary.json's content; those that it has."""
-    return {each.key: each for stage in summary["stages"] if stage["final"] is not None for each in _of_stage(stage)}
+    of_lines = (own for stage in summary["stages"] for own in _by_line(stage).items())
+    return {each.key: each for line, own in of_lines if own["final"] is not None for each in _of_stage(own, line)}
 
 
-def _of_stage(stage: Reported) -> list[KeyResult]:
+def _by_line(stage: Reported) -> dict[str, Reported]:
+    """A stage as each of several lines has it, by name; that of the only one by ""."""
+    return {line: {**stage, **own} for line, own in stage.get("lines", {"": {}}).items()}
+
+
+def _of_stage(stage: Reported, line: str) -> list[KeyResult]:
     final, values = stage["final"], list(_values(stage))
     length = math.dist(final["start"]["position"], final["end"]["position"])
     force = max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
@@ -79,7 +92,7 @@ def _of_stage(stage: Reported) -> list[KeyResult]:
         return length if name.endswith(TOUCHDOWN) else floors[unit]
 
     return [
-        KeyResult(stage["name"], name, unit, value, floor(name, unit), figure, which)
+        KeyResult(stage["name"], name, unit, value, floor(name, unit), figure, which, line)
         for name, unit, value, figure, which in values
     ]
 

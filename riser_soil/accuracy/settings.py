@@ -11,14 +11,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from riser_soil.core.quantities import MOST_ELEMENTS
 from riser_soil.errors import SceneError
-from riser_soil.scene.riser import Segment
+from riser_soil.scene.lines import by_line, risers, with_each
+from riser_soil.scene.riser import Riser, Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.soil import CellSizes, GeneratedMesh, MeshFile
 from riser_soil.scene.stages import DynamicStage, Stage
+
+if TYPE_CHECKING:
+    from riser_soil.assembly.scales import Scales
 
 LOCAL_ORDER = 3  # of the local error of automatic steps in their size
 
@@ -53,7 +58,7 @@ def varied(scene: Scene, setting: Setting, factor: float) -> Scene:
     if factor == 1.0:
         return scene
     turned = setting.turned(resolved(scene), factor)
-    if turned.line.element_count > MOST_ELEMENTS:
+    if _elements(turned) > MOST_ELEMENTS:
         raise SceneError(f"{setting.words}, {factor:g} times as fine: more than {MOST_ELEMENTS} elements")
     return turned
 
@@ -66,7 +71,7 @@ def settings_reported(scene: Scene, settings: Iterable[Setting] | None = None) -
 def resolved(scene: Scene) -> Scene:
     """The scene with numbers where settings are `auto`; nothing else changes by that.
 
-    Of soil beside a rigid seabed both get the larger of their penalties.
+    Of soil beside a rigid seabed, and of several lines, all get the largest of their penalties.
     """
     return _with_stiffness(_with_tolerance(_with_sizes(scene)))
 
@@ -81,10 +86,8 @@ def _with_tolerance(scene: Scene) -> Scene:
     if not any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages):
         return scene
     from riser_soil.assembly.assembly import AUTO_TOLERANCE
-    from riser_soil.assembly.riser import elements_of
-    from riser_soil.assembly.scales import scales_of
 
-    tolerance = AUTO_TOLERANCE * scales_of(elements_of(scene)).diameter
+    tolerance = AUTO_TOLERANCE * _scales(scene).diameter
 
     def with_number(stage: Stage) -> Stage:
         if not isinstance(stage, DynamicStage) or stage.time_step != "auto" or stage.tolerance is not None:
@@ -98,14 +101,27 @@ def _with_stiffness(scene: Scene) -> Scene:
     if not _has_penalty(scene) or scene.contact is None or scene.contact.stiffness != "auto":
         return scene
     from riser_soil.assembly.ground import stiffnesses
-    from riser_soil.assembly.riser import elements_of
-    from riser_soil.assembly.scales import scales_of
 
-    of_each = stiffnesses(scene, scene.contact, scales_of(elements_of(scene)))
-    if not isinstance(scene.seabed, RigidSeabed):
-        of_each.pop("seabed", None)  # a bed of springs has its own
-    contact = scene.contact.model_copy(update={"stiffness": max(of_each.values())})
+    found: list[float] = []
+    for view in by_line(scene).values():
+        of_each = stiffnesses(view, scene.contact, _scales(view))
+        if not isinstance(scene.seabed, RigidSeabed):
+            of_each.pop("seabed", None)  # a bed of springs has its own
+        found += of_each.values()
+    contact = scene.contact.model_copy(update={"stiffness": max(found)})
     return scene.model_copy(update={"contact": contact})
+
+
+def _scales(scene: Scene) -> Scales:
+    """Of all lines."""
+    from riser_soil.assembly.riser import elements_of
+    from riser_soil.assembly.scales import of_several, scales_of
+
+    return of_several(scales_of(elements_of(view)) for view in by_line(scene).values())
+
+
+def _elements(scene: Scene) -> int:
+    return sum(line.element_count for line in risers(scene).values())
 
 
 def _has_steps(scene: Scene) -> bool:
@@ -121,8 +137,10 @@ def _has_penalty(scene: Scene) -> bool:
 
 
 def _finer_elements(scene: Scene, factor: float) -> Scene:
-    segments = tuple(_cut(segment, factor) for segment in scene.line.segments)
-    return scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": segments})})
+    def finer(line: Riser) -> Riser:
+        return line.model_copy(update={"segments": tuple(_cut(segment, factor) for segment in line.segments)})
+
+    return with_each(scene, finer)
 
 
 def _cut(segment: Segment, factor: float) -> Segment:
@@ -179,13 +197,11 @@ def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
     limit.
     """
     from riser_soil.assembly.ground import NARROWEST_CORNER
-    from riser_soil.assembly.riser import elements_of
-    from riser_soil.assembly.scales import scales_of
 
     contact = scene.contact
     if contact is None or scene.soil is not None:
         return {}
-    scales = scales_of(elements_of(scene))
+    scales = _scales(scene)
     width, at_rest = contact.smoothing, scales.weight / stiffness
     if width == "auto":
         return {"smoothing": at_rest} if at_rest < NARROWEST_CORNER * scales.diameter else {}
@@ -230,7 +246,7 @@ def _steps_reported(scene: Scene) -> str:
 SETTINGS = (
     Setting(
         "elements", "elements of the riser", lambda scene: True, _finer_elements,
-        lambda scene: float(scene.line.element_count), lambda scene: f"{scene.line.element_count} elements",
+        lambda scene: float(_elements(scene)), lambda scene: f"{_elements(scene)} elements",
     ),
     Setting("time_step", "time step", _has_steps, _shorter_steps, _steps_per_time, _steps_reported),
     Setting(

@@ -12,7 +12,7 @@ import numpy as np
 
 from riser_soil.assembly.hang_off import hung_end
 from riser_soil.assembly.line_assembly import LineAssembly, add_seabed, line_assembly
-from riser_soil.assembly.scales import Scales
+from riser_soil.assembly.scales import Scales, of_several
 from riser_soil.assembly.soil_block import condensed_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
@@ -185,10 +185,8 @@ class Assembly:
 
     @property
     def scales(self) -> Scales:
-        """Of several lines the heaviest's weight, the thinnest's diameter, the stiffest's round-off."""
-        each = [own.scales for own in self.lines.values()]
-        weight, floor = max(one.weight for one in each), max(one.force_floor for one in each)
-        return Scales(weight, min(one.diameter for one in each), floor)
+        """Of all lines."""
+        return of_several(own.scales for own in self.lines.values())
 
     def error_tolerance(self, stage: DynamicStage) -> float:
         """Largest local error of an automatic step [m]."""

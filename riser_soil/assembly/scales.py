@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,13 @@ def scales_of(elements: Elements) -> Scales:
     bar = float(4.0 * np.sqrt((elements.EI_y / elements.EA).max())) or THINNEST * float(elements.arc[-1])
     weight = max(float(np.abs(elements.weight).max()), LEAST_WEIGHT * EA / float(elements.arc[-1]))
     return Scales(weight, float(elements.outer_diameter.max()) or bar, FORCE_FLOOR * EA)
+
+
+def of_several(lines: Iterable[Scales]) -> Scales:
+    """The heaviest's weight, the thinnest's diameter, the stiffest's round-off."""
+    each = list(lines)
+    weight, floor = max(one.weight for one in each), max(one.force_floor for one in each)
+    return Scales(weight, min(one.diameter for one in each), floor)
 
 
 def contact_radius(scene: Scene, elements: Elements) -> Array:

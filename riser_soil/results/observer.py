@@ -132,7 +132,7 @@ class Observer:
             automatic = isinstance(stage, DynamicStage) and stage.time_step == "auto"
             self._recorder.begin_stage(stage.name, stage.kind, automatic)
         if self._peaks is not None:
-            self._peaks.begin_stage(stage.name, stage.kind, stage.end)
+            self._peaks.begin_stage(stage.name, stage.kind, stage.end, self._instants)
         if stage is self._assembly.scene.stages[0] and not isinstance(stage, StaticStage):
             self._begin_at(stepper)
         self._show(stage)
@@ -157,7 +157,7 @@ class Observer:
             seen = {name: reader.reported([reader.look(stepper)]) for name, reader in self._instants.items()}
             self._recorder.begin_at(seen, soil, _in_rows([self._look_at_hung(stepper)]))
             if self._peaks is not None:
-                self._peaks.record([0.0], seen[""])
+                self._peaks.record([0.0], seen)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
@@ -204,7 +204,7 @@ class Observer:
         hung = _in_rows([each.hung for each in seen])
         recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil, hung)
         if self._peaks is not None:
-            self._peaks.record([record.t for record in records], instants[""])
+            self._peaks.record([record.t for record in records], instants)
         self._judge(recorder, seen, instants)
 
     def _look_at_hung(self, stepper: TimeStepper) -> dict[str, Array]:

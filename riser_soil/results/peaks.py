@@ -10,14 +10,14 @@ chance; they hardly do so in several windows.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
-from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot, instants_at
+from riser_soil.core.snapshot import Instant, Instants, SoilMesh, SoilSnapshot, instants_at
 from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places, places_of, with_largest
 
 _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates of five steps, in the middle one
@@ -188,38 +188,53 @@ class StagePeaks:
 
 
 class RunPeaks:
-    """The peaks of a run, stage by stage; fed on the rank that records. mesh: the soil's; None: not followed."""
+    """The peaks of a run, stage by stage and line by line, "" the only one; fed on the rank that records. mesh: the
+    soil's; None: not followed.
+    """
 
     def __init__(self, mesh: SoilMesh | None = None) -> None:
-        self.stages: list[StagePeaks] = []
+        self.stages: list[dict[str, StagePeaks]] = []
         self._places = None if mesh is None else places(mesh)
 
-    def begin_stage(self, name: str, kind: str, duration: float = 1.0) -> None:
+    def begin_stage(self, name: str, kind: str, duration: float = 1.0, lines: Iterable[str] = ("",)) -> None:
         """Extremes of a stage along t include the state that it begins with, where a stage came before it. duration:
         of a dynamic one [s].
         """
-        self.stages.append(StagePeaks(name, kind, duration))
+        self.stages.append({line: StagePeaks(name, kind, duration) for line in lines})
         if kind != "static" and len(self.stages) > 1:
-            self.stages[-1].begin(self.stages[-2])
+            for line, own in self.stages[-1].items():
+                own.begin(self.stages[-2][line])
 
-    def record(self, times: Sequence[float], seen: Instant, soil: SoilSnapshot | None = None) -> None:
+    def record(self, times: Sequence[float], seen: Instants, soil: SoilSnapshot | None = None) -> None:
         """Of accepted steps in turn; soil: where it is recorded at the last of them."""
-        stage = self.stages[-1]
-        stage.update(times, seen)
-        if soil is not None and self._places is not None:
-            stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
+        for line, instant in seen.items():
+            stage = self.stages[-1][line]
+            stage.update(times, instant)
+            if soil is not None and self._places is not None:
+                stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
 
     def reported(self, which: str) -> dict[str, Any]:
         """The share of a summary that key results are read from; which: sampled, of_nodes, peaks or smooth."""
-        return {"stages": [stage.reported(which) for stage in self.stages]}
+        return {"stages": [_stage_reported(of_lines, which) for of_lines in self.stages]}
 
     def state(self) -> Saved:
         return gathered(self._numbered)
 
     def restore(self, saved: Saved) -> None:
-        self.stages = [StagePeaks("", "", 1.0) for name in saved if name.count("/") == 1 and name.endswith("/told")]
+        there = [name.split("/")[:2] for name in saved if name.count("/") == 2 and name.endswith("/told")]
+        self.stages = [{} for _ in {number for number, _ in there}]
+        for number, line in there:
+            self.stages[int(number)][line] = StagePeaks("", "", 1.0)
         restore_all(self._numbered, saved)
 
     @property
     def _numbered(self) -> dict[str, Stateful]:
-        return {str(n): stage for n, stage in enumerate(self.stages)}
+        return {f"{n}/{line}": own for n, of_lines in enumerate(self.stages) for line, own in of_lines.items()}
+
+
+def _stage_reported(of_lines: Mapping[str, StagePeaks], which: str) -> dict[str, Any]:
+    each = {line: own.reported(which) for line, own in of_lines.items()}
+    if "" in each:
+        return each[""]
+    first = next(iter(each.values()))
+    return {"name": first["name"], "kind": first["kind"], "lines": each}

@@ -135,7 +135,11 @@ class Run:
         found, line = self._whole_summary, self._group[:-1]
         if not line:
             return found
-        return found | {"stages": [stage | stage["lines"][line] for stage in found["stages"]]}
+        stages = [stage | stage["lines"][line] for stage in found["stages"]]
+        own = {"stages": [{key: value for key, value in stage.items() if key != "lines"} for stage in stages]}
+        if bars := found.get("error_bars"):
+            own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["line"] == line]}
+        return found | own
 
     @cached_property
     def _whole_summary(self) -> dict[str, Any]:

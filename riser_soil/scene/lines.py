@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -21,6 +21,17 @@ def by_line(scene: Scene) -> dict[str, Scene]:
     if not scene.lines:
         return {"riser": scene}
     return {name: _of_line(scene, name) for name in scene.lines}
+
+
+def risers(scene: Scene) -> Mapping[str, Riser]:
+    """The lines as the scene gives them, by name; "" of the only one."""
+    return scene.lines or {"": scene.line}
+
+
+def with_each(scene: Scene, changed: Callable[[Riser], Riser]) -> Scene:
+    """The scene with all of its lines changed."""
+    each = {name: changed(line) for name, line in risers(scene).items()}
+    return scene.model_copy(update={"lines": each} if scene.lines else {"riser": each[""]})
 
 
 def _of_line(scene: Scene, name: str) -> Scene:

@@ -11,11 +11,18 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from mpi4py import MPI
 from scipy.optimize import brentq
 
+from riser_soil.accuracy.barred_run import run_with_error_bars
+from riser_soil.accuracy.chain import peaks_of
+from riser_soil.accuracy.key_results import key_results
+from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.cases.case_table import case_values
 from riser_soil.errors import ResultsError, SceneError
+from riser_soil.report.extremes import key_results_table
 from riser_soil.report.report import write_report
+from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.read import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -238,12 +245,34 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert found["clearance/east_north/distance"][-1] == pytest.approx(nearest - CHAIN["outer_diameter"], rel=0.02)
 
 
+def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
+    """Against three times the elements of all lines and a quarter of the step; a line's report has its own alone."""
+    scene = scene_from_mapping(mooring(shaken(1.5), elements=12))
+    run_with_error_bars(scene, tmp_path / "run")
+    found = Run(tmp_path / "run")
+    bars = {(bar["stage"], bar["line"], bar["name"]): bar for bar in found.summary["error_bars"]["quantities"]}
+    assert {line for _, line, _ in bars} == {*NAMES}
+    for setting, factor in zip(settings_of(scene), (3.0, 4.0), strict=True):
+        scene = varied(scene, setting, factor)
+    true = key_results(peaks_of(scene, MPI.COMM_SELF).reported("peaks")).values()
+    off = [(abs(bars[each.stage, each.line, each.name]["value"] - each.value), each) for each in true]
+    inside = [error <= bars[each.stage, each.line, each.name]["bar"] for error, each in off]
+    assert len(inside) == len(bars) == 36
+    assert sum(inside) >= 0.95 * len(inside)
+    assert max(error / each.scale for error, each in off) > 1e-3, "else there is nothing to tell"
+    own = found.of_line("east").summary["error_bars"]["quantities"]
+    assert own == [bar for (_, line, _), bar in bars.items() if line == "east"]
+    shown = key_results_table(found.of_line("east").summary)
+    assert all(row[shown.head.index("±")] for row in shown.rows)
+
+
 def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
     seabed = {"kind": "spring", "level": -DEPTH - 0.5, "stiffness": 1e4}
     scene = scene_from_mapping(mooring(shaken(0.5), body=RIGID, seabed=seabed))
-    run(scene, tmp_path / "alone")
-    leave_after(4, scene, tmp_path / "left")
-    run(scene, tmp_path / "left", restart=True)
+    whole, peaks = RunPeaks(), RunPeaks()
+    run(scene, tmp_path / "alone", peaks=whole)
+    leave_after(4, scene, tmp_path / "left", RunPeaks())
+    run(scene, tmp_path / "left", peaks=peaks, restart=True)
     with h5py.File(tmp_path / "alone/results.nc") as one, h5py.File(tmp_path / "left/results.nc") as other:
         names: list[str] = []
         one.visit(names.append)
@@ -252,6 +281,7 @@ def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
                 assert np.array_equal(one[name][...], other[name][...], equal_nan=True), name
     alone, left = (json.loads((tmp_path / name / "summary.json").read_text())["stages"] for name in ("alone", "left"))
     assert alone == left
+    assert json.dumps(peaks.reported("smooth")) == json.dumps(whole.reported("smooth"))
     assert len(names) > 100
 
 
@@ -276,7 +306,6 @@ WITHOUT_LINES = {key: value for key, value in mooring().items() if key != "lines
 MISSPELT = {"line_type": "chian", "length": 9.0, "elements": 2}
 REFUSED = [
     (changed(dimension=2), "dimension: value 2: is not there yet for several lines"),
-    (changed(error_bars=True), "error_bars: value true: is not there yet for several lines"),
     (changed(seabed=SLOPING), "seabed.slope_deg: value 3.0: is not there yet"),
     (changed(riser=mooring()["lines"]["east"]), "riser and lines are both given"),
     (WITHOUT_LINES, "the riser is missing"),

@@ -61,7 +61,7 @@ def test_extremes_of_a_stage_three_ways() -> None:
     peaks = RunPeaks()
     peaks.begin_stage("motion", "dynamic")
     for t in np.arange(-1.0, 1.0, 0.3).tolist():
-        peaks.record([t], stacked([seen(t)]))
+        peaks.record([t], {"": stacked([seen(t)])})
     largest = {
         which: peaks.reported(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
         for which in ("sampled", "of_nodes", "peaks")
@@ -76,7 +76,7 @@ def test_extremes_of_a_stage_three_ways() -> None:
 def test_a_motion_has_extremes_in_windows_of_its_time(steps: int) -> None:
     """Sixteen of 2 s, between steps too, to second order at their edges; a figure that is none has none."""
     t = np.linspace(0.0, 2.0, steps + 1)
-    (stage,) = followed(t, 5.0 * np.cos(np.pi * t), duration=2.0).stages
+    (stage,) = followed(t, 5.0 * np.cos(np.pi * t), duration=2.0).stages[0].values()
     edges = 5.0 * np.cos(np.pi * np.arange(WINDOWS + 1) / 8.0)
     missed = 5.0 / 8.0 * (np.pi * 2.0 / steps) ** 2
     for which, extreme in (("max", np.maximum), ("min", np.minimum)):
@@ -87,14 +87,14 @@ def test_a_motion_has_extremes_in_windows_of_its_time(steps: int) -> None:
 
 def test_equilibria_have_no_windows_of_time() -> None:
     t = np.linspace(0.0, 2.0, 21)
-    (still,) = followed(t, t, duration=2.0, kind="quasi-static").stages
+    (still,) = followed(t, t, duration=2.0, kind="quasi-static").stages[0].values()
     assert still.in_windows("max_bending_moment", "max").size == 0
 
 
 def test_a_window_knows_what_passes_between_steps() -> None:
     """A parabola's top, 100 between two steps of 0.3, and 99.8 at the nearest of them."""
     t = np.arange(7) * 0.3
-    (stage,) = followed(t, 100.0 - 20.0 * (t - 1.0) ** 2, duration=2.0).stages
+    (stage,) = followed(t, 100.0 - 20.0 * (t - 1.0) ** 2, duration=2.0).stages[0].values()
     assert stage.in_windows("max_bending_moment", "max")[7] == pytest.approx(100.0)
 
 
@@ -104,7 +104,7 @@ def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str
     peaks.begin_stage("motion", kind, duration)
     line = Catenary(32.0, 30.0)
     risers = [line.riser(ARC)._replace(largest_moment=ExtremeAlong(float(size), 0.0)) for size in moment]
-    peaks.record(as_list(t), stacked([Instant(ARC, riser, line.touch(ARC)) for riser in risers]))
+    peaks.record(as_list(t), {"": stacked([Instant(ARC, riser, line.touch(ARC)) for riser in risers])})
     return peaks
 
 
