@@ -42,6 +42,8 @@ from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, lay, run_stage
 
+Envelopes = dict[str, CurveEnvelope]  # of moments and tensions, by line
+
 
 class Variation(NamedTuple):
     """What a comparison run differs in from the one before. factors: of fineness by setting, of which the first is
@@ -186,13 +188,13 @@ def _recording_all(scene: Scene) -> Scene:
     return scene.model_copy(update={"output": output})
 
 
-def peaks_of(scene: Scene, comm: Any, envelope: CurveEnvelope | None = None) -> RunPeaks:
+def peaks_of(scene: Scene, comm: Any, envelopes: Envelopes | None = None) -> RunPeaks:
     """Peaks of a scene, computed without a results folder; collective, told on rank 0. Raises what a run would.
 
-    envelope: follows moments and tensions along the riser, where that is wanted; on rank 0.
+    envelopes: to be filled, line by line, where they are wanted; on rank 0.
     """
     assembly, clock = build(sized(scene), comm), Timer.new()
-    observer = PeakObserver(assembly, envelope)
+    observer = PeakObserver(assembly, envelopes)
     with agreeing(comm):
         before, _ = lay(assembly, clock)
         for stage in assembly.scene.stages:
@@ -203,13 +205,15 @@ def peaks_of(scene: Scene, comm: Any, envelope: CurveEnvelope | None = None) -> 
 class PeakObserver(StatelessObserver):
     """Follows a comparison_run: `peaks` has what the summary of a run would have of it; on rank 0."""
 
-    def __init__(self, assembly: Assembly, envelope: CurveEnvelope | None = None) -> None:
+    def __init__(self, assembly: Assembly, envelopes: Envelopes | None = None) -> None:
         self._assembly = assembly
         self._instants = {line: InstantReader(own) for line, own in assembly.by_line.items()}
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
-        self._envelope = envelope
+        self._envelopes = envelopes
+        if envelopes is not None:
+            envelopes.update({line: CurveEnvelope() for line in self._instants})
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         first = not self.peaks.stages
@@ -225,8 +229,9 @@ class PeakObserver(StatelessObserver):
         if self._assembly.comm.rank == 0:
             seen = self._seen(stepper)
             self.peaks.record([step.t], seen, soil)
-            if self._envelope is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
-                self._envelope.follow(instants_at(seen[""], 0))
+            if self._envelopes is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
+                for line, instant in seen.items():
+                    self._envelopes[line].follow(instants_at(instant, 0))
 
     def relaxed(self, relaxed: object) -> None:
         pass

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any, TypeVar
 
-from riser_soil.accuracy.chain import Variation, bars_of, comparison_runs, peaks_of, run_values, variations
-from riser_soil.accuracy.element_sizes import CurveEnvelope
+from riser_soil.accuracy.chain import Envelopes, Variation, bars_of, comparison_runs, peaks_of, run_values, variations
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.key_results import key_results
 from riser_soil.accuracy.settings import SETTINGS, resolved, varied
@@ -17,6 +16,7 @@ from riser_soil.assembly.graded_segments import broken, graded
 from riser_soil.assembly.motions import periods_of
 from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
+from riser_soil.scene.lines import by_line, risers, with_risers, with_segments
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -27,6 +27,7 @@ LONGER = Variation("time", {"time_step": 0.5})  # of the trial, whose steps are 
 ATTEMPTS, EACH = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
 HELPING = ("elements", "time_step")
 _Found = TypeVar("_Found")
+OfLines = dict[str, tuple[Segment, ...]]
 EVEN, LEAST, BROKEN = 24, 4, 2  # elements of the riser; at least of a segment, and of a part of one between two places
 # Time steps to the shortest period of what moves, times the root of the accuracy, as errors fall with the step's
 # square; within limits. Where nothing has a period, to a quarter of a stage; so many to any stage at least.
@@ -45,7 +46,7 @@ class TriedSetting:
 
 def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     """On a mesh that curvature has graded, with comparison runs; collective. scene: in its first setting."""
-    segments = scene.line.segments
+    segments = _segments(scene)
     scene = _meshed(scene, accuracy, comm)
     scene, seen, peaks = _computed(scene, comm)
     if _excess(seen, accuracy, comm) > SETTLED:
@@ -88,10 +89,10 @@ def finer(scene: Scene, factors: dict[str, float]) -> Scene:
 
 def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
     """By the static stages that the scene begins with; as it is where there is none."""
-    segments, statics = scene.line.segments, first_statics(scene)
+    segments, statics = _segments(scene), first_statics(scene)
     for _ in range(SHAPES if statics else 0):
         part, seen, _ = _computed(scene.model_copy(update={"stages": statics}), comm)
-        scene = scene.model_copy(update={"riser": part.riser})
+        scene = with_risers(scene, risers(part))
         if _excess(seen, accuracy, comm) <= SETTLED:
             break
         scene = _graded(scene, segments, seen, accuracy, comm)
@@ -102,25 +103,32 @@ def first_statics(scene: Scene) -> Sequence[Any]:
     return tuple(takewhile(lambda stage: isinstance(stage, StaticStage), scene.stages))
 
 
-def _computed(scene: Scene, comm: Any) -> tuple[Scene, CurveEnvelope, RunPeaks]:
+def _computed(scene: Scene, comm: Any) -> tuple[Scene, Envelopes, RunPeaks]:
     """The scene, finer where it fails otherwise, and what was seen of it."""
     for _ in range(ATTEMPTS - 1):
-        envelope = CurveEnvelope()
+        seen: Envelopes = {}
         try:
-            return scene, envelope, peaks_of(scene, comm, envelope)
+            return scene, seen, peaks_of(scene, comm, seen)
         except SolveError:
             scene = finer(scene, dict.fromkeys(HELPING, EACH))
-    envelope = CurveEnvelope()
-    return scene, envelope, peaks_of(scene, comm, envelope)
+    seen = {}
+    return scene, seen, peaks_of(scene, comm, seen)
 
 
-def _graded(scene: Scene, segments: tuple[Segment, ...], seen: CurveEnvelope, accuracy: float, comm: Any) -> Scene:
-    made = _on_first(comm, lambda: graded(segments, seen.arc, seen.lengths(accuracy)))
-    return scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": made})})
+def _segments(scene: Scene) -> OfLines:
+    return {name: line.segments for name, line in risers(scene).items()}
 
 
-def _excess(seen: CurveEnvelope, accuracy: float, comm: Any) -> float:
-    return _on_first(comm, lambda: seen.excess(accuracy))
+def _graded(scene: Scene, segments: OfLines, seen: Envelopes, accuracy: float, comm: Any) -> Scene:
+    def made() -> OfLines:
+        return {name: graded(segments[name], own.arc, own.lengths(accuracy)) for name, own in seen.items()}
+
+    return with_segments(scene, _on_first(comm, made))
+
+
+def _excess(seen: Envelopes, accuracy: float, comm: Any) -> float:
+    """Of all lines the largest."""
+    return _on_first(comm, lambda: max(own.excess(accuracy) for own in seen.values()))
 
 
 def _on_first(comm: Any, found: Callable[[], _Found]) -> _Found:
@@ -131,13 +139,17 @@ def _on_first(comm: Any, found: Callable[[], _Found]) -> _Found:
 
 def first_setting(scene: Scene) -> Scene:
     """The scene with elements, steps, soil mesh and penalty in numbers, and no accuracy asked any more."""
-    length, accuracy = scene.line.length, scene.accuracy
+    accuracy = scene.accuracy
     assert accuracy is not None
     of_period = min(max(OF_PERIOD / math.sqrt(accuracy), FEWEST), MOST)
-    segments = tuple(_cut(part, length, least) for part, least in _parts(scene))
     stages = tuple(_stepped(scene, stage, of_period) for stage in scene.stages)
-    riser = scene.line.model_copy(update={"segments": segments})
-    return resolved(scene.model_copy(update={"accuracy": None, "riser": riser, "stages": stages}))
+    segments = {name: tuple(_first_segments(view)) for name, view in by_line(scene).items()}
+    return resolved(with_segments(scene, segments).model_copy(update={"accuracy": None, "stages": stages}))
+
+
+def _first_segments(scene: Scene) -> Iterator[Segment]:
+    """Of a scene of one line."""
+    yield from (_cut(part, scene.line.length, least) for part, least in _parts(scene))
 
 
 def _parts(scene: Scene) -> Iterator[tuple[Segment, int]]:

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 from riser_soil.core.quantities import MOST_ELEMENTS
 from riser_soil.errors import SceneError
-from riser_soil.scene.lines import by_line, risers, with_each
-from riser_soil.scene.riser import Riser, Segment
+from riser_soil.scene.lines import by_line, risers, with_segments
+from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.soil import CellSizes, GeneratedMesh, MeshFile
@@ -137,10 +137,8 @@ def _has_penalty(scene: Scene) -> bool:
 
 
 def _finer_elements(scene: Scene, factor: float) -> Scene:
-    def finer(line: Riser) -> Riser:
-        return line.model_copy(update={"segments": tuple(_cut(segment, factor) for segment in line.segments)})
-
-    return with_each(scene, finer)
+    lines = risers(scene).items()
+    return with_segments(scene, {name: tuple(_cut(each, factor) for each in line.segments) for name, line in lines})
 
 
 def _cut(segment: Segment, factor: float) -> Segment:

@@ -353,7 +353,7 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
     assembly = Assembly(scene, comm, {})
     for name, view in by_line(scene).items():
         turns = name in spins if scene.lines else None
-        assembly.lines[name] = line_assembly(view, name, comm.rank == 0, turns)
+        assembly.lines[name] = line_assembly(view, name or "riser", comm.rank == 0, turns)
     if scene.bodies or scene.joints:
         from riser_soil.assembly.bodies_and_joints import hung_of
 

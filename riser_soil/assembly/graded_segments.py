@@ -19,7 +19,9 @@ SAME_PLACE = 1e-6  # of the riser's length
 
 
 def broken(scene: Scene) -> Iterator[tuple[Segment, ...]]:
-    """Each segment in parts with ends where something acts within it: there shear jumps, and moments need nodes."""
+    """Each segment of one line in parts with ends where something acts within it: there shear jumps, and moments need
+    nodes.
+    """
     begin, near = 0.0, SAME_PLACE * scene.line.length
     for segment in scene.line.segments:
         end, cuts = begin + segment.length, [begin]

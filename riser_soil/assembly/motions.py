@@ -226,9 +226,9 @@ def periods_of(scene: Scene, stage: TimedStage) -> Iterator[tuple[str, float]]:
     """Periods [s] of what moves in a stage."""
     if isinstance(stage, DynamicStage) and scene.water is not None and scene.water.waves is not None:
         yield "the waves", scene.water.waves.period
-    if stage.motion is not None:
-        for name, motion in stage.motion.by_end.items():
-            yield from ((f"the {name}'s {key}", period) for key, period in _own_periods(motion))
+    for line, moved in (("", stage.motion), *((f" of {name}", own.motion) for name, own in stage.lines.items())):
+        for name, motion in () if moved is None else moved.by_end.items():
+            yield from ((f"the {name}{line}'s {key}", period) for key, period in _own_periods(motion))
 
 
 def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:

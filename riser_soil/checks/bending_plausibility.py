@@ -124,8 +124,11 @@ def _uneven_neighbours(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def proposal(assembly: Assembly) -> str:
-    """Segments in words, with line feeds; "" where the elements are right already, or no cable tells."""
+def proposal(assembly: Assembly, path: str) -> str:
+    """Segments of a line in words, with line feeds; "" where the elements are right already, or no cable tells.
+
+    path: of the line in the scene.
+    """
     asked, given = asked_lengths(assembly), assembly.scene.line.segments
     if asked is None:
         return ""
@@ -135,7 +138,7 @@ def proposal(assembly: Assembly) -> str:
         return ""
     head = (
         f"elements graded as the riser's bend asks for, for {SHARE:.0%} of the largest moment at rest: {few} in place "
-        f"of {many}; riser.segments:"
+        f"of {many}; {path}.segments:"
     )
     return "\n".join([head, *(f"  - {_reported(segment)}" for segment in segments)])
 

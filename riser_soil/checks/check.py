@@ -40,7 +40,7 @@ def describe(scene: Scene) -> str:
     assembly = build(scene, comm)
     lines = [*_parts(assembly)]
     for name, line in assembly.by_line.items():
-        lines += [*_unknowns(line, name or "riser")]
+        lines += [*_unknowns(line, name)]
     lines += [*_hung(assembly), _memory_line(assembly), *_results(size)]
     warnings = [*physical_warnings(assembly), *of_size]
     return "\n".join([*lines, *(f"warning: {warning}" for warning in warnings), _verdict(warnings)])
@@ -91,11 +91,11 @@ def _unknowns(assembly: Assembly, name: str) -> Iterator[str]:
 
     line = assembly.line
     yield (
-        f"{name}: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
+        f"{name or 'riser'}: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
         f"{unknowns(assembly.comm, line)} unknowns"
     )
     yield from line_summary(assembly)
-    if better := proposal(assembly):
+    if better := proposal(assembly, f"lines.{name}" if name else "riser"):
         yield better
     if assembly.attachments:
         net = sum(attachment.net_weight for attachment in assembly.attachments)

@@ -33,9 +33,11 @@ def with_placeholders(data: dict[str, Any]) -> dict[str, Any]:
         return data
     for key in _chosen_keys(data):
         raise wrong("accuracy", f"chooses what {key} gives", f"leave out {key}, or accuracy")
-    riser, stages = data.get("riser"), data.get("stages")
-    if isinstance(riser, dict) and isinstance(riser.get("segments"), list):
-        data = data | {"riser": riser | {"segments": [_with(each, elements=1) for each in riser["segments"]]}}
+    lines, stages = data.get("lines"), data.get("stages")
+    if data.get("riser") is not None:
+        data = data | {"riser": _with_elements(data["riser"])}
+    if isinstance(lines, dict):
+        data = data | {"lines": {name: _with_elements(line) for name, line in lines.items()}}
     if isinstance(data.get("soil"), dict):
         data = data | {"soil": data["soil"] | {"mesh": "auto"}}
     if isinstance(stages, list):
@@ -45,8 +47,11 @@ def with_placeholders(data: dict[str, Any]) -> dict[str, Any]:
 
 def _chosen_keys(data: dict[str, Any]) -> Iterator[str]:
     """Paths of keys that an accuracy stands for."""
-    for n, segment in enumerate(_listed(data, "riser", "segments")):
-        yield from (f"riser.segments.{n}.{key}" for key in ("elements", "element_length") if _given(segment, key))
+    lines = data.get("lines")
+    for line in (("riser",), *(("lines", str(name)) for name in (lines if isinstance(lines, dict) else ()))):
+        for n, segment in enumerate(_listed(data, *line, "segments")):
+            given = [key for key in ("elements", "element_length") if _given(segment, key)]
+            yield from (".".join((*line, "segments", str(n), key)) for key in given)
     for n, stage in enumerate(_listed(data, "stages")):
         yield from (f"stages.{n}.{key}" for key in ("time_step", "tolerance") if _given(stage, key))
     for part, key in (("contact", "stiffness"), ("soil", "mesh")):
@@ -66,6 +71,11 @@ def _given(data: Any, key: str) -> bool:
 
 def _with(data: Any, **more: Any) -> Any:
     return data | more if isinstance(data, dict) else data
+
+
+def _with_elements(line: Any) -> Any:
+    segments = _listed(line, "segments")
+    return _with(line, segments=[_with(each, elements=1) for each in segments]) if segments else line
 
 
 def _stepped(stage: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -17,9 +17,9 @@ ENDS = ("start", "end")
 
 
 def by_line(scene: Scene) -> dict[str, Scene]:
-    """Scenes of one line each, by name, in which all else is the same; a scene with `riser` is its own."""
+    """Scenes of one line each, by name, in which all else is the same; a scene with `riser` is its own, under ""."""
     if not scene.lines:
-        return {"riser": scene}
+        return {"": scene}
     return {name: _of_line(scene, name) for name in scene.lines}
 
 
@@ -28,10 +28,15 @@ def risers(scene: Scene) -> Mapping[str, Riser]:
     return scene.lines or {"": scene.line}
 
 
-def with_each(scene: Scene, changed: Callable[[Riser], Riser]) -> Scene:
-    """The scene with all of its lines changed."""
-    each = {name: changed(line) for name, line in risers(scene).items()}
-    return scene.model_copy(update={"lines": each} if scene.lines else {"riser": each[""]})
+def with_risers(scene: Scene, lines: Mapping[str, Riser]) -> Scene:
+    """The scene with others in their places."""
+    return scene.model_copy(update={"lines": dict(lines)} if scene.lines else {"riser": lines[""]})
+
+
+def with_segments(scene: Scene, segments: Mapping[str, tuple[Segment, ...]]) -> Scene:
+    """The scene with other segments by line."""
+    lines = risers(scene).items()
+    return with_risers(scene, {name: each.model_copy(update={"segments": segments[name]}) for name, each in lines})
 
 
 def _of_line(scene: Scene, name: str) -> Scene:

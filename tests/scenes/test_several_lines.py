@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,10 @@ from scipy.optimize import brentq
 from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.chain import peaks_of
 from riser_soil.accuracy.key_results import key_results
-from riser_soil.accuracy.settings import settings_of, varied
+from riser_soil.accuracy.settings import SETTINGS, settings_of, varied
+from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.cases.case_table import case_values
+from riser_soil.checks.check import describe
 from riser_soil.errors import ResultsError, SceneError
 from riser_soil.report.extremes import key_results_table
 from riser_soil.report.report import write_report
@@ -46,6 +49,8 @@ from tests.support.line_scenes import (
 )
 from tests.support.riser_scenes import dynamic, static
 from tests.support.vtk_reading import read_by_vtk
+
+ELEMENTS, TIME_STEP = (setting for setting in SETTINGS if setting.name in ("elements", "time_step"))
 
 
 def ran(scene: dict[str, Any], folder: Path) -> Run:
@@ -266,6 +271,31 @@ def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
     assert all(row[shown.head.index("±")] for row in shown.rows)
 
 
+def test_an_accuracy_asked_of_several_lines_is_reached(tmp_path: Path) -> None:
+    """Each line's elements are graded by its own curvature; the step, by its shortest period, is one of all."""
+    asked = mooring(shaken(0.8), accuracy="5 %")
+    asked["line_types"]["chain"] |= {"EI": 2.0e4, "GJ": 2.0e4}
+    for line in asked["lines"].values():
+        del line["segments"][0]["elements"]
+    del asked["stages"][1]["time_step"]
+    run_to_accuracy(scene_from_mapping(asked), tmp_path / "run")
+    found = Run(tmp_path / "run")
+    assert found.summary["accuracy"]["reached"]
+    chosen = found.read_scene()
+    assert len({line.element_count for line in chosen.lines.values()}) > 1
+    finer = varied(varied(chosen, ELEMENTS, 2.0), TIME_STEP, 2.0)
+    true = key_results(peaks_of(finer, MPI.COMM_SELF).reported("peaks"))
+    off = [each.relative(each.value - true[key].value) for key, each in key_results(found.summary).items()]
+    assert max(off) < 0.05
+
+
+def test_check_names_each_line(tmp_path: Path) -> None:
+    """Where it proposes elements; the steps of a duration that is no multiple of theirs are whole ones."""
+    said = describe(scene_from_mapping(mooring(shaken(1.0, 0.15), elements=60)))
+    assert all(f"in place of 60; lines.{name}.segments:" in said for name in NAMES)
+    assert re.search(r"estimated time: .* on one core, for \d+ steps", said)
+
+
 def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
     seabed = {"kind": "spring", "level": -DEPTH - 0.5, "stiffness": 1e4}
     scene = scene_from_mapping(mooring(shaken(0.5), body=RIGID, seabed=seabed))
@@ -306,6 +336,7 @@ WITHOUT_LINES = {key: value for key, value in mooring().items() if key != "lines
 MISSPELT = {"line_type": "chian", "length": 9.0, "elements": 2}
 REFUSED = [
     (changed(dimension=2), "dimension: value 2: is not there yet for several lines"),
+    (changed(accuracy="1 %"), "accuracy: .*chooses what lines.east.segments.0.elements gives"),
     (changed(seabed=SLOPING), "seabed.slope_deg: value 3.0: is not there yet"),
     (changed(riser=mooring()["lines"]["east"]), "riser and lines are both given"),
     (WITHOUT_LINES, "the riser is missing"),

@@ -91,19 +91,19 @@ def test_elements_as_proposed_need_no_word() -> None:
     scene = read_scene(FIRST)
     segments = of(scene)
     assert segments is not None
-    reported = proposal(build(scene, MPI.COMM_SELF))
+    reported = proposal(build(scene, MPI.COMM_SELF), "riser")
     assert reported.startswith("elements graded as the riser's bend asks for, for 1% of the largest moment")
-    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF))
+    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF), "riser")
 
 
 def test_the_words_are_segments_of_a_scene() -> None:
     from ruamel.yaml import YAML
 
     scene = read_scene(FIRST)
-    reported = proposal(build(scene, MPI.COMM_SELF)).split("\n", 1)[1]
+    reported = proposal(build(scene, MPI.COMM_SELF), "riser").split("\n", 1)[1]
     segments = tuple(Segment(**each) for each in YAML(typ="safe").load(reported))
     assert sum(each.length for each in segments) == pytest.approx(scene.line.length, rel=1e-5)
-    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF))
+    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF), "riser")
     assert reported in describe(scene)
 
 
