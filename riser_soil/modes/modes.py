@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -18,12 +19,15 @@ from riser_soil.errors import SceneError, SolveError
 from riser_soil.interruption import agreeing
 from riser_soil.modes.eigenpairs import Eigenpairs, lowest
 from riser_soil.riser.directors import Frames
-from riser_soil.riser.line import UP
+from riser_soil.riser.line import UP, Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.stages import LayingCounter, lay, run_stage
+
+if TYPE_CHECKING:
+    from riser_soil.bodies.body import MovingBody
 
 DIRECTIONS = ("in plane", "out of plane", "axial", "twist")
 BETWEEN = "at no node"  # moves: the direction of a mode that elements are too long for
@@ -37,25 +41,48 @@ MASS = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 MOVING = DynamicStage(name="small vibrations", kind="dynamic", duration=1.0, time_step=1.0)
 
 
-class Modes(NamedTuple):
-    """Modes of small vibrations about rest, the lowest first; n modes, nn nodes.
-
-    frequency (n,) [Hz]. arc (nn,) [m], position (nn, 3) [m] at rest, global axes. shape (n, nn, 3): displacement of the
-    axis, global axes, and twist (n, nn) [rad/m]: rotation about the pipe's axis, both for a largest displacement of 1
-    of the axis or, where the pipe twists, of its surface. share (n, 4): of the squared displacement along the riser, by
-    DIRECTIONS: across the pipe in the vertical plane from start to end, across it out of this plane, along it, and of
-    the pipe's surface as it twists; nan, and no shape, where the nodes turn but stay in place, in half waves as short
-    as elements. asymmetry: see `Eigenpairs`. stage: name of the static stage.
+class LineShapes(NamedTuple):
+    """Of a line, n modes, nn nodes: arc (nn,) [m], position (nn, 3) [m] at rest, global axes. shape (n, nn, 3):
+    displacement of the axis, global axes, and twist (n, nn) [rad/m]: rotation about the pipe's axis.
     """
 
-    frequency: Array
     arc: Array
     position: Array
     shape: Array
     twist: Array
+
+    def scaled(self, factors: Array) -> LineShapes:
+        """By each mode's factor (n,)."""
+        return self._replace(shape=factors[:, None, None] * self.shape, twist=factors[:, None] * self.twist)
+
+
+class BodyShapes(NamedTuple):
+    """Of a body, n modes: displacement of the origin of its axes (n, 3), and rotation (n, 3) [rad/m], global axes."""
+
+    shape: Array
+    rotation: Array
+
+    def scaled(self, factors: Array) -> BodyShapes:
+        """By each mode's factor (n,)."""
+        return BodyShapes(factors[:, None] * self.shape, factors[:, None] * self.rotation)
+
+
+class Modes(NamedTuple):
+    """Modes of small vibrations about rest, the lowest first; n of them.
+
+    frequency (n,) [Hz]. lines: their shapes by name, "" of the only one, and of bodies; all for a largest displacement
+    of 1 of an axis, of a pipe's surface as it twists, or of a body. share (n, 4): of the squared displacement along the
+    lines, by DIRECTIONS: across the pipe in the vertical plane from start to end, across it out of this plane, along
+    it, and of the pipe's surface as it twists; nan, and no shape, where the nodes turn but stay in place, in half waves
+    as short as elements. asymmetry: see `Eigenpairs`. stage: name of the static stage.
+    """
+
+    frequency: Array
     share: Array
     asymmetry: float
     stage: str
+    lines: Mapping[str, LineShapes]
+    bodies: Mapping[str, BodyShapes]
 
     @property
     def period(self) -> Array:
@@ -67,17 +94,32 @@ class Modes(NamedTuple):
         """Words for the largest share."""
         return [DIRECTIONS[share.argmax()] if np.isfinite(share).all() else BETWEEN for share in self.share]
 
+    @property
+    def line(self) -> LineShapes:
+        """The only line."""
+        (only,) = self.lines.values()
+        return only
+
+    @property
+    def moving_most(self) -> list[str]:
+        """Name of the line or body that has the largest displacement of its axis."""
+        each = {name: own.shape for name, own in self.lines.items()}
+        each |= {name: own.shape[:, None] for name, own in self.bodies.items()}
+        largest = np.array([np.linalg.norm(shape, axis=2).max(axis=1) for shape in each.values()])
+        return [[*each][n] for n in largest.argmax(axis=0)]
+
 
 def modes_of(scene: Scene, count: int = 10, stage: str | None = None) -> Modes:
-    """The lowest modes of a scene's riser at the end of a static stage, by default the last before a dynamic one.
+    """The lowest modes of a scene's lines and bodies at the end of a static stage: by default the last before a dynamic
+    one.
 
     Without damping. Stiffness is the tangent at rest: of the riser with its loads, of contact as it touches there, of
-    the soil; friction sticks. Mass is that of the riser, what is in it and on it, and the added mass of still water;
-    soil has none. Raises SceneError or what a run would; SolveError where the riser is unstable at rest, or its tangent
-    far from symmetric.
+    the soil; friction sticks. Mass is that of the lines, what is in them and on them, of bodies, and the added mass of
+    still water; soil has none. Raises SceneError or what a run would; SolveError where the riser is unstable at rest,
+    or its tangent far from symmetric.
     """
     rest = at_rest(scene, stage)
-    least = NEAR_ZERO * GRAVITY / float(rest.assembly.line.arc[-1])
+    least = NEAR_ZERO * GRAVITY / max(float(own.line.arc[-1]) for own in rest.assembly.lines.values())
     found = lowest(rest.stiffness, rest.mass, count, -least)
     _require_sound(found, least)
     return _seen(rest, np.where(found.squares > least, found.squares, 0.0), found)
@@ -97,20 +139,43 @@ def _require_sound(found: Eigenpairs, least: float) -> None:
 
 
 def _seen(rest: RiserAtRest, squares: Array, found: Eigenpairs) -> Modes:
-    line = rest.assembly.line
-    state = State.at_rest(rest.stage.end, rest.assembly.size)
-    tangents = line.trial(state).turn.tangent @ line.basis.T
-    nodal = np.array([line.nodal(rest.whole(mode)) for mode in found.modes])
-    moved = nodal[..., : line.dimension] @ line.basis.T
-    twist = _twist(line.frames, nodal[..., line.dimension :])
-    radius = 0.5 * larger_beside(line.outer_diameter)
-    turned = np.abs(nodal[..., line.dimension :]).max(axis=(1, 2)) * line.length.max()
-    scale = _scale(moved, radius * twist, UNSEEN * turned)
-    moved, twist = scale[:, None, None] * moved, scale[:, None] * twist
-    position = line.positions3(state)
-    share = _shares(moved, radius * twist, _axes(tangents, position), line.tributary_length)
-    frequency = np.sqrt(squares) / (2.0 * np.pi)
-    return Modes(frequency, line.arc, position, moved, twist, share, found.asymmetry, rest.stage.name)
+    state, moved = State.at_rest(rest.stage.end, rest.assembly.size), [rest.whole(mode) for mode in found.modes]
+    each = {name: own.line for name, own in rest.assembly.by_line.items()}
+    of_lines = {name: _line_shapes(line, state, moved) for name, line in each.items()}
+    of_bodies = {body.name: _body_shapes(body, moved) for body in rest.bodies}
+    fields: list[Line | MovingBody] = [*each.values(), *rest.bodies]
+    least = np.max([_turned(field, moved) for field in fields], axis=0)
+    surfaces = [_radius(line) * of_lines[name].twist for name, line in each.items()]
+    arms = [body.lever * of_bodies[body.name].rotation for body in rest.bodies]
+    axes = [*(own.shape for own in of_lines.values()), *(own.shape[:, None] for own in of_bodies.values())]
+    scale = _scale(np.hstack([*axes, *(arm[:, None] for arm in arms)]), np.hstack(surfaces), UNSEEN * least)
+    lines = {name: own.scaled(scale) for name, own in of_lines.items()}
+    bodies = {name: own.scaled(scale) for name, own in of_bodies.items()}
+    share = _shares(np.sum([_squared(line, state, lines[name]) for name, line in each.items()], axis=0))
+    return Modes(np.sqrt(squares) / (2.0 * np.pi), share, found.asymmetry, rest.stage.name, lines, bodies)
+
+
+def _line_shapes(line: Line, state: State, moved: Sequence[Array]) -> LineShapes:
+    """moved: local arrays of each mode."""
+    nodal = np.array([line.nodal(each) for each in moved])
+    shape = nodal[..., : line.dimension] @ line.basis.T
+    return LineShapes(line.arc, line.positions3(state), shape, _twist(line.frames, nodal[..., line.dimension :]))
+
+
+def _body_shapes(body: MovingBody, moved: Sequence[Array]) -> BodyShapes:
+    nodal = np.array([body.nodal(each)[0] for each in moved])
+    turned = nodal[:, 3:] @ body.frames.R[0].T if body.turns else np.zeros((len(nodal), 3))
+    return BodyShapes(nodal[:, :3], turned)
+
+
+def _turned(field: Line | MovingBody, moved: Sequence[Array]) -> Array:
+    """What turns move beside them (n,) at most: by an element's length, or a body's arm."""
+    arm = field.length.max() if isinstance(field, Line) else field.lever
+    return np.array([arm * np.abs(field.nodal(each)[:, field.dimension :]).max(initial=0.0) for each in moved])
+
+
+def _radius(line: Line) -> Array:
+    return 0.5 * larger_beside(line.outer_diameter)
 
 
 def _twist(frames: Frames, rotation: Array) -> Array:
@@ -122,11 +187,11 @@ def _twist(frames: Frames, rotation: Array) -> Array:
 
 
 def _scale(moved: Array, of_surface: Array, least: Array) -> Array:
-    """Factors (n,) that make the largest displacement 1, and positive where it is of the axis; 0 where it is not more
-    than `least` (n,).
+    """Factors (n,) that make the largest displacement 1, and positive where it is of an axis; 0 where it is not more
+    than `least` (n,). moved: (n, k, 3), of_surface: (n, m).
     """
     values = np.concatenate([moved.reshape(len(moved), -1), of_surface], axis=1)
-    sizes = np.maximum(np.linalg.norm(moved, axis=2), np.abs(of_surface)).max(axis=1)
+    sizes = np.maximum(np.linalg.norm(moved, axis=2).max(axis=1), np.abs(of_surface).max(axis=1))
     largest = np.take_along_axis(values, np.abs(values).argmax(axis=1)[:, None], axis=1)[:, 0]
     return np.divide(np.sign(largest), sizes, out=np.zeros_like(sizes), where=sizes > least)
 
@@ -149,10 +214,15 @@ def _horizontal(position: Array) -> Array:
     return plan / size if size > PLUMB * float(np.linalg.norm(chord)) else np.array([1.0, 0.0, 0.0])
 
 
-def _shares(moved: Array, of_surface: Array, axes: Array, length: Array) -> Array:
-    """Of the squared displacement along the riser (n, 4), by DIRECTIONS."""
-    of_axis = np.einsum("n,mnk->mk", length, np.einsum("nki,mni->mnk", axes, moved) ** 2)
-    parts = np.column_stack([of_axis, of_surface**2 @ length])
+def _squared(line: Line, state: State, own: LineShapes) -> Array:
+    """Squared displacement along a line (n, 4), by DIRECTIONS."""
+    tangents, length = line.trial(state).turn.tangent @ line.basis.T, line.tributary_length
+    along = np.einsum("nki,mni->mnk", _axes(tangents, own.position), own.shape)
+    of_axis = np.einsum("n,mnk->mk", length, along**2)
+    return np.column_stack([of_axis, (_radius(line) * own.twist) ** 2 @ length])
+
+
+def _shares(parts: Array) -> Array:
     total = parts.sum(axis=1)[:, None]
     return np.divide(parts, total, out=np.full_like(parts, np.nan), where=total > 0.0)
 
@@ -167,6 +237,11 @@ class RiserAtRest(NamedTuple):
     stiffness: csr_array
     mass: csr_array
     rows: IntArray
+
+    @property
+    def bodies(self) -> list[MovingBody]:
+        hung = self.assembly.hung
+        return [] if hung is None else [*hung.bodies.values()]
 
     def whole(self, free: Array) -> Array:
         """A local array (size,) of the free dofs' values, zero where prescribed."""
@@ -224,7 +299,16 @@ def _linearised(assembly: Assembly, stage: Stage, clock: Timer) -> RiserAtRest:
 
 
 def _with_mass(assembly: Assembly) -> list[Part]:
-    """Mass of the riser and added mass of its water, which stands still and has a level surface."""
+    """Mass of lines and bodies and added mass of their water, which stands still and has a level surface."""
+    hung, parts = assembly.hung, [part for own in assembly.by_line.values() for part in _of_line(own)]
+    if hung is not None and hung.bodies:
+        from riser_soil.bodies.loads import BodyInertia
+
+        parts += [BodyInertia(body, hung.given[name].mass_matrix()) for name, body in hung.bodies.items()]
+    return parts
+
+
+def _of_line(assembly: Assembly) -> list[Part]:
     scene, line, elements, attached = assembly.scene, assembly.line, assembly.elements, assembly.attachments
     if scene.water is not None:
         scene = scene.model_copy(update={"water": scene.water.model_copy(update={"waves": None, "current": None})})

@@ -9,7 +9,7 @@ import xarray
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.modes.modes import DIRECTIONS, Modes
+from riser_soil.modes.modes import DIRECTIONS, BodyShapes, LineShapes, Modes
 from riser_soil.results.whole_file import refuse_file, written_together
 
 NUMBERS, PICTURE = "modes.nc", "modes.png"
@@ -26,16 +26,16 @@ def refuse_folder(folder: Path, force: bool) -> None:
 
 def table(modes: Modes, asked: int) -> list[str]:
     """A line for each mode, and what to know of them all."""
-    shares = " ".join(f"{words:>12}" for words in DIRECTIONS)
+    shares, several = " ".join(f"{words:>12}" for words in DIRECTIONS), "" not in modes.lines
     lines = [
-        f'natural frequencies of the riser at rest after stage "{modes.stage}", without damping; shares of the squared '
+        f'natural frequencies at rest after stage "{modes.stage}", without damping; shares of the squared '
         "displacement:",
-        f"{'mode':>4} {'f [Hz]':>12} {'T [s]':>10}  {'direction':<12} {shares}",
+        f"{'mode':>4} {'f [Hz]':>12} {'T [s]':>10}  {'direction':<12} {shares}{'  most of' if several else ''}",
     ]
-    rows = zip(modes.frequency, modes.period, modes.direction, modes.share, strict=True)
-    for n, (f, T, direction, share) in enumerate(rows, 1):
+    rows = zip(modes.frequency, modes.period, modes.direction, modes.share, modes.moving_most, strict=True)
+    for n, (f, T, direction, share, name) in enumerate(rows, 1):
         reported = " ".join(f"{100.0 * part:10.1f} %" for part in share)
-        lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {reported}")
+        lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {reported}{f'  {name}' if several else ''}")
     if len(modes.frequency) < asked:
         lines.append(f"no more than {len(modes.frequency)} were found: the riser has so few unknowns with mass")
     if modes.asymmetry > 0.0:
@@ -49,11 +49,13 @@ def table(modes: Modes, asked: int) -> list[str]:
 def write_folder(folder: Path, modes: Modes, plot: bool) -> None:
     """All files together, none of them by halves."""
     with written_together(folder, FILES if plot else (NUMBERS,)) as made:
-        dataset(modes).to_netcdf(made / NUMBERS, engine="h5netcdf")
+        for group, found in datasets(modes).items():
+            found.to_netcdf(made / NUMBERS, mode="w" if group == "/" else "a", group=group, engine="h5netcdf")
         if plot:
             from riser_soil.plots.mode_shapes import draw_modes
 
-            draw_modes(made / PICTURE, modes.arc, modes.position, modes.shape, titles(modes))
+            drawn = modes.lines.items()
+            draw_modes(made / PICTURE, {n: (each.arc, each.position, each.shape) for n, each in drawn}, titles(modes))
 
 
 def titles(modes: Modes) -> list[str]:
@@ -61,38 +63,61 @@ def titles(modes: Modes) -> list[str]:
     return [f"mode {n}: {f:.4g} Hz, {T:.4g} s, {direction}" for n, (f, T, direction) in enumerate(rows, 1)]
 
 
-def dataset(modes: Modes) -> xarray.Dataset:
-    """As modes.nc has it: units, signs and places with each variable."""
+def datasets(modes: Modes) -> dict[str, xarray.Dataset]:
+    """As modes.nc has them by group, "/" the whole: units, signs and places with each variable."""
+    of_lines = {name or "/": _of_line(own) for name, own in modes.lines.items()}
+    of_bodies = {f"bodies/{name}": _of_body(own) for name, own in modes.bodies.items()}
+    whole = _of_all(modes)
+    return {"/": whole} | of_lines | of_bodies | ({"/": whole.merge(of_lines["/"])} if "/" in of_lines else {})
+
+
+def _of_all(modes: Modes) -> xarray.Dataset:
     found = xarray.Dataset(
         {
             "frequency": _named(("mode",), modes.frequency, "Hz", "natural frequency, without damping"),
             "period": _named(("mode",), modes.period, "s", "natural period"),
-            "shape": _named(
-                ("mode", "arc", "component"), modes.shape, "1",
-                "displacement of the riser's axis over the mode's largest displacement; global axes, z up",
-            ),
-            "twist": _named(
-                ("mode", "arc"), modes.twist, "rad m-1",
-                "rotation about the pipe's axis over the mode's largest displacement; right-hand rule, towards the end",
-            ),
             "share": _named(
                 ("mode", "direction"), modes.share, "1",
                 "share of the squared displacement along the riser: across it in the vertical plane from start to end, "
                 "across it out of this plane, along it, of its surface in twist",
             ),
-            "position": _named(
-                ("arc", "component"), modes.position, "m", "position of the riser's axis at rest; global axes, z up"
-            ),
         },
-        {
-            "mode": np.arange(1, len(modes.frequency) + 1),
-            "arc": _named(("arc",), modes.arc, "m", "unstressed arc length from the start"),
-            "component": ["x", "y", "z"],
-            "direction": list(DIRECTIONS),
-        },
+        {"mode": np.arange(1, len(modes.frequency) + 1), "direction": list(DIRECTIONS)},
     )  # fmt: skip
     found.attrs = {"stage": modes.stage, "asymmetry": modes.asymmetry, "Conventions": "CF-1.11"}
     return found
+
+
+SHAPE = "displacement of the {} over the mode's largest displacement; global axes, z up"
+TURN = "rotation about {} over the mode's largest displacement; right-hand rule, {}"
+
+
+def _of_line(own: LineShapes) -> xarray.Dataset:
+    turn = TURN.format("the pipe's axis", "towards the end")
+    return xarray.Dataset(
+        {
+            "shape": _named(("mode", "arc", "component"), own.shape, "1", SHAPE.format("riser's axis")),
+            "twist": _named(("mode", "arc"), own.twist, "rad m-1", turn),
+            "position": _named(
+                ("arc", "component"), own.position, "m", "position of the riser's axis at rest; global axes, z up"
+            ),
+        },
+        {
+            "arc": _named(("arc",), own.arc, "m", "unstressed arc length from the start"),
+            "component": ["x", "y", "z"],
+        },
+    )
+
+
+def _of_body(own: BodyShapes) -> xarray.Dataset:
+    axes, turn = SHAPE.format("origin of the body's axes"), TURN.format("the global axes", "z up")
+    return xarray.Dataset(
+        {
+            "shape": _named(("mode", "component"), own.shape, "1", axes),
+            "rotation": _named(("mode", "component"), own.rotation, "rad m-1", turn),
+        },
+        {"component": ["x", "y", "z"]},
+    )
 
 
 Named = tuple[tuple[str, ...], Array, dict[str, str]]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -11,24 +12,28 @@ from matplotlib.axes import Axes
 from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import save, sheet
 
+LineMoved = tuple[Array, Array, Array]  # arc (nn,), position (nn, 3) at rest [m], displacements (n, nn, 3)
+STYLES = ("-", "--", ":", "-.")  # of lines in turn
 COMPONENTS = ("x", "y", "z")
 LARGEST = 0.08  # of the riser's extent: the largest displacement as it is drawn over the shape at rest
 UNSEEN = 1e-6  # of the largest displacement: a component that is left out
 
 
-def draw_modes(png: Path, arc: Array, position: Array, shape: Array, titles: Sequence[str]) -> Path:
-    """By the riser at rest and how it moves, side by side for each mode; seen from above where it moves out of plane.
+def draw_modes(png: Path, lines: Mapping[str, LineMoved], titles: Sequence[str]) -> Path:
+    """By the lines at rest and how they move, side by side for each mode; seen from above where they move out of plane.
 
-    arc (nn,), position (nn, 3) [m] at rest; shape (n, nn, 3): displacements, the largest 1.
+    lines: by name, "" the only one; their displacements are at most 1.
     """
-    figure, panels = sheet(len(shape), 2, width=10.0, height=2.3)
+    figure, panels = sheet(len(titles), 2, width=10.0, height=2.3)
+    position = np.concatenate([place for _, place, _ in lines.values()])
     horizontal = _horizontal(position)
-    for moved, title, left, right in zip(shape, titles, panels[::2], panels[1::2], strict=True):
-        _draw_view(left, position, moved, horizontal)
+    for n, (title, left, right) in enumerate(zip(titles, panels[::2], panels[1::2], strict=True)):
+        _draw_view(left, [(place, shape[n]) for _, place, shape in lines.values()], position, horizontal)
         left.set_title(title, fontsize=9, loc="left")
-        for component, name in enumerate(COMPONENTS):
-            if np.abs(moved[:, component]).max() > UNSEEN:
-                right.plot(arc, moved[:, component], f"C{component}", label=name)
+        for (name, (arc, _, shape)), style in zip(lines.items(), cycle(STYLES)):
+            for component, axis in enumerate(COMPONENTS):
+                if np.abs(shape[n, :, component]).max() > UNSEEN:
+                    right.plot(arc, shape[n, :, component], f"C{component}{style}", label=f"{name} {axis}".strip())
         right.set_xlabel("arc length from the start [m]", fontsize=8)
         right.set_ylabel("displacement\nover the largest [-]", fontsize=8)
         if right.lines:
@@ -36,16 +41,19 @@ def draw_modes(png: Path, arc: Array, position: Array, shape: Array, titles: Seq
     return save(figure, png)
 
 
-def _draw_view(axes: Axes, position: Array, moved: Array, horizontal: Array) -> None:
-    """The riser at rest and both extremes of the mode, in the vertical plane from its start or from above."""
+def _draw_view(axes: Axes, lines: Sequence[tuple[Array, Array]], position: Array, horizontal: Array) -> None:
+    """Lines at rest and both extremes of the mode, in a vertical plane or from above. lines: their places and
+    displacements (nn, 3); position: of all nodes.
+    """
     extent = float(np.ptp(position, axis=0).max())
-    across = np.cross([0.0, 0.0, 1.0], horizontal)
+    across, moved = np.cross([0.0, 0.0, 1.0], horizontal), np.concatenate([moved for _, moved in lines])
     above = np.abs(moved @ across).max() > np.abs(moved - np.outer(moved @ across, across)).max()
     upwards = across if above else np.array([0.0, 0.0, 1.0])
     origin = position[0] if above else position[0] * [1.0, 1.0, 0.0]
     for factor, style in ((0.0, "k-"), (LARGEST * extent, "C3-"), (-LARGEST * extent, "C3--")):
-        seen = position + factor * moved - origin
-        axes.plot(seen @ horizontal, seen @ upwards, style, linewidth=0.9)
+        for place, moves in lines:
+            seen = place + factor * moves - origin
+            axes.plot(seen @ horizontal, seen @ upwards, style, linewidth=0.9)
     axes.set_xlabel("horizontal distance from the start [m]", fontsize=8)
     axes.set_ylabel("from above:\nto the left [m]" if above else "z [m], upwards", fontsize=8)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 import xarray
 from ruamel.yaml import YAML
+from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.sparse import csr_array, diags, eye
 from scipy.special import jn_zeros
@@ -20,6 +22,7 @@ from riser_soil.modes.eigenpairs import FEW, lowest
 from riser_soil.modes.modes import Modes, modes_of
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping, touchdown
+from tests.support.line_scenes import NAMES, POINT, RIGID, mooring
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 LENGTH, EA, EI, MASS, TENSION = 30.0, 1.0e9, 5.0e5, 80.0, 4.0e4
@@ -69,8 +72,8 @@ def test_beam_under_tension() -> None:
 
 def test_shapes_are_sines_of_height_one_across_the_pipe() -> None:
     modes = found(stretched(), 3)
-    for n, shape in enumerate(modes.shape, 1):
-        sine = np.sin(n * np.pi * modes.arc / LENGTH)
+    for n, shape in enumerate(modes.line.shape, 1):
+        sine = np.sin(n * np.pi * modes.line.arc / LENGTH)
         assert np.abs(shape[:, 2]) == pytest.approx(np.abs(sine), abs=1e-4)
         assert np.abs(shape[:, :2]).max() < 1e-9
     assert modes.share[:, 0] == pytest.approx(np.ones(3))
@@ -228,7 +231,7 @@ def test_half_waves_as_short_as_elements_have_no_shape() -> None:
     """Of a hinged beam of two elements the second mode, and of one element all: the nodes turn where they are."""
     modes = found(stretched(2), 2)
     assert modes.direction == ["in plane", "at no node"]
-    assert not modes.shape[1].any()
+    assert not modes.line.shape[1].any()
     assert np.isnan(modes.share[1]).all()
     assert modes.frequency == pytest.approx(tensioned_beam([1, 2]), rel=0.12)
     assert found(stretched(1), 1).direction == ["at no node"]
@@ -306,6 +309,82 @@ def test_whole_and_condensed_soil_hold_a_riser_alike() -> None:
     ways = ({"soil": way, "tolerance": 1e-9} for way in ("whole", "condensed"))
     whole, condensed = (found(scene | {"solver": way}, 3) for way in ways)
     assert whole.frequency == pytest.approx(condensed.frequency, rel=1e-6)
-    assert np.abs(whole.shape - condensed.shape).max() < 1e-4
+    assert np.abs(whole.line.shape - condensed.line.shape).max() < 1e-4
     scene["soil"]["law"]["E"] = 2.0e7
     assert (found(scene, 3).frequency > 1.0001 * condensed.frequency).all()
+
+
+def tethered(body: Mapping, pipe: Mapping, elements: int) -> Mapping:
+    """A buoy on a line from the sea's floor, by a joint that is 1 m below the origin of its axes if it is rigid."""
+    arm = 1.0 if body["kind"] == "rigid" else 0.0
+    line = {
+        "segments": [{"line_type": "rope", "length": LENGTH, "elements": elements}],
+        "start": {"position": [0.0, 0.0, 0.0]},
+        "end": "free",
+        "initial": "straight",
+    }
+    between = [{"line": "tether", "at": "end"}, {"body": "buoy", "offset": [0.0, 0.0, -arm]}]
+    return {
+        "water": {"density": WATER},
+        "line_types": {"rope": pipe},
+        "lines": {"tether": line},
+        "bodies": {"buoy": body | {"position": [0.0, 0.0, 1.0004 * LENGTH + arm]}},
+        "joints": {"top": {"kind": "pinned", "between": between}},
+        "stages": [static("rest")],
+        "solver": {"tolerance": 1e-9},
+    }
+
+
+def test_a_buoy_on_a_heavy_tether() -> None:
+    """A string, and a bar, with a mass at its end: x tan x = m L / M, x = ω L / c; m of the line, M of the buoy."""
+    size = 0.1
+    rope = {"EA": 1.0e6, "EI": 1.0, "GJ": 1.0e4, "mass": WATER * np.pi / 4.0 * size**2, "outer_diameter": size}
+    modes = found(tethered(POINT, rope, 40), 5)
+    M, T = POINT["mass"] + POINT["added_mass"] * WATER * POINT["volume"], (POINT["volume"] * WATER - POINT["mass"]) * G
+    m, strain = rope["mass"], T / rope["EA"]
+    x = [brentq(lambda x: x * np.tan(x) - m * LENGTH / M, n * np.pi, (n + 0.5) * np.pi - 1e-9) for n in (0, 1)]
+    swaying = np.array(x) * np.sqrt(T / (m * (1.0 + strain))) / LENGTH
+    heaving = x[0] * np.sqrt(rope["EA"] / m) / LENGTH
+    expected = np.sort([*np.repeat(swaying, 2), heaving]) / (2.0 * np.pi)
+    assert modes.frequency == pytest.approx(expected, rel=2e-4)
+    assert modes.moving_most == ["buoy"] * 3 + ["tether"] * 2
+    top, buoy = modes.lines["tether"].shape[:3, -1], modes.bodies["buoy"].shape[:3]
+    assert top == pytest.approx(buoy, abs=1e-3), "where the joint holds them together"
+    assert not modes.bodies["buoy"].rotation.any()
+
+
+def test_a_rigid_buoy_on_a_light_tether() -> None:
+    """A pendulum of two links upside down, about either axis; nothing holds it from turning about the line."""
+    rope = {"EA": 1.0e8, "EI": 1.0e-2, "GJ": 1.0e4, "mass": 0.2, "outer_diameter": 0.02}
+    modes = found(tethered(RIGID, rope, 4), 5)
+    m, W, B = RIGID["mass"], RIGID["mass"] * G, RIGID["volume"] * WATER * G
+    low, high = 1.0 + RIGID["centre_of_gravity"][2], 1.0 + RIGID["centre_of_buoyancy"][2]
+    K, expected = np.diag([(B - W) * LENGTH, B * high - W * low]), [0.0]
+    for along, about in ((0, 1), (1, 0)):  # sways along x as it turns about y
+        added, J = RIGID["added_mass"][along] * WATER * RIGID["volume"], RIGID["inertia"][about]
+        arms = np.array([[LENGTH, low], [LENGTH, high]])
+        M = arms.T @ np.diag([m, added]) @ arms
+        M += np.diag([rope["mass"] * LENGTH**3 / 3.0, J + RIGID["added_inertia"][about]])
+        expected += np.sqrt(eigh(K, M, eigvals_only=True)).tolist()
+    assert modes.frequency == pytest.approx(np.sort(expected) / (2.0 * np.pi), rel=1e-3, abs=1e-4)
+    turn = modes.bodies["buoy"].rotation
+    assert np.abs(turn[0]).argmax() == 2
+    assert np.abs(turn[3:, :2]).max() > 0.3
+    assert turn[3:, 2] == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_modes_of_several_lines_have_groups_and_a_picture(tmp_path: Path) -> None:
+    file, folder = tmp_path / "mooring.yaml", tmp_path / "modes"
+    file.write_text(json.dumps(mooring(elements=8, body=RIGID)), encoding="utf-8")
+    done = CliRunner().invoke(app, ["modes", str(file), "--count", "4", "--plot", "-o", str(folder)])
+    assert done.exit_code == 0, done.output
+    assert all(line.rsplit("  ", 1)[1] in (*NAMES, "buoy") for line in done.output.splitlines()[2:6])
+    shapes = []
+    for group in (*NAMES, "bodies/buoy"):
+        with xarray.open_dataset(folder / "modes.nc", engine="h5netcdf", group=group) as stored:
+            assert stored["shape"].attrs["units"] == "1"
+            shapes.append(np.linalg.norm(stored["shape"].values, axis=-1).reshape(4, -1).max(axis=1))
+    assert np.max(shapes, axis=0) == pytest.approx(np.ones(4), abs=0.3)
+    with xarray.open_dataset(folder / "modes.nc", engine="h5netcdf") as stored:
+        assert stored["frequency"].shape == (4,)
+    assert (folder / "modes.png").read_bytes().startswith(b"\x89PNG")
