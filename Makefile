@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test quick lint verify stress fuzz mutants bench bench-peers parts bars asked precision quality verify-fresh docs dist docker pins clean
+.PHONY: help setup demo demos test quick lint coverage verify stress fuzz mutants bench bench-peers parts bars asked precision quality verify-fresh docs dist docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -47,6 +47,11 @@ quick: setup
 lint: setup
 	$(PYTHON) -m ruff check .
 	$(PYTHON) -m mypy
+
+coverage: setup ## share of the lines that are not compiled which the quick tests reach: at least 90 %, build/coverage/html
+	@rm -rf build/coverage && mkdir -p build/coverage
+	$(PYTHON) -m coverage run -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
+	$(PYTHON) -m coverage combine --quiet && $(PYTHON) -m coverage html --quiet && $(PYTHON) -m coverage report
 
 verify: setup ## the long comparisons with closed forms, references and finer meshes
 	$(PYTHON) -m pytest -m verify
