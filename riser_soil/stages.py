@@ -247,8 +247,6 @@ def _static_step(run: StageRun) -> AcceptedStep:
     steps.
     """
     assembly, stepper, control = run.assembly, run.stepper, run.control
-    if assembly.scene.lines:  # settling and relaxation are one line's
-        return stepper.advance(control)
     seabed = assembly.scene.seabed
     on_clay = assembly.soil is not None or (seabed is not None and seabed.kind == "hysteretic")
     while True:
@@ -324,7 +322,8 @@ def _bring_to_rest(run: StageRun, seek: Callable[[StageRun], RelaxationResult]) 
 def _relaxed(run: StageRun) -> RelaxationResult:
     assembly, system = run.assembly, run.stepper.system
     settings, weight = settings_of(assembly), assembly.scales.weight
-    return relax(assembly.comm, system.model, assembly.line, weight, settings, system.clock, run.control.target)
+    loads = {} if assembly.hung is None else assembly.hung.loads
+    return relax(assembly.comm, system.model, weight, settings, system.clock, run.control.target, loads)
 
 
 def _settled(run: StageRun) -> RelaxationResult:
@@ -416,4 +415,4 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
             newton.require_stable(solution)
             system.commit(solution.state)
         except NotConvergedError:
-            relax(assembly.comm, alone, assembly.line, assembly.scales.weight, settings, clock, 0.0)
+            relax(assembly.comm, alone, assembly.scales.weight, settings, clock, 0.0)

@@ -61,6 +61,12 @@ class Hung:
         self._hold(False)
         return [*self._lasting, *(Release(self.bodies[name], reaction) for name, reaction in reactions.items())]
 
+    @property
+    def loads(self) -> dict[MovingBody, float]:
+        """Typical force on each body that may move [N]: the larger of its weight and its buoyancy."""
+        free = (name for name, body in self.bodies.items() if not body.prescribed.all())
+        return {self.bodies[name]: self.weights[name].load for name in free}
+
     def parts_in(self, scene: Scene, stage: Stage) -> list[Part]:
         """The same of a stage of the scene."""
         self._hold(False)

@@ -207,6 +207,11 @@ class BodyWeight(BodyPart):
         super().__init__(body)
         self._given, self._weight, self._buoyancy, self._level = given, weight, buoyancy, level
 
+    @property
+    def load(self) -> float:
+        """The larger of weight and buoyancy [N]."""
+        return max(self._weight, self._buoyancy)
+
     def _wet(self, z: float) -> tuple[float, float]:
         return (1.0, 0.0) if np.isinf(self._level) else wet(self._level - z, self._given.radius)
 

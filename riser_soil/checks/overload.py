@@ -29,6 +29,7 @@ class Overload(NamedTuple):
     arc: float
     position: Array
     meaning: str
+    line: str = ""
 
 
 def overload(assembly: Assembly) -> str:
@@ -36,15 +37,17 @@ def overload(assembly: Assembly) -> str:
 
     A riser that sinks may yet be caught, as by firmer ground beside: this explains a failure and foretells none.
     """
-    worst = max(_overloads(assembly), key=lambda each: each.load / each.capacity, default=None)
+    state = State.at_rest(0.0, assembly.size)
+    found = (each for name, own in assembly.by_line.items() for each in _overloads(own, name, state))
+    worst = max(found, key=lambda each: each.load / each.capacity, default=None)
     worst = assembly.comm.bcast(worst)
     if worst is None:
         return ""
     x, y, z = worst.position
     return (
-        f"; the ground's bearing capacity is exceeded: at arc {worst.arc:.4g} m, at ({x:.4g}, {y:.4g}, {z:.4g}) m, "
-        f"the riser puts {worst.load:.4g} N/m on clay that bears about {worst.capacity:.4g} N/m, {worst.meaning}, and "
-        f"has sunk in by {worst.depth:.4g} m: check su, or hold the riser up"
+        f"; the ground's bearing capacity is exceeded: {worst.line}at arc {worst.arc:.4g} m, at ({x:.4g}, {y:.4g}, "
+        f"{z:.4g}) m, the riser puts {worst.load:.4g} N/m on clay that bears about {worst.capacity:.4g} N/m, "
+        f"{worst.meaning}, and has sunk in by {worst.depth:.4g} m: check su, or hold the riser up"
     )
 
 
@@ -75,11 +78,10 @@ def over_a_length(force: Array, line: Line, length: float) -> Array:
     return np.asarray((last - first) / length)
 
 
-def _overloads(assembly: Assembly) -> Iterator[Overload]:
-    """On the rank that holds contact, where the riser is now: what touches weighs down at least with its weight."""
+def _overloads(assembly: Assembly, name: str, state: State) -> Iterator[Overload]:
+    """Of a line, on the rank that holds contact, where it is now: what touches weighs down at least with its weight."""
     if not assembly.line.active:
         return
-    state = State.at_rest(0.0, assembly.size)
     for contact, capacity, meaning in _limits(assembly):
         force = contact.force_per_length(state)
         load = np.where(force > 0.0, np.maximum(force, _weight(assembly)), 0.0)
@@ -87,7 +89,7 @@ def _overloads(assembly: Assembly) -> Iterator[Overload]:
         node = int(np.argmax(depth))
         if load[node] > capacity:
             place = assembly.line.arc[node], assembly.line.positions3(state)[node]
-            yield Overload(load[node], capacity, depth[node], *place, meaning)
+            yield Overload(load[node], capacity, depth[node], *place, meaning, f"{name} " if name else "")
 
 
 def _limits(assembly: Assembly) -> Iterator[tuple[RiserContact, float, str]]:

@@ -8,23 +8,27 @@ such that the mode grows by a constant factor in each step, until the tangent is
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator, destroyed_together
-from riser_soil.core.part import Forces, Model, State, Traits, Weights
+from riser_soil.core.part import Energy, Forces, MatrixBlock, Model, State, Traits, Weights, Work
 from riser_soil.core.roles import with_role
 from riser_soil.core.saved_state import Stateful
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.stability import buckling_mode, stabilising_drag
 from riser_soil.solve.time_scheme import Static
+
+if TYPE_CHECKING:
+    from riser_soil.bodies.body import MovingBody
 
 FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
 STIFFEST = 1e8  # drag over the first
@@ -36,41 +40,66 @@ QUICK = 6  # Newton iterations up to which the drag is lowered
 NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilibrium without drag is tried
 
 
-class Relaxation(LinePart):
+class Relaxation:
     """Part "relaxation": viscous drag on a pseudo-time step, `drag` times tributary length times translation.
 
-    Rotation meets the drag of a rod of the tributary length that turns about its middle.
+    Rotation meets the drag of a rod of the tributary length that turns about its middle; that of a body, of its lever.
 
     drag: N/m2, force per length and displacement in one step; large values allow small steps only. It may be changed
     between steps. The forces vanish with the increment, so that what it converges to is an equilibrium without it.
-    places (nn,): 1 at nodes that are dragged, else 0; all of them at first.
+    lengths: of line [m] in whose place a body stands. places (nn,): by line 1 at nodes that are dragged, else 0; all of
+    them at first.
     """
 
     name, traits = "relaxation", Traits("F", symmetric=True)
 
-    def __init__(self, line: Line, drag: float) -> None:
-        super().__init__(line)
-        self.drag = drag
-        self.places: Array = np.ones(line.nodes)
+    def __init__(self, lines: Sequence[Line], drag: float, lengths: Mapping[MovingBody, float] | None = None) -> None:
+        self.lines, self.drag, self._lengths = lines, drag, lengths or {}
+        self.fields: list[Line | MovingBody] = [*lines, *self._lengths]
+        self.places = {line.name: np.ones(line.nodes) for line in lines}
+        self.active = all(field.active for field in self.fields)
+
+    @property
+    def shortest(self) -> float:
+        """The shortest of all elements [m]."""
+        return min(float(line.length.min()) for line in self.lines)
+
+    def blocks(self) -> dict[str, MatrixBlock]:
+        of_lines = {line.name: line.element_block() for line in self.lines}
+        return of_lines | {body.name: body.block() for body in self._lengths}
 
     def residual(self, state: State, forces: Forces) -> None:
-        line = self.line
-        line.nodal(forces.force)[...] += self.drag * self._shares() * line.nodal(state.u)
+        for field in self.fields:
+            field.nodal(forces.force)[...] += self.drag * self._shares(field) * field.nodal(state.u)
 
-    def _shares(self) -> Array:
+    def _shares(self, field: Line | MovingBody) -> Array:
         """Shares of the drag, by node or element and dof of a node [m, m3]."""
-        length = self.line.tributary_length
-        shares = np.repeat((self.places * length)[:, None], self.line.ndof, axis=1)
-        shares[:, self.line.dimension :] *= length[:, None] ** 2 / 12.0
+        if not isinstance(field, Line):
+            turns = np.arange(field.ndof) >= field.dimension
+            return np.asarray(self._lengths[field] * np.where(turns, field.lever**2, 1.0)[None])
+        length = field.tributary_length
+        shares = np.repeat((self.places[field.name] * length)[:, None], field.ndof, axis=1)
+        shares[:, field.dimension :] *= length[:, None] ** 2 / 12.0
         return shares
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        line = self.line
-        for end, nodes in ((0, slice(None, -1)), (line.ndof, slice(1, None))):
-            dofs = np.arange(end, end + line.ndof)
-            share = (0.5 * line.length / line.tributary_length[nodes])[:, None]
-            whole = self.drag * self._shares()[nodes]
-            values[line.name][:, dofs, dofs] += weights.force * share * whole
+        for line in self.lines:
+            for end, nodes in ((0, slice(None, -1)), (line.ndof, slice(1, None))):
+                dofs = np.arange(end, end + line.ndof)
+                share = (0.5 * line.length / line.tributary_length[nodes])[:, None]
+                whole = self.drag * self._shares(line)[nodes]
+                values[line.name][:, dofs, dofs] += weights.force * share * whole
+        for body in self._lengths:
+            values[body.name][0] += weights.force * self.drag * np.diag(self._shares(body)[0])
+
+    def energy(self, state: State) -> Energy:
+        return Energy()
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        """Nothing is kept."""
 
 
 @dataclass
@@ -85,17 +114,21 @@ class RelaxationResult:
 
 
 def relax(
-    comm: Communicator, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Timer, t: float
+    comm: Communicator, model: Model, weight: float, settings: NewtonSettings, clock: Timer, t: float,
+    loads: Mapping[MovingBody, float] | None = None,
 ) -> RelaxationResult:
-    """Bring the line to a stable equilibrium at the load factor t and commit it.
+    """Bring lines and bodies to a stable equilibrium at the load factor t and commit it.
 
-    weight: typical force per length [N/m]. Raises SolveError when no equilibrium is found.
+    weight: typical force per length of the lines [N/m]; loads: typical force on each body [N]. Raises SolveError when
+    no equilibrium is found.
     """
-    part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
+    lines = [field for field in model.lines if isinstance(field, Line)]
+    part = Relaxation(lines, 1.0, {body: load / weight for body, load in (loads or {}).items()})
+    part.drag = weight / (FREE_FALL * part.shortest)
     system = System(comm, replace(model, parts=[*model.parts, part]), clock)
     newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
     with destroyed_together(comm, newton.destroy, system.destroy):
-        return _descend(system, newton, part, line, t)
+        return _descend(system, newton, part, t)
 
 
 @dataclass
@@ -103,7 +136,7 @@ class EquilibriumAttempts:
     """Attempts at an equilibrium without drag. After n failures for want of stability the next comes n steps later, and
     after an unstable equilibrium was left not before the tangent is stable.
 
-    left: places (nn, 3) [m] of the nodes in the unstable equilibrium that is being left.
+    left: places (nn, 3) [m] of all nodes in the unstable equilibrium that is being left.
     """
 
     failures: int = 0
@@ -125,12 +158,12 @@ class EquilibriumAttempts:
             raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
 
 
-def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> RelaxationResult:
+def _descend(system: System, newton: Newton, part: Relaxation, t: float) -> RelaxationResult:
     stiffest, done, moved, attempts = part.drag * STIFFEST, RelaxationResult(), np.inf, EquilibriumAttempts()
     for _ in range(MOST_STEPS):
-        slow = moved < NEARLY_THERE * line.length.min()
-        if slow and attempts.due() and not _still_leaving(newton, part, line, t, attempts):
-            found = _without_drag(system, newton, part, line, t, attempts)
+        slow = moved < NEARLY_THERE * part.shortest
+        if slow and attempts.due() and not _still_leaving(newton, part, t, attempts):
+            found = _without_drag(system, newton, part, t, attempts)
             done.branch_switches += attempts.leaving
             if found is not None:
                 done.iterations += found.iterations
@@ -145,30 +178,30 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
                 raise SolveError(f"dynamic relaxation fails even in tiny pseudo-time steps: {failure}") from failure
             continue
         done.iterations += solution.iterations
-        moved = _largest_increment(line, solution)
+        moved = _largest_increment(part, solution)
         part.drag *= 0.4 if solution.iterations <= QUICK else 1.0
     raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")
 
 
 def _without_drag(
-    system: System, newton: Newton, part: Relaxation, line: Line, t: float, attempts: EquilibriumAttempts
+    system: System, newton: Newton, part: Relaxation, t: float, attempts: EquilibriumAttempts
 ) -> Solution | None:
     """An equilibrium where there is a stable one; one that is not is left where it is near."""
     try:
         return _step(system, newton, part, t, drag=0.0)
     except NotConvergedError as failure:
         attempts.count(failure)
-        if isinstance(failure, UnstableError) and _is_near(line, failure.solution):
-            attempts.left, attempts.wait = _leave(system, newton, part, line, failure.solution), 0
+        if isinstance(failure, UnstableError) and _is_near(part, failure.solution):
+            attempts.left, attempts.wait = _leave(system, newton, part, failure.solution), 0
     return None
 
 
-def _still_leaving(newton: Newton, part: Relaxation, line: Line, t: float, attempts: EquilibriumAttempts) -> bool:
+def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: EquilibriumAttempts) -> bool:
     """Whether the tangent is unstable where the riser is since it left an unstable equilibrium. Near that one, to which
     an attempt would return, it counts as unstable where round-off may make it stable.
     """
     if attempts.left is not None:
-        near = float(np.abs(line.x - attempts.left).max()) < NEAR * line.length.min()
+        near = float(np.abs(_places(part) - attempts.left).max()) < NEAR * part.shortest
         if _stable(newton, part, t, 0.0, surely=near):
             attempts.left = None
     return attempts.leaving
@@ -232,24 +265,29 @@ def _pass_through(system: System, state: State) -> None:
         part.restore(saved)
 
 
-def _is_near(line: Line, solution: Solution) -> bool:
-    return _largest_increment(line, solution) < NEAR * float(line.length.min())
+def _is_near(part: Relaxation, solution: Solution) -> bool:
+    return _largest_increment(part, solution) < NEAR * part.shortest
 
 
-def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstable: Solution) -> Array:
+def _places(part: Relaxation) -> Array:
+    """Of all nodes (nn, d) [m]."""
+    return np.concatenate([field.x for field in part.fields])
+
+
+def _leave(system: System, newton: Newton, part: Relaxation, unstable: Solution) -> Array:
     """Commit an unstable equilibrium, and a small move from there in the mode in which it is left fastest; the nodes'
     places in that equilibrium.
     """
     _pass_through(system, unstable.state)
-    t, left = unstable.state.t, line.x.copy()
+    t, left = unstable.state.t, _places(part)
     _stabilise(newton, part, t, least=True)
-    mode = buckling_mode(system, part, line, at_rest(system, t), Static().weights(0.0))
+    mode = buckling_mode(system, part, part.fields, at_rest(system, t), Static().weights(0.0))
     moved = at_rest(system, t)
-    moved.u[:] = NUDGE * line.length.min() * mode
+    moved.u[:] = NUDGE * part.shortest * mode
     _pass_through(system, moved)
     return left
 
 
-def _largest_increment(line: Line, solution: Solution) -> float:
-    """Longest translation [m] of the step, the same on all ranks, as every rank holds the riser."""
-    return float(np.abs(line.nodal(solution.state.u)[:, : line.dimension]).max())
+def _largest_increment(part: Relaxation, solution: Solution) -> float:
+    """Longest translation [m] of the step, the same on all ranks, as every rank holds the lines."""
+    return max(float(np.abs(solution.state.u[field.translation_dofs]).max()) for field in part.fields)

@@ -55,7 +55,7 @@ def settle(
 
     Raises SinkingError where nothing bears it, SolveError where no step converges.
     """
-    part = Relaxation(pressed.line, pressed.weight / (LONGEST * pressed.diameter))
+    part = Relaxation([pressed.line], pressed.weight / (LONGEST * pressed.diameter))
     system = System(comm, replace(model, parts=[*model.parts, part]), clock)
     newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
     with destroyed_together(comm, newton.destroy, system.destroy):
@@ -89,7 +89,7 @@ class _Settling:
         """SinkingError where all will not be borne at DEEPEST, even if each metre gains as much as of late."""
         if missing <= gained * (DEEPEST * self._pressed.diameter - self._done.sunk):
             return
-        arc = float(self._pressed.line.arc[self._part.places > 0.0].mean())
+        arc = float(self._pressed.line.arc[self._places > 0.0].mean())
         raise SinkingError(
             f"the riser sinks on at arc {arc:.4g} m: by {self._done.sunk:.3g} m at t = {self._t:.6g}, where the soil "
             f"bears {1.0 - missing:.2g} of what presses on it; take less weight there, stronger soil, or a deeper block"
@@ -98,13 +98,13 @@ class _Settling:
     def _sink(self) -> float:
         """A step against the drag; the share of the load on the soil that the drag bears."""
         self._renew()
-        part = self._part
-        part.places = 1.0 * (self._pressed.force(self._at_rest) > 0.0)
-        if not part.places.any():
+        part, line = self._part, self._pressed.line
+        part.places[line.name] = 1.0 * (self._pressed.force(self._at_rest) > 0.0)
+        if not self._places.any():
             raise SolveError("the riser touches nothing that it could settle in")
         while (moved := self._step(part.drag)) is None:
             pass
-        lengths, farthest = part.line.tributary_length, float(moved.max())
+        lengths, farthest = line.tributary_length, float(moved.max())
         dragged = part.drag * float(lengths @ moved)
         self._done.sunk += farthest
         part.drag = max(self._least, part.drag * float(np.clip(farthest / self._longest, FALLS, 1.0)))
@@ -114,17 +114,16 @@ class _Settling:
         """How far (nn,) [m] the nodes that touched have moved, once the step is committed; None where it could not be
         taken, and another drag is needed.
         """
-        part = self._part
+        line = self._pressed.line
         try:
-            solution = step_against(self._system, self._newton, part, self._t, drag)
+            solution = step_against(self._system, self._newton, self._part, self._t, drag)
         except NotConvergedError as failure:
             if drag:
                 self._least = 0.5 * RISES * drag
                 self._stiffen(RISES, str(failure))
             return None
         self._done.iterations += solution.iterations
-        translations = part.line.nodal(solution.state.u)[:, : part.line.dimension]
-        moved: Array = part.places * np.abs(translations).max(axis=1)
+        moved: Array = self._places * np.abs(solution.state.u[line.translation_dofs]).max(axis=1)
         if drag and moved.max() > ALLOWED * self._pressed.diameter:
             self._stiffen(float(moved.max()) / self._longest, "its supports move it farther than soil follows")
             return None
@@ -136,6 +135,11 @@ class _Settling:
         if self._part.drag > self._stiffest:
             sort = SinkingError if self._done.sunk else SolveError
             raise sort(f"the riser does not settle even in tiny steps: {reason}")
+
+    @property
+    def _places(self) -> Array:
+        """1 at nodes that are dragged, else 0."""
+        return self._part.places[self._pressed.line.name]
 
     @property
     def _longest(self) -> float:

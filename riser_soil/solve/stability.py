@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,6 +37,9 @@ from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.solve import chain
 from riser_soil.solve.chain import ChainFactors, is_chain
+
+if TYPE_CHECKING:
+    from riser_soil.bodies.body import MovingBody
 
 EPS = float(np.finfo(float).eps)
 NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
@@ -200,12 +204,16 @@ def stabilising_drag(drag: float, stable: Callable[[float], bool]) -> float:
     return drag
 
 
-def buckling_mode(system: System, part: Part, line: Line, state: State, weights: Weights) -> Array:
-    """Increments (size,) of the mode, its largest displacement of the line +1 m; `part` has the drag s. Collective."""
+def buckling_mode(
+    system: System, part: Part, fields: Sequence[Line | MovingBody], state: State, weights: Weights
+) -> Array:
+    """Increments (size,) of the mode, its largest displacement of lines and bodies +1 m; `part` has the drag s.
+    Collective.
+    """
     parts = judged_parts(system)
     assert parts is not None
     system.assemble(state, weights, [part])
-    drag, start = system.matrix.stored.diagonal(), _start(system, line)
+    drag, start = system.matrix.stored.diagonal(), _start(system, fields)
     if system.sum([float(start @ (drag * start))])[0] == 0.0:
         raise SolveError("the equilibrium found is unstable, and no node is free to leave it; take more elements")
     system.assemble(state, weights, parts)
@@ -213,7 +221,7 @@ def buckling_mode(system: System, part: Part, line: Line, state: State, weights:
         mode = _iterate(system, solve, drag, start)
     found = np.zeros(system.numbering.size)
     system.numbering.to_local(mode, found)
-    return np.asarray(found / _largest(line.nodal(found)[:, : line.dimension]))
+    return np.asarray(found / _largest(np.concatenate([found[field.translation_dofs] for field in fields])))
 
 
 def _exact_solver(system: System) -> AbstractContextManager[Callable[[Array], Array]]:
@@ -224,10 +232,12 @@ def _exact_solver(system: System) -> AbstractContextManager[Callable[[Array], Ar
     return exact_solver(system)
 
 
-def _start(system: System, line: Line) -> Array:
-    """Displacements that grow along the line and share no symmetry with it."""
+def _start(system: System, fields: Sequence[Line | MovingBody]) -> Array:
+    """Displacements that grow along the lines and share no symmetry with them."""
     local = np.zeros(system.numbering.size)
-    line.nodal(local)[:, : line.dimension] = (1.0 + line.arc / line.arc[-1])[:, None] * AXES[: line.dimension]
+    for field in fields:
+        grows = field.arc / field.arc[-1] if isinstance(field, Line) else np.zeros(1)
+        local[field.translation_dofs] = (1.0 + grows)[:, None] * AXES[: field.dimension]
     return system.numbering.to_global(local)
 
 
@@ -248,7 +258,7 @@ def _iterate(system: System, solve: Callable[[Array], Array], drag: Array, x: Ar
 
 
 def _largest(displacements: Array) -> float:
-    """The entry of largest size, with its sign; the first along the line of those that are as large."""
+    """The entry of largest size, with its sign; the first along the lines of those that are as large."""
     entries = displacements.ravel()
     sizes = np.abs(entries)
     return float(entries[np.flatnonzero(sizes >= AS_LARGE * sizes.max())[0]])

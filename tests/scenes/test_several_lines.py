@@ -33,6 +33,7 @@ from tests.support.left_run import leave_after
 from tests.support.line_scenes import (
     CHAIN,
     DEPTH,
+    IN_WATER,
     LENGTH,
     NAMES,
     POINT,
@@ -313,6 +314,39 @@ def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
     assert alone == left
     assert json.dumps(peaks.reported("smooth")) == json.dumps(whole.reported("smooth"))
     assert len(names) > 100
+
+
+def drifting(x: float, y: float) -> dict[str, Any]:
+    """A buoy on one chain that lies on the seabed, in a current; it begins afloat above (x, y)."""
+    scene = mooring(
+        elements=40,
+        seabed={"kind": "spring", "level": -DEPTH - 0.05, "stiffness": 1e4},
+        water={
+            "density": RHO,
+            "surface_level": 0.0,
+            "current": {"profile": [[-DEPTH, 0.1, 0.0], [0.0, 0.5, 0.2]]},
+        },
+        body={"kind": "point", "mass": 2.0e4, "volume": 30.0, "drag_area": 10.0, "added_mass": 0.5},
+    )
+    for kind, key in (("lines", "east"), ("joints", "east_top")):
+        scene[kind] = {key: scene[kind][key]}
+    scene["line_types"]["chain"] |= {"mass": 50.0, "outer_diameter": 0.1, "EI": 5.0e4} | IN_WATER
+    scene["lines"]["east"]["segments"][0]["length"] = 190.0
+    scene["bodies"]["buoy"]["position"] = [x, y, -2.0]
+    return scene
+
+
+def test_dynamic_relaxation_finds_where_a_buoy_drifts_to(tmp_path: Path) -> None:
+    """Wherever it begins: where its chain bears what the current's drag and its buoyancy on the wet share put there."""
+    each = [ran(drifting(*at), tmp_path / str(n)) for n, at in enumerate(((0.0, 0.0), (196.0, 36.0)))]
+    assert [found.summary["stages"][0]["method"] for found in each] == ["relaxation", "relaxation"]
+    one, other = (found["bodies/buoy/position"][-1] for found in each)
+    assert one == pytest.approx(other, abs=1e-4)
+    force, body = each[0]["joints/east_top/force"][-1], drifting(0.0, 0.0)["bodies"]["buoy"]
+    wet = (abs(force[2]) + body["mass"] * G) / (RHO * G * body["volume"])
+    flow = np.array([0.1 + 0.4 * (1.0 + one[2] / DEPTH), 0.2 * (1.0 + one[2] / DEPTH)])
+    drag = 0.5 * RHO * body["drag_area"] * wet * np.linalg.norm(flow) * flow
+    assert np.abs(force[:2]) == pytest.approx(drag, rel=1e-3)
 
 
 def changed(**more: Any) -> dict[str, Any]:
