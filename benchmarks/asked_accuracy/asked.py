@@ -63,7 +63,7 @@ class AskedScene:
         return Outcome.REACHED if self.errors is not None and self.errors.within else Outcome.MISSED
 
 
-def asking(mapping: Mapping, accuracy: str | float = "") -> Mapping:
+def asking(mapping: Mapping, accuracy: str | float | None = None) -> Mapping:
     """The scene without what an accuracy chooses, and with one: the calibration's, if none is given."""
     mapping = copy.deepcopy(mapping)
     for segment in mapping["riser"]["segments"]:
@@ -72,19 +72,22 @@ def asking(mapping: Mapping, accuracy: str | float = "") -> Mapping:
         _without(stage, "time_step", "tolerance")
     _without(mapping.get("contact", {}), "stiffness")
     _without(mapping.get("soil", {}), "mesh")
-    return mapping | {"accuracy": accuracy or f"{100.0 * accuracy_of(mapping):g} %"}
+    return mapping | {"accuracy": accuracy_of(mapping) if accuracy is None else accuracy}
 
 
-def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting | None = None) -> AskedScene:
-    """The scene as it asks for the accuracy; beside the best by hand, if that is given."""
+def asked(
+    name: str, mapping: Mapping, reference: Reference, hand: HandSetting | None = None, accuracy: float | None = None
+) -> AskedScene:
+    """The scene as it asks for an accuracy, by default the calibration's; beside the best by hand, if that is given."""
+    accuracy = accuracy_of(mapping) if accuracy is None else accuracy
     with tempfile.TemporaryDirectory() as place:
         folder, beside = Path(place) / "asked", Path(place) / "beside"
         if hand is not None:  # also for what is imported and loaded once
             run_errors(turned(mapping, hand.factors), beside, reference)
-        said, everything = _run(mapping, folder)
+        said, everything = _run(asking(mapping, accuracy), folder)
         if not (folder / SCENE).exists():
             return AskedScene(name, None, said, "none", None, everything)
-        errors, scene = true_errors(folder, reference, accuracy_of(mapping)), read_scene(folder / SCENE)
+        errors, scene = true_errors(folder, reference, accuracy), read_scene(folder / SCENE)
         setting = settings_reported(scene)
         if hand is None or said:
             return AskedScene(name, errors, said, setting, None, everything)
@@ -122,7 +125,7 @@ def _run(mapping: Mapping, folder: Path) -> tuple[str, float]:
     def to_accuracy() -> None:
         nonlocal said
         try:
-            run_to_accuracy(scene_from_mapping(asking(mapping)), folder)
+            run_to_accuracy(scene_from_mapping(mapping), folder)
         except SolveError as err:
             said = str(err).replace(str(folder), "the folder").partition("\n")[0]
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from statistics import median
 
+from benchmarks.asked_accuracy import random_soils
 from benchmarks.asked_accuracy.asked import (
     AskedScene,
     HandCost,
@@ -69,6 +70,14 @@ stay as they are. Key results whose reference is not certain to {certain_on_soil
 
 Scene by scene: [asked_accuracy_on_soil.csv](asked_accuracy_on_soil.csv).
 
+Of the [random scenes on soil](error_bars.md#how-often-they-are-right), blocks, sections and slices, so many ask for
+{accuracy_of_random:g} %:
+
+{figures_of_random}
+
+Scene by scene: [asked_accuracy_random_soil.csv](asked_accuracy_random_soil.csv), by
+`python -m benchmarks.asked_accuracy.random_soils`, up to a quarter of an hour each.
+
 `python -m benchmarks.asked_accuracy --by-hand` looks for the best settings anew, `--references` computes the random
 scenes' references anew; each takes some ten minutes.
 """
@@ -95,6 +104,8 @@ def page(
         accuracy_on_soil=100.0 * ON_SOIL,
         certain_on_soil=100.0 * CERTAIN * ON_SOIL,
         figures_on_soil=table(["on soil", ""], _shares(soil)),
+        accuracy_of_random=100.0 * random_soils.ACCURACY,
+        figures_of_random=random_soils.figures(),
     )
 
 
@@ -105,7 +116,7 @@ def publish(
     PAGE.write_text(page(scenes, others, judged, soil), encoding="utf-8")
     missed = not_reached([*scenes, *others, *soil])
     tables = {"scenes": rows_page(scenes), "random": random_page(others, judged), "on_soil": soil_page(soil)}
-    for name, text in {**tables, "not_reached": missed}.items():
+    for name, text in {**tables, "not_reached": missed, "random_soil": random_soils.rows_page()}.items():
         PAGE.with_name(f"{PAGE.stem}_{name}.csv").write_text(text, encoding="utf-8")
 
 

@@ -68,7 +68,7 @@ def _reported(bar: ErrorBar) -> dict[str, Any]:
     reported: dict[str, Any] = {"stage": key_result.stage, "name": key_result.name, "unit": key_result.unit}
     reported |= {"value": key_result.value, "bar": bar.bar, "by_source": dict(bar.by_source)}
     reported |= {"reason": bar.reason} if bar.reason else {}
-    return reported | ({"line": key_result.line} if key_result.line else {})
+    return reported | ({"of": key_result.of} if key_result.of else {})
 
 
 def print_bars(bars: list[ErrorBar], share: float, console: Console | None = None, what: str = "error bars") -> None:

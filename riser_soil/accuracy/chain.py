@@ -29,10 +29,11 @@ from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
-from riser_soil.core.snapshot import Instants, instants_at
+from riser_soil.core.snapshot import Instants, SoilSnapshot, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
 from riser_soil.interruption import agreeing
+from riser_soil.results.hung_figures import hung_reader, looked_at
 from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.schedule import Schedule
@@ -208,6 +209,7 @@ class PeakObserver(StatelessObserver):
     def __init__(self, assembly: Assembly, envelopes: Envelopes | None = None) -> None:
         self._assembly = assembly
         self._instants = {line: InstantReader(own) for line, own in assembly.by_line.items()}
+        self._hung = hung_reader(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
@@ -220,15 +222,14 @@ class PeakObserver(StatelessObserver):
         self._schedule.begin_stage(stage.kind)
         self.peaks.begin_stage(stage.name, stage.kind, stage.end, self._instants)
         if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
-            self.peaks.record([0.0], self._seen(stepper))  # not followed: no shape that a step has found
+            self._record(0.0, stepper)  # not followed: no shape that a step has found
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Of a committed step; collective where there is soil."""
         whole = self._assembly.recovered_soil() if self._schedule.due(step.t, last).pictures else None
         soil = None if whole is None else whole.output_fields()
         if self._assembly.comm.rank == 0:
-            seen = self._seen(stepper)
-            self.peaks.record([step.t], seen, soil)
+            seen = self._record(step.t, stepper, soil)
             if self._envelopes is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
                 for line, instant in seen.items():
                     self._envelopes[line].follow(instants_at(instant, 0))
@@ -236,5 +237,7 @@ class PeakObserver(StatelessObserver):
     def relaxed(self, relaxed: object) -> None:
         pass
 
-    def _seen(self, stepper: TimeStepper) -> Instants:
-        return {line: reader.reported([reader.look(stepper)]) for line, reader in self._instants.items()}
+    def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Instants:
+        seen = {line: reader.reported([reader.look(stepper)]) for line, reader in self._instants.items()}
+        self.peaks.record([t], seen, soil, looked_at(self._hung, stepper.now))
+        return seen

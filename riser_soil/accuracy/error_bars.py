@@ -40,7 +40,7 @@ import numpy as np
 
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.core.arrays import Array
-from riser_soil.results.peaks import RunPeaks
+from riser_soil.results.peaks import RunPeaks, StagePeaks
 
 SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalty": "penalty"}
 SMALLEST, SMALLEST_ON_SOIL = 5e-5, 1e-4  # bar told, over the quantity's scale
@@ -229,9 +229,13 @@ Extremes = Mapping[str, Extreme]  # of key results by their keys, in their units
 def extremes_of(peaks: RunPeaks) -> dict[str, Extreme]:
     stages = {(own.name, line): own for of_lines in peaks.stages for line, own in of_lines.items()}
     return {
-        key: Extreme(each.value, stages[each.stage, each.line].in_windows(each.figure, each.which), each.which == "min")
+        key: alone(each.value) if not each.figure else _followed(each, stages[each.stage, each.of])
         for key, each in key_results(peaks.reported("peaks")).items()
     }
+
+
+def _followed(each: KeyResult, stage: StagePeaks) -> Extreme:
+    return Extreme(each.value, stage.in_windows(each.figure, each.which), each.which == "min")
 
 
 def alone(value: float) -> Extreme:

@@ -9,7 +9,7 @@ passes through zero has no relative error:
 | quantity | floor of its scale |
 |---|---|
 | forces | 0.1 of the largest key result force of the stage |
-| arc length of the touchdown point | the distance of the riser's ends, as an arc counts from anywhere |
+| arc length of the touchdown point, place of a body | the distance of the line's ends, as they count from anywhere |
 | bending moment | 1e-9 of that largest force times that distance, above round-off alone |
 | curvature, settlement | 1e-6 over that distance, 1e-7 of it, likewise |
 """
@@ -36,7 +36,7 @@ class KeyResult:
     """A key result of one stage: value and floor of its scale in `unit` (SI).
 
     figure, which: the summary's figure that it is, and whether its min or max; of a static stage, the value at its end.
-    line: of several lines.
+    of: the line or body, of several.
     """
 
     stage: str
@@ -46,7 +46,7 @@ class KeyResult:
     floor: float
     figure: str = ""
     which: str = ""
-    line: str = ""
+    of: str = ""
 
     @property
     def scale(self) -> float:
@@ -61,7 +61,7 @@ class KeyResult:
     @property
     def label(self) -> str:
         """What it is called among those of a stage."""
-        return f"{self.line} {self.name}".strip()
+        return f"{self.of} {self.name}".strip()
 
     def relative(self, difference: float) -> float:
         """Size of a difference in `unit` over the scale; 0 for none, inf where there is no scale."""
@@ -72,8 +72,24 @@ class KeyResult:
 
 def key_results(summary: Reported) -> dict[str, KeyResult]:
     """Key results by their keys, stage by stage, of a summary.json's content; those that it has."""
-    of_lines = (own for stage in summary["stages"] for own in _by_line(stage).items())
-    return {each.key: each for line, own in of_lines if own["final"] is not None for each in _of_stage(own, line)}
+    return {each.key: each for stage in summary["stages"] for each in _of_whole_stage(stage)}
+
+
+def _of_whole_stage(stage: Reported) -> Iterator[KeyResult]:
+    lines = {line: own for line, own in _by_line(stage).items() if own["final"] is not None}
+    for line, own in lines.items():
+        yield from _of_stage(own, line)
+    length = max((_span(own["final"]) for own in lines.values()), default=0.0)
+    for name, body in stage.get("bodies", {}).items():
+        yield from _of_body(stage, name, body["position"], length)
+
+
+def _of_body(stage: Reported, body: str, position: Reported, length: float) -> Iterator[KeyResult]:
+    """Where it is, at the end of a static stage, else at most and at least; length: of the floor [m]."""
+    sides = {"": "final"} if stage["kind"] == "static" else {"least ": "min", "largest ": "max"}
+    for words, key in sides.items():
+        for axis, value in zip("xyz", position[key], strict=True):
+            yield KeyResult(stage["name"], f"{words}{axis}", "m", value, length, of=body)
 
 
 def _by_line(stage: Reported) -> dict[str, Reported]:
@@ -82,8 +98,7 @@ def _by_line(stage: Reported) -> dict[str, Reported]:
 
 
 def _of_stage(stage: Reported, line: str) -> list[KeyResult]:
-    final, values = stage["final"], list(_values(stage))
-    length = math.dist(final["start"]["position"], final["end"]["position"])
+    values, length = list(_values(stage)), _span(stage["final"])
     force = max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
     floors = {"N": FORCE_FLOOR * force, "N.m": MOMENT_FLOOR * force * length, "m": SETTLEMENT_FLOOR * length}
     floors["1/m"] = CURVATURE_FLOOR / length if length > 0.0 else 0.0
@@ -95,6 +110,11 @@ def _of_stage(stage: Reported, line: str) -> list[KeyResult]:
         KeyResult(stage["name"], name, unit, value, floor(name, unit), figure, which, line)
         for name, unit, value, figure, which in values
     ]
+
+
+def _span(final: Reported) -> float:
+    """Distance of a line's ends [m]."""
+    return math.dist(final["start"]["position"], final["end"]["position"])
 
 
 Known = tuple[str, str, float, str, str]

@@ -93,16 +93,13 @@ class CaseValue:
 
 
 def case_values(folder: Path, since: float) -> list[CaseValue]:
-    """Of a run's folder, those of several lines behind their names. since: time of the last dynamic stage [s] from
-    which on its records count in statistics.
+    """Of a run's folder, those of several lines and bodies behind their names. since: time of the last dynamic stage
+    [s] from which on its records count in statistics.
     """
-    each = ((line, value) for line, run in Run(folder).of_lines.items() for value in _of_line(run, since))
-    return [replace(value, name=f"{line} {value.name}".strip()) for line, value in each]
-
-
-def _of_line(run: Run, since: float) -> list[CaseValue]:
-    found = key_results(run.summary).values()
-    return [*(CaseValue(each.stage, each.name, each.unit, each.value) for each in found), *_statistics(run, since)]
+    run = Run(folder)
+    found = [CaseValue(each.stage, each.label, each.unit, each.value) for each in key_results(run.summary).values()]
+    each = ((line, value) for line, own in run.of_lines.items() for value in _statistics(own, since))
+    return [*found, *(replace(value, name=f"{line} {value.name}".strip()) for line, value in each)]
 
 
 def _statistics(run: Run, since: float) -> Iterator[CaseValue]:

@@ -1,39 +1,42 @@
-"""Figures of bodies, joints and clearances over a stage: at its end, and their extremes with times."""
+"""Figures of bodies, joints and clearances over a stage, at its end and extremes with times; who looks at them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
+from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
-from riser_soil.results.netcdf import Variable
+
+if TYPE_CHECKING:
+    from riser_soil.assembly import Assembly
+    from riser_soil.results.hung import HungReader
 
 
 class HungExtremes:
-    """Extremes of the present stage. variables: what is recorded, by path."""
+    """Extremes of a stage."""
 
-    def __init__(self, variables: Mapping[str, Variable]) -> None:
-        self._known = [*variables]
+    def __init__(self) -> None:
         self._found: dict[str, dict[str, Any]] = {}
 
-    def begin_stage(self) -> None:
-        self._found = {}
+    def update(self, times: Array, rows: Mapping[str, Array]) -> None:
+        """Take note of values by path at times (nt,) [s] (static stages: load factor)."""
+        for name, values in rows.items():
+            self._found[name] = _extended(self._found.get(name), times, values)
 
-    def update(self, times: Array, rows: Mapping[str, Array]) -> dict[str, Any]:
-        """Take note of values at times (nt,) [s] (static stages: load factor); what is known of the stage, nested by
-        path.
-        """
+    @property
+    def nested(self) -> dict[str, Any]:
+        """What is known of the stage, nested by path."""
         nested: dict[str, Any] = {}
-        for name in self._known:
-            self._found[name] = _extended(self._found.get(name), times, rows[name])
+        for name, found in self._found.items():
             *groups, last = name.split("/")
             inner = nested
             for key in groups:
                 inner = inner.setdefault(key, {})
-            inner[last] = self._found[name]
+            inner[last] = found
         return nested
 
     def state(self) -> Saved:
@@ -55,3 +58,22 @@ def _extended(before: dict[str, Any] | None, times: Array, values: Array) -> dic
             best, when = np.where(better, best, old), np.where(better, when, np.array(before[f"t_{key}"]))
         found |= {key: as_list(best), f"t_{key}": as_list(when)}
     return found
+
+
+def hung_reader(assembly: Assembly) -> HungReader | None:
+    """None of a scene with one riser."""
+    if not assembly.scene.lines:
+        return None
+    from riser_soil.results.hung import HungReader
+
+    return HungReader(assembly)
+
+
+def looked_at(reader: HungReader | None, state: State) -> dict[str, Array]:
+    """Values at an accepted state by path, the first axis time."""
+    return {} if reader is None else {name: value[None] for name, value in reader.look(state).items()}
+
+
+def joined(looks: Sequence[Mapping[str, Array]]) -> dict[str, Array]:
+    """Of several instants in turn."""
+    return {name: np.concatenate([each[name] for each in looks]) for name in looks[0]}

@@ -29,6 +29,7 @@ from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError,
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
 from riser_soil.results.energy_ledger import EnergyLedger
+from riser_soil.results.hung_figures import hung_reader, joined, looked_at
 from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import Plausibility
@@ -45,7 +46,6 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
-    from riser_soil.results.hung import HungReader
     from riser_soil.soil.boundary_stress import BoundaryStress
 
 MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # that are looked at before they are told of
@@ -82,7 +82,7 @@ class Observer:
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         lines, fields = assembly.by_line, _known_fields(assembly)
         self._instants = {name: InstantReader(line, fields) for name, line in lines.items()}
-        self._hung = _hung_reader(assembly)
+        self._hung = hung_reader(assembly)
         self._seen: list[Seen] = []  # since they were handed over
         self._plausibility = {name: Plausibility(line) for name, line in lines.items()}
         self._checkpoints = CheckpointSchedule(_asked(assembly), assembly.comm)
@@ -114,7 +114,7 @@ class Observer:
                     text, fields, asked = dump_scene(assembly.scene), _known_fields(assembly), _asked(assembly)
                     keeping = Keeping(goes_on, end=asked is not None and asked.keep)
                     arcs = {name: line.line.arc for name, line in assembly.by_line.items()}
-                    reader = _hung_reader(assembly)
+                    reader = hung_reader(assembly)
                     hung = {} if reader is None else reader.variables
                     recorder = Recorder.open(folder, known, arcs, mesh, text, fields, force, keeping, hung)
             with recorder or nullcontext():
@@ -155,9 +155,10 @@ class Observer:
         soil = self._soil()
         if self._recorder is not None:
             seen = {name: reader.reported([reader.look(stepper)]) for name, reader in self._instants.items()}
-            self._recorder.begin_at(seen, soil, _in_rows([self._look_at_hung(stepper)]))
+            hung = looked_at(self._hung, stepper.now)
+            self._recorder.begin_at(seen, soil, hung)
             if self._peaks is not None:
-                self._peaks.record([0.0], seen)
+                self._peaks.record([0.0], seen, hung=hung)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
@@ -175,7 +176,7 @@ class Observer:
             record = StepRecord(step.t, health, self._balance.ledger)
             at_rest = due.series and isinstance(self._stage, StaticStage)
             looks = {name: reader.look(stepper, at_rest) for name, reader in self._instants.items()}
-            self._seen.append(Seen(record, due, looks, self._look_at_hung(stepper), stepper.now, soil))
+            self._seen.append(Seen(record, due, looks, looked_at(self._hung, stepper.now), stepper.now, soil))
             if due.pictures:  # which cost more than to look closely
                 time_of_run = self._recorder.time_at(step.t)
                 for name, line in self._assembly.by_line.items():
@@ -201,14 +202,11 @@ class Observer:
             return
         records, readers = [each.record for each in seen], self._instants.items()
         instants = {name: reader.reported([each.looks[name] for each in seen]) for name, reader in readers}
-        hung = _in_rows([each.hung for each in seen])
+        hung = joined([each.hung for each in seen])
         recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil, hung)
         if self._peaks is not None:
-            self._peaks.record([record.t for record in records], instants)
+            self._peaks.record([record.t for record in records], instants, hung=hung)
         self._judge(recorder, seen, instants)
-
-    def _look_at_hung(self, stepper: TimeStepper) -> dict[str, Array]:
-        return {} if self._hung is None else self._hung.look(stepper.now)
 
     def _judge(self, recorder: Recorder, seen: Sequence[Seen], instants: Instants) -> None:
         """Look whether what was recorded is plausible."""
@@ -324,19 +322,6 @@ class Observer:
             of_line: dict[str, Stateful] = {"instants": reader, "plausibility": self._plausibility[name]}
             reported |= {f"{kind}/{name}" if name else kind: owner for kind, owner in of_line.items()}
         return reported
-
-
-def _hung_reader(assembly: Assembly) -> HungReader | None:
-    if not assembly.scene.lines:
-        return None
-    from riser_soil.results.hung import HungReader
-
-    return HungReader(assembly)
-
-
-def _in_rows(looks: Sequence[dict[str, Array]]) -> dict[str, Array]:
-    """Looks at instants in turn as arrays, the first axis time."""
-    return {name: np.stack([each[name] for each in looks]) for name in looks[0]}
 
 
 def _asked(assembly: Assembly) -> Checkpoint | None:

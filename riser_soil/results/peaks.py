@@ -19,6 +19,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Instant, Instants, SoilMesh, SoilSnapshot, instants_at
 from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places, places_of, with_largest
+from riser_soil.results.hung_figures import HungExtremes
 
 _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates of five steps, in the middle one
 # The middle one, and those after it, without what alternates, if that lasts; cubics stay as they are.
@@ -188,12 +189,13 @@ class StagePeaks:
 
 
 class RunPeaks:
-    """The peaks of a run, stage by stage and line by line, "" the only one; fed on the rank that records. mesh: the
-    soil's; None: not followed.
+    """The peaks of a run, stage by stage and line by line, "" the only one; fed on the rank that records. hung: of each
+    stage, extremes of bodies, joints and clearances at steps. mesh: the soil's; None: not followed.
     """
 
     def __init__(self, mesh: SoilMesh | None = None) -> None:
         self.stages: list[dict[str, StagePeaks]] = []
+        self.hung: list[HungExtremes] = []
         self._places = None if mesh is None else places(mesh)
 
     def begin_stage(self, name: str, kind: str, duration: float = 1.0, lines: Iterable[str] = ("",)) -> None:
@@ -201,12 +203,20 @@ class RunPeaks:
         of a dynamic one [s].
         """
         self.stages.append({line: StagePeaks(name, kind, duration) for line in lines})
+        self.hung.append(HungExtremes())
         if kind != "static" and len(self.stages) > 1:
             for line, own in self.stages[-1].items():
                 own.begin(self.stages[-2][line])
 
-    def record(self, times: Sequence[float], seen: Instants, soil: SoilSnapshot | None = None) -> None:
-        """Of accepted steps in turn; soil: where it is recorded at the last of them."""
+    def record(
+        self,
+        times: Sequence[float],
+        seen: Instants,
+        soil: SoilSnapshot | None = None,
+        hung: Mapping[str, Array] | None = None,
+    ) -> None:
+        """Of accepted steps in turn; soil: where it is recorded at the last of them; hung: rows of steps, by path."""
+        self.hung[-1].update(np.array(times), hung or {})
         for line, instant in seen.items():
             stage = self.stages[-1][line]
             stage.update(times, instant)
@@ -215,7 +225,8 @@ class RunPeaks:
 
     def reported(self, which: str) -> dict[str, Any]:
         """The share of a summary that key results are read from; which: sampled, of_nodes, peaks or smooth."""
-        return {"stages": [_stage_reported(of_lines, which) for of_lines in self.stages]}
+        each = zip(self.stages, self.hung, strict=True)
+        return {"stages": [_stage_reported(of_lines, which) | hung.nested for of_lines, hung in each]}
 
     def state(self) -> Saved:
         return gathered(self._numbered)
@@ -225,11 +236,13 @@ class RunPeaks:
         self.stages = [{} for _ in {number for number, _ in there}]
         for number, line in there:
             self.stages[int(number)][line] = StagePeaks("", "", 1.0)
+        self.hung = [HungExtremes() for _ in self.stages]
         restore_all(self._numbered, saved)
 
     @property
     def _numbered(self) -> dict[str, Stateful]:
-        return {f"{n}/{line}": own for n, of_lines in enumerate(self.stages) for line, own in of_lines.items()}
+        each = {f"{n}/{line}": own for n, of_lines in enumerate(self.stages) for line, own in of_lines.items()}
+        return each | {f"hung/{n}": own for n, own in enumerate(self.hung)}
 
 
 def _stage_reported(of_lines: Mapping[str, StagePeaks], which: str) -> dict[str, Any]:

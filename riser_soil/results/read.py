@@ -36,6 +36,8 @@ class SoilFrame:
     cells: IntArray  # (nc, 4, 8 or 10), VTK's node order
     fields: dict[str, Array]  # displacement (nv, 3) m; von_mises_stress Pa, equivalent_plastic_strain (nc,)
 
+OF_ALL = ("lines", "bodies", "joints", "clearance")  # keys of a stage of several lines
+
 
 class Run:
     """One run's results, finished or not, in SI units.
@@ -136,9 +138,9 @@ class Run:
         if not line:
             return found
         stages = [stage | stage["lines"][line] for stage in found["stages"]]
-        own = {"stages": [{key: value for key, value in stage.items() if key != "lines"} for stage in stages]}
+        own = {"stages": [{key: value for key, value in stage.items() if key not in OF_ALL} for stage in stages]}
         if bars := found.get("error_bars"):
-            own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["line"] == line]}
+            own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["of"] == line]}
         return found | own
 
     @cached_property

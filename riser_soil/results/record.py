@@ -86,7 +86,7 @@ class Recorder:
         self._series = SeriesFile(folder / run_folder.SERIES, arcs, *made_of, hung)
         nodes = {name: arc.size for name, arc in arcs.items()}
         self._frames = RunFrames(folder, nodes, soil_mesh, fields, keeping.goes_on)
-        self._hung = HungExtremes(hung)
+        self._hung = HungExtremes()
         self._lasting, self._resumable, self._untouched = False, keeping.goes_on, keeping.goes_on
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
@@ -179,7 +179,7 @@ class Recorder:
         stage = self._new_tally(name, kind, automatic)
         stage.lines = {line: self._new_tally(name, kind, automatic) for line in self._lines if line}
         self.summary.stages.append(stage)
-        self._hung.begin_stage()
+        self._hung = HungExtremes()
         if kind != "static":
             self._begin_from_latest()
         self._series.begin_stage(name)
@@ -228,7 +228,8 @@ class Recorder:
         self._tally(steps, times, seen)
         if hung:
             at = [step.t for step in steps] if self.summary.stages[-1].kind == "static" else times
-            self.summary.stages[-1].hung = self._hung.update(np.array(at), hung)
+            self._hung.update(np.array(at), hung)
+            self.summary.stages[-1].hung = self._hung.nested
         self._series.steps({"step_time": times} | step_rows(steps, self._ledger))
         self._waiting += _STEP * len(steps)
         self._record(seen, hung, due, stamps, soil)

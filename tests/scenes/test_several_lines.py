@@ -256,14 +256,14 @@ def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
     scene = scene_from_mapping(mooring(shaken(1.5), elements=12))
     run_with_error_bars(scene, tmp_path / "run")
     found = Run(tmp_path / "run")
-    bars = {(bar["stage"], bar["line"], bar["name"]): bar for bar in found.summary["error_bars"]["quantities"]}
-    assert {line for _, line, _ in bars} == {*NAMES}
+    bars = {(bar["stage"], bar["of"], bar["name"]): bar for bar in found.summary["error_bars"]["quantities"]}
+    assert {of for _, of, _ in bars} == {*NAMES, "buoy"}
     for setting, factor in zip(settings_of(scene), (3.0, 4.0), strict=True):
         scene = varied(scene, setting, factor)
     true = key_results(peaks_of(scene, MPI.COMM_SELF).reported("peaks")).values()
-    off = [(abs(bars[each.stage, each.line, each.name]["value"] - each.value), each) for each in true]
-    inside = [error <= bars[each.stage, each.line, each.name]["bar"] for error, each in off]
-    assert len(inside) == len(bars) == 36
+    off = [(abs(bars[each.stage, each.of, each.name]["value"] - each.value), each) for each in true]
+    inside = [error <= bars[each.stage, each.of, each.name]["bar"] for error, each in off]
+    assert len(inside) == len(bars) == 45
     assert sum(inside) >= 0.95 * len(inside)
     assert max(error / each.scale for error, each in off) > 1e-3, "else there is nothing to tell"
     own = found.of_line("east").summary["error_bars"]["quantities"]

@@ -1,0 +1,108 @@
+"""Random scenes on soil, those of the error bars' calibration, that ask for 5 %: what they reach, and for how long.
+
+Each takes minutes, so `random_soils.json` keeps what each has reached: python -m benchmarks.asked_accuracy.random_soils
+[SCENE...] computes those named, else those that are not there yet, one after the other, each in a process of its own
+that has a quarter of an hour.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from benchmarks.asked_accuracy.asked import Outcome, asked
+from benchmarks.error_bars import references
+from benchmarks.error_bars.random_soils import EVEN, ODD
+from demos.page import csv_table, table
+
+FILE = Path(__file__).with_name("random_soils.json")
+ACCURACY, ALLOWED = 0.05, 900.0  # asked; s for everything
+SCENES = EVEN | ODD
+UNFINISHED = "not within a quarter of an hour"
+
+Reached = dict[str, Any]  # of a scene: outcome, error, setting, seconds, left_out, judged, said
+
+
+def read() -> dict[str, Reached]:
+    kept: dict[str, Reached] = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
+    return {name: kept[name] for name in SCENES if name in kept}
+
+
+def figures() -> str:
+    """Of the scenes so far, for the page."""
+    kept = read().values()
+    outcomes = [each["outcome"] for each in kept]
+    claimed = [each for each in kept if each["outcome"] in (Outcome.REACHED.value, Outcome.MISSED.value)]
+    rows = [
+        ["scenes that truly reach what they ask, of those that claim it", _share(outcomes, len(claimed))],
+        [f"of {len(outcomes)} scenes so far, of {len(SCENES)}", _share(outcomes, len(outcomes))],
+        ["told that it is not reached", str(outcomes.count(Outcome.REPORTED.value))],
+        [UNFINISHED, str(outcomes.count(UNFINISHED))],
+        ["largest true error over the accuracy asked, median", f"{median(e['error'] for e in claimed) / ACCURACY:.2f}"],
+        ["processor time of everything, median", f"{median(each['seconds'] for each in claimed):.0f} s"],
+    ]
+    return table([f"{ACCURACY:.0%} on soil", ""], rows)
+
+
+def _share(outcomes: list[str], of: int) -> str:
+    return f"{outcomes.count(Outcome.REACHED.value) / of:.1%}"
+
+
+def rows_page() -> str:
+    head = ["scene", "outcome", "true error", "setting", "everything s", "not judged", "reason"]
+    return csv_table(head, [_row(name, each) for name, each in read().items()])
+
+
+def _row(name: str, each: Reached) -> list[str]:
+    if each["outcome"] == UNFINISHED:
+        return [name, UNFINISHED, "", "", "", "", ""]
+    left_out = f"{each['left_out']} of {each['left_out'] + each['judged']}"
+    seconds = f"{each['seconds']:.1f}"
+    return [name, each["outcome"], f"{each['error']:.2%}", each["setting"], seconds, left_out, each["said"]]
+
+
+def reached(name: str) -> Reached:
+    """The scene as it asks for the accuracy."""
+    found = asked(name, SCENES[name], references.read(references.ON_SOIL)[name], accuracy=ACCURACY)
+    errors = found.errors
+    of_errors: dict[str, float | None] = {"error": None, "left_out": 0, "judged": 0}
+    if errors is not None:
+        of_errors = {"error": errors.largest[0], "left_out": errors.left_out, "judged": len(errors.by_key)}
+    known = {"outcome": found.outcome.value, "setting": found.setting, "seconds": found.seconds, "said": found.said}
+    return known | of_errors
+
+
+def in_time(name: str) -> Reached:
+    """The same from a process that is ended after a while."""
+    call = [sys.executable, "-m", "benchmarks.asked_accuracy.random_soils", "--one", name]
+    try:
+        done = subprocess.run(call, capture_output=True, text=True, timeout=ALLOWED, check=True)
+    except subprocess.TimeoutExpired:
+        return {"outcome": UNFINISHED}
+    found: Reached = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def write(names: list[str]) -> None:
+    """What scenes reach anew; that of the others stays."""
+    for name in names:
+        known = read() | {name: in_time(name)}
+        text = ",\n".join(f"{json.dumps(each)}: {json.dumps(known[each])}" for each in SCENES if each in known)
+        FILE.write_text(f"{{\n{text}\n}}\n", encoding="utf-8")
+        print(f"{name}: {known[name]['outcome']}", flush=True)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.asked_accuracy.random_soils", description=__doc__)
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="else those that are not there yet")
+    parser.add_argument("--one", metavar="SCENE", help="this one alone, in this process: its figures as JSON")
+    given = parser.parse_args()
+    if given.one is not None:
+        print(json.dumps(reached(given.one)))
+    else:
+        write(given.scenes or [name for name in SCENES if name not in read()])
