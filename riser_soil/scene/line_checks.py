@@ -138,7 +138,6 @@ def _not_yet(scene: Scene) -> Iterator[Problem]:
     """What one line has and several have not."""
     given: dict[Path, bool] = {
         ("soil",): scene.soil is not None,
-        ("initial",): scene.initial is not None,
         ("dimension",): scene.dimension == 2,
         ("seabed", "profile"): scene.seabed is not None and scene.seabed.profile is not None,
         ("seabed", "slope_deg"): scene.seabed is not None and scene.seabed.slope_deg != 0.0,

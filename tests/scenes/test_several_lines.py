@@ -316,6 +316,24 @@ def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
     assert len(names) > 100
 
 
+def test_a_run_begins_with_another_ones_end(tmp_path: Path) -> None:
+    """Lines, bodies and joints go on from where they rest; what differs is refused by its key."""
+    given = mooring(shaken(0.5), body=RIGID, elements=10, output={"checkpoint": {"keep": True}})
+    whole, alone = scene_from_mapping(given), given | {"stages": given["stages"][:1]}
+    run(whole, tmp_path / "whole")
+    run(scene_from_mapping(alone), tmp_path / "rest")
+    begun = given | {"initial": {"from": str(tmp_path / "rest")}, "stages": given["stages"][1:]}
+    run(scene_from_mapping(begun), tmp_path / "shaken")
+    one, other = (Run(tmp_path / name) for name in ("whole", "shaken"))
+    for path in ("east/position", "south/effective_tension", "bodies/buoy/rotation", "joints/east_top/force"):
+        line, name = path.rsplit("/", 1) if path.split("/")[0] in NAMES else ("", path)
+        last = [(found.of_line(line) if line else found)[name][-1] for found in (one, other)]
+        assert np.array_equal(*last), path
+    heavier = begun | {"bodies": {"buoy": begun["bodies"]["buoy"] | {"mass": 2100.0}}}
+    with pytest.raises(SceneError, match=r"bodies\.buoy\.mass was 2000\.0 and is 2100\.0"):
+        run(scene_from_mapping(heavier), tmp_path / "heavier")
+
+
 def drifting(x: float, y: float) -> dict[str, Any]:
     """A buoy on one chain that lies on the seabed, in a current; it begins afloat above (x, y)."""
     scene = mooring(
