@@ -44,7 +44,7 @@ whose reference is not certain to
 <!-- end of {block} -->
 
 The best by hand is the cheapest setting that truly reaches the accuracy, of elements and time steps 1/4 to 4 times as
-fine as the calibration's and penalties 1 to 16 times as large. Whoever looks for it has to know the answer. It is not
+fine as the calibration's and penalties 1 to 16 times as large. It is not
 compared where none of these reaches it, or where more than a third of the key results are left out. Seconds are of
 the processor, files included, without compilation.
 
@@ -54,8 +54,7 @@ reached, here and below, as the runs report it: [asked_accuracy_not_reached.csv]
 ## Scenes that have chosen no factor
 
 {count_of_others} more scenes are drawn at random, always the same: the calibration's kinds in other spans, depths,
-pipes, motions and seabeds. None of them has chosen a factor of the error bars or of the search; the two on a rigid
-floor showed that a contact force has orders of its own.
+pipes, motions and seabeds. None of them has chosen a factor of the error bars or of the search.
 
 {figures_of_others}
 
@@ -70,13 +69,11 @@ stay as they are. Key results whose reference is not certain to {certain_on_soil
 
 Scene by scene: [asked_accuracy_on_soil.csv](asked_accuracy_on_soil.csv).
 
-Of the [random scenes on soil](error_bars.md#how-often-they-are-right), blocks, sections and slices, so many ask for
-{accuracy_of_random:g} %:
+The [random scenes on soil](error_bars.md#how-often-they-are-right) ask for {accuracy_of_random:g} %:
 
 {figures_of_random}
 
-Scene by scene: [asked_accuracy_random_soil.csv](asked_accuracy_random_soil.csv), by
-`python -m benchmarks.asked_accuracy.random_soils`, up to a quarter of an hour each.
+[Scene by scene](asked_accuracy_random_soil.csv), by `python -m benchmarks.asked_accuracy.random_soils`.
 
 `python -m benchmarks.asked_accuracy --by-hand` looks for the best settings anew, `--references` computes the random
 scenes' references anew; each takes some ten minutes.

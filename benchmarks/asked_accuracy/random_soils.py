@@ -17,7 +17,7 @@ from typing import Any
 
 from benchmarks.asked_accuracy.asked import Outcome, asked
 from benchmarks.error_bars import references
-from benchmarks.error_bars.random_soils import EVEN, ODD
+from benchmarks.error_bars.random_soils import EVEN, KINDS, ODD
 from demos.page import csv_table, table
 
 FILE = Path(__file__).with_name("random_soils.json")
@@ -35,22 +35,28 @@ def read() -> dict[str, Reached]:
 
 def figures() -> str:
     """Of the scenes so far, for the page."""
-    kept = read().values()
-    outcomes = [each["outcome"] for each in kept]
-    claimed = [each for each in kept if each["outcome"] in (Outcome.REACHED.value, Outcome.MISSED.value)]
+    kept = read()
+    outcomes = [each["outcome"] for each in kept.values()]
+    claimed = [each for each in kept.values() if each["outcome"] in (Outcome.REACHED.value, Outcome.MISSED.value)]
     rows = [
-        ["scenes that truly reach what they ask, of those that claim it", _share(outcomes, len(claimed))],
+        ["truly reached, of those that claim it", _share(outcomes, len(claimed))],
         [f"of {len(outcomes)} scenes so far, of {len(SCENES)}", _share(outcomes, len(outcomes))],
+        *([f"of it {kind}", _of_kind(kept, kind)] for kind in KINDS),
         ["told that it is not reached", str(outcomes.count(Outcome.REPORTED.value))],
         [UNFINISHED, str(outcomes.count(UNFINISHED))],
-        ["largest true error over the accuracy asked, median", f"{median(e['error'] for e in claimed) / ACCURACY:.2f}"],
-        ["processor time of everything, median", f"{median(each['seconds'] for each in claimed):.0f} s"],
+        ["largest true error over it, median", f"{median(each['error'] for each in claimed) / ACCURACY:.2f}"],
+        ["processor time, median", f"{median(each['seconds'] for each in claimed):.0f} s"],
     ]
     return table([f"{ACCURACY:.0%} on soil", ""], rows)
 
 
 def _share(outcomes: list[str], of: int) -> str:
     return f"{outcomes.count(Outcome.REACHED.value) / of:.1%}"
+
+
+def _of_kind(kept: dict[str, Reached], kind: str) -> str:
+    outcomes = [each["outcome"] for name, each in kept.items() if name.startswith(kind)]
+    return f"{outcomes.count(Outcome.REACHED.value)} of {len(outcomes)}"
 
 
 def rows_page() -> str:
