@@ -272,6 +272,7 @@ def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
     assert all(row[shown.head.index("±")] for row in shown.rows)
 
 
+@pytest.mark.verify
 def test_an_accuracy_asked_of_several_lines_is_reached(tmp_path: Path) -> None:
     """Each line's elements are graded by its own curvature; the step, by its shortest period, is one of all."""
     asked = mooring(shaken(0.8), accuracy="5 %")

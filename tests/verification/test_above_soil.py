@@ -73,7 +73,7 @@ def test_soil_that_is_left_is_brought_to_rest_first() -> None:
 
 @pytest.mark.parametrize(
     ("name", "linear"),
-    [("hanging", "kept"), pytest.param("bouncing", "direct", marks=pytest.mark.verify), ("bouncing", "kept")],
+    [("hanging", "kept"), *(pytest.param("bouncing", way, marks=pytest.mark.verify) for way in ("direct", "kept"))],
 )
 def test_two_ranks_find_the_same(name: str, linear: str) -> None:
     """They choose alike, and as one rank does; whether a step that changes nothing takes an iteration is round-off."""

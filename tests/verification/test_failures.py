@@ -18,6 +18,7 @@ from tests.support.on_ranks import HANGS, Job, mpirun
 from tests.support.vtk_reading import read_by_vtk
 
 RANKS = pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.verify), 2])  # one is what others test
+ALONE = pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])
 FAILED, REFUSED = 3, 2
 FILES = {"scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.vtkhdf", "soil.xdmf", "soil.vtkhdf"}
 
@@ -72,7 +73,7 @@ def test_failed_step_is_reported_with_its_place_and_keeps_all_before(ranks: int,
     np.testing.assert_allclose(run.soil_times, run.time)
 
 
-@RANKS
+@ALONE
 def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path) -> None:
     """717 N/m lie on clay that bears some 46 N/m at its surface: no answer is right."""
     scene = lying_pipe(su=30.0)
@@ -131,7 +132,7 @@ def wait_for_steps(folder: Path, steps: int) -> None:
     raise TimeoutError("the run has not come that far")
 
 
-@RANKS
+@ALONE
 def test_finished_run_is_replaced_by_force_alone(ranks: int, tmp_path: Path) -> None:
     first, second = touchdown(LAY), touchdown(LAY, su=2000.0)
     assert command(tmp_path, ranks, first).returncode == 0

@@ -166,7 +166,9 @@ def test_kept_factors_agree_on_two_ranks() -> None:
     assert_same("kept", 2)
 
 
-@pytest.mark.parametrize("name", ["sea", "vortices", "slugs", "clay"])
+@pytest.mark.parametrize(
+    "name", ["sea", "clay", *(pytest.param(name, marks=pytest.mark.verify) for name in ("vortices", "slugs"))]
+)
 def test_a_riser_alone_agrees_on_two_ranks(name: str) -> None:
     """At sea, in space by its vortices, too, and with slugs; and on hysteretic clay, with friction."""
     assert_same(name, 2)

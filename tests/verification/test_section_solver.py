@@ -59,7 +59,10 @@ def backward_error(system: System, x: Array, load: Array) -> float:
     return float(np.max(np.abs(matrix @ x - load) / np.maximum(terms, np.finfo(float).tiny)))
 
 
-@pytest.mark.parametrize("contact", [{}, {"friction": FRICTION}], ids=["smooth", "rough"])
+@pytest.mark.parametrize(
+    "contact",
+    [pytest.param({}, id="smooth"), pytest.param({"friction": FRICTION}, id="rough", marks=pytest.mark.verify)],
+)
 def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of sections that yield, and of others that don't and keep their factors, from one pattern to the next.
 

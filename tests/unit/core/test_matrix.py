@@ -130,7 +130,7 @@ if comm.rank == 0:
 '''
 
 
-@pytest.mark.parametrize("ranks", [2, 3])
+@pytest.mark.parametrize("ranks", [2, pytest.param(3, marks=pytest.mark.verify)])
 def test_product_on_ranks(tmp_path: Path, ranks: int) -> None:
     script = tmp_path / "on_ranks.py"
     script.write_text(ON_RANKS)
