@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +15,11 @@ from riser_soil.plots.curves import save, sheet
 
 LineMoved = tuple[Array, Array, Array]  # arc (nn,), position (nn, 3) at rest [m], displacements (n, nn, 3)
 STYLES = ("-", "--", ":", "-.")  # of lines in turn
+WITHIN: dict[str, Any] = {"fontsize": 7, "loc": "upper right"}  # legends: within the panel, of many curves above it
+ABOVE: dict[str, Any] = {
+    "fontsize": 6, "loc": "lower right", "bbox_to_anchor": (1.0, 0.98), "ncols": 9, "columnspacing": 0.8,
+    "frameon": False, "handlelength": 1.5, "handletextpad": 0.4,
+}  # fmt: skip
 COMPONENTS = ("x", "y", "z")
 LARGEST = 0.08  # of the riser's extent: the largest displacement as it is drawn over the shape at rest
 UNSEEN = 1e-6  # of the largest displacement: a component that is left out
@@ -37,7 +43,7 @@ def draw_modes(png: Path, lines: Mapping[str, LineMoved], titles: Sequence[str])
         right.set_xlabel("arc length from the start [m]", fontsize=8)
         right.set_ylabel("displacement\nover the largest [-]", fontsize=8)
         if right.lines:
-            right.legend(fontsize=7, loc="upper right")
+            right.legend(**(ABOVE if len(lines) > 1 else WITHIN))
     return save(figure, png)
 
 
