@@ -65,10 +65,10 @@ def titles(modes: Modes) -> list[str]:
 
 def datasets(modes: Modes) -> dict[str, xarray.Dataset]:
     """As modes.nc has them by group, "/" the whole: units, signs and places with each variable."""
-    of_lines = {name or "/": _of_line(own) for name, own in modes.lines.items()}
-    of_bodies = {f"bodies/{name}": _of_body(own) for name, own in modes.bodies.items()}
-    whole = _of_all(modes)
-    return {"/": whole} | of_lines | of_bodies | ({"/": whole.merge(of_lines["/"])} if "/" in of_lines else {})
+    found = {"/": _of_all(modes)}
+    for name, own in modes.lines.items():
+        found[name or "/"] = _of_line(own) if name else found["/"].merge(_of_line(own))
+    return found | {f"bodies/{name}": _of_body(own) for name, own in modes.bodies.items()}
 
 
 def _of_all(modes: Modes) -> xarray.Dataset:

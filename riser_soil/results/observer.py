@@ -155,10 +155,9 @@ class Observer:
         soil = self._soil()
         if self._recorder is not None:
             seen = {name: reader.reported([reader.look(stepper)]) for name, reader in self._instants.items()}
-            hung = looked_at(self._hung, stepper.now)
-            self._recorder.begin_at(seen, soil, hung)
+            self._recorder.begin_at(seen, soil, looked_at(self._hung, stepper.now))
             if self._peaks is not None:
-                self._peaks.record([0.0], seen, hung=hung)
+                self._peaks.record([0.0], seen)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
@@ -205,7 +204,7 @@ class Observer:
         hung = joined([each.hung for each in seen])
         recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil, hung)
         if self._peaks is not None:
-            self._peaks.record([record.t for record in records], instants, hung=hung)
+            self._peaks.record([record.t for record in records], instants)
         self._judge(recorder, seen, instants)
 
     def _judge(self, recorder: Recorder, seen: Sequence[Seen], instants: Instants) -> None:

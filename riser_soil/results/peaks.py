@@ -189,13 +189,13 @@ class StagePeaks:
 
 
 class RunPeaks:
-    """The peaks of a run, stage by stage and line by line, "" the only one; fed on the rank that records. hung: of each
-    stage, extremes of bodies, joints and clearances at steps. mesh: the soil's; None: not followed.
+    """The peaks of a run, stage by stage and line by line, "" the only one; fed on the rank that records. mesh: the
+    soil's; None: not followed. Of bodies, at steps, and of soil a run that has a summary knows as much by that.
     """
 
     def __init__(self, mesh: SoilMesh | None = None) -> None:
         self.stages: list[dict[str, StagePeaks]] = []
-        self.hung: list[HungExtremes] = []
+        self._hung: list[HungExtremes] = []
         self._places = None if mesh is None else places(mesh)
 
     def begin_stage(self, name: str, kind: str, duration: float = 1.0, lines: Iterable[str] = ("",)) -> None:
@@ -203,7 +203,7 @@ class RunPeaks:
         of a dynamic one [s].
         """
         self.stages.append({line: StagePeaks(name, kind, duration) for line in lines})
-        self.hung.append(HungExtremes())
+        self._hung.append(HungExtremes())
         if kind != "static" and len(self.stages) > 1:
             for line, own in self.stages[-1].items():
                 own.begin(self.stages[-2][line])
@@ -216,7 +216,7 @@ class RunPeaks:
         hung: Mapping[str, Array] | None = None,
     ) -> None:
         """Of accepted steps in turn; soil: where it is recorded at the last of them; hung: rows of steps, by path."""
-        self.hung[-1].update(np.array(times), hung or {})
+        self._hung[-1].update(np.array(times), hung or {})
         for line, instant in seen.items():
             stage = self.stages[-1][line]
             stage.update(times, instant)
@@ -225,7 +225,7 @@ class RunPeaks:
 
     def reported(self, which: str) -> dict[str, Any]:
         """The share of a summary that key results are read from; which: sampled, of_nodes, peaks or smooth."""
-        each = zip(self.stages, self.hung, strict=True)
+        each = zip(self.stages, self._hung, strict=True)
         return {"stages": [_stage_reported(of_lines, which) | hung.nested for of_lines, hung in each]}
 
     def state(self) -> Saved:
@@ -236,13 +236,12 @@ class RunPeaks:
         self.stages = [{} for _ in {number for number, _ in there}]
         for number, line in there:
             self.stages[int(number)][line] = StagePeaks("", "", 1.0)
-        self.hung = [HungExtremes() for _ in self.stages]
+        self._hung = [HungExtremes() for _ in self.stages]
         restore_all(self._numbered, saved)
 
     @property
     def _numbered(self) -> dict[str, Stateful]:
-        each = {f"{n}/{line}": own for n, of_lines in enumerate(self.stages) for line, own in of_lines.items()}
-        return each | {f"hung/{n}": own for n, own in enumerate(self.hung)}
+        return {f"{n}/{line}": own for n, of_lines in enumerate(self.stages) for line, own in of_lines.items()}
 
 
 def _stage_reported(of_lines: Mapping[str, StagePeaks], which: str) -> dict[str, Any]:

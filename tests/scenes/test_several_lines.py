@@ -18,16 +18,20 @@ from scipy.optimize import brentq
 from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.chain import peaks_of
 from riser_soil.accuracy.key_results import key_results
+from riser_soil.accuracy.search import first_setting
 from riser_soil.accuracy.settings import SETTINGS, settings_of, varied
 from riser_soil.accuracy.target_run import run_to_accuracy
+from riser_soil.assembly import build
 from riser_soil.cases.case_table import case_values
 from riser_soil.checks.check import describe
+from riser_soil.checks.overload import overload
 from riser_soil.errors import ResultsError, SceneError
 from riser_soil.report.extremes import key_results_table
 from riser_soil.report.report import write_report
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.read import Run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.stages import DynamicStage
 from riser_soil.whole_run import run
 from tests.support.left_run import leave_after
 from tests.support.line_scenes import (
@@ -270,6 +274,30 @@ def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
     assert own == [bar for (_, line, _), bar in bars.items() if line == "east"]
     shown = key_results_table(found.of_line("east").summary)
     assert all(row[shown.head.index("±")] for row in shown.rows)
+
+
+def test_a_search_for_an_accuracy_begins_with_even_elements_of_each_line() -> None:
+    """By its length; steps by the shortest period of what moves, here an anchor's 3 s."""
+    asked = mooring(shaken(4.0), accuracy="4 %")
+    for length, line in zip((130.0, 200.0, 300.0), asked["lines"].values(), strict=True):
+        line["segments"][0]["length"] = length
+        del line["segments"][0]["elements"]
+    del asked["stages"][1]["time_step"]
+    first = first_setting(scene_from_mapping(asked))
+    assert [line.element_count for line in first.lines.values()] == [24, 24, 24]
+    moving = first.stages[1]
+    assert isinstance(moving, DynamicStage)
+    assert moving.time_step == pytest.approx(3.0 / 25.0)
+    assert first.accuracy is None
+
+
+def test_a_bearing_capacity_that_is_exceeded_is_told_of_its_line() -> None:
+    """One whose lower end is pushed into soft clay by some diameters."""
+    law = {"kind": "randolph-quiggin", "su": 10.0, "su_gradient": 0.0}
+    scene = mooring(seabed={"kind": "hysteretic", "level": -DEPTH - 0.025, "law": law})
+    assembly = build(scene_from_mapping(scene), MPI.COMM_SELF)
+    assembly.lines["north"].line.x[0, 2] -= 0.3
+    assert "bearing capacity is exceeded: north at arc 0 m" in overload(assembly)
 
 
 @pytest.mark.verify
