@@ -271,10 +271,11 @@ def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
     """A step in which the riser sinks no farther than soil follows, by settling where there is no other; None where
     that finds no step that converges.
     """
-    stepper, longest = run.stepper, MOST_SUNK * run.assembly.scales.diameter
+    stepper, on_soil = run.stepper, _on_soil(run.assembly)
+    longest = MOST_SUNK * on_soil.scales.diameter
     try:
         step = stepper.advance(run.control, 0)
-        if _sunk(run.assembly, stepper.before, step.solution.state) <= longest:
+        if _sunk(on_soil, stepper.before, step.solution.state) <= longest:
             return step
     except SolveError:
         pass
@@ -288,10 +289,17 @@ def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
 
 
 def _sunk(assembly: Assembly, before: State, after: State) -> float:
-    """How far [m] the riser has sunk where it presses on the soil; collective."""
+    """How far [m] a line on soil has sunk where it presses; collective."""
     line, presses = assembly.line, _pressing(assembly, after) > 0.0
     down = line.positions3(before)[:, 2] - line.positions3(after)[:, 2]
     return float(down[presses].max(initial=0.0))
+
+
+def _on_soil(assembly: Assembly) -> Assembly:
+    """The line that lies on the soil, of a scene that has some."""
+    found = assembly.line_on_soil
+    assert found is not None
+    return found
 
 
 def _pressing(assembly: Assembly, state: State) -> Array:
@@ -327,10 +335,8 @@ def _relaxed(run: StageRun) -> RelaxationResult:
 
 
 def _settled(run: StageRun) -> RelaxationResult:
-    assembly, system = run.assembly, run.stepper.system
-    pressed = Pressed(
-        assembly.line, lambda state: _pressing(assembly, state), assembly.scales.weight, assembly.scales.diameter
-    )
+    assembly, system, lying = run.assembly, run.stepper.system, _on_soil(run.assembly)
+    pressed = Pressed(lying.line, lambda state: _pressing(lying, state), lying.scales.weight, lying.scales.diameter)
     return settle(assembly.comm, system.model, pressed, settings_of(assembly), system.clock, run.control.target)
 
 
@@ -360,12 +366,12 @@ def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
     """Load steps from t0 to t1 of a stage without inertia: as many as the scene asks for; more where soil is to follow
     a riser that is laid on it or moved.
     """
-    asked = assembly.scene.solver.load_steps
-    if assembly.soil is None:
+    asked, lying = assembly.scene.solver.load_steps, assembly.line_on_soil
+    if lying is None:
         return asked
-    moved = assembly.moved(t0, t1) / (MOVED_BY * assembly.scales.diameter)
+    moved = lying.moved(t0, t1) / (MOVED_BY * lying.scales.diameter)
     if assembly.scene.has_path_dependent_soil:
-        moved = max(moved, assembly.pressed(t0, t1) / (PRESSED_BY * assembly.scales.diameter) - ROUND_OFF)
+        moved = max(moved, lying.pressed(t0, t1) / (PRESSED_BY * lying.scales.diameter) - ROUND_OFF)
     laid = LAID_IN if assembly.cushion is not None and assembly.is_laid_in(stage) else 1
     return max(asked, laid, min(math.ceil(moved), MOST_STEPS))
 

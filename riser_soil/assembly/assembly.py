@@ -21,7 +21,7 @@ from riser_soil.core.saved_state import Saved, gathered, restore_all
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
-from riser_soil.scene.lines import by_line, spinning
+from riser_soil.scene.lines import by_line, on_soil, spinning
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -77,7 +77,18 @@ class Assembly:
         """Each line as an assembly of its own, which shares all that is the line's, by name; "" of the only one."""
         if not self.scene.lines:
             return {"": self}
-        return {name: Assembly(own.scene, self.comm, {name: own}) for name, own in self.lines.items()}
+        return {name: self._seen_by(name, own) for name, own in self.lines.items()}
+
+    def _seen_by(self, name: str, own: LineAssembly) -> Assembly:
+        if own.soil_contact is None:
+            return Assembly(own.scene, self.comm, {name: own})
+        soil = self.soil, self.condensed, self.mesh_renewal, self.cushion
+        return Assembly(own.scene, self.comm, {name: own}, None, *soil)
+
+    @property
+    def line_on_soil(self) -> Assembly | None:
+        """The line that lies on the soil, as of `by_line`; None without soil."""
+        return next((each for each in self.by_line.values() if each.soil is not None), None)
 
     @property
     def line(self) -> Line:
@@ -337,7 +348,9 @@ def sized(scene: Scene) -> Scene:
         return scene
     from riser_soil.assembly.soil_sizes import with_sizes
 
-    return with_sizes(scene, scene.soil)
+    own = on_soil(scene)
+    assert own is not None  # the scene's checks have seen to it
+    return scene.model_copy(update={"soil": with_sizes(own, scene.soil)})
 
 
 def build(scene: Scene, comm: Communicator) -> Assembly:
@@ -367,22 +380,22 @@ def _add_ground(assembly: Assembly) -> None:
     from riser_soil.assembly import ground
 
     for own in assembly.lines.values():
-        assert own.scene.contact is not None
-        own.contact_stiffness |= ground.stiffnesses(own.scene, own.scene.contact, own.scales)
-    if assembly.scene.soil is not None:
-        _add_soil(assembly, assembly.scene.soil)
+        if own.scene.contact is not None:
+            own.contact_stiffness |= ground.stiffnesses(own.scene, own.scene.contact, own.scales)
+        if own.scene.soil is not None:
+            _add_soil(assembly, own, own.scene.soil)
     if assembly.scene.seabed is not None:
         for own in assembly.lines.values():
             add_seabed(own)
 
 
-def _add_soil(assembly: Assembly, given: SoilScene) -> None:
-    """One line's alone, as yet."""
+def _add_soil(assembly: Assembly, own: LineAssembly, given: SoilScene) -> None:
+    """own: the line that lies on it."""
     from riser_soil.assembly import friction, ground
 
-    scene, settings, own, comm = assembly.scene, assembly.scene.contact, assembly.only, assembly.comm
+    scene, settings, comm = own.scene, own.scene.contact, assembly.comm
     assert settings is not None
-    line, elements, diameter = own.line, own.elements, assembly.scales.diameter
+    line, elements, diameter = own.line, own.elements, own.scales.diameter
     assembly.soil = soil = ground.soil_of(scene, given, line, diameter, comm)
     assembly.condensed = condensed_of(scene, soil, line, diameter)
     surface = soil.surface if assembly.condensed is None else assembly.condensed.top

@@ -35,14 +35,14 @@ BENDINGS, BEYOND = 4.0, 10.0
 DYNAMIC = 1.25
 
 
-def with_sizes(scene: Scene, soil: SoilScene) -> Scene:
-    """The scene with numbers where soil.block or soil.mesh is auto; SceneError where there is none to choose."""
+def with_sizes(scene: Scene, soil: SoilScene) -> SoilScene:
+    """The soil with numbers where its block or mesh is auto; SceneError where there is none to choose."""
     chosen = SoilSizes(scene, soil)
     block = chosen.block if soil.block == "auto" else soil.block
     assert isinstance(block, Block)
     mesh = chosen.mesh(block) if soil.mesh == "auto" else soil.mesh
     _check_strength(soil.top_law, block)
-    return scene.model_copy(update={"soil": soil.model_copy(update={"block": block, "mesh": mesh})})
+    return soil.model_copy(update={"block": block, "mesh": mesh})
 
 
 @dataclass(frozen=True, eq=False)

@@ -138,11 +138,12 @@ def _condensed(assembly: Assembly, soil: Soil) -> Iterator[str]:
 
 def resolution(assembly: Assembly) -> Iterator[str]:
     """The soil's cells under the riser against what touches, where the scene has them meshed."""
-    if assembly.soil is None:
+    lying = assembly.line_on_soil
+    if lying is None:
         return
     from riser_soil.checks.mesh_plausibility import reported_resolution
 
-    reported = reported_resolution(assembly)
+    reported = reported_resolution(lying)
     if reported is not None:
         yield reported
 

@@ -23,7 +23,7 @@ from riser_soil.assembly.motions import corner_count
 from riser_soil.checks.inventory import built
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
 from riser_soil.scene.layout import initial_ends
-from riser_soil.scene.lines import by_line
+from riser_soil.scene.lines import by_line, on_soil
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import MeshFile, SoilScene
@@ -244,8 +244,10 @@ def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
 def _block(scene: Scene, soil: SoilScene) -> BlockSpec:
     from riser_soil.assembly.soil_block import block_of
 
-    start, end = initial_ends(scene.line)
-    return block_of(scene, soil, ((start[0], start[1]), (end[0], end[1])))
+    own = on_soil(scene)
+    assert own is not None
+    start, end = initial_ends(own.line)
+    return block_of(own, soil, ((start[0], start[1]), (end[0], end[1])))
 
 
 def factor_memory(sides: tuple[float, float, float], unknowns: float, symmetric: bool) -> float:

@@ -10,7 +10,7 @@ from riser_soil.assembly.riser import no_wall_tension
 from riser_soil.assembly.soil_block import why_all
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
-from riser_soil.scene.lines import by_line
+from riser_soil.scene.lines import by_line, on_soil
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
@@ -132,7 +132,8 @@ def no_new_mesh(scene: Scene) -> str:
 
 def _no_half(scene: Scene) -> str:
     """The scene's sizes are chosen."""
-    return "by symmetry" if scene.soil is not None and not why_all(scene, scene.soil) else ""
+    own = on_soil(scene)
+    return "by symmetry" if own is not None and own.soil is not None and not why_all(own, own.soil) else ""
 
 
 def _no_friction(scene: Scene, ground: str) -> str:

@@ -174,7 +174,8 @@ class SeriesFile:
     """Writer of results.nc.
 
     arcs: (nn,) m, arc lengths of the nodes of each line, by its name; "" of the only one. Several lines have a group
-    each, and `more` are variables of other groups, by their paths. left_out: names of SERIES that are not wanted.
+    each, and `more` are variables of other groups, by their paths. left_out: names of SERIES that are not wanted, by
+    line.
     ledger: of `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them. goes_on: with
     the file of an earlier run, up to what is restored.
     Rows given to `record` and `step` live in memory until `flush`.
@@ -186,7 +187,7 @@ class SeriesFile:
         arcs: Mapping[str, Array],
         title: str,
         version: str,
-        left_out: Collection[str] = (),
+        left_out: Mapping[str, Collection[str]] | None = None,
         ledger: Mapping[str, Variable] | None = None,
         sections: int = 0,
         offsets: Sequence[float] = (),
@@ -194,14 +195,13 @@ class SeriesFile:
         more: Mapping[str, Variable] | None = None,
     ) -> None:
         self._of_step = HEALTH | dict(ledger or {})
-        wanted = {name: v for name, v in SERIES.items() if name not in left_out}
-        wanted = {name: v for name, v in wanted.items() if sections or "section" not in v.dims}
-        shared = {name: wanted[name] for name in ("time", "stage")}
+        known = {name: v for name, v in SERIES.items() if sections or "section" not in v.dims}
+        shared = {name: known[name] for name in ("time", "stage")}
         along = {
-            f"{line}{name}": _in_group(v, line)
-            for line in map(group, arcs)
-            for name, v in wanted.items()
-            if name not in shared
+            f"{group(line)}{name}": _in_group(v, group(line))
+            for line in arcs
+            for name, v in known.items()
+            if name not in shared and name not in (left_out or {}).get(line, ())
         }
         of_instant = shared | along | dict(more or {})
         self._variables = of_instant | self._of_step

@@ -81,7 +81,7 @@ class Observer:
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         lines, fields = assembly.by_line, _known_fields(assembly)
-        self._instants = {name: InstantReader(line, fields) for name, line in lines.items()}
+        self._instants = {name: InstantReader(line, fields[name]) for name, line in lines.items()}
         self._hung = hung_reader(assembly)
         self._seen: list[Seen] = []  # since they were handed over
         self._plausibility = {name: Plausibility(line) for name, line in lines.items()}
@@ -168,7 +168,10 @@ class Observer:
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if last and self._assembly.soil is not None:
-            self._plausibility[""].look_around(self._boundary())
+            found = self._boundary()
+            for name, line in self._assembly.by_line.items():
+                if line.soil is not None:
+                    self._plausibility[name].look_around(found)
         if self._recorder is not None:
             iterations = step.solution.iterations + self._relaxed
             health = StepStatistics(iterations, step.dt, change, step.cuts, stepper.local_error)
@@ -215,7 +218,7 @@ class Observer:
         times = [recorder.time_at(seen[n].record.t) for n in recorded]
         for name, plausibility in self._plausibility.items():
             plausibility.look(times, instants_at(instants[name], recorded).riser)
-            if self._assembly.soil is not None:
+            if self._assembly.by_line[name].soil is not None:
                 plausibility.look_at_soil(times[-1], seen[-1].state, instants_at(instants[name], -1))
             stage = recorder.summary.stages[-1].of(name)
             stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
@@ -258,12 +261,12 @@ class Observer:
 
     def _boundary(self) -> BoundaryStress | None:
         """Collective where there is soil."""
-        soil = self._assembly.recovered_soil()
-        if soil is None:
+        lying, soil = self._assembly.line_on_soil, self._assembly.recovered_soil()
+        if lying is None or soil is None:
             return None
         from riser_soil.soil.boundary_stress import boundary_stress
 
-        return boundary_stress(soil, int(np.abs(self._assembly.line.direction[:2]).argmin()))
+        return boundary_stress(soil, int(np.abs(lying.line.direction[:2]).argmin()))
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
         """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""
@@ -340,11 +343,10 @@ def _on_all_ranks(comm: Communicator) -> Iterator[None]:
             raise met
 
 
-def _known_fields(assembly: Assembly) -> tuple[str, ...]:
-    """Fields that the scene requests, as far as they can be computed, of all lines."""
-    of_lines = [_known_of_line(line) for line in assembly.by_line.values()]
-    needs = [need for need in of_lines[0] if all(need in known for known in of_lines)]
-    return outputs.known(assembly.scene.output.fields, needs)
+def _known_fields(assembly: Assembly) -> dict[str, tuple[str, ...]]:
+    """Fields that the scene requests, as far as they can be computed, of each line."""
+    asked = assembly.scene.output.fields
+    return {name: outputs.known(asked, _known_of_line(line)) for name, line in assembly.by_line.items()}
 
 
 def _known_of_line(assembly: Assembly) -> list[Need]:
@@ -364,7 +366,7 @@ def _known_of_line(assembly: Assembly) -> list[Need]:
 
 def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
     """Facts about a run before its first step; collective."""
-    across = assembly.soil is not None and "settlement_across" in assembly.scene.output.fields
+    lying = assembly.line_on_soil if "settlement_across" in assembly.scene.output.fields else None
     return RunFacts(
         title=assembly.scene.title,
         version=__version__,
@@ -380,6 +382,6 @@ def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
         diameter=assembly.scales.diameter,
         weight=max(own.scales.weight * float(np.ptp(own.line.arc)) for own in assembly.lines.values()),
         contact_period=assembly.contact_period,
-        sections=count_of(assembly) if across else 0,
-        offsets=offsets_of(assembly) if across else (),
+        sections=count_of(lying) if lying is not None else 0,
+        offsets=offsets_of(lying) if lying is not None else (),
     )

@@ -70,7 +70,7 @@ class Recorder:
         facts: RunFacts,
         arcs: Mapping[str, Array],
         soil_mesh: SoilMesh | None,
-        fields: tuple[str, ...],
+        fields: Mapping[str, tuple[str, ...]],
         keeping: Keeping,
         hung: Mapping[str, Variable],
     ) -> None:
@@ -80,7 +80,7 @@ class Recorder:
         self._scales = facts.diameter, facts.weight, facts.contact_period
         self._lines = [*arcs]
         self._fields = fields
-        left_out = outputs.left_out(fields)
+        left_out = {line: outputs.left_out(wanted) for line, wanted in fields.items()}
         self._ledger = ledger_variables(facts.dissipating, facts.working)
         made_of = facts.title, facts.version, left_out, self._ledger, facts.sections, facts.offsets, keeping.goes_on
         self._series = SeriesFile(folder / run_folder.SERIES, arcs, *made_of, hung)
@@ -104,7 +104,7 @@ class Recorder:
         arcs: Mapping[str, Array],
         soil_mesh: SoilMesh | None,
         scene_text: str,
-        fields: tuple[str, ...] | None = None,
+        fields: Mapping[str, tuple[str, ...]] | None = None,
         force: bool = False,
         keeping: Keeping | None = None,
         hung: Mapping[str, Variable] | None = None,
@@ -112,11 +112,11 @@ class Recorder:
         """Takes the folder over, until it is closed, and lays the files out.
 
         arcs: (nn,) m, by the name of the line, "" of the only one. scene_text: the resolved scene, kept as scene.yaml.
-        fields: of `outputs.choices()`; None for all. hung: what is recorded of bodies and joints, by path.
+        fields: of `outputs.choices()`, by line; None for all. hung: what is recorded of bodies and joints, by path.
         Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`). A run that
         goes on is to be restored next.
         """
-        wanted = _check_fields(outputs.choices() if fields is None else fields)
+        wanted = _check_fields(dict.fromkeys(arcs, outputs.choices()) if fields is None else fields)
         keeping = keeping or Keeping()
         lock = prepare(folder, force, keeping.goes_on)
         try:
@@ -415,9 +415,9 @@ def _reported_when_full(folder: Path, then: Callable[[], None] | None = None, wa
         ) from err
 
 
-def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
+def _check_fields(fields: Mapping[str, tuple[str, ...]]) -> Mapping[str, tuple[str, ...]]:
     allowed = outputs.choices()
-    unknown = [name for name in fields if name not in (*allowed, "position")]
+    unknown = [name for wanted in fields.values() for name in wanted if name not in (*allowed, "position")]
     if unknown:
         raise SceneError(f'output.fields: "{unknown[0]}" is not a field; allowed: {", ".join(allowed)}')
     return fields

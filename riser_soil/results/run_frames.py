@@ -21,12 +21,13 @@ from riser_soil.results.summary import StageTally
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 
-def series_rows(stamps: Sequence[float], seen: Instants, fields: Collection[str]) -> dict[str, Any]:
+def series_rows(stamps: Sequence[float], seen: Instants, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
     """Of many instants, by the names of netcdf.SERIES behind those of the lines' groups, but for choices that are not
-    among the fields.
+    among the fields of the line.
     """
-    wanted = _wanted(tuple(fields))
-    along = {f"{group(line)}{name}": get(instant) for line, instant in seen.items() for name, get in wanted}
+    along = {
+        f"{group(line)}{name}": get(instant) for line, instant in seen.items() for name, get in _wanted(fields[line])
+    }
     return {"time": np.array(stamps)} | along
 
 
@@ -62,7 +63,7 @@ def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Fra
 
 class RunFrames:
     """The files of a run. nodes: how many each line has, by its name, "" of the only one. fields: names of the outputs
-    that are wanted; goes_on: from frames that are there.
+    that are wanted, by line; goes_on: from frames that are there.
     """
 
     def __init__(
@@ -70,7 +71,7 @@ class RunFrames:
         folder: Path,
         nodes: Mapping[str, int],
         soil_mesh: SoilMesh | None,
-        fields: tuple[str, ...],
+        fields: Mapping[str, tuple[str, ...]],
         goes_on: bool,
     ) -> None:
         self._fields = fields
@@ -92,9 +93,10 @@ class RunFrames:
 
     def add(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> int:
         """Add a frame; how many bytes wait for their turn on disk."""
-        wanted = [output.name for output in outputs.ALONG_RISER if output.chosen and output.name in self._fields]
         waiting = 0
         for line, file in self._lines.items():
+            fields = self._fields[line]
+            wanted = [output.name for output in outputs.ALONG_RISER if output.chosen and output.name in fields]
             on_points = {name: rows[f"{group(line)}{name}"][row] for name in (*wanted, "position")}
             file.add(Frame(stamp, on_points, geometry="position"))
             waiting += _size(on_points)
@@ -102,7 +104,7 @@ class RunFrames:
             return waiting
         if soil is None:
             raise ValueError("pictures are due, so the soil's snapshot is needed too: both files share one time axis")
-        self._soil.add(soil_frame(stamp, soil, self._fields))
+        self._soil.add(soil_frame(stamp, soil, {name for fields in self._fields.values() for name in fields}))
         return waiting + _size(vars(soil))
 
     def tally(self, stage: StageTally, now: float, soil: SoilSnapshot | None) -> None:

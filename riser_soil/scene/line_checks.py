@@ -19,7 +19,7 @@ def all_conflicts(scene: Scene) -> list[Problem]:
     """All conflicts of a scene, whether it has one line or several."""
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
-    own = [*_names(scene), *_joints(scene), *_stages(scene), *_clearances(scene), *_not_yet(scene)]
+    own = [*_names(scene), *_joints(scene), *_stages(scene), *_clearances(scene), *_soil(scene), *_not_yet(scene)]
     if own:
         return own
     found = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
@@ -29,6 +29,8 @@ def all_conflicts(scene: Scene) -> list[Problem]:
 def _without_lines(scene: Scene) -> Iterator[Problem]:
     if scene.output.clearance:
         yield Problem(("output", "clearance"), "is one between lines, and the scene has riser", "leave it out")
+    if scene.soil is not None and scene.soil.line is not None:
+        yield Problem(("soil", "line"), "the scene has riser, not lines", "leave it out")
     for n, stage in enumerate(scene.stages):
         if stage.lines:
             yield Problem(("stages", n, "lines"), "the scene has riser, not lines", "give move, motion and loads here")
@@ -129,6 +131,17 @@ def _clearances(scene: Scene) -> Iterator[Problem]:
             yield Problem(path, "a line has no clearance from itself", "name two lines")
 
 
+def _soil(scene: Scene) -> Iterator[Problem]:
+    if scene.soil is None or scene.soil.line in scene.lines:
+        return
+    path: Path = ("soil", "line")
+    if scene.soil.line is None:
+        yield Problem(path, f"the scene has several lines ({', '.join(scene.lines)})", "name the one that lies on the soil")
+    else:
+        allowed = f"must be one of lines ({', '.join(scene.lines)})"
+        yield Problem(path, allowed, f"name one of them{hint(scene.soil.line, scene.lines)}")
+
+
 def _jointed(scene: Scene, name: str, end: str) -> bool:
     points = (point for joint in scene.joints.values() for point in joint.between)
     return getattr(scene.lines[name], end) == "free" and any((p.line, p.at) == (name, end) for p in points)
@@ -137,7 +150,6 @@ def _jointed(scene: Scene, name: str, end: str) -> bool:
 def _not_yet(scene: Scene) -> Iterator[Problem]:
     """What one line has and several have not."""
     given: dict[Path, bool] = {
-        ("soil",): scene.soil is not None,
         ("dimension",): scene.dimension == 2,
         ("seabed", "profile"): scene.seabed is not None and scene.seabed.profile is not None,
         ("seabed", "slope_deg"): scene.seabed is not None and scene.seabed.slope_deg != 0.0,

@@ -8,6 +8,7 @@ from typing import Any
 
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.joints import Joint, JointPoint
+from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.riser import Riser, Segment, Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import OfLine, Stage, StaticStage
@@ -45,7 +46,23 @@ def _of_line(scene: Scene, name: str) -> Scene:
     cut = {"segments": tuple(_cut(line, sorted(_inner_arcs(scene, name))))}
     stages = tuple(_stage(stage, stage.lines.get(name, OfLine()), line) for stage in scene.stages)
     several: dict[str, Any] = {"lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "stages": stages}
-    return scene.model_copy(update=several | {"riser": line.model_copy(update=ends | cut)})
+    own = several | {"riser": line.model_copy(update=ends | cut)}
+    lies = scene.soil is not None and scene.soil.line == name
+    return scene.model_copy(update=own if lies else own | _without_soil(scene))
+
+
+def on_soil(scene: Scene) -> Scene | None:
+    """The line that lies on the soil, as of `by_line`; None without soil."""
+    return next((view for view in by_line(scene).values() if view.soil is not None), None)
+
+
+def _without_soil(scene: Scene) -> dict[str, Any]:
+    """What the scene is to a line that does not lie on its soil."""
+    contact = scene.contact if scene.seabed is not None else None
+    if contact is not None and contact.method == "surface":
+        contact = contact.model_copy(update={"method": "auto"})
+    output = scene.output.model_copy(update={"sections": SettlementSections()})
+    return {"soil": None, "contact": contact, "output": output}
 
 
 def _end(scene: Scene, name: str, key: str) -> Any:

@@ -10,6 +10,7 @@ from riser_soil.core.quantities import (
     Interval,
     Length,
     Ratio,
+    Text,
     UnitWeight,
     word_or,
     wrong,
@@ -205,6 +206,9 @@ class SoilScene(BaseModel):
     )
     inertia: Literal[False] = Field(
         default=False, description="whether the soil has mass; false: quasi-static"
+    )
+    line: Text | None = Field(
+        default=None, description="of several lines the one that lies on it, by name; the others meet the seabed alone"
     )
 
     @model_validator(mode="after")

@@ -197,7 +197,8 @@ def record(
     """Records a static stage and a dynamic stage of steps of 0.1 s, so many steps at once. Returns the arc lengths."""
     arc = CATENARY_ARC
     schedule = Schedule(interval, picture_interval)
-    with Recorder.open(folder, facts, {"": arc}, mesh, SCENE, fields, force) as recorder:
+    wanted = None if fields is None else {"": fields}
+    with Recorder.open(folder, facts, {"": arc}, mesh, SCENE, wanted, force) as recorder:
         for name, kind, times in (
             ("lay", "static", [0.5, 1.0]),
             ("heave", "dynamic", list(0.1 * np.arange(1, round(duration / 0.1) + 1))),
