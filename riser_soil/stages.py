@@ -104,21 +104,23 @@ def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
         raise SolveError(slackest.too_soft)
     counter = LayingCounter()
     try:
-        before = _take(assembly, assembly.begin_laying(stage), stage, rest, counter, clock)
+        _take(assembly, assembly.begin_laying(stage), stage, None, counter, clock)
     except SolveError as err:
         raise SolveError(f"{slackest.too_slack}: {err}" if slackest.slack else f"joints do not close: {err}") from err
-    return _let_go(assembly, before, counter, clock) if assembly.lets_go else before, counter
+    if assembly.lets_go:
+        _let_go(assembly, counter, clock)
+    return rest, counter
 
 
-def _let_go(assembly: Assembly, before: State, counter: LayingCounter, clock: Timer) -> State:
+def _let_go(assembly: Assembly, counter: LayingCounter, clock: Timer) -> None:
     """Bodies that were held go to their own equilibrium, as what held them grows less."""
     assert assembly.hung is not None
     stage = StaticStage(name=LETTING_GO, kind="static")
     held = System(assembly.comm, assembly.begin_laying(stage), clock)
     with destroyed_together(assembly.comm, held.destroy):
-        met = total(held.forces(replace(before, t=1.0)))
+        met = total(held.forces(State.at_rest(1.0, held.numbering.size)))
     reactions = {name: met[body.part] for name, body in assembly.hung.bodies.items()}
-    return _take(assembly, assembly.begin_letting_go(stage, reactions), stage, before, counter, clock)
+    _take(assembly, assembly.begin_letting_go(stage, reactions), stage, None, counter, clock)
 
 
 def run_stage(
@@ -149,15 +151,17 @@ def _take(
     assembly: Assembly,
     model: Model,
     stage: Stage,
-    begin: State | Saved,
+    begin: State | Saved | None,
     observer: StageObserver,
     clock: Timer,
     checkpoint: CheckpointWriter | None = None,
 ) -> State:
-    """From the state that the stage begins with, or from where it was saved."""
-    if isinstance(begin, State) and assembly.cushion is not None and assembly.is_laid_in(stage):
+    """From the state that the stage begins with, None where all is at rest, or from where it was saved."""
+    if isinstance(begin, State | None) and assembly.cushion is not None and assembly.is_laid_in(stage):
         seat(assembly, model, settings_of(assembly), clock)
     system = System(assembly.comm, model, clock)
+    if begin is None:
+        begin = State.at_rest(0.0, system.numbering.size)
     if not isinstance(begin, State):
         _restore(system, begin)
     newton = solver_of(system, scheme_of(stage), _settings_in(assembly, stage))
@@ -248,9 +252,9 @@ def _static_step(run: StageRun) -> AcceptedStep:
     """
     assembly, stepper, control = run.assembly, run.stepper, run.control
     seabed = assembly.scene.seabed
-    on_clay = assembly.soil is not None or (seabed is not None and seabed.kind == "hysteretic")
+    on_clay = assembly.soil_bears or (seabed is not None and seabed.kind == "hysteretic")
     while True:
-        if assembly.scene.soil_moves and (step := _followed_by_soil(run)):
+        if assembly.soil_bears and assembly.scene.soil_moves and (step := _followed_by_soil(run)):
             return step
         try:
             return stepper.advance(control, MOST_CUTS if stepper.depends_on(control) else 0)
@@ -343,7 +347,7 @@ def _settled(run: StageRun) -> RelaxationResult:
 def settings_of(assembly: Assembly) -> NewtonSettings:
     """Newton's settings in a scene's stages."""
     solver = assembly.scene.solver
-    on_soil = assembly.soil is not None
+    on_soil = assembly.soil_bears
     floor = assembly.scales.force_floor
     return NewtonSettings(
         solver.tolerance,
@@ -358,7 +362,7 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
 def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
     """Newton's settings in a stage: in statics on a ground, steps are cut short where contact opens and closes."""
     settings, lies = settings_of(assembly), bool(assembly.contacts) and isinstance(stage, StaticStage)
-    at_rest = assembly.cushion is not None or not assembly.is_laid_in(stage)
+    at_rest = not assembly.is_first(stage) or (assembly.cushion is not None and assembly.is_laid_in(stage))
     return replace(settings, line_search=settings.line_search or lies, linear_start=lies and at_rest)
 
 
@@ -367,7 +371,7 @@ def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
     a riser that is laid on it or moved.
     """
     asked, lying = assembly.scene.solver.load_steps, assembly.line_on_soil
-    if lying is None:
+    if lying is None or not assembly.soil_bears:
         return asked
     moved = lying.moved(t0, t1) / (MOVED_BY * lying.scales.diameter)
     if assembly.scene.has_path_dependent_soil:

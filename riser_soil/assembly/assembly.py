@@ -297,14 +297,29 @@ class Assembly:
     def _model(self, of_lines: Mapping[str, list[Part]], hung: list[Part]) -> Model:
         stage = self.stage
         assert stage is not None
-        cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
+        cushion = [self.cushion] if self.cushion is not None and self._rests_on_cushion(stage) else []
+        if self.cushion is not None:
+            self.cushion.stays = not self.soil_bears
         on_ground = [*self.contacts, *self.frictions, *cushion]
         renewal = [] if self.mesh_renewal is None else [self.mesh_renewal]
         with_soil = [*self.soil_parts, *on_ground, *renewal]
         if self.condensed is not None:
             with_soil = [*on_ground, *self.soil_parts]
         parts = [part for each in of_lines.values() for part in each]
+        if not self.soil_bears:
+            absent = [*self.soil_parts, *self.on_soil, *renewal]
+            return Model(self.moving, [*parts, *hung, *(part for part in on_ground if part not in absent)])
         return Model(self.moving, [*parts, *hung, *with_soil], self.ground_fields)
+
+    @property
+    def soil_bears(self) -> bool:
+        """Whether there is soil in the present stage: while several lines are laid, it is their cushion that bears."""
+        assert self.stage is not None
+        before = self.stage.name in (LAYING, LETTING_GO)
+        return self.soil is not None and not (before and self.scene.lines and self.cushion is not None)
+
+    def _rests_on_cushion(self, stage: Stage) -> bool:
+        return self.is_laid_in(stage) or (self.soil is not None and not self.soil_bears)
 
     def pressure_change(self, t: float) -> float:
         """How much higher the pressure inside [Pa] is at t of the present stage than the contents' own."""
@@ -327,7 +342,7 @@ class Assembly:
 
     def first_guess(self, stage: Stage) -> Array | None:
         """Increments (size,) to where the first static step begins its search; None where it begins as it is placed."""
-        if not self.is_laid_in(stage):
+        if not self.is_first(stage) or (self.cushion is not None and self.is_laid_in(stage)):
             return None
         increments, guessed = np.zeros(self.size), False
         for own in self.lines.values():
@@ -337,7 +352,13 @@ class Assembly:
         return increments if guessed else None
 
     def is_laid_in(self, stage: Stage) -> bool:
-        """Whether a static stage is the first, in which the riser is laid on the soil."""
+        """Whether a line is laid on the ground in a static stage: the first, but for several lines' on soil."""
+        if self.scene.lines and self.cushion is not None:
+            return stage.kind == "static" and stage.name == self.scene.stages[0].name and self.scene.initial is None
+        return self.is_first(stage)
+
+    def is_first(self, stage: Stage) -> bool:
+        """Whether a static stage is the first of all."""
         first = LAYING if self.laying is not None else self.scene.stages[0].name
         return stage.kind == "static" and stage.name == first and self.scene.initial is None
 

@@ -185,10 +185,10 @@ class Cushion(SeabedContact):
     At first it holds the riser just above the soil; its last share goes over to the soil at t = 1. The soil is loaded
     gradually, and Newton's method meets a contact that grows, instead of a riser that falls from its first shape into
     soil that has not felt it yet. level: of the soil's top [m]; it bears the weight per length [N/m] at a penetration
-    of `depth` [m], with which the riser's underside touches the soil.
+    of `depth` [m], with which the riser's underside touches the soil. stays: whether its stiffness does.
     """
 
-    name = "cushion"
+    name, stays = "cushion", False
 
     def __init__(self, line: Line, radius: Array, level: float, weight: float, depth: float, soil: Covering) -> None:
         law, ground = Penalty(weight / depth, 0.25 * depth), Plane.level(level + depth)
@@ -196,7 +196,7 @@ class Cushion(SeabedContact):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         super().renew_kernel_data(start, end)
-        self._data.acting[:] = [(1.0 - min(t, 1.0)) ** 2 for t in (start, end)]
+        self._data.acting[:] = [1.0 if self.stays else (1.0 - min(t, 1.0)) ** 2 for t in (start, end)]
 
 
 class BesideData(NamedTuple):
