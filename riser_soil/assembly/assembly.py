@@ -381,8 +381,6 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
     if scene.riser is not None and (asking := hung_end(scene)) is not None:
         raise SceneError(f"{asking.path}: is to be solved first, by riser_soil.hang_off")
     scene = sized(scene)
-    if scene.lines and comm.size > 1:
-        raise SceneError("lines: several lines are not there yet on several ranks: start one process alone")
     spins = spinning(scene)
     assembly = Assembly(scene, comm, {})
     for name, view in by_line(scene).items():
@@ -391,7 +389,7 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
     if scene.bodies or scene.joints:
         from riser_soil.assembly.bodies_and_joints import hung_of
 
-        assembly.hung = hung_of(scene, assembly.lines)
+        assembly.hung = hung_of(scene, assembly.lines, comm.rank == 0)
     if scene.contact is not None:
         _add_ground(assembly)
     return assembly

@@ -98,10 +98,10 @@ def _drag(scene: Scene, stage: Stage, body: MovingBody, given: BodyProperties) -
     return BodyDrag(body, given, sea, water.density, buoyancy, level, still)
 
 
-def hung_of(scene: Scene, lines: Mapping[str, LineAssembly]) -> Hung:
-    """The scene's bodies and joints."""
+def hung_of(scene: Scene, lines: Mapping[str, LineAssembly], active: bool) -> Hung:
+    """The scene's bodies and joints. active: whether this rank evaluates them, as it does the lines."""
     given = {name: _properties(scene, body) for name, body in scene.bodies.items()}
-    bodies = {name: _body(scene, name, given[name]) for name in scene.bodies}
+    bodies = {name: _body(scene, name, given[name], active) for name in scene.bodies}
     joints = None
     if scene.joints:
         made = [_joint(name, joint, lines, bodies) for name, joint in scene.joints.items()]
@@ -128,13 +128,13 @@ def _properties(scene: Scene, given: BodyScene) -> BodyProperties:
     assert_never(given)
 
 
-def _body(scene: Scene, name: str, given: BodyProperties) -> MovingBody:
+def _body(scene: Scene, name: str, given: BodyProperties, active: bool) -> MovingBody:
     """Moments are weighed by the farthest arm of a joint, or the body's size."""
     points = (point for joint in scene.joints.values() for point in joint.between if point.body == name)
     arms = [float(np.linalg.norm(point.offset)) for point in points]
     gyration = float(np.sqrt(given.inertia.max() / given.mass))
     lever = max([*arms, gyration, radius_of(given.volume)]) or 1.0
-    return MovingBody(name, np.array(scene.bodies[name].position), scene.bodies[name].turns, lever)
+    return MovingBody(name, np.array(scene.bodies[name].position), scene.bodies[name].turns, lever, active)
 
 
 def _weight(scene: Scene, body: MovingBody, given: BodyProperties) -> BodyWeight:

@@ -24,20 +24,21 @@ class MovingBody:
 
     position (3,): where the origin of its axes is at first [m]; these are the global ones then. turns: whether it is
     rigid, with six degrees of freedom, else a point with three. lever: arm by which moments are weighed as forces [m].
+    active: whether this rank evaluates and owns it.
     Its rates and accelerations are those of a node of a line, see `core.part.State`.
     """
 
     dimension, nodes = 3, 1
-    active = True
 
-    def __init__(self, name: str, position: Array, turns: bool, lever: float) -> None:
-        self.name = self.space = name
+    def __init__(self, name: str, position: Array, turns: bool, lever: float, active: bool = True) -> None:
+        self.name, self.active = name, active
+        self.space = name
         self.x: Array = np.array(position, dtype=float)[None]
         self.frames, self.turns, self.lever = SpatialFrames(np.eye(3)[None], NO_ENDS), turns, lever
         self.ndof = self.size = 6 if turns else 3
         self.offset = 0
         self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
-        self.owned: BoolArray = np.ones(self.size, dtype=bool)
+        self.owned: BoolArray = np.full(self.size, active)
         self.prescribed: BoolArray = np.zeros(self.size, dtype=bool)
         self._trials = IdentityCache[State, Trial](first=1, latest=2)
 

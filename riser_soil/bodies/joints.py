@@ -103,10 +103,10 @@ class Joints:
 
     name = NAME
     traits = Traits("F", symmetric=True)
-    active = True
 
     def __init__(self, joints: Sequence[JointOf], keep: Sequence[bool]) -> None:
         self.joints, self.open = joints, 0.0
+        self.active = joints[0].sides[0].field.active
         at = self._places(None)
         arm = np.array([[side.arm for side in joint.sides] for joint in joints])
         for n, kept in enumerate(keep):

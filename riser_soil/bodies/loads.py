@@ -104,10 +104,9 @@ class BodyPart:
     name: str
     group: str
     traits: Traits
-    active = True
 
     def __init__(self, body: MovingBody) -> None:
-        self.body = body
+        self.body, self.active = body, body.active
 
     def blocks(self) -> dict[str, MatrixBlock]:
         return {self.body.name: self.body.block()}
