@@ -13,9 +13,10 @@ from riser_soil.errors import SceneError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements, larger_beside
+from riser_soil.scene.bathymetry import seabed_axis
 from riser_soil.scene.contact import Contact as ContactScene
 from riser_soil.scene.contact import Suction
-from riser_soil.scene.plane import resolved_dimension, vertical_plane
+from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
 from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
@@ -244,8 +245,7 @@ def _ground(scene: Scene, seabed: Seabed) -> Ground:
     """The seabed's shape."""
     from riser_soil.seabed.grounds import Plane
 
-    plane = vertical_plane(scene)
-    origin, direction = np.asarray(plane.origin), np.asarray(plane.direction)
+    origin, direction = (np.asarray(vector) for vector in seabed_axis(scene))
     if seabed.profile is not None:
         from riser_soil.seabed.height_field import Profile
 

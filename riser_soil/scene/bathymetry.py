@@ -15,7 +15,8 @@ def ground_height(scene: Scene, point: Vector) -> float:
         return scene.seabed_level + feature_height(scene, point)
     if scene.seabed.grid is not None:
         return scene.seabed.grid.heights.height(point[0], point[1])
-    s = distance_along(scene, point)
+    origin, direction = seabed_axis(scene)
+    s = dot(minus(point, origin), direction)
     if scene.seabed.profile is None:
         return scene.seabed.level + math.tan(math.radians(scene.seabed.slope_deg)) * s
     return profile_height(scene.seabed.profile, s)
@@ -38,7 +39,10 @@ def _over_block(scene: Scene, point: Vector) -> bool:
     return block.x[0] <= point[0] <= block.x[1] and block.y[0] <= point[1] <= block.y[1]
 
 
-def distance_along(scene: Scene, point: Vector) -> float:
-    """Horizontal distance [m] of a point from the riser's start, towards its end."""
+def seabed_axis(scene: Scene) -> tuple[Vector, Vector]:
+    """Along which a seabed slopes, or has its profile: a point, and the horizontal direction."""
+    if scene.seabed is not None and scene.seabed.direction_deg is not None:
+        angle = math.radians(scene.seabed.direction_deg)
+        return (0.0, 0.0, 0.0), (math.cos(angle), math.sin(angle), 0.0)
     plane = vertical_plane(scene)
-    return dot(minus(point, plane.origin), plane.direction)
+    return plane.origin, plane.direction

@@ -19,7 +19,8 @@ def all_conflicts(scene: Scene) -> list[Problem]:
     """All conflicts of a scene, whether it has one line or several."""
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
-    own = [*_names(scene), *_joints(scene), *_stages(scene), *_clearances(scene), *_soil(scene), *_not_yet(scene)]
+    checks = (_names, _joints, _stages, _clearances, _soil, _seabed, _not_yet)
+    own = [problem for check in checks for problem in check(scene)]
     if own:
         return own
     found = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
@@ -31,6 +32,8 @@ def _without_lines(scene: Scene) -> Iterator[Problem]:
         yield Problem(("output", "clearance"), "is one between lines, and the scene has riser", "leave it out")
     if scene.soil is not None and scene.soil.line is not None:
         yield Problem(("soil", "line"), "the scene has riser, not lines", "leave it out")
+    if scene.seabed is not None and scene.seabed.direction_deg is not None:
+        yield Problem(("seabed", "direction_deg"), "slope and profile run along the riser's plane", "leave it out")
     for n, stage in enumerate(scene.stages):
         if stage.lines:
             yield Problem(("stages", n, "lines"), "the scene has riser, not lines", "give move, motion and loads here")
@@ -134,12 +137,16 @@ def _clearances(scene: Scene) -> Iterator[Problem]:
 def _soil(scene: Scene) -> Iterator[Problem]:
     if scene.soil is None or scene.soil.line in scene.lines:
         return
-    path: Path = ("soil", "line")
-    if scene.soil.line is None:
-        yield Problem(path, f"the scene has several lines ({', '.join(scene.lines)})", "name the one that lies on the soil")
-    else:
-        allowed = f"must be one of lines ({', '.join(scene.lines)})"
-        yield Problem(path, allowed, f"name one of them{hint(scene.soil.line, scene.lines)}")
+    allowed = f"must be one of lines ({', '.join(scene.lines)}), the one that lies on the soil"
+    yield Problem(("soil", "line"), allowed, f"name one of them{hint(scene.soil.line or '', scene.lines)}")
+
+
+def _seabed(scene: Scene) -> Iterator[Problem]:
+    seabed = scene.seabed
+    if seabed is not None and seabed.direction_deg is None and (seabed.slope_deg or seabed.profile is not None):
+        key = "slope_deg" if seabed.slope_deg else "profile"
+        allowed = f"seabed.{key} needs it where there are several lines, each in a plane of its own"
+        yield Problem(("seabed", "direction_deg"), allowed, "say which way it runs, from x towards y [deg]")
 
 
 def _jointed(scene: Scene, name: str, end: str) -> bool:
@@ -151,8 +158,6 @@ def _not_yet(scene: Scene) -> Iterator[Problem]:
     """What one line has and several have not."""
     given: dict[Path, bool] = {
         ("dimension",): scene.dimension == 2,
-        ("seabed", "profile"): scene.seabed is not None and scene.seabed.profile is not None,
-        ("seabed", "slope_deg"): scene.seabed is not None and scene.seabed.slope_deg != 0.0,
     }
     for path, there in given.items():
         if there:
@@ -162,7 +167,9 @@ def _not_yet(scene: Scene) -> Iterator[Problem]:
         yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")
     for n, stage in enumerate(scene.stages):
         if isinstance(stage, DynamicStage) and isinstance(stage.scheme, MidpointScheme):
-            yield Problem(("stages", n, "scheme"), "the midpoint rule is not there yet for several lines", _LATER)
+            if any(body.turns for body in scene.bodies.values()):
+                text = "the midpoint rule is not there yet for rigid bodies"
+                yield Problem(("stages", n, "scheme"), text, "take another scheme, or points")
     for name, line in scene.lines.items():
         for end in ENDS:
             support = getattr(line, end)

@@ -121,6 +121,18 @@ Profile = Annotated[
 ]
 
 
+Azimuth = Annotated[
+    float | None,
+    Field(
+        strict=True,
+        ge=-360.0,
+        le=360.0,
+        description="direction in plan, from x towards y, in which slope_deg and profile run under several lines, from "
+        "below the origin of coordinates on, in place of a riser's plane and start [deg]",
+    ),
+]
+
+
 def profile_height(profile: tuple[tuple[float, float], ...], s: float) -> float:
     """Height z [m] at a distance s [m], straight between the points [s, z] and beyond them."""
     pairs = list(pairwise(profile))
@@ -170,6 +182,7 @@ class SeabedScene(BaseModel):
     level: Level = 0.0
     slope_deg: Slope = 0.0
     profile: Profile = None
+    direction_deg: Azimuth = None
     grid: Grid = None
     contact_at: Toucher = "outer"
 

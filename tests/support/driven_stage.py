@@ -62,7 +62,7 @@ class Watcher(Observer):
 
     def __init__(self, after: Callable[[TimeStepper, AcceptedStep], None] | None = None) -> None:
         self._after = after
-        self.relaxations = 0
+        self.relaxations = self.settlings = 0
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         self.energy_at_start = stepper.energy
@@ -72,7 +72,10 @@ class Watcher(Observer):
             self._after(stepper, step)
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
-        self.relaxations += 1
+        if relaxed.sunk:
+            self.settlings += 1
+        else:
+            self.relaxations += 1
 
 
 def take(assembly: Assembly, stage: Stage, before: State | None = None, watch: Watch | None = None) -> State:

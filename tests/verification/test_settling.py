@@ -40,7 +40,7 @@ class Rested:
         assert contact is not None
         self.w = 0.5 - float(np.interp(0.5 * D, x[:, 0], x[:, 2])) / D
         self.V = -float(contact.force_on_soil(end)[2]) / (SU * D * D / CELLS)
-        self.settled = watcher.relaxations
+        self.settled = watcher.settlings
 
 
 def test_a_pipe_settles_to_where_one_that_is_pushed_bears_its_weight() -> None:
