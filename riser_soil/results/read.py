@@ -159,7 +159,8 @@ class Run:
         if not line:
             return found
         stages = [stage | (stage.get("lines") or {}).get(line, {}) | {"lines": {}} for stage in found["stages"]]
-        alone = {"riser": found["lines"][line], "lines": {}, "bodies": {}, "joints": {}, "dimension": 3}
+        soil = found["soil"] if (found["soil"] or {}).get("line") == line else None
+        alone = {"riser": found["lines"][line], "lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "soil": soil}
         return found | alone | {"stages": stages}
 
     @cached_property
@@ -198,7 +199,9 @@ class Run:
 
     @property
     def has_soil(self) -> bool:
-        return (self.folder / run_folder.SOIL_NUMBERS).is_file()
+        """Whether there are frames of soil, and of several lines this one lies on it."""
+        there = (self.folder / run_folder.SOIL_NUMBERS).is_file()
+        return there and (not self._group or self.scene["soil"] is not None)
 
     @cached_property
     def soil_times(self) -> Array:

@@ -412,13 +412,11 @@ def stage(**more: Any) -> dict[str, Any]:
 
 TO_BUOY, EAST, NORTH = {"body": "buoy"}, {"line": "east", "at": "end"}, {"line": "north", "at": "end"}
 MOVED = {"move": {"end": [0.0, 0.0, 0.0]}}
-SLOPING = {"kind": "rigid", "level": -120.0, "slope_deg": 3.0}
 WITHOUT_LINES = {key: value for key, value in mooring().items() if key != "lines"}
 MISSPELT = {"line_type": "chian", "length": 9.0, "elements": 2}
 REFUSED = [
     (changed(dimension=2), "dimension: value 2: is not there yet for several lines"),
     (changed(accuracy="1 %"), "accuracy: .*chooses what lines.east.segments.0.elements gives"),
-    (changed(seabed=SLOPING), "seabed.slope_deg: value 3.0: is not there yet"),
     (changed(riser=mooring()["lines"]["east"]), "riser and lines are both given"),
     (WITHOUT_LINES, "the riser is missing"),
     (joint(kind="clamped"), "joints.east_top.between.1.body: value .buoy.: a point has no direction to clamp to"),

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import least_squares, root
 
 from riser_soil.core.arrays import Array
+from tests.support.coupled_scenes import LAY, touchdown
 
 RADIUS, DEPTH, LENGTH = 100.0, 100.0, 130.0
 RHO, G = 1025.0, 9.81
@@ -56,6 +57,32 @@ def shaken(duration: float = 1.0, time_step: float = 0.05) -> dict[str, Any]:
     heave = {"amplitude": [1.0, 0.3, 0.5], "period": 3.0, "ramp": 1.0}
     lines = {"east": {"motion": {"start": {"harmonic": heave}}}}
     return {"name": "shaken", "kind": "dynamic", "duration": duration, "time_step": time_step, "lines": lines}
+
+
+def as_line(scene: Mapping[str, Any]) -> dict[str, Any]:
+    """A riser's scene with this as the only one of its lines, `only`."""
+    found = {key: value for key, value in scene.items() if key not in ("riser", "dimension")}
+    stages = [dict(stage) for stage in scene["stages"]]
+    for stage in stages:
+        of_line = {key: stage.pop(key) for key in ("move", "motion", "loads") if key in stage}
+        stage |= {"lines": {"only": of_line}} if of_line else {}
+    soil = {"soil": scene["soil"] | {"line": "only"}} if scene.get("soil") else {}
+    return found | {"lines": {"only": scene["riser"]}, "stages": stages} | soil
+
+
+def hung_over_clay(*stages: Mapping[str, Any], model: str = "block") -> dict[str, Any]:
+    """The riser of `touchdown`, whose upper end hangs on a buoy, which a second line holds on to a support above."""
+    scene = as_line(touchdown(LAY, *stages))
+    riser, types = scene["lines"]["only"], scene["line_types"]
+    upper = {"segments": [{"line_type": "flexible", "length": 10.0, "elements": 10}]}
+    top, place = [31.0, 0.0, 17.0], riser["end"]["position"]
+    scene["lines"] = {"lower": riser | {"end": "free"}, "upper": upper | {"start": "free", "end": {"position": top}}}
+    hung = {name: {"line": name, "at": at} for name, at in (("lower", "end"), ("upper", "start"))}
+    types["flexible"] |= IN_WATER
+    scene["soil"] |= {"line": "lower", "model": model}
+    buoy = {"kind": "point", "position": place, "mass": 300.0, "volume": 1.2, "drag_area": 1.0, "added_mass": 0.5}
+    joints = {f"{name}_hung": {"kind": "pinned", "between": [at, {"body": "buoy"}]} for name, at in hung.items()}
+    return scene | {"bodies": {"buoy": buoy}, "joints": joints}
 
 
 def spans(H: float, V: float, w: float, EA: float, L: float) -> tuple[float, float]:
