@@ -80,7 +80,7 @@ def heave_of_top() -> dict[str, Any]:
 
 
 def test_all_weight_is_borne(hung: Run) -> None:
-    """By soil and seabed, the supports and the buoy, at rest, but for what the soil's last move leaves out of balance."""
+    """By soil and seabed, supports and the buoy, at rest, but for what the soil's last move leaves out of balance."""
     at = int(np.searchsorted(hung["stage"], 1)) - 1
     up, weight = 0.0, 0.0
     for name in ("lower", "upper"):

@@ -98,7 +98,7 @@ def growth(assembly: Assembly) -> tuple[float, float]:
 
 
 def lays_as_on_even_cells(law: Mapping) -> None:
-    """Without cuts or relaxation, settling aside, in as many iterations as where cells grow tenfold, to about its load."""
+    """Without cuts or relaxation, settling aside, in as many iterations as where cells grow tenfold, to that load."""
     even, graded = Laying(10.0, law), Laying(1300.0, law)
     print(f"iterations {even.iterations}, graded {graded.iterations}; borne {even.borne:.1f}, {graded.borne:.1f} N")
     assert min(growth(graded.assembly)) > 1000.0
