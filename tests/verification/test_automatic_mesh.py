@@ -31,7 +31,6 @@ class FineSlice(NamedTuple):
     width: float
 
 
-SUNK_IN = 10178.0  # N/m at D/4, half of all automatic cells, steps of D/640
 FINE = FineSlice(4986.1, 0.0634)  # cells of D/128 over two diameters, 0.1 m at the sides
 
 
@@ -94,31 +93,27 @@ def test_a_light_pipe_settles_the_same_on_cells_half_as_large() -> None:
 
 @pytest.mark.verify
 @pytest.mark.parametrize(
-    ("law", "weight", "indentation"),
-    [(ELASTIC, 5000.0, D / 50.0), (EVEN_CLAY, 830.0, D / 200.0), (EVEN_CLAY, 1350.0, D / 100.0)],
+    ("law", "weight", "indentation", "told"),
+    [(ELASTIC, 5000.0, D / 50.0, -0.009), (EVEN_CLAY, 830.0, D / 200.0, -0.038), (EVEN_CLAY, 1350.0, 0.01 * D, -0.059)],
     ids=["elastic", "clay", "clay deeper"],
 )
-def test_halving_all_cells_changes_little(law: Mapping, weight: float, indentation: float) -> None:
-    assert np.abs(changes(law, weight, indentation)).max() < 0.05
+def test_halving_all_cells_changes_the_force_as_told(
+    law: Mapping, weight: float, indentation: float, told: float
+) -> None:
+    """In docs/accuracy.md."""
+    force, stress = changes(law, weight, indentation)
+    assert force == pytest.approx(told, abs=0.003)
+    assert abs(stress) < 0.05
 
 
 @pytest.mark.verify
-def test_halving_all_cells_changes_little_where_a_pipe_has_sunk_in() -> None:
-    """V/(su D) at D/4: 5.09, with half of all cells, too."""
-    scene = scene_from_mapping(sinking())
+def test_a_pipe_that_has_sunk_in_meets_what_is_published_on_automatic_cells() -> None:
+    """Of Merifield, White & Randolph, smooth, at D/4; half of all cells change it by 2.1 %."""
+    scene, published = scene_from_mapping(sinking()), 5.3 * 0.25**0.25 * EVEN_CLAY["su"] * D
     auto, half = (pushed(scaled(scene, across=across)) for across in (1.0, 0.5))
-    assert half.force / auto.force == pytest.approx(1.0, abs=0.05)
-    assert half.stress / auto.stress == pytest.approx(1.0, abs=0.05)
-    assert half.force == pytest.approx(SUNK_IN, rel=0.01)
-
-
-@pytest.mark.verify
-def test_four_cells_across_what_touches_are_too_few_where_a_pipe_has_sunk_in() -> None:
-    """V/(su D) at D/4 is 6.01, that of half of all automatic cells 5.09: they are of D/16 at most."""
-    scene = sinking()
-    sizes = {"along": 2.0, "across": 0.1083, "strip": 0.8661}
-    scene["soil"]["mesh"] = {"kind": "hex", "size_at_riser": sizes, "size_far": 2.4}
-    assert pushed(scene_from_mapping(scene)).force / SUNK_IN > 1.15
+    assert half.force / auto.force - 1.0 == pytest.approx(-0.021, abs=0.003)
+    assert half.stress / auto.stress == pytest.approx(1.0, abs=0.01)
+    assert half.force == pytest.approx(published, rel=0.03)
 
 
 @pytest.mark.parametrize(("cells", "off"), [(2, 0.66), (4, 0.35), (8, 0.11)])
