@@ -24,6 +24,7 @@ from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.soil_sizes import ACROSS, BESIDE, ROUND, STRIP, touching_width
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import Timer
+from riser_soil.scene.lines import on_soil
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
@@ -45,10 +46,11 @@ FEW = 3.0  # cells along the riser, of soil of which a slice is too large a part
 
 def has_many_slices(scene: Scene) -> bool:
     """Whether soil is so long along the riser that one slice of it costs little beside the run."""
-    soil = sized(scene).soil
-    if soil is None or not isinstance(soil.mesh, GeneratedMesh) or not isinstance(soil.block, Block):
+    own = on_soil(sized(scene))
+    soil = None if own is None else own.soil
+    if own is None or soil is None or not isinstance(soil.mesh, GeneratedMesh) or not isinstance(soil.block, Block):
         return True
-    low, high = (soil.block.x, soil.block.y)[1 - _across(scene)]
+    low, high = (soil.block.x, soil.block.y)[1 - _across(own)]
     return high - low >= FEW * soil.mesh.along
 
 
@@ -58,8 +60,10 @@ def settlements_on_fine_cells(scene: Scene, settlements: Sequence[float]) -> lis
 
     A rank computes it by itself.
     """
-    scene = resolved(scene)
-    scales = scales_of(elements_of(scene))
+    own = on_soil(resolved(scene))
+    if own is None:
+        return None
+    scene, scales = own, scales_of(elements_of(own))
     if not _has_slice(scene, scales) or min(settlements, default=0.0) <= 0.0:
         return None
     deepest = max(settlements)

@@ -220,5 +220,6 @@ class RunFacts:
     diameter: float = float("nan")  # m, the riser's largest
     weight: float = float("nan")  # N, of the whole riser by its heaviest part
     contact_period: float = float("nan")  # s, of the riser on its contact's stiffness; nan where nothing touches
+    on_soil: str = ""  # of several lines the one that lies on the soil
     sections: int = 0  # across the riser in which the soil's settlement is recorded
     offsets: tuple[float, ...] = ()  # m, places along the sections

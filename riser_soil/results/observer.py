@@ -382,6 +382,7 @@ def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
         diameter=assembly.scales.diameter,
         weight=max(own.scales.weight * float(np.ptp(own.line.arc)) for own in assembly.lines.values()),
         contact_period=assembly.contact_period,
+        on_soil="" if assembly.scene.soil is None else assembly.scene.soil.line or "",
         sections=count_of(lying) if lying is not None else 0,
         offsets=offsets_of(lying) if lying is not None else (),
     )

@@ -190,13 +190,13 @@ class StagePeaks:
 
 class RunPeaks:
     """The peaks of a run, stage by stage and line by line, "" the only one; fed on the rank that records. mesh: the
-    soil's; None: not followed. Of bodies, at steps, and of soil a run that has a summary knows as much by that.
+    soil's, under the line `on_soil`; None: not followed. Of bodies, at steps, and of soil a run that has a summary knows as much by that.
     """
 
-    def __init__(self, mesh: SoilMesh | None = None) -> None:
+    def __init__(self, mesh: SoilMesh | None = None, on_soil: str = "") -> None:
         self.stages: list[dict[str, StagePeaks]] = []
         self._hung: list[HungExtremes] = []
-        self._places = None if mesh is None else places(mesh)
+        self._places, self._on_soil = None if mesh is None else places(mesh), on_soil
 
     def begin_stage(self, name: str, kind: str, duration: float = 1.0, lines: Iterable[str] = ("",)) -> None:
         """Extremes of a stage along t include the state that it begins with, where a stage came before it. duration:
@@ -220,7 +220,7 @@ class RunPeaks:
         for line, instant in seen.items():
             stage = self.stages[-1][line]
             stage.update(times, instant)
-            if soil is not None and self._places is not None:
+            if soil is not None and self._places is not None and line == self._on_soil:
                 stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
 
     def reported(self, which: str) -> dict[str, Any]:

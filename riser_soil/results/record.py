@@ -78,7 +78,7 @@ class Recorder:
         self._keeping = keeping
         self._lock, self._folder = lock, folder
         self._scales = facts.diameter, facts.weight, facts.contact_period
-        self._lines = [*arcs]
+        self._lines, self._on_soil = [*arcs], facts.on_soil
         self._fields = fields
         left_out = {line: outputs.left_out(wanted) for line, wanted in fields.items()}
         self._ledger = ledger_variables(facts.dissipating, facts.working)
@@ -378,7 +378,7 @@ class Recorder:
     def _picture(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> None:
         self._waiting += self._frames.add(stamp, rows, row, soil)
         if self.summary.stages:
-            self._frames.tally(self.summary.stages[-1], self.now, soil)
+            self._frames.tally(self.summary.stages[-1].of(self._on_soil), self.now, soil)
 
     def state(self) -> Saved:
         """What is gathered on the way; what is written stays in the folder."""

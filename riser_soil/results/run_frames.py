@@ -108,7 +108,7 @@ class RunFrames:
         return waiting + _size(vars(soil))
 
     def tally(self, stage: StageTally, now: float, soil: SoilSnapshot | None) -> None:
-        """Take note of the soil's largest values in a stage."""
+        """Take note of the soil's largest values in a stage of the line that lies on it."""
         if self._soil is not None and soil is not None:
             stage.soil = with_largest(stage.soil, self._places, now, soil)
 

@@ -189,13 +189,17 @@ class StageTally:
         if self.lines:
             reported["lines"] = {name: own._of_line(self.steps > 0) for name, own in self.lines.items()}
             reported |= self.hung
-        return plain | reported | ({"soil": self.soil} if self.soil else {})
+        return plain | reported | self._soil
+
+    @property
+    def _soil(self) -> dict[str, Any]:
+        return {"soil": self.soil} if self.soil else {}
 
     def _of_line(self, stepped: bool) -> dict[str, Any]:
         """One of several."""
         self._finish()
         extremes = self.extremes.nested() if stepped else None
-        return {"final": self.final, "extremes": extremes, "warnings": self._own_warnings}
+        return {"final": self.final, "extremes": extremes, "warnings": self._own_warnings} | self._soil
 
     @property
     def _own_warnings(self) -> list[str]:

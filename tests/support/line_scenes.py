@@ -80,7 +80,7 @@ def hung_over_clay(*stages: Mapping[str, Any], model: str = "block") -> dict[str
     hung = {name: {"line": name, "at": at} for name, at in (("lower", "end"), ("upper", "start"))}
     types["flexible"] |= IN_WATER
     scene["soil"] |= {"line": "lower", "model": model}
-    buoy = {"kind": "point", "position": place, "mass": 300.0, "volume": 1.2, "drag_area": 1.0, "added_mass": 0.5}
+    buoy = {"kind": "point", "position": place, "mass": 300.0, "volume": 1.8, "drag_area": 1.0, "added_mass": 0.5}
     joints = {f"{name}_hung": {"kind": "pinned", "between": [at, {"body": "buoy"}]} for name, at in hung.items()}
     return scene | {"bodies": {"buoy": buoy}, "joints": joints}
 
