@@ -50,7 +50,8 @@ def print_summary(summary: dict[str, Any], console: Console | None = None) -> No
             console.print(_table(_stage_title(stage), _stage_rows(stage)))
         for name, line in stage.get("lines", {}).items():
             if line["final"] is not None:
-                console.print(_table(f"{name}: {_stage_title(stage)}", [*_figure_rows(line), *_soil_rows(stage | line)]))
+                rows = [*_figure_rows(line), *_soil_rows(stage | line)]
+                console.print(_table(f"{name}: {_stage_title(stage)}", rows))
         if stage.get("lines") and stage["steps"]:
             console.print(_table(_stage_title(stage), [*_hung_rows(stage), *_step_rows(stage)]))
         for warning in stage["warnings"]:

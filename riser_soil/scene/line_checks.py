@@ -165,11 +165,11 @@ def _not_yet(scene: Scene) -> Iterator[Problem]:
     over_a_grid, water = scene.seabed is not None and scene.seabed.grid is not None, scene.water
     if over_a_grid and water is not None and water.waves is not None and water.depth is None:
         yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")
+    rigid = any(body.turns for body in scene.bodies.values())
     for n, stage in enumerate(scene.stages):
-        if isinstance(stage, DynamicStage) and isinstance(stage.scheme, MidpointScheme):
-            if any(body.turns for body in scene.bodies.values()):
-                text = "the midpoint rule is not there yet for rigid bodies"
-                yield Problem(("stages", n, "scheme"), text, "take another scheme, or points")
+        if rigid and isinstance(stage, DynamicStage) and isinstance(stage.scheme, MidpointScheme):
+            text = "the midpoint rule is not there yet for rigid bodies"
+            yield Problem(("stages", n, "scheme"), text, "take another scheme, or points")
     for name, line in scene.lines.items():
         for end in ENDS:
             support = getattr(line, end)
