@@ -20,7 +20,7 @@ from riser_soil.core.saved_state import AnyArray, Saved, packed, unpacked, withi
 from riser_soil.errors import ResultsError
 from riser_soil.results.folder import synchronise, write_atomically
 
-FORMAT = 1  # grows with each change of what the file holds, or of what its arrays mean
+FORMAT = 2  # grows with each change of what the file holds, or of what its arrays mean
 _ABOUT = "about"
 
 
@@ -81,7 +81,6 @@ def _about(array: AnyArray, path: Path) -> About:
     if reported["format"] != FORMAT:
         raise ResultsError(
             f"{path}: was written by riser_soil {reported['version']} in format {reported['format']}, and this one "
-            "reads "
-            f"{FORMAT}; begin anew by --force"
+            f"reads {FORMAT}; begin anew by --force"
         )
     return About(**reported)

@@ -190,8 +190,8 @@ class StagePeaks:
 
 class RunPeaks:
     """The peaks of a run, stage by stage and line by line, "" the only one; fed on the rank that records. mesh: the
-    soil's, under the line `on_soil`; None: not followed. Of bodies, at steps, and of soil a run that has a summary knows
-    as much by that.
+    soil's, under the line `on_soil`; None: not followed. Of bodies, at steps, and of soil a run that has a summary
+    knows as much by that.
     """
 
     def __init__(self, mesh: SoilMesh | None = None, on_soil: str = "") -> None:

@@ -11,8 +11,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-import numpy as np
-
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
@@ -20,15 +18,13 @@ from riser_soil.core.snapshot import Instants, RunFacts, SoilMesh, SoilSnapshot,
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
-from riser_soil.results.figures import pack
 from riser_soil.results.folder import FolderLock
-from riser_soil.results.hung_figures import HungExtremes
-from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.netcdf import SeriesFile, Variable, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.run_frames import RunFrames, series_rows, step_rows
-from riser_soil.results.schedule import DueOutputs, SimulatedTime
+from riser_soil.results.schedule import DueOutputs
 from riser_soil.results.summary import StageTally, Summary
+from riser_soil.results.tallies import Tallies
 
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
 _FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.02
@@ -74,11 +70,8 @@ class Recorder:
         keeping: Keeping,
         hung: Mapping[str, Variable],
     ) -> None:
-        self.summary = Summary(facts)
-        self._keeping = keeping
+        self._tallies, self._keeping = Tallies(facts, [*arcs]), keeping
         self._lock, self._folder = lock, folder
-        self._scales = facts.diameter, facts.weight, facts.contact_period
-        self._lines, self._on_soil = [*arcs], facts.on_soil
         self._fields = fields
         left_out = {line: outputs.left_out(wanted) for line, wanted in fields.items()}
         self._ledger = ledger_variables(facts.dissipating, facts.working)
@@ -86,11 +79,7 @@ class Recorder:
         self._series = SeriesFile(folder / run_folder.SERIES, arcs, *made_of, hung)
         nodes = {name: arc.size for name, arc in arcs.items()}
         self._frames = RunFrames(folder, nodes, soil_mesh, fields, keeping.goes_on)
-        self._hung = HungExtremes()
         self._lasting, self._resumable, self._untouched = False, keeping.goes_on, keeping.goes_on
-        self._time = SimulatedTime()
-        self.now = 0.0  # s of the run at the last step; in a static stage its load factor
-        self._latest: dict[str, Array] = {}
         self._last: LastState | None = None
         self._next_flush = 0.0
         self._waiting = 0
@@ -129,6 +118,11 @@ class Recorder:
             lock.release()
             raise
         return recorder
+
+    @property
+    def summary(self) -> Summary:
+        """What is told of the stages so far."""
+        return self._tallies.summary
 
     @property
     def closed(self) -> bool:
@@ -175,24 +169,8 @@ class Recorder:
         """
         if self.summary.stages:
             self.flush()
-        self._time.begin_stage(kind)
-        stage = self._new_tally(name, kind, automatic)
-        stage.lines = {line: self._new_tally(name, kind, automatic) for line in self._lines if line}
-        self.summary.stages.append(stage)
-        self._hung = HungExtremes()
-        if kind != "static":
-            self._begin_from_latest()
+        self._tallies.begin_stage(name, kind, automatic)
         self._series.begin_stage(name)
-
-    def _new_tally(self, name: str, kind: str, automatic: bool) -> StageTally:
-        return StageTally(name, kind, indicators=StageIndicators(*self._scales, automatic=automatic))
-
-    def _begin_from_latest(self) -> None:
-        """Count the state that the stage begins with."""
-        for line, latest in self._latest.items():
-            tally = self.summary.stages[-1].of(line)
-            tally.extremes.update(self._time.now, latest)
-            tally.indicators.begin(self._time.now, latest)
 
     def begin_at(
         self, seen: Instants, soil: SoilSnapshot | None = None, hung: Mapping[str, Array] | None = None
@@ -201,9 +179,8 @@ class Recorder:
 
         seen, hung: of one instant, as if of many.
         """
-        self._latest = {line: pack(instant)[0] for line, instant in seen.items()}
-        self._begin_from_latest()
-        self._record(seen, hung or {}, [DueOutputs(series=True, pictures=True)], [self._time.stamp()], soil)
+        stamp = self._tallies.begin_at(seen)
+        self._record(seen, hung or {}, [DueOutputs(series=True, pictures=True)], [stamp], soil)
 
     def accept(
         self,
@@ -219,17 +196,7 @@ class Recorder:
         due, for no other step then. hung: of bodies and joints at the instants, by path.
         """
         hung = hung or {}
-        times, stamps = [], []
-        for step, wanted in zip(steps, due, strict=True):
-            self._time.advance(step.t)
-            times.append(self._time.now)
-            if wanted.series:
-                stamps.append(self._time.stamp())
-        self._tally(steps, times, seen)
-        if hung:
-            at = [step.t for step in steps] if self.summary.stages[-1].kind == "static" else times
-            self._hung.update(np.array(at), hung)
-            self.summary.stages[-1].hung = self._hung.nested
+        times, stamps = self._tallies.accept(steps, due, seen, hung)
         self._series.steps({"step_time": times} | step_rows(steps, self._ledger))
         self._waiting += _STEP * len(steps)
         self._record(seen, hung, due, stamps, soil)
@@ -243,7 +210,7 @@ class Recorder:
 
     def time_at(self, t: float) -> float:
         """Time of the run [s] at a time of the present stage; in a static stage its load factor."""
-        return t if self.summary.stages[-1].kind == "static" else self._time.of_stage(t)
+        return self._tallies.time_at(t)
 
     def record_last(self, soil: SoilSnapshot | None = None) -> None:
         """Writes the last accepted step to all that it has not been written to: the run ends before its time.
@@ -257,7 +224,7 @@ class Recorder:
         drawable = self._frames.drawable(soil)
         if not last.written.series:
             due = [DueOutputs(series=True, pictures=drawable)]
-            self._record(last.seen, last.hung, due, [self._time.stamp()], soil)
+            self._record(last.seen, last.hung, due, [self._tallies.stamp()], soil)
         elif drawable and not last.written.pictures:
             self._picture(last.stamp, series_rows([last.stamp], last.seen, self._fields), 0, soil)
             last.written = DueOutputs(series=True, pictures=True)
@@ -331,25 +298,6 @@ class Recorder:
         self._series.close()
         self._lock.release()
 
-    def _tally(self, steps: Sequence[StepRecord], times: Sequence[float], seen: Instants) -> None:
-        stage = self.summary.stages[-1]
-        at = np.array([step.t for step in steps] if stage.kind == "static" else times)
-        self.now = float(at[-1])
-        stage.count([step.health for step in steps])
-        stage.time = self._time.stage_time
-        stage.balance(times, [step.ledger for step in steps])
-        if stage.kind == "dynamic":
-            stage.indicators.follow_steps(at, steps)
-        for line, instant in seen.items():
-            tally, rows = stage.of(line), pack(instant)
-            self._latest[line] = rows[-1]
-            tally.extremes.update(at, rows)
-            if stage.kind == "dynamic":
-                tally.indicators.follow(at, rows)
-            tally.seen = instants_at(instant, -1)
-            tally.bend(at, instant.riser)
-            tally.pull(at, instant.arc, instant.riser)
-
     def _record(
         self,
         seen: Instants,
@@ -378,27 +326,23 @@ class Recorder:
     def _picture(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> None:
         self._waiting += self._frames.add(stamp, rows, row, soil)
         if self.summary.stages:
-            self._frames.tally(self.summary.stages[-1].of(self._on_soil), self.now, soil)
+            self._frames.tally(self._tallies.over_soil, self._tallies.now, soil)
 
     def state(self) -> Saved:
         """What is gathered on the way; what is written stays in the folder."""
-        latest = {f"latest/{line}" if line else "latest": values for line, values in self._latest.items()}
-        return gathered(self._owners) | latest | {"now": np.array(self.now)}
+        return gathered(self._owners)
 
     def restore(self, saved: Saved) -> None:
         with self._reported_when_full():
             restore_all(self._owners, saved)
-        self.now = float(saved["now"])
-        keys = {line: f"latest/{line}" if line else "latest" for line in self._lines}
-        self._latest = {line: saved[key] for line, key in keys.items() if key in saved}
         self._untouched = False
         if self._keeping.goes_on:
             self._outlast_power()
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        found: dict[str, Stateful] = {"summary": self.summary, "time": self._time, "series": self._series}
-        return found | self._frames.owners | {"hung": self._hung}
+        found: dict[str, Stateful] = {"tallies": self._tallies, "series": self._series}
+        return found | self._frames.owners
 
 
 @contextmanager

@@ -28,8 +28,10 @@ from riser_soil.soil import kernels
 from riser_soil.soil.families import Family, cell_gradients
 from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.law import STRESS, Formula, StressUpdate
+from riser_soil.soil.soil_cells import SoilCells
 
 SHEAR = 1.0 / np.sqrt(2.0)  # of a component in Mandel's notation
+SLOPE = ("slope_x", "slope_y", "slope_z")
 FIRST, LAST = STRESS[0][-3:], STRESS[-1][-3:]  # "_xx", "_yz"
 Take = Callable[[Array, Array, Array], tuple[Array, ...]]  # of places, rows there, and places asked for
 
@@ -150,3 +152,18 @@ def _split(gathered: list[tuple[Array, Array, Array]], take: Take) -> list[tuple
     places, held, asked = (np.concatenate(each) for each in zip(*gathered, strict=True))
     ends = np.cumsum([len(after) for _, _, after in gathered])[:-1]
     return list(zip(*(np.split(found, ends) for found in take(places, held, asked)), strict=True))
+
+
+def carried_depths(
+    grid: DistributedMesh, cells: SoilCells, depth: Array, before: Array, after: Array, none: float
+) -> Array:
+    """Depths (n,) that the nodes' material had at first, once they lie at points (n, 3) after; none: a way that is none
+    [m]. Collective.
+    """
+    moved = (np.abs(after - before).max(axis=1) > none) & (depth > 0.0)
+    asked, own = after[moved], slice(grid.nodes.owned)
+    slope, _ = nearest_rows(grid, cells.at_points(before), asked, cells.slopes(depth), SLOPE)
+    there, way = nearest_rows(grid, before[own], asked, depth[own, None], ("depth",))
+    out = depth.copy()
+    out[moved] = np.maximum(there[:, 0] + np.einsum("ni,ni->n", slope, way), 0.0)
+    return out

@@ -19,13 +19,12 @@ from riser_soil.soil import kernels, mandel
 from riser_soil.soil.families import FOLDS, skewness
 from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh
-from riser_soil.soil.large_strain import carried_rows, moved_on, nearest_rows
+from riser_soil.soil.large_strain import carried_depths, carried_rows, moved_on
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
 from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.soil_cells import SoilCells
 
-SLOPE = ("slope_x", "slope_y", "slope_z")
 NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 
 
@@ -68,7 +67,7 @@ class Soil:
         self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
         self._take_material()
         self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful))
-        self._check_start(self._initial, self.cells.at_points(self._depth), K0)
+        _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
         self._in_balance = self._found.stress  # as the last step left it, before cells that moved asked the law again
         self._last: _Answer | None = None
@@ -199,7 +198,7 @@ class Soil:
         new = made[self.cells.nodes].any(axis=1)
         here, new_points = self.cells.at_points(before), np.repeat(new, self.cells.shape[1])
         there = self.cells.at_points(after)[new_points]
-        self._depth = self._depth_at(before, after)
+        self._depth = carried_depths(self.grid, self.cells, self._depth, before, after, self._none)
         history = self._history_beyond_weight(before)
         history[new_points] = carried_rows(self.grid, here, there, history, self.law.columns)
         self._mesh_at[new] = after[self.cells.nodes[new]]
@@ -211,17 +210,6 @@ class Soil:
         for now, kept in zip(found, self._found._replace(tangent=found.tangent), strict=True):
             now[~new_points] = kept[~new_points]
         self._found = found._replace(tangent=np.empty(0))
-
-    def _depth_at(self, before: Array, after: Array) -> Array:
-        """Depths that the nodes' material had at first, once they lie at points (n, 3) after."""
-        moved = (np.abs(after - before).max(axis=1) > self._none) & (self._depth > 0.0)
-        slope, asked = self.cells.slopes(self._depth), after[moved]
-        slope, _ = nearest_rows(self.grid, self.cells.at_points(before), asked, slope, SLOPE)
-        own = slice(self.grid.nodes.owned)
-        depth, way = nearest_rows(self.grid, before[own], asked, self._depth[own, None], ("depth",))
-        out = self._depth.copy()
-        out[moved] = np.maximum(depth[:, 0] + np.einsum("ni,ni->n", slope, way), 0.0)
-        return out
 
     def _history_beyond_weight(self, points: Array) -> Array:
         """The history with the stress beyond what the weight makes of it by height, nodes at points (n, 3)."""
@@ -299,17 +287,6 @@ class Soil:
         """Nodal forces [N] of the submerged weight, this rank's cells."""
         return self.cells.weight(self._unit_weight, self.field.size)
 
-    def _check_start(self, stress: Array, depth: Array, K0: float) -> None:
-        over = self.law.overstress(stress)
-        worst = int(np.argmax(over)) if over.size else -1
-        mine = (float(over[worst]), float(depth[worst])) if over.size else (0.0, 0.0)
-        ratio, at = max(self.grid.nodes.comm.allgather(mine))
-        if ratio > 1.0:
-            raise SceneError(
-                f"soil.K0 = {K0}: at depth {at:.3g} m the geostatic stress is {ratio:.3g} times "
-                "what the soil bears; bring K0 nearer to 1 or raise the strength"
-            )
-
     def state(self) -> Saved:
         found, energy = self._found, np.array([self._stored, self._lifted])
         kept = {"stress": found.stress, "history": found.history, "stored": found.stored, "elastic": found.elastic}
@@ -369,6 +346,18 @@ class _Ground:
 def _at_rest(law: Formula, initial: Array) -> StressUpdate:
     """Before the first step."""
     return StressUpdate(initial, np.empty(0), law.start(), np.zeros(len(initial)), np.zeros_like(initial))
+
+
+def _check_start(grid: DistributedMesh, law: Formula, stress: Array, depth: Array, K0: float) -> None:
+    over = law.overstress(stress)
+    worst = int(np.argmax(over)) if over.size else -1
+    mine = (float(over[worst]), float(depth[worst])) if over.size else (0.0, 0.0)
+    ratio, at = max(grid.nodes.comm.allgather(mine))
+    if ratio > 1.0:
+        raise SceneError(
+            f"soil.K0 = {K0}: at depth {at:.3g} m the geostatic stress is {ratio:.3g} times "
+            "what the soil bears; bring K0 nearer to 1 or raise the strength"
+        )
 
 
 def _check_level(grid: DistributedMesh, level: float) -> None:

@@ -22,7 +22,7 @@ from riser_soil.errors import Interruption, ResultsError, SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results import record
 from riser_soil.results.checkpoint import CheckpointSchedule
-from riser_soil.results.checkpoint_file import About, read_checkpoint, write_checkpoint
+from riser_soil.results.checkpoint_file import FORMAT, About, read_checkpoint, write_checkpoint
 from riser_soil.results.observer import Observer
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.read import Run
@@ -179,7 +179,7 @@ def test_a_run_that_can_go_on_is_not_overwritten_by_mistake(left: Path) -> None:
     [
         ({"version": "0.0.9"}, "was written by riser_soil 0.0.9, and this is "),
         ({"ranks": 4}, "was written on 4 rank(s), and these are 1; take as many"),
-        ({"format": 0}, "in format 0, and this one reads 1"),
+        ({"format": 0}, f"in format 0, and this one reads {FORMAT}"),
     ],
 )
 def test_a_checkpoint_of_another_kind_is_refused(about: dict[str, object], says: str, checkpoint: Path) -> None:
