@@ -10,10 +10,9 @@ import numpy as np
 
 from riser_soil.assembly.line_assembly import LineAssembly
 from riser_soil.assembly.sea import water_of
-from riser_soil.bodies.body import MovingBody
+from riser_soil.bodies.body import MovingBody, radius_of
 from riser_soil.bodies.joints import STIFF, JointOf, Joints, Side
 from riser_soil.bodies.loads import BodyDrag, BodyInertia, BodyProperties, BodyWeight, Release
-from riser_soil.bodies.wet_sphere import radius_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.scene.bodies import Body as BodyScene

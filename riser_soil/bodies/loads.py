@@ -10,7 +10,7 @@ so that no energy is made, however different the added masses are (Lamb, Hydrody
 the dofs are R f and T_L(Theta) m. Where the water moves, its acceleration u' at the centre of buoyancy adds the force
 (rho V + added mass) u' of Morison's formula; the added mass itself meets the body's own velocity.
 Drag meets the velocity w through the water there: rho/2 CdA_i |w_i| w_i by body axis, of a point rho/2 CdA |w| w.
-Drag, buoyancy and the water's acceleration act on the wet share, see `wet_sphere`; the added mass is that of all.
+Drag, buoyancy and the water's acceleration act on the wet share, see `body.wet`; the added mass is that of all.
 """
 
 from __future__ import annotations
@@ -20,8 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.bodies.body import MovingBody
-from riser_soil.bodies.wet_sphere import radius_of, wet, wet_height
+from riser_soil.bodies.body import MovingBody, radius_of, wet, wet_height
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.riser import rotations

@@ -22,9 +22,8 @@ from riser_soil.assembly import sized
 from riser_soil.assembly.motions import corner_count
 from riser_soil.checks.inventory import built
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
-from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.lines import by_line, on_soil
-from riser_soil.scene.plane import resolved_dimension
+from riser_soil.scene.plane import initial_ends, resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import MeshFile, SoilScene
 from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage

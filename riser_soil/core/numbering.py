@@ -40,7 +40,7 @@ class Numbering:
         self._owned_rows = index[self._owned_local] - first
         self._scatter = None
         if comm.size > 1:
-            from riser_soil.core.scatter import Scatter
+            from riser_soil.core.petsc_matrix import Scatter
 
             self._scatter = Scatter(comm, self.owned, self._rows)
 

@@ -23,7 +23,7 @@ from riser_soil.plots.bodies import (
     soil_grid,
     touchdown_place,
 )
-from riser_soil.plots.moving_pictures import write_film
+from riser_soil.plots.riser_film import write_film
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
 from riser_soil.results.cycles import beginning, cycles, period_of, timed_stage

@@ -1,18 +1,23 @@
-"""Film of a riser without soil: its shape in the plane of its ends, coloured by bending moment, frame by frame."""
+"""Film of a riser without soil: its shape in the plane of its ends, coloured by bending moment, frame by frame.
+
+Frames go to an animated GIF by Pillow, or to MP4 by the program ffmpeg where it is installed.
+"""
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
+from PIL import Image
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
 from riser_soil.plots.curves import sheet
-from riser_soil.plots.moving_pictures import write_film
 from riser_soil.plots.scales import colour_scale
 from riser_soil.plots.shape import filmed_records, seabed_under
 from riser_soil.results import Run
@@ -20,6 +25,7 @@ from riser_soil.results.cycles import cycles, timed_stage
 from riser_soil.results.stage_records import along, stage_records
 
 MOST_FRAMES = 120
+SHORTEST, LONGEST = 0.04, 0.5  # s that a frame is shown; as long as it lasts in between
 _INCHES, _DPI = (9.6, 5.4), 100
 
 
@@ -65,3 +71,38 @@ def _pictures(run: Run, records: IntArray) -> Iterator[Array]:
         axes.set_title(f"{run.summary['title']}, t = {run.time[n]:.5g} s")
         canvas.draw()
         yield np.array(canvas.buffer_rgba())[..., :3]
+
+
+def write_film(file: Path, frames: Iterator[Array], interval: float) -> None:
+    """Frames (height, width, 3) of bytes, shown for about `interval` [s] each, in the format of the file's ending."""
+    shown = min(max(interval, SHORTEST), LONGEST)
+    if file.suffix == ".gif":
+        _write_gif(file, frames, shown)
+    else:
+        _write_mp4(file, frames, shown)
+
+
+def _write_gif(file: Path, frames: Iterator[Array], shown: float) -> None:
+    first, *rest = (Image.fromarray(frame).quantize(128) for frame in frames)
+    first.save(file, save_all=True, append_images=rest, duration=round(100 * shown) * 10, loop=0)
+
+
+def _write_mp4(file: Path, frames: Iterator[Array], shown: float) -> None:
+    program = ffmpeg()
+    first = next(frames)
+    size = f"{first.shape[1]}x{first.shape[0]}"
+    given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", f"{1.0 / shown:.6g}", "-i", "-"]
+    call = [program, "-loglevel", "error", "-y", *given, "-pix_fmt", "yuv420p", str(file)]
+    with subprocess.Popen(call, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        reported = running.communicate(b"".join(frame.tobytes() for frame in (first, *frames)))[1]
+    if running.returncode != 0:
+        reason = reported.decode(errors="replace").strip().splitlines()[-1:] or ["no message"]
+        raise ResultsError(f"ffmpeg could not write the film: {reason[0]}; write a .gif instead")
+
+
+def ffmpeg() -> str:
+    """Path of the program; ResultsError where there is none."""
+    found = shutil.which("ffmpeg")
+    if found is None:
+        raise ResultsError("an MP4 needs the program ffmpeg, which is not there (Debian: ffmpeg); write a .gif instead")
+    return found

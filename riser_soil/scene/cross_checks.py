@@ -8,10 +8,9 @@ from typing import assert_never
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.end_checks import end_conflicts, hang_off_conflicts
 from riser_soil.scene.ground_checks import feature_conflicts, ground_conflicts
-from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import SettlementSections
-from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
+from riser_soil.scene.plane import initial_ends, leaving_the_plane, resolved_dimension
 from riser_soil.scene.problem import Path, Problem, dotted, hint
 from riser_soil.scene.riser import Contents, Support
 from riser_soil.scene.scene import Scene

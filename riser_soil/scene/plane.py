@@ -1,4 +1,4 @@
-"""The vertical plane of a two-dimensional scene, and what leaves it."""
+"""The vertical plane of a two-dimensional scene, and what leaves it; the ends of the riser's initial shape."""
 
 import math
 from collections.abc import Iterator
@@ -9,17 +9,19 @@ from riser_soil.core.quantities import Vector
 from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.problem import Path
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
-from riser_soil.scene.riser import Support
+from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.shapes import ArcShape, PointsShape
+from riser_soil.scene.shapes import ArcShape, CircularArc, PointsShape
 from riser_soil.scene.stages import StaticStage
-from riser_soil.scene.vectors import cross, dot, minus, plus
+from riser_soil.scene.vectors import cross, dot, minus, plus, times
 from riser_soil.scene.wave_kinds import GivenSpectrum
 
 # Relative distance from the plane that round-off may leave.
 _FLAT = 1e-9
 # Part of the largest value in a table under which a value is no motion.
 _NEGLIGIBLE = 1e-9
+_ORIGIN = (0.0, 0.0, 0.0)
+_ALONG_X = (1.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -215,3 +217,34 @@ def _felt(rows: list[Vector]) -> Iterator[Vector]:
     least = _NEGLIGIBLE * max(abs(value) for row in rows for value in row)
     for x, y, z in dict.fromkeys(rows):
         yield x * (abs(x) > least), y * (abs(y) > least), z * (abs(z) > least)
+
+
+def initial_ends(riser: Riser) -> tuple[Vector, Vector]:
+    """Start and end of the initial shape [m]; they must lie at the prescribed positions of the ends."""
+    start, end = (e.position if isinstance(e, Support) else None for e in (riser.start, riser.end))
+    if isinstance(riser.initial, PointsShape):
+        return riser.initial.points[0], riser.initial.points[-1]
+    if riser.initial != "unstressed" and start is not None and end is not None:
+        return start, end
+    if riser.initial == "unstressed" and isinstance(riser.unstressed, PointsShape):
+        return riser.unstressed.points[0], riser.unstressed.points[-1]
+    if riser.initial == "unstressed" and isinstance(riser.unstressed, ArcShape):
+        return riser.unstressed.arc.from_point, _far_end(riser.unstressed.arc)
+    return _straight(start, end, riser.length)
+
+
+def _straight(start: Vector | None, end: Vector | None, length: float) -> tuple[Vector, Vector]:
+    """A straight unstressed riser: from start towards end; along +x when an end is free."""
+    first = start or _ORIGIN
+    chord = minus(end, first) if start and end else _ALONG_X
+    distance = math.hypot(*chord)
+    direction = times(1.0 / distance, chord) if distance > 0.0 else _ALONG_X
+    return first, plus(first, times(length, direction))
+
+
+def _far_end(arc: CircularArc) -> Vector:
+    """The arc's last point, by Rodrigues' formula."""
+    axis = times(1.0 / math.hypot(*arc.axis), arc.axis)
+    arm, angle = minus(arc.from_point, arc.centre), math.radians(arc.angle_deg)
+    turned = plus(times(math.cos(angle), arm), times(math.sin(angle), cross(axis, arm)))
+    return plus(arc.centre, plus(turned, times((1.0 - math.cos(angle)) * dot(axis, arm), axis)))

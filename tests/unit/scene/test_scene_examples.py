@@ -14,9 +14,8 @@ from riser_soil.__main__ import app
 from riser_soil.core.outputs import OF_SOIL
 from riser_soil.results.netcdf import SERIES
 from riser_soil.scene.dump import dump_scene, schema_text
-from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.output import ALL_FIELDS
-from riser_soil.scene.plane import resolved_dimension, vertical_plane
+from riser_soil.scene.plane import initial_ends, resolved_dimension, vertical_plane
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.shapes import ArcShape
 from riser_soil.scene.soil import MeshFile
