@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from riser_soil.errors import SceneError
-from riser_soil.scene.bounded import content
+from riser_soil.scene.files import content
 
 MOST_BYTES = 10_000_000
 

@@ -106,8 +106,8 @@ def _unknowns(assembly: Assembly, name: str) -> Iterator[str]:
         yield from _computed(assembly.scene)
         yield from _condensed(assembly, assembly.soil)
         yield from resolution(assembly)
-        from riser_soil.checks.mesh_plausibility import mesh_report
         from riser_soil.checks.soil_edge import edge_report
+        from riser_soil.checks.soil_mesh import mesh_report
 
         yield from mesh_report(assembly)
         yield from edge_report(assembly)

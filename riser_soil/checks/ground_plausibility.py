@@ -38,8 +38,8 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
     yield from _corner_against_weight(assembly)
     yield from _beyond_the_grid(assembly)
     if assembly.soil is not None:
-        from riser_soil.checks.mesh_plausibility import quality_warnings
         from riser_soil.checks.soil_edge import edge_warnings
+        from riser_soil.checks.soil_mesh import quality_warnings
 
         yield from quality_warnings(assembly)
         yield from edge_warnings(assembly)

@@ -1,7 +1,4 @@
-"""Plausibility of the soil's mesh and block: cells and elements against what touches, a block that the riser leaves.
-
-And the quality of the cells, and those that lie across boundaries of layers.
-"""
+"""Plausibility of the soil's mesh and block: cells and elements against what touches, a block that the riser leaves."""
 
 from __future__ import annotations
 
@@ -15,9 +12,7 @@ from riser_soil.assembly.touchdown_forecast import forecast
 from riser_soil.checks.settlement import Settled, foretold
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
-from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.grading import PARALLEL
-from riser_soil.soil.quality import POOR, quality_of
 
 # Part of the settlement that cells which grow away from the riser miss; what wide cells under it may miss beyond that,
 # before they are warned of.
@@ -27,9 +22,6 @@ LONG = 1.5
 # Part by which a pipe settles more on sections than on a block, from which on that is told; depth down to which they
 # settle alike, within 4 %, in lengths of bending on soil: e^(1.5 - 0.5772), with Euler's constant.
 EXCESS, DEEP = 0.05, 2.516
-# Aspect ratios above which cells are told of: hexahedra may be long along the riser, thin tetrahedra make errors.
-LONG_HEXAHEDRA, THIN_TETRAHEDRA = 1000.0, 30.0
-ACROSS = 1e-6  # part of a cell's height by which it may reach over a boundary
 
 
 def reported_resolution(assembly: Assembly) -> str | None:
@@ -178,54 +170,3 @@ def _leaves_the_block(assembly: Assembly) -> Iterator[str]:
             f"{at[0]:.5g}, y = {at[1]:.5g} m, {beyond.max():.3g} m beyond x from {low[0]:.5g} to {high[0]:.5g} m and "
             f"y from {low[1]:.5g} to {high[1]:.5g} m: enlarge soil.block, or take block: auto"
         )
-
-
-def mesh_report(assembly: Assembly) -> Iterator[str]:
-    """Lines of `check` about the soil's cells; collective."""
-    assert assembly.soil is not None
-    found = quality_of(assembly.soil.grid)
-    yield (
-        f"soil mesh: edges of {found.smallest:.4g} to {found.largest:.4g} m, aspect ratios up to {found.aspect:.3g}, "
-        f"scaled Jacobians from {found.jacobian:.3g} (1 is best)"
-    )
-    assert assembly.scene.soil is not None
-    depths = boundaries(assembly.scene.soil.layers or ())
-    if depths:
-        reported = ", ".join(f"{depth:g}" for depth in depths)
-        cells = _cells_across(assembly, depths)
-        lie = f"{cells} cells lie across, each of whose points has the law of its depth" if cells else "cells end there"
-        yield f"soil layers meet at depths of {reported} m; {lie}"
-
-
-def quality_warnings(assembly: Assembly) -> Iterator[str]:
-    """Warnings about the shape of the soil's cells; collective."""
-    assert assembly.soil is not None
-    grid = assembly.soil.grid
-    found, tetrahedra = quality_of(grid), grid.family.corners == 3
-    if found.poor:
-        yield (
-            f"soil mesh: {found.poor} cells have a scaled Jacobian below {POOR:g}, the worst, at "
-            f"{_place(found.skewed)}, {found.jacobian:.2g}: strain is poor there; mend the mesh, or take other sizes"
-        )
-    limit = THIN_TETRAHEDRA if tetrahedra else LONG_HEXAHEDRA
-    if found.aspect > limit:
-        yield (
-            f"soil mesh: the cell at {_place(found.thin)} has an aspect ratio of {found.aspect:.3g}, above {limit:g}: "
-            "bring its sizes nearer to each other"
-        )
-
-
-def _cells_across(assembly: Assembly, depths: tuple[float, ...]) -> int:
-    assert assembly.soil is not None
-    nodes = assembly.soil.grid.nodes
-    depth = assembly.scene.seabed_level - nodes.points[nodes.cells, 2]
-    top, bottom = depth.min(axis=1, initial=np.inf), depth.max(axis=1, initial=-np.inf)
-    slack = ACROSS * (bottom - top)
-    across = np.zeros(len(top), dtype=bool)
-    for boundary in depths:
-        across |= (top + slack < boundary) & (bottom - slack > boundary)
-    return int(nodes.comm.allreduce(int(np.count_nonzero(across))))
-
-
-def _place(point: tuple[float, ...]) -> str:
-    return f"({', '.join(f'{round(x, 6) + 0.0:.4g}' for x in point)}) m"

@@ -13,8 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from riser_soil.core.quantities import FARTHEST, NEAREST
-from riser_soil.scene.bounded import content
-from riser_soil.scene.files import wrong_file
+from riser_soil.scene.files import content, wrong_file
 from riser_soil.scene.problem import hint, shown
 
 Units = Mapping[str, float]

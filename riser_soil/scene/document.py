@@ -18,7 +18,7 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from riser_soil.errors import SceneError
-from riser_soil.scene.bounded import content
+from riser_soil.scene.files import content
 from riser_soil.scene.problem import Path, dotted
 
 _TAG = "tag:yaml.org,2002:"

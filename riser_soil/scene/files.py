@@ -1,5 +1,6 @@
-"""Paths of the files that a scene names."""
+"""Paths of the files that a scene names, and reading of input files with a size limit."""
 
+import errno
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -40,3 +41,14 @@ NamedFile = Annotated[Path, AfterValidator(_found)]
 
 NamedFolder = Annotated[Path, AfterValidator(_found_folder)]
 """A folder that is there, likewise."""
+
+
+def content(file: Path, most: int) -> bytes:
+    """All bytes of a regular file; OSError when it is none (a device may never end) or has more than `most`."""
+    if file.exists() and not file.is_file():
+        raise OSError(errno.EINVAL, "it is no regular file")
+    with file.open("rb") as stream:
+        found = stream.read(most + 1)
+    if len(found) > most:
+        raise OSError(errno.EFBIG, f"it is larger than {most / 1e6:g} MB")
+    return found

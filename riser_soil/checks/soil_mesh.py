@@ -1,0 +1,66 @@
+"""Report and warnings of the soil's mesh: quality of its cells, and cells that lie across boundaries of layers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from riser_soil.assembly import Assembly
+from riser_soil.scene.soil_layers import boundaries
+from riser_soil.soil.quality import POOR, quality_of
+
+# Aspect ratios above which cells are told of: hexahedra may be long along the riser, thin tetrahedra make errors.
+LONG_HEXAHEDRA, THIN_TETRAHEDRA = 1000.0, 30.0
+ACROSS = 1e-6  # part of a cell's height by which it may reach over a boundary
+
+
+def mesh_report(assembly: Assembly) -> Iterator[str]:
+    """Lines of `check` about the soil's cells; collective."""
+    assert assembly.soil is not None
+    found = quality_of(assembly.soil.grid)
+    yield (
+        f"soil mesh: edges of {found.smallest:.4g} to {found.largest:.4g} m, aspect ratios up to {found.aspect:.3g}, "
+        f"scaled Jacobians from {found.jacobian:.3g} (1 is best)"
+    )
+    assert assembly.scene.soil is not None
+    depths = boundaries(assembly.scene.soil.layers or ())
+    if depths:
+        reported = ", ".join(f"{depth:g}" for depth in depths)
+        cells = _cells_across(assembly, depths)
+        lie = f"{cells} cells lie across, each of whose points has the law of its depth" if cells else "cells end there"
+        yield f"soil layers meet at depths of {reported} m; {lie}"
+
+
+def quality_warnings(assembly: Assembly) -> Iterator[str]:
+    """Warnings about the shape of the soil's cells; collective."""
+    assert assembly.soil is not None
+    grid = assembly.soil.grid
+    found, tetrahedra = quality_of(grid), grid.family.corners == 3
+    if found.poor:
+        yield (
+            f"soil mesh: {found.poor} cells have a scaled Jacobian below {POOR:g}, the worst, at "
+            f"{_place(found.skewed)}, {found.jacobian:.2g}: strain is poor there; mend the mesh, or take other sizes"
+        )
+    limit = THIN_TETRAHEDRA if tetrahedra else LONG_HEXAHEDRA
+    if found.aspect > limit:
+        yield (
+            f"soil mesh: the cell at {_place(found.thin)} has an aspect ratio of {found.aspect:.3g}, above {limit:g}: "
+            "bring its sizes nearer to each other"
+        )
+
+
+def _cells_across(assembly: Assembly, depths: tuple[float, ...]) -> int:
+    assert assembly.soil is not None
+    nodes = assembly.soil.grid.nodes
+    depth = assembly.scene.seabed_level - nodes.points[nodes.cells, 2]
+    top, bottom = depth.min(axis=1, initial=np.inf), depth.max(axis=1, initial=-np.inf)
+    slack = ACROSS * (bottom - top)
+    across = np.zeros(len(top), dtype=bool)
+    for boundary in depths:
+        across |= (top + slack < boundary) & (bottom - slack > boundary)
+    return int(nodes.comm.allreduce(int(np.count_nonzero(across))))
+
+
+def _place(point: tuple[float, ...]) -> str:
+    return f"({', '.join(f'{round(x, 6) + 0.0:.4g}' for x in point)}) m"
