@@ -72,7 +72,7 @@ def as_line(scene: Mapping[str, Any]) -> dict[str, Any]:
 
 def hung_over_clay(*stages: Mapping[str, Any], model: str = "block") -> dict[str, Any]:
     """The riser of `touchdown`, whose upper end hangs on a buoy, which a second line holds on to a support above."""
-    scene = as_line(touchdown(LAY, *map(dict, stages)))
+    scene = as_line(touchdown(LAY, *map(dict, stages), su=3000.0))
     riser, types = scene["lines"]["only"], scene["line_types"]
     upper = {"segments": [{"line_type": "flexible", "length": 10.0, "elements": 10}]}
     top, place = [31.0, 0.0, 17.0], riser["end"]["position"]

@@ -174,5 +174,5 @@ def test_two_ranks_take_the_same_branch(tmp_path: Path) -> None:
         found.append(Run(folder).summary["stages"][0])
     assert [stage["branch_switches"] for stage in found] == [1, 1]
     one, two = (stage["final"]["end"]["position"] for stage in found)
-    assert one[1] > 0.1
+    assert abs(one[1]) > 0.1, "either side is as good"
     assert two == pytest.approx(one, abs=1e-6)
