@@ -36,7 +36,7 @@ def test_the_matrix_is_the_slope_of_the_residual(kind: str) -> None:
         assert np.linalg.norm(matrix @ direction - wanted) < 1e-5 * np.linalg.norm(wanted)
 
 
-@KINDS
+@pytest.mark.parametrize("kind", ["kinematic-hardening", pytest.param("iwan", marks=pytest.mark.verify)])
 def test_heave_takes_energy_in_every_cycle(kind: str) -> None:
     """Three cycles of the same motion: the clay takes work each time, Newton converges in few iterations."""
     heaved = HeavedSoil(on_clay(kind, heave(9.0, 0.15)))

@@ -66,7 +66,7 @@ def taken(law: str, linear: str) -> Steps:
     return Steps(out.iterations, out.forces, out.increments, *made)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", [*list(LAWS)[:2], pytest.param("sand", marks=pytest.mark.verify)])
 def test_states_are_those_of_direct_solutions(law: str) -> None:
     """To what Newton's tolerance leaves."""
     kept, direct = taken(law, "kept"), taken(law, "direct")

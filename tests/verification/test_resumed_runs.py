@@ -103,7 +103,10 @@ SHORT = {
 
 
 #: To compute, or to compile.
-LONG = "waves", "plastic clay in space", "touchdown in sections", "kept factors", "sinks into tetrahedra"
+LONG = (
+    *("waves", "vortices", "slugs", "plastic clay in space", "touchdown in sections", "kept factors"),
+    *("laid and lifted on clay", "sinks into tetrahedra"),
+)
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 
 

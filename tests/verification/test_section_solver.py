@@ -114,6 +114,7 @@ def test_what_balances_a_new_mesh_leaves_no_matrix_behind(monkeypatch: pytest.Mo
         gc.enable()
 
 
+@pytest.mark.verify
 def test_a_rank_without_sections_takes_part(tmp_path: Path) -> None:
     scene = on_sections("auto")
     scene["soil"]["block"]["x"] = [4.0, 4.5]

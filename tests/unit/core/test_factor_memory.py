@@ -40,7 +40,7 @@ def laid() -> Array:
     return assembly.soil.field.total.copy()
 
 
-@pytest.mark.parametrize("place", [snes, linear_solver])
+@pytest.mark.parametrize("place", [snes, pytest.param(linear_solver, marks=pytest.mark.verify)])
 def test_too_little_workspace_grows_and_the_step_is_the_same(place: object, monkeypatch: pytest.MonkeyPatch) -> None:
     """Room below nothing is less than what MUMPS has foretold."""
     expected, rooms = laid(), []

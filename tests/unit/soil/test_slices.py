@@ -75,10 +75,17 @@ def test_a_riser_askew_has_no_sections() -> None:
         slice_grid(MPI.COMM_SELF, BlockSpec((0.0, 2.0), (-1.0, 1.0), 1.0, 0.25, 0.5, riser=((0.0, 0.0), (2.0, 0.5))))
 
 
-@pytest.mark.parametrize("strain", ["small", "large"])
-@pytest.mark.parametrize("law", [CLAY, CLAY | {"kind": "kinematic-hardening"}], ids=lambda law: law["kind"])
-def test_one_section_is_a_slice_of_one_cell(law: Any, strain: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "strain"),
+    [
+        *(("von-mises", "small"), ("kinematic-hardening", "large")),
+        pytest.param("von-mises", "large", marks=pytest.mark.verify),
+        pytest.param("kinematic-hardening", "small", marks=pytest.mark.verify),
+    ],
+)
+def test_one_section_is_a_slice_of_one_cell(kind: str, strain: str) -> None:
     """Pressed in by D/12, on new meshes at large strain; where cells come to touch round-off is magnified."""
+    law = CLAY | {"kind": kind}
     scenes = [sinking(6, 1.0 / 12.0, 10, law, strain=strain, model=model) for model in ("block", "sections")]
     found = [sink(scene | {"solver": {"load_steps": 10, "tolerance": 1e-11}}) for scene in scenes]
     np.testing.assert_allclose(found[1].V, found[0].V, rtol=1e-4)
