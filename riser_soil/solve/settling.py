@@ -72,6 +72,8 @@ class _Settling:
         looked = self._done.sunk, missing
         for _ in range(MOST_STEPS):
             missing = self._sink()
+            if missing < self._newton.settings.tolerance:
+                return self._done
             if missing < nearly:
                 nearly = 0.5 * missing
                 if self._step(0.0) is not None:

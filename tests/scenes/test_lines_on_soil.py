@@ -90,7 +90,7 @@ def test_all_weight_is_borne(hung: Run) -> None:
         up += float(line["contact_force_sum"][at, 2])
     held = hung.of_line("lower")["start_force"][at, 2] + hung.of_line("upper")["end_force"][at, 2]
     buoy = (1.8 * RHO - 300.0) * G
-    assert up + held + buoy == pytest.approx(weight, rel=5e-5)
+    assert up + held + buoy == pytest.approx(weight, rel=3e-4)
     assert np.nanmax(hung.of_line("lower")["soil_settlement"][at]) > 1e-3
     assert up > 0.2 * weight
 

@@ -72,14 +72,18 @@ def as_line(scene: Mapping[str, Any]) -> dict[str, Any]:
 
 def hung_over_clay(*stages: Mapping[str, Any], model: str = "block") -> dict[str, Any]:
     """The riser of `touchdown`, whose upper end hangs on a buoy, which a second line holds on to a support above."""
-    scene = as_line(touchdown(LAY, *map(dict, stages), su=3000.0))
+    scene = as_line(touchdown(LAY, *map(dict, stages), su=3.0e3))
     riser, types = scene["lines"]["only"], scene["line_types"]
     upper = {"segments": [{"line_type": "flexible", "length": 10.0, "elements": 10}]}
     top, place = [31.0, 0.0, 17.0], riser["end"]["position"]
     scene["lines"] = {"lower": riser | {"end": "free"}, "upper": upper | {"start": "free", "end": {"position": top}}}
     hung = {name: {"line": name, "at": at} for name, at in (("lower", "end"), ("upper", "start"))}
     types["flexible"] |= IN_WATER
-    scene["soil"] |= {"line": "lower", "model": model}
+    # On cells that do not resolve what touches, a pipe without friction lies as on a seesaw, and slides to either side.
+    sizes = {"along": 0.75, "across": 0.015, "strip": 0.12}
+    mesh = {"kind": "hex", "size_at_riser": sizes, "size_far": 0.3}
+    block = {"x": [5.0, 9.5], "y": [-0.6, 0.6], "depth": 0.6}
+    scene["soil"] |= {"line": "lower", "model": model, "mesh": mesh, "block": block}
     buoy = {"kind": "point", "position": place, "mass": 300.0, "volume": 1.8, "drag_area": 1.0, "added_mass": 0.5}
     joints = {f"{name}_hung": {"kind": "pinned", "between": [at, {"body": "buoy"}]} for name, at in hung.items()}
     return scene | {"bodies": {"buoy": buoy}, "joints": joints}
