@@ -125,7 +125,7 @@ def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
 
 def _under(line: Line, surface: SoilTop, diameter: float) -> int:
     """How many points of the top belong to facets under the riser's width in plan, where it begins."""
-    from riser_soil.contact.candidates import touching_boxes
+    from riser_soil.contact.ground import touching_boxes
 
     axis = line.to_global(line.x)
     axis[:, 2] = 0.0

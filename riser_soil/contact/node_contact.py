@@ -6,16 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.contact.candidates import CandidatePairs, pairs_around
 from riser_soil.contact.facets import heights
 from riser_soil.contact.ground import (
     ASPECT,
+    CandidatePairs,
     ContactDetection,
     ContactPoints,
     ContactState,
     DeformedSurface,
     add_blocks,
     add_shares,
+    pairs_around,
 )
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact

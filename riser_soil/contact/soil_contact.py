@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from riser_soil.contact.along_step import landing_predictor
-from riser_soil.contact.candidates import CandidatePairs
 from riser_soil.contact.contact import RiserContact
-from riser_soil.contact.ground import DeformedSurface
+from riser_soil.contact.ground import CandidatePairs, DeformedSurface
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_contact import Covering

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from riser_soil.contact.along_step import landing_predictor, work_along_step
-from riser_soil.contact.candidates import CandidatePairs, touching_boxes
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gaps_of
 from riser_soil.contact.facets import heights
-from riser_soil.contact.ground import add_blocks
+from riser_soil.contact.ground import CandidatePairs, add_blocks, touching_boxes
 from riser_soil.contact.integration_points import PointMemory, divisions
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.near_points import (

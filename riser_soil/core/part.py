@@ -55,6 +55,11 @@ class Weights:
     shift_v: float
     shift_a: float
 
+    @classmethod
+    def of_statics(cls) -> Weights:
+        """No inertia, and no rates."""
+        return cls(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class MatrixBlock:

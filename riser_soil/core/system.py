@@ -92,6 +92,11 @@ class System:
         return Matrix(self.numbering, blocks, self.symmetric, self._patterns)
 
     @property
+    def is_chain(self) -> bool:
+        """Whether it is one line's on one rank, whose matrix is a band."""
+        return self.comm.size == 1 and len(self.model.fields) == 1
+
+    @property
     def end_of_lines(self) -> int:
         """Lines come first in local arrays."""
         return sum(line.size for line in self.model.lines)

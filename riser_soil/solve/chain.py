@@ -8,6 +8,7 @@ import numpy as np
 
 from riser_soil.core import banded
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.banded import SingularError
 from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.saved_state import Saved
@@ -18,15 +19,6 @@ from riser_soil.solve.newton_progress import NAMES
 ITERATING, CONVERGED, NOT_FINITE, NOT_SOLVED, DIVERGED, TOO_MANY, OUTGROWN = NAMES
 
 LOOSE = 1e-5  # share of the residual that a linear system solved by iterations may leave
-
-
-class SingularError(Exception):
-    """A matrix without an inverse."""
-
-
-def is_chain(system: System) -> bool:
-    """Whether a system is one line's on one rank."""
-    return system.comm.size == 1 and len(system.model.fields) == 1
 
 
 class ChainFactors:

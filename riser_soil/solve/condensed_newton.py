@@ -21,7 +21,6 @@ from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.soil.condensed import CondensedSoil
 from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.newton_progress import CONVERGED, OUTGROWN
 from riser_soil.solve.packed_riser import KernelParts, PackedRiser
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solver import NewtonSettings, Solution, Step, StepSolver, limits_of
@@ -94,11 +93,11 @@ class CondensedNewton(StepSolver):
             self._border.begin(step.before, step.guess)
             self._prescribe_anew()
             self._riser.begin(guess, None if past is None else past[at], scheme.weights(step.dt), limits)
-            outcome, taken = self._riser.solve()
+            _, taken = self._riser.solve()
             self.iterations += taken
-            if outcome == CONVERGED and self._border.holds and not self._line.folding(*self._riser.folding):
+            if self._riser.converged and self._border.holds and not self._line.folding(*self._riser.folding):
                 return as_list(self._riser.progress.norms[: taken + 1])
-            if outcome != OUTGROWN:
+            if not self._riser.outgrown:
                 return None
             self._border.widen()
         return None

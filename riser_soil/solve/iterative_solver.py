@@ -19,8 +19,7 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import local
 from riser_soil.core.system import System
-from riser_soil.solve.banded_solvers import PythonContext
-from riser_soil.solve.linear_solver import PREFIX, LinearSystems, defaults
+from riser_soil.solve.linear_solver import PREFIX, LinearSystems, PythonContext, defaults
 
 if TYPE_CHECKING:
     from riser_soil.soil.field import SoilField

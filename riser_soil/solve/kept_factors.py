@@ -21,8 +21,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.saved_state import Saved
-from riser_soil.solve.banded_solvers import PythonContext
-from riser_soil.solve.linear_solver import LinearSystems, use_mumps
+from riser_soil.solve.linear_solver import LinearSystems, PythonContext, use_mumps
 
 FEWEST = 10  # iterations that a solve may take in any case
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40

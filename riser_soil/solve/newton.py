@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
-from riser_soil.core.part import Forces, State
+from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import Adaptive, Limited, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
@@ -21,7 +21,6 @@ from riser_soil.solve.chain import (
     TOO_MANY,
     ChainLoop,
     Loop,
-    is_chain,
 )
 from riser_soil.solve.newton_progress import (
     NAMES,
@@ -39,18 +38,17 @@ from riser_soil.solve.solver import (
     Solution,
     Step,
     StepSolver,
+    StepTrials,
     UnstableError,
     limits_of,
     reported,
 )
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
-from riser_soil.solve.step_trials import StepTrials
-from riser_soil.solve.time_scheme import Static
 
 TIGHT = 1e-10  # least share of the residual that a linear system solved by iterations may leave, LOOSE the largest
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
-STATIC = Static().weights(0.0)
+STATIC = Weights.of_statics()
 PATIENCE, LONGEST = 10, 4  # iterations in which a static residual halves that goes on; times as many at most
 
 
@@ -67,7 +65,7 @@ class Newton(StepSolver):
         self._make_vectors()
 
     def _new_loop(self) -> Loop:
-        if is_chain(self.system) and not self.settings.snes:
+        if self.system.is_chain and not self.settings.snes:
             return ChainLoop(self.system, self)
         from riser_soil.solve.snes import SnesLoop
 

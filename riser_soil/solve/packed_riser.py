@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, as_list
 from riser_soil.core.bound import Bound, Packed, bound, calls, in_turn
 from riser_soil.core.part import State, Weights, Work
@@ -38,8 +37,8 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.newton_progress import StopLimits
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData
+from riser_soil.solve.newton_progress import CONVERGED, OUTGROWN, StopLimits
+from riser_soil.solve.riser_loop import Dofs, NewtonProgress, StepData, matrix_workspace
 
 KernelData = tuple[Any, ...]
 
@@ -171,6 +170,16 @@ class PackedRiser:
         outcome, taken = as_list(self.progress.ending)
         return outcome, taken
 
+    @property
+    def converged(self) -> bool:
+        """Whether the step solved last is in balance."""
+        return bool(self.progress.ending[0] == CONVERGED)
+
+    @property
+    def outgrown(self) -> bool:
+        """Whether it wants more of what stands beside the line."""
+        return bool(self.progress.ending[0] == OUTGROWN)
+
     def solved(self, t: float, dt: float) -> State:
         """The state of the step solved last."""
         return State(t, self.step.u.flatten(), self.step.v.flatten(), self.step.a.flatten(), dt=dt)
@@ -184,21 +193,6 @@ class PackedRiser:
 
 def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
     return [np.zeros(shape) for _ in range(n)]
-
-
-def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspace:
-    """Workspace for the tangent of a line; with room for its turning, where it has a dimension."""
-    ne, r, size = nodes - 1, ndof - dimension if dimension else 0, nodes * ndof
-    matrix, band = banded.workspace(size, 2 * ndof - 1)
-    return MatrixWorkspace(
-        np.empty((ne, 2 * ndof, 2 * ndof)),
-        ndof * np.arange(ne)[:, None] + np.arange(2 * ndof),
-        np.empty((ne, 2, dimension)),
-        np.empty((ne, 2, r, r)),
-        matrix,
-        np.empty(size, dtype=np.int64),
-        band,
-    )
 
 
 class KernelParts:

@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Calls, call_each
@@ -273,3 +275,18 @@ def clear_account(energy: Array, work: Array) -> None:
     """Write zero."""
     energy[:] = 0.0
     work[:] = 0.0
+
+
+def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspace:
+    """Workspace for the tangent of a line; with room for its turning, where it has a dimension."""
+    ne, r, size = nodes - 1, ndof - dimension if dimension else 0, nodes * ndof
+    matrix, band = banded.workspace(size, 2 * ndof - 1)
+    return MatrixWorkspace(
+        np.empty((ne, 2 * ndof, 2 * ndof)),
+        ndof * np.arange(ne)[:, None] + np.arange(2 * ndof),
+        np.empty((ne, 2, dimension)),
+        np.empty((ne, 2, r, r)),
+        matrix,
+        np.empty(size, dtype=np.int64),
+        band,
+    )

@@ -1,4 +1,4 @@
-"""Inverse of the lines' mass, and what it answers at the end of a dynamic step: accelerations and momentum.
+"""Inverse of the lines' mass.
 
 Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme). A line's element matrices,
 projected onto what moves, are a banded matrix.
@@ -6,23 +6,19 @@ projected onto what moves, are a banded matrix.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Forces, LineField, Part, State, Weights, local
-from riser_soil.core.roles import MomentumCorrecting
+from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.system import System, total
+from riser_soil.core.system import System
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.packed_riser import matrix_workspace
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData, matrix_workspace
 
 MASSLESS = 1e-12  # of a node's largest mass
 
@@ -182,18 +178,6 @@ def _multiply(left: Array, right: Array, out: Array) -> None:
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 
 
-class InverseMass(Protocol):
-    """Inverse of the lines' mass, see `RiserMass`."""
-
-    def accelerations(self, t: float, force: Array) -> Array: ...
-
-    def kinetic_energy(self, state: State) -> float: ...
-
-    def state(self) -> Saved: ...
-
-    def restore(self, saved: Saved) -> None: ...
-
-
 class RiserMass:
     """Inverse of the lines' mass, their own and the added one, on their free dofs; collective over all ranks."""
 
@@ -241,46 +225,3 @@ class RiserMass:
 
 def _with_inertia(system: System) -> list[Part]:
     return [part for part in system.model.parts if part.active and "I" in part.traits.groups]
-
-
-@dataclass(eq=False)
-class CommittedStep:
-    """A step just committed, and what its scheme needs from the system there; collective.
-
-    mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s].
-    """
-
-    system: System
-    mass: InverseMass | None
-    correcting: Sequence[MomentumCorrecting]
-    solved: State
-    forces: Forces
-    dt: float
-
-    @cached_property
-    def state(self) -> State:
-        """Increments zero, rates as solved."""
-        solved = self.solved
-        return State(solved.t, np.zeros(solved.u.size), solved.v, solved.a)
-
-    @cached_property
-    def contact(self) -> Array | None:
-        """Accelerations that contact causes [m/s2]; None where no forces may jump."""
-        return None if self.system.smooth else self._accelerations(-self.forces.end)
-
-    def with_momentum(self, state: State) -> State:
-        """The state with the rates that have the momentum of the step's end."""
-        missing = np.zeros_like(state.v)
-        for part in self.correcting:
-            part.add_momentum_correction(state, missing)
-        return State(state.t, state.u, state.v + self._accelerations(missing), state.a)
-
-    def in_balance(self, state: State) -> State:
-        """The state with the accelerations that its forces cause."""
-        prescribed = np.where(self.system.prescribed, state.a, 0.0)
-        forces = self.system.forces(State(state.t, state.u, state.v, prescribed))
-        return State(state.t, state.u, state.v, prescribed + self._accelerations(-total(forces)))
-
-    def _accelerations(self, force: Array) -> Array:
-        assert self.mass is not None
-        return self.mass.accelerations(self.solved.t, force)

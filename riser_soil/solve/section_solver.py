@@ -27,15 +27,14 @@ from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.banded import SingularError
 from riser_soil.core.communicator import Communicator, all_of, largest_of
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.part import local
 from riser_soil.core.rows import add_multiple
 from riser_soil.core.system import System
-from riser_soil.solve.banded_solvers import PythonContext
-from riser_soil.solve.chain import SingularError
-from riser_soil.solve.linear_solver import LinearSystems, factorise_directly
+from riser_soil.solve.linear_solver import LinearSystems, PythonContext, factorise_directly
 
 if TYPE_CHECKING:
     from riser_soil.soil.field import SoilField

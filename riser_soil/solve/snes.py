@@ -12,7 +12,6 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.banded_solvers import RiserAboveSoil, SingularError
 from riser_soil.solve.chain import (
     CONVERGED,
     DIVERGED,
@@ -26,7 +25,16 @@ from riser_soil.solve.chain import (
 )
 from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
-from riser_soil.solve.linear_solver import PREFIX, LinearSystems, complaint, defaults, factorise_directly, keeps_factors
+from riser_soil.solve.linear_solver import (
+    PREFIX,
+    LinearSystems,
+    RiserAboveSoil,
+    SingularError,
+    complaint,
+    defaults,
+    factorise_directly,
+    keeps_factors,
+)
 from riser_soil.solve.section_solver import SectionSolver, sections_of
 from riser_soil.solve.solver import NewtonSettings
 

@@ -8,7 +8,7 @@ What the compiled loop over a riser does besides where other unknowns stand besi
     [B  U ] [x]   [f]
     [U' D ] [y] = [g]
 
-B is the riser's band, U the coupling, whose rows are zero but at few nodes, and D dense, as in `banded_solvers`.
+B is the riser's band, U the coupling, whose rows are zero but at few nodes, and D dense, as in `linear_solver`.
 """
 
 from __future__ import annotations

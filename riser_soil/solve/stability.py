@@ -36,7 +36,7 @@ from riser_soil.core.system import System
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.solve import chain
-from riser_soil.solve.chain import ChainFactors, is_chain
+from riser_soil.solve.chain import ChainFactors
 
 if TYPE_CHECKING:
     from riser_soil.bodies.body import MovingBody
@@ -112,7 +112,7 @@ def unstable_modes(
 
 def negative_pivots(system: System) -> int:
     """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
-    if chain.is_chain(system):
+    if system.is_chain:
         return chain.negative_pivots(system.matrix)
     from riser_soil.solve import linear_solver
 
@@ -225,7 +225,7 @@ def buckling_mode(
 
 
 def _exact_solver(system: System) -> AbstractContextManager[Callable[[Array], Array]]:
-    if is_chain(system):
+    if system.is_chain:
         return nullcontext(ChainFactors(system.matrix).solve)
     from riser_soil.solve.linear_solver import exact_solver
 

@@ -10,7 +10,6 @@ from riser_soil.core.communicator import Communicator, destroyed_together
 from riser_soil.core.matrix import Patterns
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step, StepSolver
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme, Static
@@ -24,7 +23,7 @@ def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepS
     """
     if system.comm.size > 1 or settings.snes or not isinstance(scheme, GeneralizedAlpha):
         return Newton(system, settings)
-    if is_chain(system):
+    if system.is_chain:
         from riser_soil.solve.riser_newton import riser_newton
 
         return riser_newton(system, settings) or Newton(system, settings)

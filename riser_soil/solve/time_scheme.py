@@ -15,7 +15,9 @@ Generalised-alpha: Chung & Hulbert (1993), eqs 17 and 25; alpha_m = alpha_f = 0 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -23,7 +25,64 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces, State, Weights
-from riser_soil.solve.riser_mass import CommittedStep
+from riser_soil.core.roles import MomentumCorrecting
+from riser_soil.core.saved_state import Saved
+from riser_soil.core.system import System, total
+
+
+class InverseMass(Protocol):
+    """Inverse of the lines' mass, see `RiserMass`."""
+
+    def accelerations(self, t: float, force: Array) -> Array: ...
+
+    def kinetic_energy(self, state: State) -> float: ...
+
+    def state(self) -> Saved: ...
+
+    def restore(self, saved: Saved) -> None: ...
+
+
+@dataclass(eq=False)
+class CommittedStep:
+    """A step just committed, and what its scheme needs from the system there; collective.
+
+    mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s].
+    """
+
+    system: System
+    mass: InverseMass | None
+    correcting: Sequence[MomentumCorrecting]
+    solved: State
+    forces: Forces
+    dt: float
+
+    @cached_property
+    def state(self) -> State:
+        """Increments zero, rates as solved."""
+        solved = self.solved
+        return State(solved.t, np.zeros(solved.u.size), solved.v, solved.a)
+
+    @cached_property
+    def contact(self) -> Array | None:
+        """Accelerations that contact causes [m/s2]; None where no forces may jump."""
+        return None if self.system.smooth else self._accelerations(-self.forces.end)
+
+    def with_momentum(self, state: State) -> State:
+        """The state with the rates that have the momentum of the step's end."""
+        missing = np.zeros_like(state.v)
+        for part in self.correcting:
+            part.add_momentum_correction(state, missing)
+        return State(state.t, state.u, state.v + self._accelerations(missing), state.a)
+
+    def in_balance(self, state: State) -> State:
+        """The state with the accelerations that its forces cause."""
+        prescribed = np.where(self.system.prescribed, state.a, 0.0)
+        forces = self.system.forces(State(state.t, state.u, state.v, prescribed))
+        return State(state.t, state.u, state.v, prescribed + self._accelerations(-total(forces)))
+
+    def _accelerations(self, force: Array) -> Array:
+        assert self.mass is not None
+        return self.mass.accelerations(self.solved.t, force)
 
 
 class Scheme(Protocol):
@@ -103,7 +162,7 @@ class Static:
         return end.state, end.state
 
     def weights(self, dt: float) -> Weights:
-        return Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)
+        return Weights.of_statics()
 
     def trial(self, before: State, t: float, dt: float, u: Array) -> State:
         nothing = np.zeros_like(u)

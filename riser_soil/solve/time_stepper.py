@@ -27,11 +27,10 @@ from riser_soil.solve.local_error import (
     LocalError,
     committed_error,
 )
-from riser_soil.solve.riser_mass import CommittedStep
 from riser_soil.solve.solver import NotConvergedError, Solution, Step, StepSolver
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_solver import balance_held
-from riser_soil.solve.time_scheme import Scheme
+from riser_soil.solve.time_scheme import CommittedStep, Scheme
 
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
 EASY = 6  # Newton iterations up to which a step that was cut may grow again

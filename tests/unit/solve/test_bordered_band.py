@@ -10,8 +10,7 @@ import pytest
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.solve.banded_solvers import BorderedBand, SingularError, bandwidth
-from riser_soil.solve.linear_solver import complaint
+from riser_soil.solve.linear_solver import BorderedBand, SingularError, bandwidth, complaint
 
 
 def matrix(chain: int, border: int, band: int, touched: slice) -> Array:
@@ -86,7 +85,7 @@ def test_a_singular_matrix_is_reported_where_petsc_makes_an_error_of_its_own() -
 LEFT_OVER = """
 import numpy as np
 from petsc4py import PETSc
-from riser_soil.solve.banded_solvers import BorderedBand
+from riser_soil.solve.linear_solver import BorderedBand
 
 class Solver:
     def __init__(self):

@@ -9,8 +9,7 @@ import pytest
 from petsc4py import PETSc
 
 from riser_soil.core.system import System
-from riser_soil.solve.banded_solvers import RiserAboveSoil
-from riser_soil.solve.linear_solver import exact_solver
+from riser_soil.solve.linear_solver import RiserAboveSoil, exact_solver
 from tests.support.above_soil import hanging
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built

@@ -12,8 +12,8 @@ from petsc4py import PETSc
 from scipy.sparse import csr_matrix
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.banded import SingularError
 from riser_soil.core.factor_memory import Workspace
-from riser_soil.solve.chain import SingularError
 from riser_soil.solve.section_solver import SectionSolver
 
 RISER, SECTIONS, EACH, WIDTH = 6, 3, 40, 5  # rows of the riser, sections, rows of one, entries beside its diagonal
