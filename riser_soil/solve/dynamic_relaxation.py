@@ -56,7 +56,7 @@ class Relaxation:
     def __init__(self, lines: Sequence[Line], drag: float, lengths: Mapping[MovingBody, float] | None = None) -> None:
         self.lines, self.drag, self._lengths = lines, drag, lengths or {}
         self.fields: list[Line | MovingBody] = [*lines, *self._lengths]
-        self.places = {line.name: np.ones(line.nodes) for line in lines}
+        self.places: dict[str, Array] = {line.name: np.ones(line.nodes) for line in lines}
         self.active = all(field.active for field in self.fields)
 
     @property
