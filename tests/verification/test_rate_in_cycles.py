@@ -28,6 +28,7 @@ def lowest(place: Path, law: str, seconds: float = 1.0) -> tuple[Array, float]:
     (place / "path.csv").write_text("\n".join(["t [s], x [m], y [m], z [m]", *rows]) + "\n")
     table = [f"stages.0.motion.{end}.table={place / 'path.csv'}" for end in ("start", "end")]
     times = [f"stages.0.duration={seconds * (len(z) - 1)!r}", f"stages.0.time_step={0.25 * seconds!r}"]
+    times.append("stages.0.kind=dynamic")  # equilibria know no rate
     clay = f"soil.law={{kind: von-mises, su: 5.0e3, E_over_su: 300.0, {law}}}"
     scene = read_scene(SCENE, (*table, *times, clay, "contact.method=surface"))
     assembly = built_of(scene)
