@@ -214,7 +214,7 @@ def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
     if compiled.system.smooth:
         assert compiled.iterations == snes.iterations
     else:
-        assert snes.iterations <= compiled.iterations <= 1.2 * snes.iterations
+        assert snes.iterations <= compiled.iterations <= 1.25 * snes.iterations
 
 
 def require_steps_of_snes(case: str) -> None:
