@@ -297,9 +297,9 @@ class Assembly:
     def _model(self, of_lines: Mapping[str, list[Part]], hung: list[Part]) -> Model:
         stage = self.stage
         assert stage is not None
-        cushion = [self.cushion] if self.cushion is not None and self._rests_on_cushion(stage) else []
-        if self.cushion is not None:
-            self.cushion.stays = not self.soil_bears
+        cushion = []
+        if self.cushion is not None and (self.is_laid_in(stage) or not self.soil_bears):
+            self.cushion.stays, cushion = not self.soil_bears, [self.cushion]
         on_ground = [*self.contacts, *self.frictions, *cushion]
         renewal = [] if self.mesh_renewal is None else [self.mesh_renewal]
         with_soil = [*self.soil_parts, *on_ground, *renewal]
@@ -316,10 +316,11 @@ class Assembly:
         """Whether there is soil in the present stage: while several lines are laid, it is their cushion that bears."""
         assert self.stage is not None
         before = self.stage.name in (LAYING, LETTING_GO)
-        return self.soil is not None and not (before and self.scene.lines and self.cushion is not None)
+        return self.soil is not None and not (before and self._laid_on_cushion)
 
-    def _rests_on_cushion(self, stage: Stage) -> bool:
-        return self.is_laid_in(stage) or (self.soil is not None and not self.soil_bears)
+    @property
+    def _laid_on_cushion(self) -> bool:
+        return bool(self.scene.lines) and self.cushion is not None
 
     def pressure_change(self, t: float) -> float:
         """How much higher the pressure inside [Pa] is at t of the present stage than the contents' own."""
@@ -352,15 +353,15 @@ class Assembly:
         return increments if guessed else None
 
     def is_laid_in(self, stage: Stage) -> bool:
-        """Whether a line is laid on the ground in a static stage: the first, but for several lines' on soil."""
-        if self.scene.lines and self.cushion is not None:
-            return stage.kind == "static" and stage.name == self.scene.stages[0].name and self.scene.initial is None
-        return self.is_first(stage)
+        """Whether a line is laid on the ground in a static stage: the first, of several lines on soil the scene's."""
+        return self._begins_with(stage, self.scene.stages[0].name) if self._laid_on_cushion else self.is_first(stage)
 
     def is_first(self, stage: Stage) -> bool:
         """Whether a static stage is the first of all."""
-        first = LAYING if self.laying is not None else self.scene.stages[0].name
-        return stage.kind == "static" and stage.name == first and self.scene.initial is None
+        return self._begins_with(stage, LAYING if self.laying is not None else self.scene.stages[0].name)
+
+    def _begins_with(self, stage: Stage, name: str) -> bool:
+        return stage.kind == "static" and stage.name == name and self.scene.initial is None
 
 
 def sized(scene: Scene) -> Scene:
