@@ -28,6 +28,7 @@ CASES: dict[str, tuple[int, Mapping]] = {
     "in a plane": (2, {}),
     "in space": (3, {"friction": None}),
 }
+MARKED = [pytest.param(name, marks=[pytest.mark.verify] * (name == "in space")) for name in CASES]
 SCHEME, SETTINGS = GeneralizedAlpha.newmark(), NewtonSettings(1e-9, 25, 1e-6, line_search=True)
 
 
@@ -91,7 +92,7 @@ def forbid(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(CondensedNewton, "_by_newton", refuse)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", MARKED)
 def test_the_loop_finds_what_newton_finds(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     forbid(monkeypatch)
     assert_same(taken(case, "compiled"), by_snes(case))
@@ -156,7 +157,7 @@ def at_first_step(case: str) -> tuple[CondensedNewton, System]:
     return found, system
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", MARKED)
 def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     """Of riser and border, and it is another one without contact's share."""
     newton, system = at_first_step(case)
