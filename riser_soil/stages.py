@@ -39,6 +39,7 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 LAID_IN = 8  # load steps on soil, at least
 MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step on soil moves an end; presses it in, on clay
 ROUND_OFF = 1e-9  # of a load step
+AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
 MOST_STEPS = 64  # of a stage, but for those that the scene asks for
 MOST_RELAXED = 1  # times in a static stage on clay
 MOST_SUNK = 1 / 40  # diameters by which the riser may sink in a static step on soil that moves
@@ -399,7 +400,7 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
         return StepControl(1.0, 1.0 / _load_steps(assembly, stage, 0.0, 1.0), solver.min_load_step)
     if isinstance(stage, QuasiStaticStage):
         return _path_steps(assembly, stage)
-    smallest = assembly.smallest_step(stage)
+    smallest = _smallest_step(assembly, stage)
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)
         first = first_step(stepper.system, stepper.now, tolerance)
@@ -407,6 +408,14 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
         hit = [t for own, each in seen for t in times_to_hit(own.scene, each)]
         return AutoSteps(stage.duration, tolerance, smallest, first, hit)
     return StepControl(stage.duration, stage.time_step, smallest)
+
+
+def _smallest_step(assembly: Assembly, stage: DynamicStage) -> float:
+    """Down to which time steps are cut [s]."""
+    given = assembly.scene.solver.min_time_step
+    if given != "auto":
+        return float(given)
+    return AUTO_SMALLEST_OF_STAGE * stage.duration if stage.time_step == "auto" else AUTO_SMALLEST * stage.time_step
 
 
 def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Timer) -> None:

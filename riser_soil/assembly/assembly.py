@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
 
 AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
-AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
 LAYING, LETTING_GO = "laying", "letting go"  # stages before those of the scene
 
 
@@ -205,26 +204,9 @@ class Assembly:
 
     @property
     def contact_period(self) -> float:
-        """Shortest period [s] of a line on the stiffness of its contact, on soil in series with the soil's own; nan
-        where none touches anything.
-        """
-        periods = (self._contact_period(own) for own in self.lines.values())
+        """The shortest of the lines' [s]; nan where none touches anything."""
+        periods = (own.contact_period for own in self.lines.values())
         return min((period for period in periods if not math.isnan(period)), default=math.nan)
-
-    def _contact_period(self, own: LineAssembly) -> float:
-        found = dict(own.contact_stiffness)
-        if "soil" in found and self.scene.soil is not None:
-            E = self.scene.soil.top_law.surface_modulus(self.scales.diameter)
-            found["soil"] *= E / (E + found["soil"])
-        stiffest = max(found.values(), default=math.nan)
-        return 2.0 * math.pi * math.sqrt(float(own.elements.mass.min()) / stiffest)
-
-    def smallest_step(self, stage: DynamicStage) -> float:
-        """Down to which time steps are cut [s]."""
-        given = self.scene.solver.min_time_step
-        if given != "auto":
-            return float(given)
-        return AUTO_SMALLEST_OF_STAGE * stage.duration if stage.time_step == "auto" else AUTO_SMALLEST * stage.time_step
 
     @property
     def slack(self) -> float:

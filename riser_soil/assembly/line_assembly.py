@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -97,6 +98,18 @@ class LineAssembly:
     @cached_property
     def scales(self) -> Scales:
         return scales_of(self.elements)
+
+    @property
+    def contact_period(self) -> float:
+        """Shortest period [s] on the stiffness of its contact, on soil in series with the soil's own; nan where it
+        touches nothing.
+        """
+        found = dict(self.contact_stiffness)
+        if "soil" in found and self.scene.soil is not None:
+            E = self.scene.soil.top_law.surface_modulus(self.scales.diameter)
+            found["soil"] *= E / (E + found["soil"])
+        stiffest = max(found.values(), default=math.nan)
+        return 2.0 * math.pi * math.sqrt(float(self.elements.mass.min()) / stiffest)
 
     @cached_property
     def wall_sections(self) -> WallSections | None:
