@@ -1,4 +1,4 @@
-"""The worked cases of several lines: both run, and the page has the tensions that a run gives."""
+"""The worked cases of several lines run, and the page has the figures that a run gives."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from demos.page import block
+from riser_soil.checks.check import describe
 from riser_soil.results.read import Run
 from riser_soil.scene.reader import read_scene
 from riser_soil.whole_run import run
@@ -40,3 +41,19 @@ def test_the_mooring_runs_in_waves_and_current(tmp_path: Path) -> None:
     stage = Run(tmp_path).summary["stages"][1]
     assert abs(stage["energy"]["relative_residual"]) < 1e-3
     assert stage["clearance"]["east_north"]["distance"]["min"] > 20.0
+
+
+def test_the_lazy_s_on_clay_is_built_without_a_warning() -> None:
+    assert describe(read_scene(DEMO / "lazy_s_on_clay.yaml")).endswith("no warnings")
+
+
+@pytest.mark.verify
+def test_the_lazy_s_on_clay_has_the_pages_figures(tmp_path: Path) -> None:
+    """Touchdown at rest, largest moment in heave, settlement: as far as the page shows digits."""
+    run(read_scene(DEMO / "lazy_s_on_clay.yaml"), tmp_path)
+    rest, heave = Run(tmp_path).of_line("lower").summary["stages"]
+    assert rest["final"]["touchdown_arc"] == pytest.approx(60.16, abs=0.01)
+    assert heave["extremes"]["max_bending_moment"]["max"] == pytest.approx(1615.4, abs=0.2)
+    settled = [1e3 * stage["soil"]["max_settlement"]["value"] for stage in (rest, heave)]
+    assert settled == pytest.approx([6.8, 7.6], abs=0.06)
+    assert abs(heave["energy"]["worst_residual"]["value"]) < 1e-5 * heave["energy"]["turned_over"]
