@@ -212,8 +212,7 @@ class PeakObserver(StatelessObserver):
         self._hung = hung_reader(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        on_soil = "" if assembly.scene.soil is None else assembly.scene.soil.line or ""
-        self.peaks = RunPeaks(None if soil is None else soil.output_mesh(), on_soil)
+        self.peaks = RunPeaks(None if soil is None else soil.output_mesh(), assembly.name_on_soil)
         self._envelopes = envelopes
         if envelopes is not None:
             envelopes.update({line: CurveEnvelope() for line in self._instants})

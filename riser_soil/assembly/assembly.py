@@ -85,9 +85,14 @@ class Assembly:
         return Assembly(own.scene, self.comm, {name: own}, None, *soil)
 
     @property
+    def name_on_soil(self) -> str:
+        """Of several lines the name of the one that lies on the soil, else ""."""
+        return "" if self.scene.soil is None else self.scene.soil.line or ""
+
+    @property
     def line_on_soil(self) -> Assembly | None:
         """The line that lies on the soil, as of `by_line`; None without soil."""
-        return next((each for each in self.by_line.values() if each.soil is not None), None)
+        return None if self.soil is None else self.by_line[self.name_on_soil]
 
     @property
     def line(self) -> Line:

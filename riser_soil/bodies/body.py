@@ -37,8 +37,8 @@ class MovingBody:
     dimension, nodes = 3, 1
 
     def __init__(self, name: str, position: Array, turns: bool, lever: float, active: bool = True) -> None:
-        self.name, self.active = name, active
-        self.space = name
+        self.name = self.space = name
+        self.active = active
         self.x: Array = np.array(position, dtype=float)[None]
         self.frames, self.turns, self.lever = SpatialFrames(np.eye(3)[None], NO_ENDS), turns, lever
         self.ndof = self.size = 6 if turns else 3

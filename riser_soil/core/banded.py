@@ -18,12 +18,12 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.rows import Size, add_multiple
 
+HUGE = 1e300  # a pivot beyond it is no number to divide by
+THRESHOLD = 0.1
+
 
 class SingularError(Exception):
     """A matrix without an inverse."""
-
-HUGE = 1e300  # a pivot beyond it is no number to divide by
-THRESHOLD = 0.1
 
 
 def workspace(n: int, b: int) -> tuple[Array, Size]:

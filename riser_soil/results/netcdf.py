@@ -175,9 +175,8 @@ class SeriesFile:
 
     arcs: (nn,) m, arc lengths of the nodes of each line, by its name; "" of the only one. Several lines have a group
     each, and `more` are variables of other groups, by their paths. left_out: names of SERIES that are not wanted, by
-    line.
-    ledger: of `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them. goes_on: with
-    the file of an earlier run, up to what is restored.
+    line. ledger: of `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them. goes_on:
+    with the file of an earlier run, up to what is restored.
     Rows given to `record` and `step` live in memory until `flush`.
     """
 

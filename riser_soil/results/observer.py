@@ -168,10 +168,7 @@ class Observer:
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if last and self._assembly.soil is not None:
-            found = self._boundary()
-            for name, line in self._assembly.by_line.items():
-                if line.soil is not None:
-                    self._plausibility[name].look_around(found)
+            self._plausibility[self._assembly.name_on_soil].look_around(self._boundary())
         if self._recorder is not None:
             iterations = step.solution.iterations + self._relaxed
             health = StepStatistics(iterations, step.dt, change, step.cuts, stepper.local_error)
@@ -382,7 +379,7 @@ def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
         diameter=assembly.scales.diameter,
         weight=max(own.scales.weight * float(np.ptp(own.line.arc)) for own in assembly.lines.values()),
         contact_period=assembly.contact_period,
-        on_soil="" if assembly.scene.soil is None else assembly.scene.soil.line or "",
+        on_soil=assembly.name_on_soil,
         sections=count_of(lying) if lying is not None else 0,
         offsets=offsets_of(lying) if lying is not None else (),
     )

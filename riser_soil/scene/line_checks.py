@@ -156,12 +156,8 @@ def _jointed(scene: Scene, name: str, end: str) -> bool:
 
 def _not_yet(scene: Scene) -> Iterator[Problem]:
     """What one line has and several have not."""
-    given: dict[Path, bool] = {
-        ("dimension",): scene.dimension == 2,
-    }
-    for path, there in given.items():
-        if there:
-            yield Problem(path, "is not there yet for several lines", _LATER)
+    if scene.dimension == 2:
+        yield Problem(("dimension",), "is not there yet for several lines", _LATER)
     over_a_grid, water = scene.seabed is not None and scene.seabed.grid is not None, scene.water
     if over_a_grid and water is not None and water.waves is not None and water.depth is None:
         yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")

@@ -47,13 +47,14 @@ def _of_line(scene: Scene, name: str) -> Scene:
     stages = tuple(_stage(stage, stage.lines.get(name, OfLine()), line) for stage in scene.stages)
     several: dict[str, Any] = {"lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "stages": stages}
     own = several | {"riser": line.model_copy(update=ends | cut)}
-    lies = scene.soil is not None and scene.soil.line == name
-    return scene.model_copy(update=own if lies else own | _without_soil(scene))
+    if scene.soil is not None and scene.soil.line == name:
+        return scene.model_copy(update=own | {"soil": scene.soil.model_copy(update={"line": None})})
+    return scene.model_copy(update=own | _without_soil(scene))
 
 
 def on_soil(scene: Scene) -> Scene | None:
     """The line that lies on the soil, as of `by_line`; None without soil."""
-    return next((view for view in by_line(scene).values() if view.soil is not None), None)
+    return None if scene.soil is None else by_line(scene).get(scene.soil.line or "")
 
 
 def _without_soil(scene: Scene) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil import stages
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
@@ -50,6 +51,19 @@ def test_a_pipe_settles_to_where_one_that_is_pushed_bears_its_weight() -> None:
     assert rested.settled > 0
     assert pytest.approx(2.7, rel=2e-4) == rested.V, "all of the weight, but for the pipe's lean"
     assert pushed.at(rested.w) == pytest.approx(rested.V, rel=0.02)
+
+
+def test_settling_ends_where_the_clay_bears_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where no equilibrium without the drag is taken, as where one is judged unstable: it went on to an error."""
+    usual, step = Rested(2.7), settling._Settling._step
+
+    def with_drag_alone(self: settling._Settling, drag: float) -> Array | None:
+        return step(self, drag) if drag else None
+
+    monkeypatch.setattr(settling._Settling, "_step", with_drag_alone)
+    rested = Rested(2.7)
+    assert rested.settled > 0
+    assert usual.w == pytest.approx(rested.w, rel=1e-3)
 
 
 @pytest.mark.verify
