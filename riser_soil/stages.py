@@ -273,13 +273,13 @@ def _static_step(run: StageRun) -> AcceptedStep:
 
 
 def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
-    """A step in which the riser sinks no farther than soil follows, by settling where there is no other; None where
-    that finds no step that converges.
+    """A step in which the riser sinks no farther than soil follows, cut where supports press it in, and by settling
+    where there is no other; None where that finds no step that converges.
     """
     stepper, on_soil = run.stepper, _on_soil(run.assembly)
     longest = MOST_SUNK * on_soil.scales.diameter
     try:
-        step = stepper.advance(run.control, 0)
+        step = stepper.advance(run.control, MOST_CUTS if stepper.moves_supports(run.control) else 0)
         if _sunk(on_soil, stepper.before, step.solution.state) <= longest:
             return step
     except SolveError:

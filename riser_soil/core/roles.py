@@ -1,4 +1,5 @@
-"""Optional roles of parts in the time stepping: adaptive pattern, predictor, start, momentum correction, new mesh.
+"""Optional roles of parts in the time stepping: adaptive pattern, predictor, start, momentum correction, new mesh,
+elastic share.
 
 A role that is declared without its methods, such as a misspelt one, is an error at the stage's start, and so are the
 methods of a role that is not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
@@ -77,7 +78,16 @@ class Limited(Protocol):
         ...
 
 
-ROLES = (Adaptive, Predictor, Stateful, Starting, MomentumCorrecting, Renewing, Limited)
+@runtime_checkable
+class Yielding(Protocol):
+    """A part whose tangent all but vanishes where it flows."""
+
+    def mix_elastic(self, share: float) -> None:
+        """From now on the tangent has a share of the elastic one, 0 to 1, in place of as much of its own."""
+        ...
+
+
+ROLES = (Adaptive, Predictor, Stateful, Starting, MomentumCorrecting, Renewing, Limited, Yielding)
 
 
 def with_role(parts: Iterable[Part], role: type) -> list[Any]:

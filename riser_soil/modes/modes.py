@@ -262,7 +262,7 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
     for friction in assembly.frictions:
         friction.stick()
     if assembly.soil is not None:
-        assembly.soil.unload()
+        assembly.soil.mix_elastic(1.0)
     return _linearised(assembly, stages[-1], clock)
 
 

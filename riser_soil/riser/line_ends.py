@@ -6,6 +6,7 @@ the loads do not depend on the direction.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -200,7 +201,10 @@ def free_turns(x: Array, turn: Orientation, prescribed: BoolArray, length: float
     """Increments (k, nn, d + r) of independent rigid motions that move no prescribed dof; in space sections may spin.
 
     x (nn, d): positions; prescribed (nn, d + r). length: the line's [m]; also the largest displacement of each motion.
+    None where an increment turns a node by more than half a turn: near a whole one rotation vectors have no rates.
     """
+    if isinstance(turn, SpatialOrientation) and np.linalg.norm(turn.Theta, axis=1).max() > math.pi:
+        return np.zeros((0, *prescribed.shape))
     motions = _rigid_motions(x, turn, length)
     units = unit_lengths(x.shape, motions.shape[2], length)
     motions /= units

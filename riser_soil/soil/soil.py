@@ -11,7 +11,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
-from riser_soil.core.roles import Limited
+from riser_soil.core.roles import Limited, Yielding
 from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
@@ -66,12 +66,12 @@ class Soil:
         depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
         self._take_material()
-        self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful))
+        self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful, Yielding))
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
         self._in_balance = self._found.stress  # as the last step left it, before cells that moved asked the law again
         self._last: _Answer | None = None
-        self._unloads = False
+        self._elastic_share = 0.0
         self._volumes: Array = self.cells.gradients.weights.flatten()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
@@ -91,14 +91,23 @@ class Soil:
     def residual(self, state: State, forces: Forces) -> None:
         self.field.own(forces.end)[:] += self._answer(state).force
 
-    def unload(self) -> None:
-        """From now on the tangent is that of unloading, which is elastic, as in small vibrations about rest."""
-        self._unloads = True
+    def mix_elastic(self, share: float) -> None:
+        """From now on the tangent has a share of the elastic one; with 1 it is that of unloading, as in small
+        vibrations about rest.
+        """
+        self._elastic_share = share
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        found = self._answer(state).found
-        by_strain = mandel.stiffness(self.law.bulk, self.law.shear) if self._unloads else found.tangent
-        values["soil"] += self.cells.stiffness(by_strain)
+        values["soil"] += self.cells.stiffness(self._moduli(self._answer(state).found.tangent))
+
+    def _moduli(self, consistent: Array) -> Array:
+        """The law's (n, 6, 6) [Pa], with the elastic ones' share."""
+        share = self._elastic_share
+        return consistent if share == 0.0 else consistent + share * (self._elastic - consistent)
+
+    @property
+    def _elastic(self) -> Array:
+        return mandel.stiffness(self.law.bulk, self.law.shear)
 
     def energy(self, state: State) -> Energy:
         """Strain energy by the law since the start, and potential of the unbalanced weight.

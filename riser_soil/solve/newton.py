@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
 from riser_soil.core.part import Forces, State, Weights
-from riser_soil.core.roles import Adaptive, Limited, with_role
+from riser_soil.core.roles import Adaptive, Limited, Yielding, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.solve.chain import (
@@ -24,6 +24,7 @@ from riser_soil.solve.chain import (
 )
 from riser_soil.solve.newton_progress import (
     NAMES,
+    ElasticShare,
     ResidualNorm,
     above_round_off,
     diverges,
@@ -60,6 +61,7 @@ class Newton(StepSolver):
         self._trials: StepTrials | None = None
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self._limited: list[Limited] = with_role(system.model.parts, Limited)
+        self._elastic = ElasticShare(with_role(system.model.parts, Yielding))
         self.loop = self._new_loop()
         self._pivots = PivotCounter(system)
         self._make_vectors()
@@ -166,6 +168,7 @@ class Newton(StepSolver):
                 self._most += self.settings.max_iterations
             elif not self.loop.again:
                 self.iterations += self._taken
+                self._elastic.reset()
                 return "" if ending == CONVERGED else self._reason(ending)
             self._norms.pop()
 
@@ -254,7 +257,8 @@ class Newton(StepSolver):
         def along(f: Array) -> float:
             return -self.system.sum([float(f @ y)])[0]
 
-        return step_length(along(self._f), lambda part: along(self.residual(x - part * y))) * y
+        self._elastic.length = step_length(along(self._f), lambda part: along(self.residual(x - part * y)))
+        return self._elastic.length * y
 
     def _assemble(self, state: State) -> None:
         self.system.assemble(state, self._step.weights)
@@ -306,6 +310,8 @@ class Newton(StepSolver):
         if self._taken >= self._most or self._reusable():
             return ITERATING
         self._step.of(self._x)
+        if self._taken > max(self._first, 1):
+            self._elastic.adapt(*self._norms[:-3:-1])
         self._assemble(self._step.balanced)
         return OUTGROWN if self._outgrown() else ITERATING
 

@@ -5,6 +5,11 @@ the slope of an energy, g(a) = r(x + a d)·d falls to zero where the energy is l
 step is taken where it does not go far beyond that, else the zero is bracketed by false position, the slope at the end
 that stays counting half each time (after the Illinois method, so that neither end stays for long).
 
+Where soil flows its tangent all but vanishes, and increments are of any length, metres or kilometres. After such an
+iteration, in which the residual has grown or only a short part of the step was taken, the tangent gets a share of the
+elastic one, ten times as much each time, which bounds the increments as the damping of Levenberg and Marquardt does. As
+the residual falls it is taken back, so that Newton's method ends with its own tangent.
+
 Round-off of the residual: where Newton's method ends because nothing is left that it could improve.
 
 The residual of a stiff line or contact is a small difference of large numbers: some eps EA of a bar that has turned,
@@ -22,7 +27,7 @@ is solved as far as it can be told; a larger floor for the residual would hide s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +36,7 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.communicator import all_of
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces
+from riser_soil.core.roles import Yielding
 from riser_soil.core.system import System
 
 GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY, OUTGROWN = range(7)
@@ -51,6 +57,38 @@ MOST = 10  # evaluations of the slope within the step
 STALLED = 0.5  # the norm of a residual that falls by less in each of two iterations stays as it is
 EPS = float(np.finfo(float).eps)
 ROUND_OFF = 8.0 * EPS  # of the sum of sizes; residuals that stayed were found at up to 2 eps of it
+
+
+FIRST_SHARE, MORE = 1e-4, 10.0  # of the elastic tangent, and how much more or less of it the next iteration has
+SHORT, FALLEN = 0.3, 0.3  # part of a step that is short; share of the residual left where it falls
+
+
+class ElasticShare:
+    """The share of the elastic tangent in that of parts that yield; see the module's text.
+
+    length: part of the last step that was taken.
+    """
+
+    def __init__(self, parts: Sequence[Yielding]) -> None:
+        self._parts, self._share, self.length = parts, 0.0, 1.0
+
+    def reset(self) -> None:
+        """None, as where a step begins."""
+        self.length = 1.0
+        self._give(0.0)
+
+    def adapt(self, norm: float, before: float) -> None:
+        """For the tangent after an iteration, by the norms of the residual then and before."""
+        if self.length < SHORT or norm > before:
+            self._give(min(1.0, max(MORE * self._share, FIRST_SHARE)))
+        elif norm < FALLEN * before:
+            self._give(self._share / MORE if self._share > FIRST_SHARE else 0.0)
+
+    def _give(self, share: float) -> None:
+        if share != self._share:
+            self._share = share
+            for part in self._parts:
+                part.mix_elastic(share)
 
 
 def step_length(start: float, slope: Callable[[float], float]) -> float:

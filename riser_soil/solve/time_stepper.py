@@ -139,12 +139,18 @@ class TimeStepper:
         self._forces = self.system.forces(self.now)
 
     def depends_on(self, control: Control) -> bool:
-        """Whether loads or supports change in the step to be tried; in statics shorter steps are easier only then."""
-        end = State(control.target, self.before.u.copy(), self.before.v.copy(), self.before.a.copy())
+        """Whether loads or supports change in the step to be tried; in statics shorter steps are easier only then.
+        Collective.
+        """
+        end = replace(self.before, t=control.target)
         change = total(self.system.forces(end)) - total(self.system.forces(self.before))
+        return any_of(self.system.comm, bool(np.any(change != 0.0))) or self.moves_supports(control)
+
+    def moves_supports(self, control: Control) -> bool:
+        """Whether supports move in the step to be tried; collective."""
+        end = State(control.target, self.before.u.copy(), self.before.v.copy(), self.before.a.copy())
         self.system.prescribe(end)
-        changed = bool(np.any(change != 0.0) or np.any(end.u != 0.0))
-        return any_of(self.system.comm, changed)
+        return any_of(self.system.comm, bool(np.any(end.u != 0.0)))
 
     def advance(self, control: Control, most_cuts: int | None = None) -> AcceptedStep:
         """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""

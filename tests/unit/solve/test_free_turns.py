@@ -52,6 +52,14 @@ def test_what_the_supports_leave_free(dimension: int, start: End, end: End, coun
         assert np.abs(stretch).max() < 1e-9 * line.arc[-1] ** 2
 
 
+def test_an_increment_of_a_whole_turn_leaves_none_free() -> None:
+    """There rotation vectors have no rates that would tell a spin."""
+    line = sample(3, (FREE, FREE)).line
+    state = State.at_rest(0.0, line.size)
+    line.nodal(state.u)[:, 3] = 2.0 * np.pi
+    assert line.free_turns(state).shape == (0, line.size)
+
+
 def hinged(x: float, z: float, given: Mapping, **pipe: float) -> Mapping:
     """A line in space between balls, 12 m long."""
     made: Mapping = {"EA": 1e8, "EI": 1e3, "GJ": 1e3} | pipe

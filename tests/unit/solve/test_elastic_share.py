@@ -1,0 +1,44 @@
+"""The share of the elastic tangent that soil gets where Newton's increments lose all measure."""
+
+from __future__ import annotations
+
+from riser_soil.solve.newton_progress import FIRST_SHARE, ElasticShare
+
+
+class Flowing:
+    """A part that keeps what share it was given."""
+
+    def __init__(self) -> None:
+        self.given = list[float]()
+
+    def mix_elastic(self, share: float) -> None:
+        self.given.append(share)
+
+
+def test_it_grows_as_long_as_the_residual_does_and_ends_where_it_falls() -> None:
+    part = Flowing()
+    share = ElasticShare([part])
+    for norm, before in ((2.0, 1.0), (3.0, 2.0), (1.5, 3.0), (0.1, 1.5), (0.01, 0.1), (0.001, 0.01)):
+        share.adapt(norm, before)
+    assert part.given == [FIRST_SHARE, 10.0 * FIRST_SHARE, FIRST_SHARE, 0.0]
+
+
+def test_a_short_part_of_a_step_counts_as_well() -> None:
+    part = Flowing()
+    share = ElasticShare([part])
+    share.length = 0.01
+    share.adapt(0.5, 1.0)
+    assert part.given == [FIRST_SHARE]
+    share.reset()
+    assert part.given == [FIRST_SHARE, 0.0]
+    share.adapt(0.5, 1.0)
+    assert part.given == [FIRST_SHARE, 0.0]
+
+
+def test_it_is_never_more_than_the_elastic_tangent() -> None:
+    part = Flowing()
+    share = ElasticShare([part])
+    for n in range(10):
+        share.adapt(n + 2.0, n + 1.0)
+    assert part.given[-1] == 1.0
+    assert part.given == sorted(set(part.given))
