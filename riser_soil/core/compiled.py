@@ -21,6 +21,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import cache
 from glob import glob
 from inspect import signature
 from pathlib import Path
@@ -49,8 +50,31 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
     """
     # numba asks for the signature again and again, which takes a twentieth of a start where it is found anew.
     vars(function)["__signature__"] = signature(function)
-    made = numba.njit(forceinline=not apart, no_cfunc_wrapper=True, **OPTIONS)(function)
+    made = numba.njit(forceinline=not apart, no_cpython_wrapper=True, **OPTIONS)(function)
+    made.__class__ = _callable_from_python(made.__class__)
     with caching_in(str(FOLDER)):
+        made._cache = CacheByTypes(function)
+    return made
+
+
+@cache
+def _callable_from_python(usual: Any) -> Any:
+    """numba's class of compiled functions, of those without the code that takes their arguments from Python, which
+    takes a third of all compilation: what Python calls all the same is compiled once more, with it.
+    """
+
+    def call(self: Any, *arguments: Any) -> Any:
+        if "from_python" not in vars(self):
+            self.from_python = _with_wrapper(self.py_func)
+        return self.from_python(*arguments)
+
+    return type(usual.__name__, (usual,), {"__call__": call})
+
+
+def _with_wrapper(function: Callable[..., object]) -> Any:
+    made, folder = numba.njit(**OPTIONS)(function), FOLDER / "from_python"
+    folder.mkdir(parents=True, exist_ok=True)
+    with caching_in(str(folder)):
         made._cache = CacheByTypes(function)
     return made
 

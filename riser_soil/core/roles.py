@@ -1,5 +1,4 @@
-"""Optional roles of parts in the time stepping: adaptive pattern, predictor, start, momentum correction, new mesh,
-elastic share.
+"""Optional roles of parts in the time stepping, such as a predictor, a history that starts, or new meshes.
 
 A role that is declared without its methods, such as a misspelt one, is an error at the stage's start, and so are the
 methods of a role that is not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.

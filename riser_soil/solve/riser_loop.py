@@ -222,7 +222,9 @@ def clear_tangent(K: Array) -> None:
 @njit
 def begin_with(bulk: Array, K: Array) -> None:
     """Write the element matrices of all but contact."""
-    K[:] = bulk
+    found, kept = K.reshape(K.size), bulk.reshape(K.size)
+    for k in range(K.size):
+        found[k] = kept[k]
 
 
 @njit
