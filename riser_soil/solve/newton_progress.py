@@ -60,7 +60,7 @@ ROUND_OFF = 8.0 * EPS  # of the sum of sizes; residuals that stayed were found a
 
 
 FIRST_SHARE, MORE = 1e-4, 10.0  # of the elastic tangent, and how much more or less of it the next iteration has
-SHORT, FALLEN = 0.3, 0.3  # part of a step that is short; share of the residual left where it falls
+SHORT, FALLEN = 0.3, 0.7  # part of a step that is short; share of the residual left where it falls
 
 
 class ElasticShare:
