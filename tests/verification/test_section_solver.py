@@ -90,7 +90,7 @@ def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: py
     monkeypatch.setattr(SectionFactors, "take", lambda *given: usual(*given) and next(calls) % 100 != 99)
     largest = max(np.abs(step).max() for step in expected)
     for mine, other in zip(steps(on_sections("auto")), expected, strict=True):
-        np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-9 * largest)
+        np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-7 * largest)
     assert next(calls) > 200
 
 
