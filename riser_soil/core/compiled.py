@@ -52,7 +52,11 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
     vars(function)["__signature__"] = signature(function)
     made = numba.njit(forceinline=not apart, no_cpython_wrapper=True, **OPTIONS)(function)
     made.__class__ = _callable_from_python(made.__class__)
-    with caching_in(str(FOLDER)):
+    return _cached(made, function, FOLDER)
+
+
+def _cached(made: Any, function: Callable[..., object], folder: Path) -> Any:
+    with caching_in(str(folder)):
         made._cache = CacheByTypes(function)
     return made
 
@@ -65,18 +69,12 @@ def _callable_from_python(usual: Any) -> Any:
 
     def call(self: Any, *arguments: Any) -> Any:
         if "from_python" not in vars(self):
-            self.from_python = _with_wrapper(self.py_func)
+            folder = FOLDER / "from_python"
+            folder.mkdir(parents=True, exist_ok=True)
+            self.from_python = _cached(numba.njit(**OPTIONS)(self.py_func), self.py_func, folder)
         return self.from_python(*arguments)
 
     return type(usual.__name__, (usual,), {"__call__": call})
-
-
-def _with_wrapper(function: Callable[..., object]) -> Any:
-    made, folder = numba.njit(**OPTIONS)(function), FOLDER / "from_python"
-    folder.mkdir(parents=True, exist_ok=True)
-    with caching_in(str(folder)):
-        made._cache = CacheByTypes(function)
-    return made
 
 
 def entry(function: Callable[[int], None]) -> Any:
