@@ -238,8 +238,10 @@ def _rigid_motions(x: Array, turn: Orientation, length: float) -> Array:
     if not isinstance(turn, SpatialOrientation):
         turned, still = np.stack([-arm[:, 1], arm[:, 0]], axis=1), np.zeros((nodes, 1))
         return np.stack([np.hstack([moved, still]) for moved in shifts] + [np.hstack([turned, still + 1.0])])
-    still = np.zeros((nodes, 3))
     tangents = np.concatenate([turn.tangent[:, 0], turn.tangent[-1:, 1]])
-    spins = [still + axis for axis in np.eye(3)]
-    moves = [*((moved, still) for moved in shifts), *((np.cross(spin, arm), spin) for spin in spins), (still, tangents)]
-    return np.stack([np.hstack([moved, np.linalg.solve(turn.H, spin[..., None])[..., 0]]) for moved, spin in moves])
+    spins = np.concatenate([np.zeros((3, nodes, 3)), np.repeat(np.eye(3)[:, None], nodes, axis=1), tangents[None]])
+    moved = np.zeros((7, nodes, 3))
+    moved[:3] = shifts
+    moved[3:6] = np.cross(spins[3:6], arm)
+    rotated = np.linalg.solve(turn.H, spins.transpose(1, 2, 0)).transpose(2, 0, 1)
+    return np.concatenate([moved, rotated], axis=2)

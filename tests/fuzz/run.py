@@ -22,7 +22,7 @@ from pathlib import Path
 from riser_soil.stress.limited_process import Ending, Limits, ended, import_all
 from tests.fuzz.mutations import SCENE, Case, cases
 
-LIMITS = Limits(reported_long=5)
+LIMITS = Limits(cpu=180, reported_long=5)  # a search for an equilibrium that there is none of may take two minutes
 
 
 @dataclass(frozen=True)
