@@ -30,7 +30,8 @@ from riser_soil.contact.surface_loop import TouchData
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
 from riser_soil.core.saved_state import Saved, gathered, within
-from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.line import Line
+from riser_soil.riser.moving_nodes import Trial
 from riser_soil.riser.sections import larger_beside
 
 if TYPE_CHECKING:

@@ -6,74 +6,26 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
 from contextlib import AbstractContextManager
 from functools import cached_property
-from typing import Any, TypeVar
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray, IntArray, as_list
-from riser_soil.core.compiled import fixed
-from riser_soil.core.identity_cache import IdentityCache
-from riser_soil.core.part import MatrixBlock, State
-from riser_soil.core.saved_state import Saved, under, within
+from riser_soil.core.arrays import Array, BoolArray, as_list
+from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite, line_kernels
-from riser_soil.riser.directors import Frames, Orientation, initial_frames
+from riser_soil.riser.directors import initial_frames
 from riser_soil.riser.line_ends import End, LineEnds, free_turns, unit_lengths
-from riser_soil.riser.line_kernels import after_increments, write_folded, write_magnitudes
+from riser_soil.riser.line_kernels import write_folded
+from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.shapes import Layout
 
 UP = np.array([0.0, 0.0, 1.0])
-Made = TypeVar("Made")
 
 
-class Trial:
-    """The line at a trial state: x (nn, d), chord (ne, d); on demand its orientation, which `turning` makes, and rates
-    of q.
-    """
-
-    def __init__(
-        self, state: State, x: Array, chord: Array, turning: Callable[[], Orientation], rates: tuple[Array, Array]
-    ) -> None:
-        self.state, self.x, self.chord, self._turning = state, x, chord, turning
-        self._v, self._a = rates
-        self._kept: dict[Hashable, Any] = {}
-
-    def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
-        """A value that a part computes at this trial, cached under a key of its own."""
-        if key not in self._kept:
-            self._kept[key] = make(self)
-        return self._kept[key]
-
-    @cached_property
-    def turn(self) -> Orientation:
-        """Orientation of the nodes; where a step was solved in compiled code, nobody may ask for it."""
-        return self._turning()
-
-    @cached_property
-    def q(self) -> Array:
-        """q (ne, 4, d)."""
-        q: Array = hermite.interleave(self.x, self.turn.tangent, fixed(self.x.shape[1]))
-        return q
-
-    @cached_property
-    def q_rate(self) -> Array:
-        """q' (ne, 4, d)."""
-        return self.turn.motion(self._v, self._a)[0]
-
-    def pull_back(self, F: Array) -> Array:
-        """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
-        return np.asarray(hermite.pull_back(F, self.turn.P))
-
-    def add_turning(self, out: Array, weight: float, F: Array) -> None:
-        """Add to out (ne, n, n) weight times the derivative of `pull_back` at fixed F (ne, 4, d)."""
-        geometric = self.turn.geometric(F[:, 1::2])
-        hermite.add_geometric(out, weight, geometric, self.x.shape[1])
-
-
-class Line:
+class Line(MovingNodes):
     """Field of a line: committed configuration, dofs and ends; see the module's text and `Layout`.
 
     name: of the field, "riser" where it is the only line; its parts share the sparsity pattern of this name.
@@ -95,24 +47,17 @@ class Line:
         active: bool = True,
         name: str = "riser",
     ) -> None:
-        self.name = self.space = name
-        self.dimension, self.start, self.end, self.active = dimension, start, end, active
+        self.dimension, self.start, self.end = dimension, start, end
         self.arc, self.outer_diameter = layout.arc, layout.outer_diameter
-        self.length = np.diff(layout.arc)
         self.direction = np.array([1.0, 0.0, 0.0]) if direction is None else direction
         self.normal = np.cross(self.direction, UP)
         self.basis, self.origin = self._axes(layout.position[0])
         self.turning_axes = np.eye(3) if dimension == 3 else self.normal[:, None]
         self._check_plane(layout)
         self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
-        self.frames: Frames = initial_frames(layout.rotation, layout.T0, self.basis)
-        self.x: Array = (layout.position - self.origin) @ self.basis
-        self.chord: Array = np.diff(self.x, axis=0)
+        frames, x = initial_frames(layout.rotation, layout.T0, self.basis), (layout.position - self.origin) @ self.basis
+        super().__init__(name, x, frames, np.diff(layout.arc), active)
         self._ends = LineEnds(start, end, self.arc.size, self.frames, self.origin, self.basis, self.turning_axes)
-        self.offset = 0
-        self._made: dict[Callable[[Line], Any], Any] = {}
-        self._trials = IdentityCache[State, Trial](first=1, latest=2)
-        self._number()
         self.prescribe_spin(prescribe_spin)
 
     def _axes(self, first: Array) -> tuple[Array, Array]:
@@ -132,13 +77,6 @@ class Line:
                 f"dimension: 2: the riser's shapes leave the vertical plane by {away:.3g} m; use 3"
             )
 
-    def _number(self) -> None:
-        self.ndof = self.dimension + self.frames.dofs
-        self.nodes = self.arc.size
-        self.size = self.nodes * self.ndof
-        self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
-        self.owned: BoolArray = np.full(self.size, self.active)
-
     def prescribe_spin(self, spin: bool) -> None:
         """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
         self._ends.prescribe_spin(spin)
@@ -152,34 +90,9 @@ class Line:
         """As long as this lasts all dofs are prescribed not to move."""
         return self._ends.held()
 
-    @property
-    def part(self) -> slice:
-        """The field's slice of the local arrays."""
-        return slice(self.offset, self.offset + self.size)
-
-    def nodal(self, values: Array) -> Array:
-        """View (nn, ndof) of the riser's slice of a local array."""
-        return values[self.offset : self.offset + self.size].reshape(self.nodes, self.ndof)
-
     def scatter(self, element: Array, values: Array) -> None:
         """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
         hermite.scatter(element, self.nodal(values))
-
-    def element_block(self) -> MatrixBlock:
-        """Pattern of the line's name: all dofs of each element."""
-        first = self.offset + self.ndof * np.arange(self.nodes - 1, dtype=np.int64)
-        dofs = first[:, None] + np.arange(2 * self.ndof)
-        return MatrixBlock(dofs, dofs)
-
-    @property
-    def translation_dofs(self) -> IntArray:
-        """Local numbers of the translations (nn, d)."""
-        return self.offset + self._translations if self.offset else self._translations
-
-    @cached_property
-    def _translations(self) -> IntArray:
-        first = self.ndof * np.arange(self.nodes, dtype=np.int64)
-        return np.asarray(first[:, None] + np.arange(self.dimension), dtype=np.int64)
 
     @cached_property
     def lever(self) -> float:
@@ -200,65 +113,16 @@ class Line:
         near = float(np.clip(np.round(xi), 0.0, 1.0))
         return e, near if abs(arc - self.arc[e] - near * self.length[e]) < 1e-9 * self.arc[-1] else float(xi)
 
-    def trial(self, state: State) -> Trial:
-        """The line at a state, whose arrays must not change from then on.
-
-        Kept for the first state since the last commit, where the step begins, and for the last two.
-        """
-        return self._trials.made_of(state, self._make_trial)
-
-    def once(self, make: Callable[[Line], Made]) -> Made:
-        """What is made of the line for all who ask, when it is first asked for."""
-        if make not in self._made:
-            self._made[make] = make(self)
-        made: Made = self._made[make]
-        return made
-
-    def forget(self) -> None:
-        """Drop the trials that are kept."""
-        self._trials.forget()
-
-    def _make_trial(self, state: State) -> Trial:
-        u = self.nodal(state.u)
-        x, chord = after_increments(self.x, self.chord, u)
-        turning = self.frames.turning(u[:, self.dimension :])
-        return Trial(state, x, chord, turning, (self.nodal(state.v), self.nodal(state.a)))
-
-    @property
-    def turns_axes(self) -> bool:
-        """In space the rotation dofs are about body axes; in a plane about its normal."""
-        return self.dimension == 3
-
-    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
-        """Forces (size,) conjugate to the increments, as those of the step after these increments have them."""
-        out = conjugate.copy().reshape(self.nodes, self.ndof)
-        turned = increments.reshape(self.nodes, self.ndof)[:, self.dimension :]
-        out[:, self.dimension :] = self.frames.in_new_axes(out[:, self.dimension :], turned)
-        return out.ravel()
-
-    def magnitudes(self, state: State) -> Array:
-        trial, out = self.trial(state), np.empty((self.nodes, self.ndof))
-        write_magnitudes(trial.x, trial.turn.turned, out)
-        return out.ravel()
-
     def commit(self, state: State) -> None:
-        """Accept the increments of a state; chords sum theirs, so their round-off is not that of far
-        positions.
-        """
-        trial = self.trial(state)
-        self.x, self.chord = trial.x, trial.chord
-        self.frames.commit(self.nodal(state.u)[:, self.dimension :])
+        super().commit(state)
         self._ends.commit(state.t)
-        self.forget()
 
     def state(self) -> Saved:
         """Positions, chords and frames; where the supports have turned to, and from where."""
-        return {"x": self.x, "chord": self.chord} | self._ends.state() | under("frames", self.frames.state())
+        return super().state() | self._ends.state()
 
     def restore(self, saved: Saved) -> None:
-        self.forget()
-        self.x, self.chord = saved["x"], saved["chord"]
-        self.frames.restore(within(saved, "frames"))
+        super().restore(saved)
         self._ends.restore(saved)
 
     def begin_stage(self) -> None:

@@ -30,9 +30,10 @@ from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia, RotaryInertia
-from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.midpoint_directors import DirectorMotion, Secant, directors
+from riser_soil.riser.moving_nodes import Trial
 
 
 class MidpointInertia(LinePart):

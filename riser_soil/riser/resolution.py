@@ -22,7 +22,8 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
-from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.line import Line
+from riser_soil.riser.moving_nodes import Trial
 from riser_soil.riser.section_forces import end_forces
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation

@@ -16,8 +16,9 @@ from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import State
 from riser_soil.riser.configuration import Configuration, PlanarConfiguration, write_moment_maps
 from riser_soil.riser.directors import NO_FRAMES
-from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, LineTrials, overrides
+from riser_soil.riser.moving_nodes import Trial
 from riser_soil.riser.section_kernels import (
     SectionForces,
     SectionInput,
