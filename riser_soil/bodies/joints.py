@@ -145,22 +145,17 @@ class Joints:
 
     @property
     def _dofs(self) -> IntArray:
-        """Local numbers (m, 12); -1 of the rotations that a point has not."""
-        out = np.full((len(self.joints), 2, 6), -1, dtype=np.int64)
-        for n, joint in enumerate(self.joints):
-            for s, side in enumerate(joint.sides):
-                field = side.field
-                out[n, s, : field.ndof] = field.offset + side.node * field.ndof + np.arange(field.ndof)
-        return out.reshape(-1, 12)
+        """Local numbers (m, 12)."""
+        sides = [side for joint in self.joints for side in joint.sides]
+        first = np.array([side.field.offset + side.node * side.field.ndof for side in sides], dtype=np.int64)
+        return np.asarray((first[:, None] + np.arange(6)).reshape(-1, 12))
 
     def blocks(self) -> dict[str, MatrixBlock]:
         dofs = self._dofs
         return {NAME: MatrixBlock(dofs, dofs)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        found, dofs = conjugate(self._laws, self._places(state), self._open(state)), self._dofs
-        there = dofs >= 0
-        np.add.at(forces.force, dofs[there], found[there])
+        np.add.at(forces.force, self._dofs, conjugate(self._laws, self._places(state), self._open(state)))
 
     def _open(self, state: State) -> float:
         """In the static stage in which joints close, less of the gap as its load factor grows."""

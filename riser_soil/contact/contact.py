@@ -24,6 +24,8 @@ class RiserContact(LinePart, ABC):
     intervals.
     """
 
+    line: Line
+
     name: str
     traits: Traits
 

@@ -23,6 +23,7 @@ from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import BoundPart, CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import (
@@ -134,6 +135,8 @@ class CoulombFriction(CompiledPart):
     `mobilised_within`. adhesion: what clay holds the pipe by at most. The force acts on the axis. Directions are those
     of the start of the step; the traction is kept in the line's constant axes.
     """
+
+    line: Line
 
     name = "friction"
     traits = Traits("E", symmetric=False, path_dependent=True, gradual=True, roles=(Stateful,))

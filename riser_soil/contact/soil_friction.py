@@ -17,6 +17,7 @@ from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful, gathered, within
+from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 
 AREA = 3  # column of the memory, behind the traction
@@ -52,6 +53,8 @@ class SoilFriction(LinePart):
     [N/m3], see `coulomb`. adhesion: without a limit by default. The slide is that of the axis over the soil, and the
     force acts on the axis. Directions are those of the start of the step; the traction is kept in global axes.
     """
+
+    line: Line
 
     name = "soil friction"
     traits = Traits("E", symmetric=False, path_dependent=True, roles=(Stateful,))

@@ -71,6 +71,8 @@ class Beam(CompiledPart):
     In a plane forces and tangent cost less than half of those in space (`benchmarks.twins`).
     """
 
+    line: Line
+
     name = "riser"
     traits = Traits("F", symmetric=True)
 

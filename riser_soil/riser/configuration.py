@@ -16,8 +16,8 @@ from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import directors, hermite, line_kernels, spatial_directors
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.line import Line
 from riser_soil.riser.line_kernels import write_moved
+from riser_soil.riser.moving_nodes import MovingNodes
 
 
 class PlanarBase(NamedTuple):
@@ -106,14 +106,14 @@ class Maps(NamedTuple):
     acceleration_rows: Array
 
 
-def base_of(line: Line) -> Base:
+def base_of(line: MovingNodes) -> Base:
     """The accepted configuration of a line, as it is kept there."""
     if isinstance(line.frames, PlanarFrames):
         return PlanarBase(line.x, line.chord, line.frames.angle, line.frames.alpha0)
     return SpatialBase(line.x, line.chord, line.frames.R, line.frames.T0)
 
 
-def workspace_for(line: Line) -> Configuration:
+def workspace_for(line: MovingNodes) -> Configuration:
     """A configuration's arrays, to be written to."""
     nn, ne, d, r = line.nodes, line.length.size, line.dimension, line.frames.dofs
     shapes = {"x": (nn, d), "chord": (ne, d), "tangent": (ne, 2, d), "P": (ne, 2, d, r), "v": (nn, d + r)}
@@ -127,7 +127,7 @@ def workspace_for(line: Line) -> Configuration:
     return SpatialConfiguration(T0=line.frames.T0, **given, **_empty(shapes))
 
 
-def maps_for(line: Line) -> Maps:
+def maps_for(line: MovingNodes) -> Maps:
     """Maps to be written to, without shifts."""
     ne, d, r = line.length.size, line.dimension, line.frames.dofs
     rows = (np.empty((ne, d, 2 * (d + r))) for _ in range(3))

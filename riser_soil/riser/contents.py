@@ -126,6 +126,8 @@ class InnerFlow(CompiledPart):
     is external work: the flow brings energy and takes it along.
     """
 
+    line: Line
+
     name = "contents"
 
     def __init__(self, line: Line, inner_diameter: Array, flow: Flow) -> None:

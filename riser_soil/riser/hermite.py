@@ -200,7 +200,7 @@ def add_mass_to(out: Array, scale: float, P: Array, rows: Array, M: Array, D: Si
 def add_geometric(out: Array, scale: float, G: Array, d: int) -> None:
     """Add scale G, (ne, 2, r, r), to the rotation blocks of out (ne, 2 (d + r), 2 (d + r))."""
     r = G.shape[2]
-    for e in range(out.shape[0]):
+    for e in range(G.shape[0]):
         for side in range(2):
             at = side * (d + r) + d
             for i in range(r):

@@ -18,7 +18,7 @@ from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import Energy, Forces, MatrixBlock, Part, State, Traits, Weights, Work
 from riser_soil.riser.configuration import maps_for, write_maps, write_turning
-from riser_soil.riser.line import Line
+from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import (
     LineWeights,
     add_energy,
@@ -40,7 +40,7 @@ from riser_soil.riser.placed_line import LineBase, PlacedTrial
 class LinePart:
     """Base of the parts that act on a line; called only on the rank that evaluates it."""
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: MovingNodes) -> None:
         self.line = line
 
     @property
@@ -85,7 +85,7 @@ class LinePart:
         return None
 
 
-def acting_on(line: Line, parts: Iterable[Part]) -> list[LinePart]:
+def acting_on(line: MovingNodes, parts: Iterable[Part]) -> list[LinePart]:
     """Those of the parts that act on this line and say where."""
     return [part for part in parts if isinstance(part, LinePart) and part.line is line]
 
@@ -102,7 +102,7 @@ class LineTrials:
     conjugate to the tangents of the elements' ends, and its turning.
     """
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: MovingNodes) -> None:
         base, (ne, d, r) = LineBase(line), (line.length.size, line.dimension, line.frames.dofs)
         self.now, self.then = PlacedTrial(line, base), PlacedTrial(line, base)
         self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
@@ -143,12 +143,12 @@ class BoundPart:
     found: the count of the trial at which the forces were found.
     """
 
-    def __init__(self, line: Line, data: tuple[Any, ...], trials: LineTrials) -> None:
+    def __init__(self, line: MovingNodes, data: tuple[Any, ...], trials: LineTrials) -> None:
         self._data, self._trials, self.found = data, trials, -1
         n, self.forces = 2 * line.ndof, forces_of(line)
         self.energy, self.turned_over = np.zeros(3), np.zeros(4)
         self.residual = np.zeros((line.length.size, n))
-        self.K = Packed(np.zeros((line.length.size, n, n)))
+        self.K = Packed(line.element_block().zeros())
         self._now, self._forces = Packed(trials.now.at), Packed(self.forces)
         self.find = in_turn(Bound(clear, self._forces), bound(add_forces, data, self._now, self._forces))
         self.collect = Bound(collect, self._now, self._forces)

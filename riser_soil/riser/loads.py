@@ -61,6 +61,8 @@ class PointLoads(CompiledPart):
     A moment of fixed axis has no potential in space, so its tangent isn't symmetric there.
     """
 
+    line: Line
+
     name = "loads"
 
     def __init__(self, line: Line, loads: list[AppliedLoad]) -> None:

@@ -42,6 +42,8 @@ class MidpointInertia(LinePart):
     instant: the same mass at an instant, as evaluated at accepted states.
     """
 
+    line: Line
+
     name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
 
     def __init__(self, instant: Inertia) -> None:
@@ -124,6 +126,8 @@ class MidpointRotaryInertia(LinePart):
     instant: the same inertia at an instant, as evaluated at accepted states. masses: of element ends
     on each of the directors [kg m2], (ne, 1, 1).
     """
+
+    line: Line
 
     name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
 

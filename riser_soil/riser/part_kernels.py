@@ -15,7 +15,7 @@ from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_geometric, collect_nodal, scatter, write_pulled_back
-from riser_soil.riser.line import Line
+from riser_soil.riser.moving_nodes import MovingNodes
 
 
 class LineForces(NamedTuple):
@@ -40,7 +40,7 @@ class LineWeights(NamedTuple):
     force: float
 
 
-def forces_of(line: Line) -> LineForces:
+def forces_of(line: MovingNodes) -> LineForces:
     """Workspace for the residuals of a line."""
     ne = line.length.size
     conjugate = (np.zeros((ne, 4, line.dimension)) for _ in range(3))

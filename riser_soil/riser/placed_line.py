@@ -8,13 +8,13 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Packed, bound
 from riser_soil.core.part import State
 from riser_soil.riser.configuration import base_of, place, workspace_for, write_rates
-from riser_soil.riser.line import Line
+from riser_soil.riser.moving_nodes import MovingNodes
 
 
 class LineBase:
     """The configuration that a line's trials follow from, where it was accepted when it was updated last."""
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: MovingNodes) -> None:
         base = base_of(line)
         self.packed = Packed(type(base)(*map(np.copy, base)))
         self._line = line
@@ -31,7 +31,7 @@ class LineBase:
 class PlacedTrial:
     """A line at a trial state, placed once for all that ask in turn. count: of the states that it was placed at."""
 
-    def __init__(self, line: Line, base: LineBase) -> None:
+    def __init__(self, line: MovingNodes, base: LineBase) -> None:
         self._line, self._base, self.at, shape = line, base, workspace_for(line), (line.nodes, line.ndof)
         values = [np.zeros(shape) for _ in range(3)]
         self._place = bound(place, self.at, base.packed, *map(Packed, values))
@@ -62,7 +62,7 @@ class PlacedLine:
     base: what it follows from, for trials too, as it was updated last.
     """
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: MovingNodes) -> None:
         self._line, self.at, shape = line, workspace_for(line), (line.nodes, line.ndof)
         self._base = LineBase(line)
         self.base, self.update = self._base.packed, self._base.update

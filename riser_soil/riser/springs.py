@@ -47,6 +47,8 @@ class EndSpring(CompiledPart):
     turn. In space the rotation is below pi and counts twist too; in the plane it is unlimited.
     """
 
+    line: Line
+
     traits = Traits("F", symmetric=True)
 
     def __init__(self, line: Line, node: int, stiffness: float) -> None:

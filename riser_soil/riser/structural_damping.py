@@ -45,6 +45,8 @@ class StructuralDamping(CompiledPart):
     (`benchmarks.twins`).
     """
 
+    line: Line
+
     name, traits = "structural damping", Traits("F", symmetric=False)
 
     def __init__(self, line: Line, elements: Elements) -> None:

@@ -66,7 +66,7 @@ class Relaxation:
 
     def blocks(self) -> dict[str, MatrixBlock]:
         of_lines = {line.name: line.element_block() for line in self.lines}
-        return of_lines | {body.name: body.block() for body in self._lengths}
+        return of_lines | {body.name: body.element_block() for body in self._lengths}
 
     def residual(self, state: State, forces: Forces) -> None:
         for field in self.fields:

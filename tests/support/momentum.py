@@ -19,8 +19,8 @@ def momentum(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
     """Linear (3,) and angular (3,) momentum about the origin, the sections' own spin included; global axes."""
     found = [_of_line(line, stepper) for line in assembly.by_line.values()]
     for body in {} if assembly.hung is None else assembly.hung.bodies.values():
-        (part,) = (p for p in stepper.system.model.parts if isinstance(p, BodyInertia) and p.body is body)
-        impulse = part.M[:3, :3] @ body.nodal(stepper.now.v)[0]
+        (part,) = (p for p in stepper.system.model.parts if isinstance(p, BodyInertia) and p.line is body)
+        impulse = part.M[:3, :3] @ body.nodal(stepper.now.v)[0, :3]
         found.append((impulse, np.cross(body.x[0], impulse)))
     linear, angular = (np.sum(each, axis=0) for each in zip(*found, strict=True))
     return linear, angular
