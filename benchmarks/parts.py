@@ -24,7 +24,7 @@ from demos.page import filled, table
 
 SCENE = Path(__file__).parent.parent / "demos" / "first_scene.yaml"
 STEPS = 100  # of 0.1 s, in heave
-SHARED, LOOP = ("matrix", "linear_solve"), "riser alone"
+SHARED, LOOP = ("matrix", "linear_solve"), "compiled loop"
 PAGE = Path(__file__).parent.parent / "docs" / "parts.md"
 Scene = dict[str, Any]
 

@@ -44,7 +44,7 @@ def measure(duration: float) -> Cost:
         timed(SCENE, Path(folder) / "short", f"stages.1.duration={SHORT}")
         done, seconds = timed(SCENE, Path(folder) / "storm", f"stages.1.duration={duration}")
         stage, by_part = done.summary["stages"][-1], done.summary["seconds"]
-        shares = (by_part[name] / sum(by_part.values()) for name in ("riser alone", "output"))
+        shares = (by_part[name] / sum(by_part.values()) for name in ("compiled loop", "output"))
         return Cost(stage["steps"], stage["newton_iterations"] / stage["steps"], seconds, *shares)
 
 

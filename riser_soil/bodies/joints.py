@@ -116,17 +116,17 @@ class Joints:
         k, kr = (np.array([getattr(joint, name) for joint in joints]) for name in ("translation", "rotation"))
         turn = np.array([_to_one_axis(*joint.sides) if joint.rotation else np.zeros(3) for joint in joints])
         laws = Laws(k, kr, arm, at.R.copy(), turn, np.zeros((len(joints), 3)))
-        self._laws = laws._replace(gap=gaps(laws, at, 0.0))
+        self.laws = laws._replace(gap=gaps(laws, at, 0.0))
 
     @property
     def first_gap(self) -> Array:
         """Distances (m,) [m] of the points as the joints were made."""
-        return np.asarray(np.linalg.norm(self._laws.gap, axis=1))
+        return np.asarray(np.linalg.norm(self.laws.gap, axis=1))
 
     @property
     def first_turn(self) -> Array:
         """Angles (m,) [rad] by which the second sides turn to be at rest."""
-        return np.asarray(np.linalg.norm(self._laws.turn, axis=1))
+        return np.asarray(np.linalg.norm(self.laws.turn, axis=1))
 
     def _places(self, state: State | None) -> JointPlaces:
         """At a state; None for the accepted one."""
@@ -155,17 +155,17 @@ class Joints:
         return {NAME: MatrixBlock(dofs, dofs)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        np.add.at(forces.force, self._dofs, conjugate(self._laws, self._places(state), self._open(state)))
+        np.add.at(forces.force, self._dofs, conjugate(self.laws, self._places(state), self.left_at(state.t)))
 
-    def _open(self, state: State) -> float:
+    def left_at(self, t: float) -> float:
         """In the static stage in which joints close, less of the gap as its load factor grows."""
-        return self.open * (1.0 - state.t)
+        return self.open * (1.0 - t)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        add_tangent(values[NAME], weights.force, self._laws, self._places(state), self._open(state))
+        add_tangent(values[NAME], weights.force, self.laws, self._places(state), self.left_at(state.t))
 
     def energy(self, state: State) -> Energy:
-        return Energy(strain=float(energy_of(self._laws, self._places(state), self._open(state))))
+        return Energy(strain=float(energy_of(self.laws, self._places(state), self.left_at(state.t))))
 
     def work(self, before: State, after: State) -> Work:
         return Work()
@@ -176,10 +176,10 @@ class Joints:
     def acting(self, state: State) -> tuple[Array, Array, Array]:
         """Forces [N] and moments [N.m] on the second node of each joint, at its point (m, 3), and gaps (m, 3) [m]."""
         at = self._places(state)
-        left = self._open(state)
-        gap = gaps(self._laws, at, left)
-        moment = self._laws.kr[:, None] * turns(self._laws, at, left)
-        return self._laws.k[:, None] * gap, moment, gap
+        left = self.left_at(state.t)
+        gap = gaps(self.laws, at, left)
+        moment = self.laws.kr[:, None] * turns(self.laws, at, left)
+        return self.laws.k[:, None] * gap, moment, gap
 
 
 def _to_one_axis(first: Side, second: Side) -> Array:

@@ -74,13 +74,13 @@ class PlacedLine:
         self._with: tuple[Array | None, Array | None] = None, None  # the rates that it has there
 
     def move(self, state: State, velocities_alone: bool = False) -> None:
-        """With the rates of an accepted state; its accelerations may not matter."""
+        """With the rates of an accepted state of all local dofs; its accelerations may not matter."""
         self._renew()
         v, a = self._with
         if v is state.v and (a is state.a or velocities_alone):
             return
         for kept, given in zip(self._rates, (state.v, state.a), strict=True):
-            kept.ravel()[:] = given
+            kept.ravel()[:] = given[self._line.part]
         self._put()
         self._with = state.v, state.a
 

@@ -1,6 +1,6 @@
-"""Newton's method for a time step of a riser alone, as one compiled loop.
+"""Newton's method for a time step of lines and bodies, as one compiled loop.
 
-The same equations, weights and tests as in `newton`, which solves whatever has more than a riser. What it calls are
+The same equations, weights and tests as in `newton`, which solves whatever has parts without kernels. What it calls are
 kernels bound to their arguments (`core.bound`): those here, which every riser has, and those of its parts, see
 `part_kernels`. So it is compiled once for all risers.
 """
@@ -175,42 +175,33 @@ def write_balance(
 
 
 @njit
-def judge(forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress) -> None:
-    """Write the norm of the residual, and whether it is small enough or none."""
-    norm, apart = line_norms(forces, dofs)
-    decide(norm, apart, forces, dofs, limits, progress)
-
-
-@njit
-def decide(
-    norm: float, apart: float, forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress
-) -> None:
-    """The same of norms [N]."""
+def judge(sums: Array, limits: StopLimits, progress: NewtonProgress) -> None:
+    """Whether the residual is small enough or none, by its norms, see `add_norms`."""
     taken = progress.ending[1]
-    progress.norms[taken], progress.apart[taken] = norm, apart
-    progress.ending[0] = verdict(norm, _in_play(forces, dofs), taken, limits)
+    norm = math.sqrt(sums[0])
+    progress.norms[taken], progress.apart[taken] = norm, math.sqrt(sums[1])
+    progress.ending[0] = verdict(norm, math.sqrt(max(sums[2], sums[3], sums[4])), taken, limits)
 
 
 @njit
-def line_norms(forces: LineForces, dofs: Dofs) -> tuple[float, float]:
-    """Norm [N] of the residual of what is free, moments over the lever; and of its share where nothing touches."""
-    square, apart, (nodes, ndof) = 0.0, 0.0, dofs.fixed.shape
-    residual, levers = dofs.residual.reshape(nodes * ndof), dofs.levers.reshape(nodes * ndof)
-    for n in range(nodes):
-        own, touched = square_of(residual, levers, n * ndof, (n + 1) * ndof), False
+def add_norms(forces: LineForces, dofs: Dofs, sums: Array) -> None:
+    """Add to sums (5,) the squares of the norms [N] of the residual of what is free, moments over the lever, of its
+    share where nothing touches, and of the forces in play, see `squares_in_play`.
+    """
+    nodes, ndof = dofs.fixed.shape
+    n = nodes * ndof
+    residual, levers = dofs.residual.reshape(n), dofs.levers.reshape(n)
+    for node in range(nodes):
+        own, touched = square_of(residual, levers, node * ndof, (node + 1) * ndof), False
         for i in range(ndof):
-            touched |= forces.end[n, i] != 0.0
-        square += own
-        apart += 0.0 if touched else own
-    return math.sqrt(square), math.sqrt(apart)
-
-
-@njit
-def _in_play(forces: LineForces, dofs: Dofs) -> float:
-    """Norm of the forces in play."""
-    n = dofs.fixed.size
+            touched |= forces.end[node, i] != 0.0
+        sums[0] += own
+        sums[1] += 0.0 if touched else own
     inertia, force, end = forces.inertia.reshape(n), forces.force.reshape(n), forces.end.reshape(n)
-    return math.sqrt(max(squares_in_play(inertia, force, end, dofs.levers.reshape(n), dofs.fixed.reshape(n), n)))
+    reactions, moving, contact = squares_in_play(inertia, force, end, levers, dofs.fixed.reshape(n), n)
+    sums[2] += reactions
+    sums[3] += moving
+    sums[4] += contact
 
 
 @njit
@@ -228,13 +219,31 @@ def begin_with(bulk: Array, K: Array) -> None:
 
 
 @njit
-def judge_round_off(workspace: MatrixWorkspace, dofs: Dofs, progress: NewtonProgress) -> None:
-    """Whether nothing in the residual can be told from its round-off, see `newton_progress`; K: at held rates."""
+def write_terms(workspace: MatrixWorkspace, dofs: Dofs) -> None:
+    """Write the terms that the residual is made of, see `newton_progress`; K: at held rates."""
     n, rows = dofs.terms.size, workspace.rows
     terms = dofs.terms.reshape(n)
     terms[:] = 0.0
     add_magnitudes(workspace.K, rows, rows, dofs.sizes.reshape(n), terms)
-    if not above_round_off(dofs.residual.reshape(n), terms):
+
+
+@njit
+def clear_flag(above: BoolArray) -> None:
+    """Write that nothing is found."""
+    above[0] = False
+
+
+@njit
+def find_above(dofs: Dofs, above: BoolArray) -> None:
+    """Whether something in the residual can be told from its round-off, or could before, above (1,)."""
+    n = dofs.terms.size
+    above[0] |= above_round_off(dofs.residual.reshape(n), dofs.terms.reshape(n))
+
+
+@njit
+def judge_round_off(above: BoolArray, progress: NewtonProgress) -> None:
+    """Whether nothing can."""
+    if not above[0]:
         progress.ending[0] = CONVERGED
 
 
@@ -273,21 +282,22 @@ def improve(workspace: MatrixWorkspace, step: StepData, dofs: Dofs) -> None:
 
 
 @njit
-def clear_account(energy: Array, work: Array) -> None:
+def clear_account(account: Array) -> None:
     """Write zero."""
-    energy[:] = 0.0
-    work[:] = 0.0
+    account[:] = 0.0
 
 
 def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspace:
-    """Workspace for the tangent of a line; with room for its turning, where it has a dimension."""
-    ne, r, size = nodes - 1, ndof - dimension if dimension else 0, nodes * ndof
-    matrix, band = banded.workspace(size, 2 * ndof - 1)
+    """Workspace for the tangent of a line, or of a body, one node; with room for its turning, where it has a dimension.
+    """
+    ends, r, size = min(nodes, 2), ndof - dimension if dimension else 0, nodes * ndof
+    elements = nodes + 1 - ends
+    matrix, band = banded.workspace(size, ends * ndof - 1)
     return MatrixWorkspace(
-        np.empty((ne, 2 * ndof, 2 * ndof)),
-        ndof * np.arange(ne)[:, None] + np.arange(2 * ndof),
-        np.empty((ne, 2, dimension)),
-        np.empty((ne, 2, r, r)),
+        np.empty((elements, ends * ndof, ends * ndof)),
+        ndof * np.arange(elements)[:, None] + np.arange(ends * ndof),
+        np.empty((nodes - 1, 2, dimension)),
+        np.empty((nodes - 1, 2, r, r)),
         matrix,
         np.empty(size, dtype=np.int64),
         band,

@@ -101,6 +101,11 @@ class NodeMass:
         """Nothing is kept."""
 
 
+def mass_of(nodes: int, prescribed: BoolArray, levers: Array) -> LineMass | NodeMass:
+    """Of a field of some nodes; arguments as of both."""
+    return NodeMass(prescribed) if nodes == 1 else LineMass(nodes, prescribed, levers)
+
+
 def projectors(blocks: Array, free: BoolArray) -> Array:
     """Projectors (nn, dofs, dofs) of the nodes onto what is free and has mass.
 
@@ -189,10 +194,7 @@ class RiserMass:
         return [(line, self._mass_of(line)) for line in self._system.model.lines]
 
     def _mass_of(self, line: LineField) -> LineMass | NodeMass:
-        nodes = len(line.translation_dofs)
-        if nodes == 1:
-            return NodeMass(line.prescribed)
-        return LineMass(nodes, line.prescribed, self._system.levers[local(line)])
+        return mass_of(len(line.translation_dofs), line.prescribed, self._system.levers[local(line)])
 
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the lines."""

@@ -13,7 +13,6 @@ B is the riser's band, U the coupling, whose rows are zero but at few nodes, and
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -37,17 +36,17 @@ from riser_soil.contact.surface_loop import (
     write_touch_work,
 )
 from riser_soil.core import banded, dense
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, IntArray, as_list
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.dense import PIVOT
-from riser_soil.core.part import State
-from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import LineForces
+from riser_soil.core.part import Energy, Part, State, Weights, Work
+from riser_soil.core.saved_state import Saved
+from riser_soil.core.system import System
 from riser_soil.soil.condensed import CondensedSoil, Reached
-from riser_soil.solve.newton_progress import GOING_ON, OUTGROWN, SINGULAR, StopLimits
-from riser_soil.solve.packed_riser import LoopBorder
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData, decide, line_norms
+from riser_soil.solve.newton_progress import GOING_ON, OUTGROWN, SINGULAR
+from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
 
 SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
 NONE: IntArray = np.empty(0, dtype=np.int64)
@@ -82,22 +81,15 @@ def begin_border(soil: SoilData, border: Border) -> None:
 
 
 @njit
-def judge_with_border(
-    forces: LineForces,
-    dofs: Dofs,
-    limits: StopLimits,
-    progress: NewtonProgress,
-    border: Border,
-    workspace: TouchWorkspace,
-) -> None:
-    """As `riser_loop.judge`, of all unknowns; OUTGROWN where something touches what is not watched or not reached."""
-    if progress.ending[0] != GOING_ON:
-        return
-    norm, apart = line_norms(forces, dofs)
-    square = norm**2
+def add_norm_of_border(border: Border, sums: Array) -> None:
+    """Add the soil's residual to the norms, see `riser_loop.add_norms`."""
     for residual in border.residual:
-        square += residual * residual
-    decide(math.sqrt(square), apart, forces, dofs, limits, progress)
+        sums[0] += residual * residual
+
+
+@njit
+def find_outgrown(workspace: TouchWorkspace, progress: NewtonProgress) -> None:
+    """Whether something touches what is not watched or not reached."""
     if workspace.found[LEFT] or workspace.met.any():
         progress.ending[0] = OUTGROWN
 
@@ -117,7 +109,9 @@ def clear_border(soil: SoilData, border: Border) -> None:
 def factorise_with_border(
     workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, progress: NewtonProgress
 ) -> None:
-    """Factorise band and border."""
+    """Factorise the border, beside the factors of the band."""
+    if progress.ending[0] != GOING_ON:
+        return
     fixed, count, ndof = dofs.fixed, 0, dofs.fixed.shape[1]
     for n in range(fixed.shape[0]):
         for i in range(ndof):
@@ -127,9 +121,6 @@ def factorise_with_border(
     factors.filled[0] = count
     rows, schur = factors.rows[:count], factors.schur
     schur[...] = border.corner
-    if not banded.factorise(workspace.ab, workspace.pivots, workspace.band):
-        progress.ending[0] = SINGULAR
-        return
     if count > 0:
         right, inner = border.right[rows], banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band)
         schur -= np.dot(np.ascontiguousarray(right.T), np.dot(inner, right))
@@ -138,11 +129,9 @@ def factorise_with_border(
 
 
 @njit
-def improve_with_border(
-    workspace: MatrixWorkspace, step: StepData, dofs: Dofs, border: Border, factors: Factors
-) -> None:
-    """Take what the factorised tangent answers to the residual off the increments."""
-    residual, fixed = dofs.residual.reshape(dofs.residual.size), dofs.fixed.reshape(dofs.fixed.size)
+def improve_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors) -> None:
+    """Take what the factorised tangent answers off the border's increments, and what that moves off the residual."""
+    residual = dofs.residual.reshape(dofs.residual.size)
     rows, answer = factors.rows[: factors.filled[0]], border.residual
     inner = residual.copy()
     banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
@@ -152,27 +141,35 @@ def improve_with_border(
     dense.solve(factors.schur, factors.pivots, answer)
     for k in rows:
         residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
-    banded.solve(workspace.ab, workspace.pivots, residual, workspace.band)
-    u = step.u.reshape(step.u.size)
-    for k in range(fixed.size):
-        if not fixed[k]:
-            u[k] -= residual[k]
     for j in range(answer.size):
         border.u[j] -= answer[j]
+
+
+def border_on_soil(system: System, lines: Sequence[PackedLine], beside: Sequence[Part]) -> SoilBorder | None:
+    """That of a line on condensed soil, where contact has no history; None where there are no kernels."""
+    contact = next((part for part in beside if isinstance(part, SurfaceContact)), None)
+    soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
+    if len(lines) > 1 or len(beside) > 2 or contact is None or soil is None:
+        return None
+    touch = contact.touch_data()
+    return None if touch is None else SoilBorder(system, lines[0], contact, soil, touch)
 
 
 class SoilBorder(LoopBorder):
     """The soil's reached dofs with their contact; kernels of both, bound to where they read and write.
 
-    touch: the contact's kernel data. potential: the contact's energy in the last trial [J]; taken: what its force took
-    in the step accounted for last [J].
+    touch: the contact's kernel data.
     """
 
-    knows_round_off = smooth = False
+    knows_round_off = smooth = gradual = False
+    left_to_newton = True
 
-    def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchData) -> None:
-        self._line, self._contact, self._soil, self._top = line, contact, soil, soil.top
-        points, ne = len(soil.top.points), line.length.size
+    def __init__(
+        self, system: System, packed: PackedLine, contact: SurfaceContact, soil: CondensedSoil, touch: TouchData
+    ) -> None:
+        self._line, self._contact, self._soil, self._top = contact.line, contact, soil, soil.top
+        self._system, self._packed, self.parts = system, packed, (contact, soil)
+        points, ne = len(soil.top.points), self._line.length.size
         self._touch, self._found = touch, _workspace(FEW, points)
         pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
@@ -182,6 +179,8 @@ class SoilBorder(LoopBorder):
         self._taken: Array = np.zeros(1)
         self._seen: Array = np.empty((0, 3))
         self._reached: Reached | None = None  # as it was taken last
+        self._prescribed: Reached = soil.top.reached  # as the system has it
+        self._stored = dict[float, float]()  # contact's energy [J] by the time of states
 
     def _empty(self, nb: int) -> tuple[Border, SoilData, Factors]:
         """Workspace for so many dofs."""
@@ -197,33 +196,40 @@ class SoilBorder(LoopBorder):
         rows[self._top.reached.dofs] = np.arange(len(self._top.reached.dofs))
         return TopMotion(nodes, by, self._touch.surface.deformed.copy(), rows.reshape(-1, 3))
 
-    def forces(self, at: Packed, forces: Packed) -> list[Bound]:
+    def forces(self) -> list[Bound]:
         """Kernels that add the border's residual, and contact's."""
+        packed = self._packed
         moved = Bound(move_top, self._data, self._motion, self._border)
         begun = Bound(begin_border, self._held, self._border)
-        given = self._data, self._watched, self._motion, at, forces, self._border, self._workspace
-        return [moved, begun, Bound(add_touch, *given)]
+        given = self._data, self._watched, self._motion, packed.packed_at, packed.packed_forces
+        return [moved, begun, Bound(add_touch, *given, self._border, self._workspace)]
 
-    def judge(self, forces: Packed, dofs: Packed, limits: Packed, progress: Packed) -> Bound:
-        return Bound(judge_with_border, forces, dofs, limits, progress, self._border, self._workspace)
+    def norms(self, sums: Packed) -> list[Bound]:
+        return [Bound(add_norm_of_border, self._border, sums)]
 
-    def tangent(self, at: Packed, K: Packed) -> list[Bound]:
+    def outgrown(self, progress: Packed) -> list[Bound]:
+        return [Bound(find_outgrown, self._workspace, progress)]
+
+    def tangent(self) -> list[Bound]:
         """Kernels that write the border's tangent, and add contact's."""
-        given = self._data, self._motion, at, K, self._border, self._workspace
+        given = self._data, self._motion, self._packed.packed_at, self._packed.K, self._border, self._workspace
         return [Bound(clear_border, self._held, self._border), Bound(add_touch_tangent, *given)]
 
-    def factorise(self, workspace: Packed, dofs: Packed, progress: Packed) -> Bound:
-        return Bound(factorise_with_border, workspace, dofs, self._border, self._factors, progress)
+    def factorise(self, progress: Packed) -> list[Bound]:
+        packed = self._packed
+        given = packed.packed_workspace, packed.packed_dofs, self._border, self._factors
+        return [Bound(factorise_with_border, *given, progress)]
 
-    def improve(self, workspace: Packed, step: Packed, dofs: Packed) -> Bound:
-        return Bound(improve_with_border, workspace, step, dofs, self._border, self._factors)
+    def couple(self) -> list[Bound]:
+        packed = self._packed
+        return [Bound(improve_border, packed.packed_workspace, packed.packed_dofs, self._border, self._factors)]
 
-    def account(self, then: Packed, now: Packed) -> list[Bound]:
+    def account(self, energy: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
-        return [Bound(write_touch_work, self._data, self._motion, then, self._workspace, Packed(self._taken))]
+        then, taken = Packed(self._packed.placed.at), Packed(self._taken)
+        return [Bound(write_touch_work, self._data, self._motion, then, self._workspace, taken)]
 
-    def begin(self, before: State, guess: Array) -> None:
-        """Begin a step with a first guess (size,) of all local increments."""
+    def begin(self, before: State, step_to: float, guess: Array) -> None:
         if self._soil.outgrown:
             self._soil.rebuild(before)
         committed = self._top.committed
@@ -235,6 +241,17 @@ class SoilBorder(LoopBorder):
         held, at = self._held.value, self._top.reached.dofs
         np.dot(held.stiffness, committed.ravel()[at], out=held.holding)
         self._border.value.u[:] = self._top.own(guess)[at]
+        self._prescribe_anew()
+
+    def _prescribe_anew(self) -> None:
+        """What is not reached does not move by itself."""
+        if self._prescribed is not self._top.reached:
+            self._system.renew_prescribed()
+            self._prescribed = self._top.reached
+
+    def leave_to_newton(self, before: State) -> None:
+        """Newton's method needs a matrix for what is reached and may touch now."""
+        self._contact.rebuild(State.at_rest(before.t, self._system.numbering.size))
 
     @property
     def _slack(self) -> float:
@@ -287,23 +304,40 @@ class SoilBorder(LoopBorder):
             kept.renew(value)
         self._reached = reached
 
-    @property
-    def increments(self) -> tuple[IntArray, Array]:
-        """Local dofs, and their increments in the last trial."""
-        return self._top.offset + self._top.reached.dofs, self._border.value.u.copy()
+    def put_increments(self, weights: Weights, u: Array, v: Array, a: Array) -> None:
+        dofs, moved = self._top.offset + self._top.reached.dofs, self._border.value.u
+        u[dofs] = moved
+        v[dofs] += weights.shift_v * moved
+        a[dofs] += weights.shift_a * moved
 
     @property
     def holds(self) -> bool:
         """Whether the soil has moved so little in the last trial that the pairs still are all that may touch."""
         return bool(np.abs(self._border.value.u).max(initial=0.0) <= self._slack)
 
-    @property
-    def potential(self) -> float:
-        return float(self._found.energy[0])
+    def add_account(self, before: State, state: State, work: dict[str, Work]) -> Energy:
+        work[self._soil.name] += self._soil.work(before, state)
+        work[self._contact.name] += self._work_of_contact(before, state.t)
+        return Energy(potential=float(self._found.energy[0])) + self._soil.energy(state)
 
-    @property
-    def taken(self) -> float:
-        return float(self._taken[0])
+    def _work_of_contact(self, before: State, t: float) -> Work:
+        """See `SurfaceContact.work`: without a history all is the time scheme's."""
+        first, last = self._stored.get(before.t), float(self._found.energy[0])
+        if first is None:
+            first = self._contact.energy(before).potential
+        self._stored = {before.t: first, t: last}
+        lost = float(self._taken[0]) - last + first
+        return Work(dissipated=lost, by_scheme=lost)
+
+    def forget_account(self) -> None:
+        self._stored.clear()
+
+    def state(self) -> Saved:
+        """What contact has stored at the times known: found anew it would be the same but to round-off."""
+        return {"times": np.array([*self._stored]), "stored": np.array([*self._stored.values()])}
+
+    def restore(self, saved: Saved) -> None:
+        self._stored = dict(zip(as_list(saved["times"]), as_list(saved["stored"]), strict=True))
 
 
 def _workspace(count: int, nodes: int) -> TouchWorkspace:

@@ -18,19 +18,15 @@ INSTANT = Static(seconds=0.0)  # what flows under rate keeps its stress
 
 
 def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepSolver:
-    """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: on one rank for a riser alone, or on
-    condensed soil, in time steps of Newmark's scheme or generalised-alpha.
+    """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: on one rank for lines and bodies, or
+    for a line on condensed soil, in time steps of Newmark's scheme or generalised-alpha.
     """
     if system.comm.size > 1 or settings.snes or not isinstance(scheme, GeneralizedAlpha):
         return Newton(system, settings)
-    if system.is_chain:
-        from riser_soil.solve.riser_newton import riser_newton
+    if system.whole_soil is None:
+        from riser_soil.solve.compiled_newton import compiled_newton
 
-        return riser_newton(system, settings) or Newton(system, settings)
-    if system.whole_soil is None and len(system.model.lines) == 1:
-        from riser_soil.solve.condensed_newton import condensed_newton
-
-        return condensed_newton(system, settings) or Newton(system, settings)
+        return compiled_newton(system, settings) or Newton(system, settings)
     return Newton(system, settings)
 
 

@@ -14,18 +14,19 @@ from benchmarks.stage import TimedStage, last_stage
 from riser_soil.contact.contact import ContactResults
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
+from riser_soil.core.bound import Packed
 from riser_soil.core.part import Energy, Forces, Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.placed_line import PlacedLine
+from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.solve.compiled_newton import CompiledNewton, compiled_newton
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import CONVERGED, StopLimits
-from riser_soil.solve.packed_riser import KernelParts, PackedRiser
+from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
 from riser_soil.solve.riser_mass import RiserMass
-from riser_soil.solve.riser_newton import RiserNewton, riser_newton
 from riser_soil.solve.solver import NewtonSettings
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
@@ -59,7 +60,9 @@ class Compiled:
     def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
         numbers, free = KernelParts([(part, part.kernel_data()) for part in parts]), np.zeros(line.size, dtype=bool)
-        self.riser = PackedRiser(line, PlacedLine(line), numbers, free, np.ones(line.size), most=1)
+        weights = Packed(LineWeights(0.0, 0.0))
+        self.line = PackedLine(line, numbers, free, np.ones(line.size), weights)
+        self.riser = PackedSystem([self.line], LoopBorder(), weights, most=1)
         for part in parts:
             part.renew_kernel_data(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
@@ -69,7 +72,7 @@ class Compiled:
 
     def dense(self) -> Array:
         """The matrix (n, n) that was written to the band."""
-        workspace = self.riser.workspace
+        workspace = self.line.workspace
         n, b = workspace.pivots.size, len(workspace.band)
         K = np.zeros((n, n))
         for i in range(n):
@@ -113,15 +116,15 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
         part.residual(state, expected)
     for group in ("inertia", "force", "end"):
         values = getattr(expected, group)
-        found = getattr(compiled.riser.forces, group).ravel()
+        found = getattr(compiled.line.forces, group).ravel()
         assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
     assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
-    np.testing.assert_allclose(compiled.riser.dofs.sizes.ravel(), at.line.magnitudes(state), rtol=1e-15)
+    np.testing.assert_allclose(compiled.line.dofs.sizes.ravel(), at.line.magnitudes(state), rtol=1e-15)
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
     for part in parts:
         part.renew_kernel_data(begun.t, state.t)
-    joules, rows = compiled.riser.account(begun)
-    energy = Energy(*joules)
+    compiled.riser.account(begun)
+    energy, rows = Energy(*compiled.riser.energy), compiled.line.work
     stored: Energy = sum((part.energy(state) for part in parts), Energy())
     for name, expected_energy in vars(stored).items():
         assert getattr(energy, name) == pytest.approx(expected_energy, rel=1e-12)
@@ -133,7 +136,7 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
 def require_mass(at: Sample, parts: list[Any]) -> None:
     """Inverse of the mass, kinetic energy and bulk forces at an accepted state are those of the parts' methods."""
     system, accepted = System(MPI.COMM_SELF, Model([at.line], parts), Timer.new()), at.state(3, size=0.0)
-    newton = riser_newton(system, NewtonSettings(1e-9, 20, 1e-6))
+    newton = compiled_newton(system, NewtonSettings(1e-9, 20, 1e-6))
     assert newton is not None
     found, expected = newton.mass, RiserMass(system)
     force = at.state(4).v
@@ -166,13 +169,13 @@ def require_tangles(dimension: int) -> None:
         compiled = Compiled(at, parts, state, state)
         compiled.riser.begin(state, None, WEIGHTS, anything)
         assert compiled.riser.solve()[0] == CONVERGED
-        reported.append(line.folding(*compiled.riser.folding))
+        reported.append(line.folding(*compiled.line.folding))
         assert reported[-1] == line.inadmissible(state, at.state(1, size=0.0))
     assert reported[0] == reported[1] == ""
     assert len(set(reported)) == {2: 4, 3: 5}[dimension]
 
 
-def require_element_residual(newton: RiserNewton, line: Line, parts: list[Any], accepted: State) -> None:
+def require_element_residual(newton: CompiledNewton, line: Line, parts: list[Any], accepted: State) -> None:
     """What acts within the elements is what the parts' methods tell."""
     expected = element_residual(line, parts, accepted)
     found, scale = newton.element_residual(line, accepted), np.abs(expected).max()
@@ -182,7 +185,7 @@ def require_element_residual(newton: RiserNewton, line: Line, parts: list[Any], 
 def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     """Section forces at the state solved for last are those by the parts' methods, at that state and by SNES."""
     line, elements, newton = compiled.assembly.line, compiled.assembly.elements, compiled.newton
-    assert isinstance(newton, RiserNewton)
+    assert isinstance(newton, CompiledNewton)
     state, other = compiled.stepper.now, snes.stepper.now
     reported = SectionForces.within(newton.section_forces(line, elements, state), line.nodes)
     parts = acting_on(line, compiled.system.model.parts)
@@ -220,7 +223,7 @@ def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
 def require_steps_of_snes(case: str) -> None:
     """Iterations, states and energy turned over of a scene's steps by the loop are those by SNES."""
     compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
-    assert isinstance(compiled.newton, RiserNewton)
+    assert isinstance(compiled.newton, CompiledNewton)
     assert isinstance(snes.newton, Newton)
     require_iterations(compiled, snes)
     place, expected_place = (stage.assembly.line.positions3(stage.stepper.before) for stage in (compiled, snes))

@@ -215,7 +215,7 @@ def _one(joints: Joints, n: int) -> Joints:
     """The joint of a number alone, as it was made."""
     alone = Joints.__new__(Joints)
     alone.joints, alone.open = [joints.joints[n]], joints.open
-    alone._laws = type(joints._laws)(*(values[n : n + 1] for values in joints._laws))
+    alone.laws = type(joints.laws)(*(values[n : n + 1] for values in joints.laws))
     return alone
 
 

@@ -13,8 +13,9 @@ from riser_soil.contact.surface_loop import Watched, _leaves
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.condensed_newton import CondensedNewton, condensed_newton
+from riser_soil.solve.compiled_newton import CompiledNewton, compiled_newton
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solver import NewtonSettings, Solution, Step
 from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_scheme import GeneralizedAlpha
@@ -86,10 +87,10 @@ def assert_same(found: list[dict[str, Array]], wanted: list[dict[str, Array]]) -
 
 
 def forbid(patch: pytest.MonkeyPatch) -> None:
-    def refuse(solver: CondensedNewton, step: Step) -> Solution:
+    def refuse(solver: CompiledNewton, step: Step, near: bool) -> Solution:
         raise AssertionError("a step was left to Newton's method over the parts")
 
-    patch.setattr(CondensedNewton, "_by_newton", refuse)
+    patch.setattr(CompiledNewton, "_by_newton", refuse)
 
 
 @pytest.mark.parametrize("case", MARKED)
@@ -100,28 +101,28 @@ def test_the_loop_finds_what_newton_finds(case: str, monkeypatch: pytest.MonkeyP
 
 def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each second one, so that both go on from what the other has left."""
-    usual, asked = CondensedNewton._norms, []
+    usual, asked = CompiledNewton._iterate, []
 
-    def norms(solver: CondensedNewton, step: Step, still: State) -> list[float] | None:
+    def iterate(solver: CompiledNewton, step: Step, still: State) -> tuple[str, list[float]]:
         asked.append(step.t)
-        return usual(solver, step, still) if len(asked) % 2 else None
+        return usual(solver, step, still) if len(asked) % 2 else ("left to Newton", [])
 
-    monkeypatch.setattr(CondensedNewton, "_norms", norms)
+    monkeypatch.setattr(CompiledNewton, "_iterate", iterate)
     assert_same(taken("in a plane", "compiled"), by_snes("in a plane"))
     assert len(asked) == 8
 
 
 def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> None:
     """With a narrow range around the pipe and room for few points steps are begun anew several times."""
-    begun = list[CondensedNewton]()
-    usual = CondensedNewton._prescribe_anew
+    begun = list[SoilBorder]()
+    usual = SoilBorder._prescribe_anew
 
-    def count(solver: CondensedNewton) -> None:
-        begun.append(solver)
-        usual(solver)
+    def count(border: SoilBorder) -> None:
+        begun.append(border)
+        usual(border)
 
     forbid(monkeypatch)
-    monkeypatch.setattr(CondensedNewton, "_prescribe_anew", count)
+    monkeypatch.setattr(SoilBorder, "_prescribe_anew", count)
     monkeypatch.setattr("riser_soil.solve.soil_border.FEW", 4)
     monkeypatch.setattr("riser_soil.contact.near_points.FEW", 2)
     monkeypatch.setattr("riser_soil.contact.surface_contact.AROUND", 0.05)
@@ -131,27 +132,27 @@ def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
-    left, usual = list[float](), CondensedNewton._by_newton
+    left, usual = list[float](), CompiledNewton._by_newton
 
-    def count(solver: CondensedNewton, step: Step) -> Solution:
+    def count(solver: CompiledNewton, step: Step, near: bool) -> Solution:
         left.append(step.t)
-        return usual(solver, step)
+        return usual(solver, step, near)
 
-    monkeypatch.setattr(CondensedNewton, "_by_newton", count)
+    monkeypatch.setattr(CompiledNewton, "_by_newton", count)
     monkeypatch.setattr("riser_soil.solve.soil_border.SHARE", 1e-4)
     found = taken("in a plane", "compiled")
     assert len(left) > 0
     assert_same(found, by_snes("in a plane"))
 
 
-def at_first_step(case: str) -> tuple[CondensedNewton, System]:
+def at_first_step(case: str) -> tuple[CompiledNewton, System]:
     """The loop's solver where the dynamic stage begins, in balance under the present soil."""
     assembly = built(scene(case, "compiled"))
     lay, move = assembly.scene.stages
     before = run_stage(assembly, lay, State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     system = System(assembly.comm, assembly.begin(move), Timer.new())
     found = solver_of(system, SCHEME, SETTINGS)
-    assert isinstance(found, CondensedNewton)
+    assert isinstance(found, CompiledNewton)
     guess = np.zeros(assembly.size)
     found.solve(Step(SCHEME, before, 0.01, 0.01, None, guess))
     return found, system
@@ -161,8 +162,10 @@ def at_first_step(case: str) -> tuple[CondensedNewton, System]:
 def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     """Of riser and border, and it is another one without contact's share."""
     newton, system = at_first_step(case)
-    riser, border = newton._riser, newton._border._border.value
-    step, dofs, n = riser.step, riser.dofs, newton._line.size
+    (line,), beside = newton.packed.lines, newton.packed.border
+    assert isinstance(beside, SoilBorder)
+    riser, border = newton.packed, beside._border.value
+    step, dofs, n = line.step, line.dofs, line.line.size
     x0 = np.concatenate([step.u.ravel(), border.u])
 
     def residual(x: Array) -> Array:
@@ -173,13 +176,13 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     free = np.append(~dofs.fixed.ravel(), np.ones(len(border.u), dtype=bool))
     residual(x0)
     riser.write_tangent()
-    workspace, matrix = riser.workspace, np.zeros((len(x0), len(x0)))
+    workspace, matrix = line.workspace, np.zeros((len(x0), len(x0)))
     for i in range(n):
         for j in range(max(0, i - len(workspace.band)), min(n, i + len(workspace.band) + 1)):
             matrix[i, j] = workspace.ab[i, j - i + len(workspace.band)]
     matrix[:n, n:], matrix[n:, :n], matrix[n:, n:] = border.right, border.right.T, border.corner
     assert np.abs(border.right[free[:n]]).max() > 0.0
-    assert np.abs(border.corner - newton._border._held.value.stiffness).max() > 0.0
+    assert np.abs(border.corner - beside._held.value.stiffness).max() > 0.0
     random = np.random.default_rng(2)
     for _ in range(3):
         direction = random.normal(size=len(x0)) * free
@@ -205,7 +208,7 @@ def test_what_has_no_kernels_is_left_to_newton(changed: Mapping, why: str) -> No
     mapping["contact"] = ({"method": "surface"} | changed) if "method" not in changed else changed
     assembly = built(mapping)
     system = System(assembly.comm, assembly.begin(assembly.scene.stages[1]), Timer.new())
-    assert condensed_newton(system, SETTINGS) is None, why
+    assert compiled_newton(system, SETTINGS) is None, why
     found = solver_of(system, SCHEME, SETTINGS)
     assert isinstance(found, Newton)
     found.destroy()

@@ -22,7 +22,7 @@ from riser_soil.errors import SolveError
 from riser_soil.seabed.grounds import Plane
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import GOING_ON, StopLimits
-from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.riser_loop import NewtonProgress, keeps
 from riser_soil.solve.solver import NotConvergedError
 from tests.support.dense_chain import tangent
@@ -60,7 +60,7 @@ def test_tangles_in_a_plane_are_those_of_the_line() -> None:
 
 def test_a_step_that_ends_in_a_tangle_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     stage = walked("surge in a plane", "compiled", 1)
-    monkeypatch.setattr(PackedRiser, "folding", (1, 1))
+    monkeypatch.setattr(PackedLine, "folding", (1, 1))
     with pytest.raises(NotConvergedError, match="folded at arc"):
         stage.newton.solve(stage.stepper.next_step(stage.control))
 
@@ -178,14 +178,14 @@ def test_contact_alone_is_found_anew_beside_a_kept_tangent() -> None:
     first, moved = at.state(1), at.state(1)
     compiled = Compiled(at, [*others, contact], at.state(3), first)
     change = 0.1 * np.sin(np.arange(at.line.nodes))
-    for u in (compiled.riser.step.u, at.line.nodal(moved.u)):
+    for u in (compiled.line.step.u, at.line.nodal(moved.u)):
         u[:, 1] += change
     compiled.riser.evaluate()
     compiled.riser.renew_contact()
     found, own, stale, rest = (
         matrix[places][:, places]
         for matrix in (
-            assembled(compiled.riser.workspace.K),
+            assembled(compiled.line.workspace.K),
             tangent([contact], moved, WEIGHTS),
             tangent([contact], first, WEIGHTS),
             tangent(others, first, WEIGHTS),

@@ -1,0 +1,271 @@
+"""Newton's method for time steps of lines and bodies, compiled: `riser_loop` behind the interface of `Newton`.
+
+A step that it can't solve where something stands beside the lines, as where contact with soil opens so that steps want
+shortening, is solved by `Newton`.
+"""
+
+from __future__ import annotations
+
+import time
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, as_list
+from riser_soil.core.bound import Packed
+from riser_soil.core.part import Energy, Forces, Part, State, Work
+from riser_soil.core.saved_state import Saved
+from riser_soil.core.system import System
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.moving_nodes import MovingNodes
+from riser_soil.riser.part_kernels import LineWeights
+from riser_soil.riser.sections import Elements
+from riser_soil.solve.compiled_mass import CompiledMass
+from riser_soil.solve.line_results import LineResults
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton_progress import CONVERGED, NAMES, OUTGROWN, StopLimits, largest_at
+from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
+from riser_soil.solve.solver import (
+    NewtonSettings,
+    NotConvergedError,
+    Solution,
+    Step,
+    StepSolver,
+    limits_of,
+    reported,
+)
+
+if TYPE_CHECKING:
+    from riser_soil.contact.contact import RiserContact
+
+MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is given up
+
+
+def compiled_newton(system: System, settings: NewtonSettings) -> CompiledNewton | None:
+    """The compiled loop over lines and bodies, joined or not, or over a line on condensed soil; None where one of their
+    parts has no kernels.
+    """
+    weights = Packed(LineWeights(0.0, 0.0))
+    packed = [_packed(system, field, weights) for field in system.model.lines if isinstance(field, MovingNodes)]
+    lines = [line for line in packed if line is not None]
+    if len(lines) < len(system.model.lines):
+        return None
+    known: list[Any] = [part for line in lines for part in line.parts.parts]
+    border = _border_of(system, lines, [part for part in system.model.parts if part not in known])
+    if border is None:
+        return None
+    return CompiledNewton(system, settings, PackedSystem(lines, border, weights, settings.max_iterations))
+
+
+def _packed(system: System, field: MovingNodes, weights: Packed) -> PackedLine | None:
+    """A line or body with its parts that have kernels; None where it ends in a part without."""
+    asked = [(part, part.kernel_data()) for part in acting_on(field, system.model.parts)]
+    parts = KernelParts([(part, data) for part, data in asked if data is not None])
+    return PackedLine(field, parts, system.prescribed[field.part], system.levers[field.part], weights)
+
+
+def _border_of(system: System, lines: list[PackedLine], beside: list[Part]) -> LoopBorder | None:
+    """What stands beside the lines, by the parts that are none of theirs alone; None where these have no kernels."""
+    if system.model.others:
+        from riser_soil.solve.soil_border import border_on_soil
+
+        return border_on_soil(system, lines, beside)
+    if not beside:
+        return LoopBorder()
+    from riser_soil.solve.joint_border import joint_border
+
+    return joint_border(lines, beside)
+
+
+class CompiledNewton(StepSolver):
+    """Solver of time steps of lines and bodies. Create once a stage, by `compiled_newton`; see `Newton`."""
+
+    def __init__(self, system: System, settings: NewtonSettings, packed: PackedSystem) -> None:
+        super().__init__(system, settings)
+        self.packed, self._lines, self._border = packed, packed.lines, packed.border
+        self._solved: State | None = None  # by the compiled loop
+        self._nothing = np.zeros(system.numbering.size)
+        self._no_work = {part.name: Work() for part in system.model.parts}
+        self._results: dict[Line, LineResults] = {}
+        if self._border.smooth:
+            found = [(packed, packed.line) for packed in self._lines]
+            self._results = {
+                line: LineResults(packed, line, system.smooth) for packed, line in found if isinstance(line, Line)
+            }
+
+    @cached_property
+    def _newton(self) -> Newton:
+        """For steps that can't be solved here."""
+        return Newton(self.system, self.settings)
+
+    def solve(self, step: Step) -> Solution:
+        """Solve a step or raise NotConvergedError."""
+        since = time.perf_counter()
+        for line in self._lines:
+            line.parts.update(step.before.t, step.t)
+        for results in self._results.values():
+            results.forget()
+        still = step.scheme.trial(step.before, step.t, step.dt, self._nothing)
+        failure, norms = self._iterate(step, still)
+        self._solved = None if failure else self._state(step, still)
+        if self._solved is not None:
+            for results in self._results.values():
+                results.solved(self._solved)
+        self.system.clock.add("compiled loop", since)
+        near, self.at_equilibrium = self.at_equilibrium, False
+        if self._solved is not None:
+            return Solution(self._solved, self._forces(), norms)
+        if self._border.left_to_newton:
+            return self._by_newton(step, near)
+        raise NotConvergedError(failure)
+
+    def _iterate(self, step: Step, still: State) -> tuple[str, list[float]]:
+        """Why the loop does not get to balance, "" where it does; norms of the residual on the way. still: the step
+        without increments.
+        """
+        guess = State(step.t, step.guess.copy(), still.v.copy(), still.a.copy())
+        self.system.prescribe(guess)
+        scheme, past, limits = step.scheme, step.scheme.past(step.start), self._limits(step)
+        for _ in range(MOST_STARTS):
+            self._border.begin(step.before, step.t, step.guess)
+            self.packed.begin(guess, past, scheme.weights(step.dt), limits)
+            outcome, taken = self.packed.solve()
+            self.iterations += taken
+            norms: list[float] = as_list(self.packed.progress.norms[: taken + 1])
+            if outcome == CONVERGED:
+                return self._tangle() or ("" if self._border.holds else NAMES[OUTGROWN]), norms
+            if outcome != OUTGROWN:
+                break
+            self._border.widen()
+        return self._reason(outcome, norms), norms
+
+    def _limits(self, step: Step) -> StopLimits:
+        """A smooth motion takes an iteration, which answers its load."""
+        smooth, moves = self.system.smooth, bool(step.guess[~self.system.prescribed].any())
+        gradual = self.system.gradual and self._border.gradual
+        return limits_of(self.settings, smooth, gradual, smooth or self.at_equilibrium or moves)
+
+    def _tangle(self) -> str:
+        """Why what the loop has found is none of a line's states; "" where it is one."""
+        for packed in self._lines:
+            if isinstance(packed.line, Line) and (reason := packed.line.folding(*packed.folding)):
+                return reason
+        return ""
+
+    def _by_newton(self, step: Step, at_equilibrium: bool) -> Solution:
+        """By Newton's method over the parts."""
+        newton = self._newton
+        self._border.leave_to_newton(step.before)
+        newton.renew()
+        newton.at_equilibrium, before = at_equilibrium, newton.iterations
+        try:
+            return newton.solve(step)
+        finally:
+            self.iterations += newton.iterations - before
+
+    def _state(self, step: Step, still: State) -> State:
+        """The state found."""
+        u, v, a = self._nothing.copy(), still.v.copy(), still.a.copy()
+        for packed in self._lines:
+            for whole, own in zip((u, v, a), (packed.step.u, packed.step.v, packed.step.a), strict=True):
+                whole[packed.line.part] = own.ravel()
+        self._border.put_increments(step.scheme.weights(step.dt), u, v, a)
+        rest = self.system.prescribed_dofs
+        rest = rest[rest >= self.system.end_of_lines]
+        v[rest] = a[rest] = 0.0
+        return State(step.t, u, v, a, dt=step.dt)
+
+    def _forces(self) -> Forces:
+        """Those of the last trial; on the free dofs of soil they are in balance."""
+        forces = Forces.zeros(len(self._nothing))
+        for packed in self._lines:
+            found, at = packed.forces, packed.line.part
+            groups = found.inertia, found.force, found.end
+            for whole, group in zip((forces.inertia, forces.force, forces.end), groups, strict=True):
+                whole[at] = group.ravel()
+        return forces
+
+    def commit(self, state: State) -> None:
+        """Accept the state of the step solved last."""
+        if state is not self._solved:
+            self.system.commit(state)
+            return
+        since = time.perf_counter()
+        for packed in self._lines:
+            packed.keep()
+        kept = [part for packed in self._lines for part in packed.parts.committed]
+        self.system.commit(state, [*kept, *self._border.parts])
+        for results in self._results.values():
+            results.commit()
+        self.system.clock.add("compiled loop", since)
+
+    @cached_property
+    def mass(self) -> CompiledMass:
+        """Inverse of the mass of lines and bodies."""
+        return CompiledMass(self._lines)
+
+    def bulk_forces(self, state: State) -> Forces:
+        """Forces of groups I and F at an accepted state, those of group E zero."""
+        found = self.mass.bulk_forces(state)
+        self._border.add_bulk_forces(state, found)
+        return found
+
+    def element_residual(self, line: Line, state: State) -> Array:
+        known = self._results.get(line)
+        return super().element_residual(line, state) if known is None else known.element_residual(state)
+
+    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
+        known = self._results.get(line)
+        return super().section_forces(line, elements, state) if known is None else known.section_forces(elements, state)
+
+    def contact_results(self, contact: RiserContact, state: State) -> Array:
+        known = self._results.get(contact.line)
+        return super().contact_results(contact, state) if known is None else known.contact_results(contact, state)
+
+    def nodal_residual(self, line: Line, state: State) -> Array | None:
+        known = self._results.get(line)
+        return super().nodal_residual(line, state) if known is None else known.nodal_residual(state)
+
+    def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
+        """Energy stored at the end of the step solved last, and what each part turned over in it."""
+        if solution.state is not self._solved:
+            self._border.forget_account()
+            return super().energy_exchanged(before, solution)
+        since = time.perf_counter()
+        work = dict(self._no_work)
+        self.packed.account(before)
+        for packed in self._lines:
+            packed.parts.add_work(before, solution.state, as_list(packed.work), work)
+        beside = self._border.add_account(before, solution.state, work)
+        self.system.clock.add("compiled loop", since)
+        return Energy(*as_list(self.packed.energy)) + beside, work
+
+    def state(self) -> Saved:
+        """What would be the same but to round-off if it were found anew."""
+        return self._border.state()
+
+    def restore(self, saved: Saved) -> None:
+        self._border.restore(saved)
+
+    def renew(self) -> None:
+        if "_newton" in self.__dict__:
+            self._newton.renew()
+
+    def destroy(self) -> None:
+        if "_newton" in self.__dict__:
+            self._newton.destroy()
+
+    def _reason(self, outcome: int, norms: list[float]) -> str:
+        return reported(NAMES[outcome], norms, self._place())
+
+    def _place(self) -> str:
+        """The largest residual, in words."""
+        found = [packed.dofs.residual.ravel() / packed.dofs.levers.ravel() for packed in self._lines]
+        residual = np.concatenate(found)
+        if not np.isfinite(residual).all():
+            return "the residual is not finite"
+        k = int(np.argmax(np.abs(residual)))
+        field = next(field for field in self.system.model.lines if field.offset <= k < field.offset + field.size)
+        return largest_at(abs(residual[k]), field.describe(k - field.offset))

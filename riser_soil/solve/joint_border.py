@@ -1,0 +1,283 @@
+"""Joints between lines and bodies in the compiled loop: what couples their bands.
+
+A joint's matrix has a block of each node, which lies in that field's band, and blocks K between them. With copies z of
+the dofs of both nodes of all joints as further unknowns,
+
+    B x + K z = f,    z - x = 0 at the joints,
+
+the bands B are factorised each on its own, and what is left is dense and small: (1 + E inv(B) K) z = E inv(B) f, where
+E takes the joints' rows. Rows that joints touch are few, as in `linear_solver`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.bodies.joints import JointPlaces, Joints, Laws, add_tangent, conjugate, energy_of
+from riser_soil.core import banded, dense
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.compiled import njit
+from riser_soil.core.dense import PIVOT
+from riser_soil.core.part import Forces, Part, State
+from riser_soil.riser.configuration import SpatialConfiguration
+from riser_soil.riser.part_kernels import LineForces, LineWeights
+from riser_soil.solve.newton_progress import GOING_ON, SINGULAR
+from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
+
+
+class JointData(NamedTuple):
+    """m joints: laws; places of their nodes; left (1,): the share of the first gap that is open; forces (m, 12) and
+    matrices K (m, 12, 12); sizes (m, 12) of the coordinates; schur (12 m, 12 m) and its pivots; answer (12 m,): copies
+    of the dofs.
+    """
+
+    laws: Laws
+    places: JointPlaces
+    left: Array
+    forces: Array
+    K: Array
+    sizes: Array
+    schur: Array
+    pivots: IntArray
+    answer: Array
+
+
+class Sides(NamedTuple):
+    """Those of the joints that are on one line: joint, side and node (k,); first (k,): where the node's rows begin
+    among the rows (r,) that joints touch, in increasing order; right (r, 12 m): how these follow the copies.
+    """
+
+    joint: IntArray
+    side: IntArray
+    node: IntArray
+    first: IntArray
+    rows: IntArray
+    right: Array
+
+
+@njit
+def look(at: SpatialConfiguration, sides: Sides, joints: JointData) -> None:
+    """Write the places of the joints' nodes on a line."""
+    places = joints.places
+    for k in range(sides.node.size):
+        j, s, n = sides.joint[k], sides.side[k], sides.node[k]
+        for i in range(3):
+            places.x[j, s, i], places.Theta[j, s, i] = at.x[n, i], at.Theta[n, i]
+            for c in range(3):
+                places.R[j, s, i, c], places.H[j, s, i, c] = at.frames[n, i, c], at.H[n, i, c]
+                places.Rn[j, s, i, c] = at.Rn[n, i, c]
+
+
+@njit
+def find_forces(joints: JointData) -> None:
+    """Write the forces of all joints."""
+    found = conjugate(joints.laws, joints.places, joints.left[0])
+    for j in range(found.shape[0]):
+        for i in range(12):
+            joints.forces[j, i] = found[j, i]
+
+
+@njit
+def add_to_line(joints: JointData, sides: Sides, forces: LineForces) -> None:
+    """Add the joints' forces to those on a line's nodes."""
+    for k in range(sides.node.size):
+        for i in range(6):
+            forces.force[sides.node[k], i] += joints.forces[sides.joint[k], 6 * sides.side[k] + i]
+
+
+@njit
+def write_matrices(joints: JointData, weights: LineWeights) -> None:
+    """Write the joints' matrices."""
+    joints.K[:] = 0.0
+    add_tangent(joints.K, weights.force, joints.laws, joints.places, joints.left[0])
+
+
+@njit
+def take_sizes(dofs: Dofs, sides: Sides, joints: JointData) -> None:
+    """Write the sizes of the coordinates of a line's nodes."""
+    for k in range(sides.node.size):
+        for i in range(6):
+            joints.sizes[sides.joint[k], 6 * sides.side[k] + i] = dofs.sizes[sides.node[k], i]
+
+
+@njit
+def add_terms(joints: JointData, sides: Sides, dofs: Dofs) -> None:
+    """Add to the terms that a line's residual is made of."""
+    for k in range(sides.node.size):
+        j, first = sides.joint[k], 6 * sides.side[k]
+        for i in range(6):
+            for c in range(12):
+                dofs.terms[sides.node[k], i] += abs(joints.K[j, first + i, c]) * joints.sizes[j, c]
+
+
+@njit
+def add_to_band(joints: JointData, sides: Sides, workspace: MatrixWorkspace, dofs: Dofs) -> None:
+    """Add the blocks of a line's nodes to its band."""
+    b, ab, fixed = len(workspace.band), workspace.ab, dofs.fixed
+    for k in range(sides.node.size):
+        j, first, n = sides.joint[k], 6 * sides.side[k], sides.node[k]
+        for i in range(6):
+            for c in range(6):
+                if not (fixed[n, i] or fixed[n, c]):
+                    ab[6 * n + i, b + c - i] += joints.K[j, first + i, first + c]
+
+
+@njit
+def begin_copies(joints: JointData) -> None:
+    """Write the copies' own matrix."""
+    joints.schur[:] = 0.0
+    for k in range(joints.schur.shape[0]):
+        joints.schur[k, k] = 1.0
+
+
+@njit
+def add_to_copies(
+    joints: JointData, sides: Sides, workspace: MatrixWorkspace, dofs: Dofs, progress: NewtonProgress
+) -> None:
+    """Add what a line's dofs do as they follow the copies."""
+    if progress.ending[0] != GOING_ON:
+        return
+    right, schur = sides.right, joints.schur
+    right[:] = 0.0
+    for k in range(sides.node.size):
+        j, s, n = sides.joint[k], sides.side[k], sides.node[k]
+        for i in range(6):
+            if not dofs.fixed[n, i]:
+                for c in range(6):
+                    other = 6 * (1 - s) + c
+                    right[sides.first[k] + i, 12 * j + other] += joints.K[j, 6 * s + i, other]
+    inner = banded.inverse_at(workspace.ab, workspace.pivots, sides.rows, workspace.band)
+    follow = np.dot(inner, right)
+    for k in range(sides.node.size):
+        for i in range(6):
+            row = 12 * sides.joint[k] + 6 * sides.side[k] + i
+            for c in range(schur.shape[1]):
+                schur[row, c] += follow[sides.first[k] + i, c]
+
+
+@njit
+def factorise_copies(joints: JointData, progress: NewtonProgress) -> None:
+    """Factorise the copies' matrix."""
+    if progress.ending[0] == GOING_ON and not dense.factorise(joints.schur, joints.pivots):
+        progress.ending[0] = SINGULAR
+
+
+@njit
+def load_copies(joints: JointData, sides: Sides, workspace: MatrixWorkspace, dofs: Dofs) -> None:
+    """Write where a line's nodes alone would go."""
+    inner = dofs.residual.copy().reshape(dofs.residual.size)
+    banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
+    for k in range(sides.node.size):
+        for i in range(6):
+            joints.answer[12 * sides.joint[k] + 6 * sides.side[k] + i] = inner[6 * sides.node[k] + i]
+
+
+@njit
+def solve_copies(joints: JointData) -> None:
+    """Solve for the copies."""
+    dense.solve(joints.schur, joints.pivots, joints.answer)
+
+
+@njit
+def take_from_line(joints: JointData, sides: Sides, dofs: Dofs) -> None:
+    """Take what the copies do to a line off its residual."""
+    residual = dofs.residual.reshape(dofs.residual.size)
+    for r in range(sides.rows.size):
+        residual[sides.rows[r]] -= dense.product(sides.right, r, 0, joints.answer.size, joints.answer)
+
+
+@njit
+def add_energy_of_joints(joints: JointData, energy: Array) -> None:
+    """Add the joints' energy to (3,): kinetic, strain, potential [J]."""
+    energy[1] += energy_of(joints.laws, joints.places, joints.left[0])
+
+
+def joint_border(lines: Sequence[PackedLine], beside: Sequence[Part]) -> JointBorder | None:
+    """That of lines and bodies beside which there are joints; None for anything else."""
+    if len(beside) != 1 or not isinstance(beside[0], Joints):
+        return None
+    return JointBorder(beside[0], lines)
+
+
+class JointBorder(LoopBorder):
+    """All joints of a scene, between the lines and bodies that are packed."""
+
+    left_to_newton = True
+
+    def __init__(self, joints: Joints, lines: Sequence[PackedLine]) -> None:
+        self._joints, m, self.parts = joints, len(joints.joints), (joints,)
+        vectors, frames = (m, 2, 3), (m, 2, 3, 3)
+        places = JointPlaces(*(np.zeros(shape) for shape in (vectors, vectors, frames, frames, frames)))
+        copies, matrices = 12 * m, (np.zeros((m, 12)), np.zeros((m, 12, 12)), np.zeros((m, 12)))
+        factors = np.zeros((copies, copies)), np.zeros(copies, PIVOT), np.zeros(copies)
+        self._data = JointData(joints.laws, places, np.zeros(1), *matrices, *factors)
+        self._packed = Packed(self._data)
+        found = ((line, _sides_of(joints, line)) for line in lines)
+        self._lines = [(line, Packed(sides)) for line, sides in found if sides.node.size]
+
+    def begin(self, before: State, step_to: float, guess: Array) -> None:
+        self._data.left[0] = self._joints.left_at(step_to)
+
+    def forces(self) -> list[Bound]:
+        data = self._packed
+        return [
+            *(Bound(look, line.packed_at, sides, data) for line, sides in self._lines),
+            Bound(find_forces, data),
+            *(Bound(add_to_line, data, sides, line.packed_forces) for line, sides in self._lines),
+        ]
+
+    def bulk_tangent(self) -> list[Bound]:
+        line, _ = self._lines[0]
+        return [Bound(write_matrices, self._packed, line.weights)]
+
+    def terms(self) -> list[Bound]:
+        sizes = [Bound(take_sizes, line.packed_dofs, sides, self._packed) for line, sides in self._lines]
+        return sizes + [Bound(add_terms, self._packed, sides, line.packed_dofs) for line, sides in self._lines]
+
+    def fill(self) -> list[Bound]:
+        data = self._packed
+        return [Bound(add_to_band, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self._lines]
+
+    def factorise(self, progress: Packed) -> list[Bound]:
+        each = ((data, sides, line.packed_workspace, line.packed_dofs, progress) for line, sides, data in self._all())
+        return [
+            Bound(begin_copies, self._packed),
+            *(Bound(add_to_copies, *given) for given in each),
+            Bound(factorise_copies, self._packed, progress),
+        ]
+
+    def couple(self) -> list[Bound]:
+        each = [(data, sides, line.packed_workspace, line.packed_dofs) for line, sides, data in self._all()]
+        return [
+            *(Bound(load_copies, *given) for given in each),
+            Bound(solve_copies, self._packed),
+            *(Bound(take_from_line, data, sides, dofs) for data, sides, _, dofs in each),
+        ]
+
+    def _all(self) -> list[tuple[PackedLine, Packed, Packed]]:
+        return [(line, sides, self._packed) for line, sides in self._lines]
+
+    def account(self, energy: Packed) -> list[Bound]:
+        return [Bound(add_energy_of_joints, self._packed, energy)]
+
+    def add_bulk_forces(self, state: State, forces: Forces) -> None:
+        self._joints.residual(state, forces)
+
+
+def _sides_of(joints: Joints, line: PackedLine) -> Sides:
+    """The joints' sides on a line or body."""
+    found = [
+        (j, s, side.node)
+        for j, joint in enumerate(joints.joints)
+        for s, side in enumerate(joint.sides)
+        if side.field is line.line
+    ]
+    joint, side, node = np.array(found, dtype=np.int64).reshape(-1, 3).T.copy()
+    nodes, at = np.unique(node, return_inverse=True)
+    rows = (6 * nodes[:, None] + np.arange(6)).ravel()
+    return Sides(joint, side, node, 6 * at.astype(np.int64), rows, np.zeros((rows.size, 12 * len(joints.joints))))

@@ -1,0 +1,379 @@
+"""Lines and bodies as kernel data, packed for the compiled loop: parts bound to kernels, and workspace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray, as_list
+from riser_soil.core.bound import Bound, Packed, bound, calls, in_turn
+from riser_soil.core.part import Energy, Forces, State, Weights, Work
+from riser_soil.core.saved_state import Saved
+from riser_soil.riser.configuration import (
+    maps_for,
+    place,
+    workspace_for,
+    write_folded,
+    write_magnitudes,
+    write_maps,
+    write_turning,
+)
+from riser_soil.riser.line_part import CompiledPart, LinePart, LineTrials, overrides
+from riser_soil.riser.moving_nodes import MovingNodes
+from riser_soil.riser.part_kernels import (
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    add_work,
+    clear,
+    collect,
+    forces_of,
+    keep,
+    turn,
+    weigh,
+)
+from riser_soil.riser.placed_line import PlacedLine
+from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.newton_progress import StopLimits
+from riser_soil.solve.riser_loop import Dofs, NewtonProgress, StepData, matrix_workspace
+
+KernelData = tuple[Any, ...]
+
+
+class KernelParts:
+    """Parts with their kernel data; t: the time [s] that what depends on it was written for last; committed: parts
+    whose history no kernel keeps.
+    """
+
+    def __init__(self, with_data: Sequence[tuple[Any, KernelData]]) -> None:
+        self.with_data, self.t = with_data, math.nan
+        self.parts: list[LinePart] = [part for part, _ in with_data]
+        self.kernel_data = [held for _, held in with_data]
+        self._renewed = [part for part in self.parts if overrides(part, "renew_kernel_data")]
+        kernels = [(part, type(held) in add_work.kernels) for part, held in with_data]
+        self.committed = [part for part, held in with_data if type(held) not in keep.kernels]
+        self._turning = [(part, kernel) for part, kernel in kernels if kernel or _by_method(part)]
+        self._trials = {part.line.once(LineTrials) for part in self.parts}
+
+    def update(self, start: float, end: float) -> None:
+        """Write what depends on the time into the kernel data, for a step between two times."""
+        for trials in self._trials:
+            trials.forget()
+        for part in self._renewed:
+            part.renew_kernel_data(start, end)
+        self.t = end
+
+    def update_to(self, t: float) -> None:
+        if self.t != t:
+            self.update(t, t)
+
+    def in_groups(self, groups: str) -> list[KernelData]:
+        """Numbers of the parts with forces in some of the groups."""
+        return [held for part, held in self.with_data if set(part.traits.groups) & set(groups)]
+
+    def add_work(self, before: State, after: State, rows: list[list[float]], work: dict[str, Work]) -> None:
+        """Add what the parts turn over in a step, by name; rows: of those that have kernels for it."""
+        compiled = iter(rows)
+        for part, kernel in self._turning:
+            work[part.name] += Work(*next(compiled)) if kernel else part.work(before, after)
+
+
+def _by_method(part: LinePart) -> bool:
+    """Whether a part without a kernel for it says what it turns over."""
+    return overrides(part, "work") and type(part).work is not CompiledPart.work
+
+
+class PackedLine:
+    """A line or a body and its parts, whose arrays it shares; placed: where it is accepted; at, step, forces, dofs,
+    workspace: what the loop writes to, at being the trial configuration.
+
+    parts: that act on it; prescribed, levers (size,): of its dofs; weights: `LineWeights` of the step, for all lines.
+    """
+
+    def __init__(
+        self, line: MovingNodes, parts: KernelParts, prescribed: BoolArray, levers: Array, weights: Packed
+    ) -> None:
+        self.line, self.parts, self.placed, shape = line, parts, PlacedLine(line), (line.nodes, line.ndof)
+        self.step, self.forces, self.at = StepData(*_zeros(6, shape)), forces_of(line), workspace_for(line)
+        self.workspace = matrix_workspace(*shape, line.dimension)
+        self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
+        self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
+        self.weights, self._maps = weights, Packed(maps_for(line))
+        written = self.at, self.step, self.forces, self.dofs, self.workspace
+        self.packed_at, self.packed_step, self.packed_forces, self.packed_dofs, self.packed_workspace = map(
+            Packed, written
+        )
+        self.K = Packed(self.workspace.K)
+        self._touching = parts.in_groups("E")
+        self._folded = np.zeros(2, dtype=np.int64)
+        folded = bound(write_folded, self.at, self.placed.base, Packed(self._folded))
+        self.look_for_tangles = [folded] if line.nodes > 1 else []
+        self.write_sizes = bound(write_magnitudes, self.at, Packed(self.dofs.sizes))
+        kept = (bound(keep, each, self.packed_at) for each in parts.kernel_data if type(each) in keep.kernels)
+        self.keep = in_turn(*kept)
+
+    def evaluate(self) -> list[Bound]:
+        """Kernels that place the trial and find the forces there."""
+        now, step, forces = self.packed_at, self.packed_step, self.packed_forces
+        return [
+            Bound(loop.follow, step, self._maps, self.packed_dofs),
+            bound(place, self.at, self.placed.base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
+            Bound(clear, forces),
+            *(bound(add_forces, each, now, forces) for each in self.parts.kernel_data),
+        ]
+
+    def balance(self, sums: Packed) -> list[Bound]:
+        """Kernels that write the residual of the forces found, and add to its norms."""
+        forces, dofs = self.packed_forces, self.packed_dofs
+        return [
+            Bound(collect, self.packed_at, forces),
+            Bound(loop.combine, forces, self.packed_step, self.weights, dofs),
+            Bound(loop.add_norms, forces, dofs, sums),
+        ]
+
+    def tangents(self, contact: bool) -> tuple[list[Bound], list[Bound], list[Bound]]:
+        """Kernels that write the tangent but for contact's share, the same at held rates, and that add contact's.
+        contact: whether something beside the line's own parts touches it.
+        """
+        others = [each for each in self.parts.kernel_data if all(each is not one for one in self._touching)]
+        touched = contact or len(self._touching) > 0
+        bulk, maps = Packed(np.empty_like(self.workspace.K)) if touched else self.K, self._maps
+        held = Packed(maps.value)  # without shifts
+        given = self.packed_at, maps, self.weights, self.K
+        added = [bound(add_tangent, each, *given) for each in self._touching]
+        begun = [Bound(loop.begin_with, bulk, self.K)] if touched else []
+        return self._bulk(others, maps, bulk), self._bulk(others, held, bulk), [*begun, *added]
+
+    def _bulk(self, parts: Sequence[KernelData], maps: Packed, K: Packed) -> list[Bound]:
+        now, forces, weights = self.packed_at, self.packed_forces, self.weights
+        conjugate, turning = Packed(self.workspace.conjugate), Packed(self.workspace.turning)
+        return [
+            bound(write_maps, self.at, maps),
+            Bound(loop.clear_tangent, K),
+            *(bound(add_tangent, each, now, maps, weights, K) for each in parts),
+            Bound(weigh, forces, weights, conjugate),
+            bound(write_turning, self.at, conjugate, turning),
+            Bound(turn, now, turning, K),
+        ]
+
+    def fill(self) -> Bound:
+        """The kernel that writes the band."""
+        return Bound(loop.fill, self.packed_workspace, self.packed_dofs)
+
+    def factorise(self, progress: Packed) -> Bound:
+        """The kernel that factorises the band."""
+        return Bound(loop.factorise, self.packed_workspace, progress)
+
+    def improve(self) -> Bound:
+        """The kernel that takes the band's answer off the increments."""
+        return Bound(loop.improve, self.packed_workspace, self.packed_step, self.packed_dofs)
+
+    def account(self, energy: Packed) -> list[Bound]:
+        """Kernels of energy (3,), which they add to, and of the rows `work` of the parts that turn some over."""
+        data = self.parts.kernel_data
+        turning = [each for each in data if type(each) in add_work.kernels]
+        self.work = np.zeros((len(turning), 4))
+        then, now = Packed(self.placed.at), self.packed_at
+        return [
+            Bound(loop.clear_account, Packed(self.work)),
+            *(bound(add_energy, each, now, energy) for each in data),
+            *(bound(add_work, each, then, now, Packed(row)) for each, row in zip(turning, self.work, strict=True)),
+        ]
+
+    def begin(self, state: State, past: Array | None, weights: Weights) -> None:
+        """Begin a step. state, past: as of `PackedSystem`, of this line's dofs."""
+        self.placed.update()
+        u, v, a, earlier = self._start
+        u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, 0.0 if past is None else past
+        maps = self._maps.value
+        if (maps.shift_v, maps.shift_a) != (weights.shift_v, weights.shift_a):
+            self._maps.renew(maps._replace(shift_v=weights.shift_v, shift_a=weights.shift_a))
+
+    @property
+    def folding(self) -> tuple[int, int]:
+        """First elements that are folded, and that swing too far, in the last trial: `Line.folding`."""
+        folded, swung = as_list(self._folded)
+        return folded, swung
+
+
+def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
+    return [np.zeros(shape) for _ in range(n)]
+
+
+class LoopBorder:
+    """Nothing beside the lines. One that couples them, or has unknowns of its own, overrides all of this; kernels are
+    bound to what they take.
+
+    knows_round_off: whether a residual can be told from its round-off by `riser_loop.write_terms`; smooth: whether
+    nothing touches the lines; gradual: whether a tangent may be kept beside contact, see `System`; parts: whose forces
+    are evaluated here; left_to_newton: whether a step that can't be solved here may be another solver's.
+    """
+
+    knows_round_off = smooth = gradual = True
+    left_to_newton = False
+    parts: Sequence[Any] = ()
+
+    def begin(self, before: State, step_to: float, guess: Array) -> None:
+        """Begin a step from an accepted state to a time [s], with a first guess (size,) of all local increments."""
+
+    def leave_to_newton(self, before: State) -> None:
+        """Prepare another solver's step from an accepted state."""
+
+    def widen(self) -> None:
+        """Take in what the last trial has outgrown."""
+
+    @property
+    def holds(self) -> bool:
+        """Whether the last trial is one of what was taken in."""
+        return True
+
+    def forces(self) -> list[Bound]:
+        """Kernels that add to the lines' residuals, and write that of the border."""
+        return []
+
+    def norms(self, sums: Packed) -> list[Bound]:
+        """Kernels that add the border's residual to the norms."""
+        return []
+
+    def outgrown(self, progress: Packed) -> list[Bound]:
+        """Kernels that tell where more is wanted of what stands beside the lines."""
+        return []
+
+    def bulk_tangent(self) -> list[Bound]:
+        """Kernels that write the border's share of the tangent but for contact's."""
+        return []
+
+    def tangent(self) -> list[Bound]:
+        """Kernels that add contact's share to the lines' tangents, and write that of the border."""
+        return []
+
+    def terms(self) -> list[Bound]:
+        """Kernels that add to the terms that the lines' residuals are made of."""
+        return []
+
+    def fill(self) -> list[Bound]:
+        """Kernels that add to the lines' bands."""
+        return []
+
+    def factorise(self, progress: Packed) -> list[Bound]:
+        """Kernels that factorise what couples the lines, whose bands are factorised."""
+        return []
+
+    def couple(self) -> list[Bound]:
+        """Kernels that take what the border answers off the lines' residuals."""
+        return []
+
+    def account(self, energy: Packed) -> list[Bound]:
+        """Kernels that account for a step, and add to the energy (3,)."""
+        return []
+
+    def put_increments(self, weights: Weights, u: Array, v: Array, a: Array) -> None:
+        """Write the increments of dofs beside the lines, and add what rates follow from them, all local."""
+
+    def add_bulk_forces(self, state: State, forces: Forces) -> None:
+        """Add the border's forces of groups I and F at an accepted state."""
+
+    def add_account(self, before: State, state: State, work: dict[str, Work]) -> Energy:
+        """Add what the border's parts have turned over in the step solved last; the energy stored beside the lines."""
+        return Energy()
+
+    def forget_account(self) -> None:
+        """A step was solved elsewhere."""
+
+    def state(self) -> Saved:
+        return {}
+
+    def restore(self, saved: Saved) -> None:
+        """Nothing is kept."""
+
+
+class PackedSystem:
+    """Lines and bodies with what couples them, for the compiled loop. weights: as the lines have them; most: iterations
+    of a step.
+    """
+
+    def __init__(self, lines: Sequence[PackedLine], border: LoopBorder, weights: Packed, most: int) -> None:
+        self.lines, self.border, self._weights = lines, border, weights
+        self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(most + 1), np.zeros(2, dtype=np.int64))
+        self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
+        self._bind()
+        self.energy = np.zeros(3)
+        energy = Packed(self.energy)
+        each = [kernel for line in lines for kernel in line.account(energy)]
+        self._account = in_turn(Bound(loop.clear_account, energy), *each, *border.account(energy))
+
+    def _bind(self) -> None:
+        """Bind the kernels of the loop to where they read and write."""
+        lines, border, progress, limits = self.lines, self.border, Packed(self.progress), self._limits
+        sums, above = Packed(np.zeros(5)), Packed(np.zeros(1, dtype=np.bool_))
+        evaluate = [
+            *(kernel for line in lines for kernel in line.evaluate()),
+            *border.forces(),
+            Bound(loop.clear_account, sums),
+            *(kernel for line in lines for kernel in line.balance(sums)),
+            *border.norms(sums),
+            Bound(loop.judge, sums, limits, progress),
+            *border.outgrown(progress),
+        ]
+        bulk, held, contact = (
+            [kernel for line in each for kernel in line]
+            for each in zip(*(line.tangents(not border.smooth) for line in lines), strict=True)
+        )
+        joined = border.bulk_tangent()
+        contact += border.tangent()
+        factors = [
+            *(line.fill() for line in lines),
+            *border.fill(),
+            *(line.factorise(progress) for line in lines),
+            *border.factorise(progress),
+        ]
+        sizes = [line.write_sizes for line in lines]
+        terms = [Bound(loop.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
+        looked = [Bound(loop.find_above, line.packed_dofs, above) for line in lines]
+        probe = [
+            *held, *joined, *contact, *sizes, *terms, *border.terms(),
+            Bound(loop.clear_flag, above), *looked, Bound(loop.judge_round_off, above, progress),
+        ]  # fmt: skip
+        renew = [*bulk, *joined, *contact, *factors]
+        touch = [*contact, *factors] if contact else []
+        improve = [*border.couple(), *(line.improve() for line in lines)]
+        each = evaluate, probe if border.knows_round_off else [], renew, touch, improve
+        tables = (Packed(calls(*kernels)) for kernels in each)
+        tangles = (kernel for line in lines for kernel in line.look_for_tangles)
+        self._solve = in_turn(Bound(loop.solve_step, *tables, limits, progress), *tangles)
+        filled = [line.fill() for line in lines]
+        self.evaluate, self.renew_contact = in_turn(*evaluate), in_turn(*touch)
+        self.write_tangent = in_turn(*bulk, *joined, *contact, *filled, *border.fill(), *sizes)
+        self.improve = in_turn(*factors, *improve)
+
+    def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:
+        """Begin a step.
+
+        state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`;
+        both of all local dofs.
+        """
+        for line in self.lines:
+            at = line.line.part
+            own = State(state.t, state.u[at], state.v[at], state.a[at])
+            line.begin(own, None if past is None else past[at], weights)
+        given = LineWeights(weights.inertia, weights.force)
+        if given != self._weights.value:
+            self._weights.renew(given)
+        if limits != self._limits.value:
+            self._limits.renew(limits)
+
+    def solve(self) -> tuple[int, int]:
+        """Solve the step: the outcome, see `newton_progress`, and the number of iterations."""
+        self._solve()
+        outcome, taken = as_list(self.progress.ending)
+        return outcome, taken
+
+    def account(self, before: State) -> None:
+        """Find the energy at the end of the step solved last, and the work in it."""
+        for line in self.lines:
+            line.placed.move(before)
+        self._account()
