@@ -205,9 +205,10 @@ def joint_border(lines: Sequence[PackedLine], beside: Sequence[Part]) -> JointBo
 
 
 class JointBorder(LoopBorder):
-    """All joints of a scene, between the lines and bodies that are packed."""
+    """All joints of a scene, between the lines and bodies that are packed.
 
-    left_to_newton = True
+    lines: that have joints, each with its sides of them; data: what the loop writes to.
+    """
 
     def __init__(self, joints: Joints, lines: Sequence[PackedLine]) -> None:
         self._joints, m, self.parts = joints, len(joints.joints), (joints,)
@@ -215,33 +216,33 @@ class JointBorder(LoopBorder):
         places = JointPlaces(*(np.zeros(shape) for shape in (vectors, vectors, frames, frames, frames)))
         copies, matrices = 12 * m, (np.zeros((m, 12)), np.zeros((m, 12, 12)), np.zeros((m, 12)))
         factors = np.zeros((copies, copies)), np.zeros(copies, PIVOT), np.zeros(copies)
-        self._data = JointData(joints.laws, places, np.zeros(1), *matrices, *factors)
-        self._packed = Packed(self._data)
+        self.data = JointData(joints.laws, places, np.zeros(1), *matrices, *factors)
+        self._packed = Packed(self.data)
         found = ((line, _sides_of(joints, line)) for line in lines)
-        self._lines = [(line, Packed(sides)) for line, sides in found if sides.node.size]
+        self.lines = [(line, Packed(sides)) for line, sides in found if sides.node.size]
 
     def begin(self, before: State, step_to: float, guess: Array) -> None:
-        self._data.left[0] = self._joints.left_at(step_to)
+        self.data.left[0] = self._joints.left_at(step_to)
 
     def forces(self) -> list[Bound]:
         data = self._packed
         return [
-            *(Bound(look, line.packed_at, sides, data) for line, sides in self._lines),
+            *(Bound(look, line.packed_at, sides, data) for line, sides in self.lines),
             Bound(find_forces, data),
-            *(Bound(add_to_line, data, sides, line.packed_forces) for line, sides in self._lines),
+            *(Bound(add_to_line, data, sides, line.packed_forces) for line, sides in self.lines),
         ]
 
     def bulk_tangent(self) -> list[Bound]:
-        line, _ = self._lines[0]
+        line, _ = self.lines[0]
         return [Bound(write_matrices, self._packed, line.weights)]
 
     def terms(self) -> list[Bound]:
-        sizes = [Bound(take_sizes, line.packed_dofs, sides, self._packed) for line, sides in self._lines]
-        return sizes + [Bound(add_terms, self._packed, sides, line.packed_dofs) for line, sides in self._lines]
+        sizes = [Bound(take_sizes, line.packed_dofs, sides, self._packed) for line, sides in self.lines]
+        return sizes + [Bound(add_terms, self._packed, sides, line.packed_dofs) for line, sides in self.lines]
 
     def fill(self) -> list[Bound]:
         data = self._packed
-        return [Bound(add_to_band, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self._lines]
+        return [Bound(add_to_band, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self.lines]
 
     def factorise(self, progress: Packed) -> list[Bound]:
         each = ((data, sides, line.packed_workspace, line.packed_dofs, progress) for line, sides, data in self._all())
@@ -260,7 +261,7 @@ class JointBorder(LoopBorder):
         ]
 
     def _all(self) -> list[tuple[PackedLine, Packed, Packed]]:
-        return [(line, sides, self._packed) for line, sides in self._lines]
+        return [(line, sides, self._packed) for line, sides in self.lines]
 
     def account(self, energy: Packed) -> list[Bound]:
         return [Bound(add_energy_of_joints, self._packed, energy)]

@@ -1,0 +1,218 @@
+"""Time steps of joined lines and bodies in the compiled loop, beside those by SNES over their parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from benchmarks.stage import TimedStage
+from riser_soil.assembly import build
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.part import Energy
+from riser_soil.core.system import Timer
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve.compiled_newton import CompiledNewton
+from riser_soil.solve.joint_border import JointBorder
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.packed_line import PackedSystem
+from riser_soil.stages import LayingCounter, lay, run_stage
+from tests.support.line_scenes import CHAIN, DEPTH, IN_WATER, RIGID, mooring, shaken
+
+WAVES: Mapping[str, Any] = {"airy": {"height": 2.0, "period": 4.0}, "ramp": 1.0}
+STEPS = 12
+
+
+def buoy_in_waves() -> dict[str, Any]:
+    """A point, half of it in the water, on lines of which much lies on the ground."""
+    scene = mooring(shaken(), elements=16)
+    scene["water"] |= {"waves": WAVES, "depth": DEPTH, "current": {"profile": [[-DEPTH, 0.1, 0.0], [0.0, 0.5, 0.2]]}}
+    scene["bodies"]["buoy"] |= {"position": [0.0, 0.0, -0.2], "volume": 9.0}
+    for line in scene["lines"].values():
+        line["segments"][0]["length"] = 150.0
+    return scene | {"seabed": {"kind": "spring", "stiffness": 1.0e5, "level": -DEPTH - 0.025}}
+
+
+def rigid_buoy() -> dict[str, Any]:
+    """One that turns, on lines at arms, one of them clamped to it."""
+    scene = mooring(shaken(), body=RIGID, elements=12)
+    scene["joints"]["north_top"]["kind"] = "clamped"
+    return scene
+
+
+def bundle() -> dict[str, Any]:
+    """Two lines side by side, tied along their length and at their ends above, where the second has no support."""
+    segments = [{"line_type": "chain", "length": 60.0, "elements": 12}]
+    points = [{"position": [0.0, 0.0, -30.0]}, {"position": [50.0, 0.0, -10.0]}]
+    ties = {
+        f"tie_{n}": {"kind": "clamped" if n == 2 else "pinned", "keep_distance": True}
+        | {"between": [{"line": name, "at": 15.0 * n} for name in ("first", "second")]}
+        for n in range(1, 5)
+    }
+    beside = {"segments": segments, "start": {"position": [0.0, 0.5, -30.0]}, "end": "free"}
+    heave = {"amplitude": [0.0, 0.8, 1.0], "period": 3.0, "ramp": 1.0}
+    moved = {"lines": {"first": {"motion": {"end": {"harmonic": heave}}}}}
+    return {
+        "title": "A bundle",
+        "water": {"density": 1025.0, "surface_level": 0.0},
+        "line_types": {"chain": CHAIN | IN_WATER},
+        "lines": {"first": {"segments": segments, "start": points[0], "end": points[1]}, "second": beside},
+        "joints": ties,
+        "stages": [{"name": "rest", "kind": "static"}, shaken(time_step=0.02) | moved],
+    }
+
+
+SCENES = {"a buoy in waves": buoy_in_waves, "a rigid buoy": rigid_buoy, "a bundle": bundle}
+
+
+def last_stage(case: str, newton: str) -> TimedStage:
+    scene = scene_from_mapping(SCENES[case]() | {"solver": {"newton": newton, "tolerance": 1e-9}})
+    assembly = build(scene, MPI.COMM_SELF)
+    before, _ = lay(assembly, Timer.new())
+    before = run_stage(assembly, scene.stages[0], before, LayingCounter(), Timer.new())
+    return TimedStage(assembly, scene.stages[1], before, Timer.new())
+
+
+@pytest.mark.parametrize("case", SCENES)
+def test_steps_are_those_of_snes(case: str) -> None:
+    compiled, snes = (last_stage(case, newton) for newton in ("compiled", "snes"))
+    assert isinstance(compiled.newton, CompiledNewton)
+    assert isinstance(snes.newton, Newton)
+    for stage in (compiled, snes):
+        stage.walk(STEPS)
+    assert snes.iterations <= compiled.iterations <= 1.25 * snes.iterations
+    found, expected = compiled.stepper, snes.stepper
+    for field in snes.system.model.lines:
+        rates, at = expected.before.v, slice(field.offset, field.offset + field.size)
+        assert np.abs(rates[at]).max() > 1e-2, field.name
+        np.testing.assert_allclose(found.before.v[at], rates[at], rtol=0.0, atol=1e-6, err_msg=field.name)
+    for mine, other in zip(compiled.assembly.by_line.values(), snes.assembly.by_line.values(), strict=True):
+        place, wanted = mine.line.positions3(found.before), other.line.positions3(expected.before)
+        np.testing.assert_allclose(place, wanted, rtol=0.0, atol=1e-8)
+        sections, by_snes = (
+            stage.newton.section_forces(own.line, own.elements, stage.stepper.now)
+            for stage, own in ((compiled, mine), (snes, other))
+        )
+        np.testing.assert_allclose(sections, by_snes, rtol=0.0, atol=1e-5 * np.abs(by_snes).max())
+    assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
+    for name, work in snes._taken.turned.items():
+        mine_turned = [*vars(compiled._taken.turned[name]).values()]
+        np.testing.assert_allclose(mine_turned, [*vars(work).values()], rtol=1e-5, atol=1e-5)
+    for stage in (compiled, snes):
+        stage.destroy()
+
+
+def at_first_step(case: str) -> PackedSystem:
+    """The loop where it has solved the first step."""
+    stage = last_stage(case, "compiled")
+    assert isinstance(stage.newton, CompiledNewton)
+    stage.walk(1)
+    return stage.newton.packed
+
+
+def increments(packed: PackedSystem) -> Array:
+    return np.concatenate([line.step.u.ravel() for line in packed.lines])
+
+
+def put(packed: PackedSystem, x: Array) -> None:
+    first = 0
+    for line in packed.lines:
+        line.step.u.ravel()[:] = x[first : first + line.line.size]
+        first += line.line.size
+
+
+def residual(packed: PackedSystem, x: Array) -> Array:
+    put(packed, x)
+    packed.evaluate()
+    return np.concatenate([line.dofs.residual.ravel() for line in packed.lines])
+
+
+def matrix(packed: PackedSystem) -> Array:
+    """The whole tangent (n, n): the lines' bands, and the joints' blocks between lines."""
+    packed.write_tangent()
+    border, sizes = packed.border, [line.line.size for line in packed.lines]
+    assert isinstance(border, JointBorder)
+    first = np.concatenate([[0], np.cumsum(sizes)])
+    out = np.zeros((first[-1], first[-1]))
+    for start, line in zip(first, packed.lines, strict=False):
+        n, b = line.line.size, len(line.workspace.band)
+        for i in range(n):
+            for j in range(max(0, i - b), min(n, i + b + 1)):
+                out[start + i, start + j] = line.workspace.ab[i, j - i + b]
+    dofs = {
+        (int(j), int(s)): start + 6 * int(node) + np.arange(6)
+        for line, packed_sides in border.lines
+        for start in [first[[each is line for each in packed.lines].index(True)]]
+        for j, s, node in zip(*packed_sides.value[:3], strict=True)
+    }
+    for (j, s), rows in dofs.items():
+        other = dofs[j, 1 - s]
+        out[np.ix_(rows, other)] += border.data.K[j, 6 * s : 6 * s + 6, 6 * (1 - s) : 6 * (1 - s) + 6]
+    fixed = np.concatenate([line.dofs.fixed.ravel() for line in packed.lines])
+    out[fixed] = out[:, fixed] = 0.0
+    out[fixed, fixed] = 1.0
+    return out
+
+
+def shaken_increments(packed: PackedSystem) -> tuple[Array, BoolArray]:
+    """Increments near those of the step, and which of them are free."""
+    free = np.concatenate([~line.dofs.fixed.ravel() for line in packed.lines])
+    x = increments(packed)
+    return x + 1e-4 * np.random.default_rng(3).normal(size=x.size) * free, free
+
+
+@pytest.mark.parametrize("case", SCENES)
+def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
+    packed = at_first_step(case)
+    x, free = shaken_increments(packed)
+    residual(packed, x)
+    tangent, random = matrix(packed), np.random.default_rng(4)
+    for _ in range(3):
+        direction = random.normal(size=x.size) * free
+        h = 1e-6 / np.abs(direction).max()
+        slope = (residual(packed, x + h * direction) - residual(packed, x - h * direction)) / (2.0 * h)
+        sizes = np.abs(tangent) @ np.abs(direction)
+        assert np.abs(slope - tangent @ direction)[free].max() < 1e-7 * sizes.max()
+        assert (np.abs(slope - tangent @ direction)[free] < 1e-5 * sizes[free] + 1e-9 * sizes.max()).all()
+
+
+def left_over(packed: PackedSystem) -> float:
+    """What the factors' answer to a residual leaves of it by the whole matrix, relative."""
+    x, _ = shaken_increments(packed)
+    load = residual(packed, x)
+    whole = matrix(packed)
+    packed.improve()
+    return float(np.linalg.norm(load - whole @ (x - increments(packed))) / np.linalg.norm(load))
+
+
+@pytest.mark.parametrize("case", SCENES)
+def test_the_factors_answer_as_the_whole_matrix_does(case: str) -> None:
+    assert left_over(at_first_step(case)) < 1e-9
+
+
+def test_answers_of_joints_at_other_nodes_are_noticed() -> None:
+    packed = at_first_step("a bundle")
+    assert isinstance(packed.border, JointBorder)
+    _, sides = packed.border.lines[0]
+    sides.value.first[:] = sides.value.first[::-1].copy()
+    assert left_over(packed) > 1e-7
+
+
+def test_joints_store_what_they_stretch() -> None:
+    """The loop's energy of joints is that of the part."""
+    stage = last_stage("a bundle", "compiled")
+    assert isinstance(stage.newton, CompiledNewton)
+    stage.walk(1)
+    hung = stage.assembly.hung
+    assert hung is not None
+    assert hung.joints is not None
+    step = stage.stepper.next_step(stage.control)
+    solution = stage.newton.solve(step)
+    energy, _ = stage.newton.energy_exchanged(step.before, solution)
+    parts: Energy = sum((part.energy(solution.state) for part in stage.system.model.parts), Energy())
+    assert hung.joints.energy(solution.state).strain > 0.0
+    assert energy.strain == pytest.approx(parts.strain, rel=1e-12)
+    assert energy.potential == pytest.approx(parts.potential, rel=1e-12)
