@@ -1,4 +1,4 @@
-"""A riser alone in motion: steps of the compiled loop against those of SNES, and against the Newton steps in them.
+"""Lines and bodies in motion: steps of the compiled loop against those of SNES, and against the Newton steps in them.
 
 Everything is measured in turn, step by step, in processor time, so that a machine that is busy or whose speed drifts
 changes all figures alike.
@@ -22,7 +22,8 @@ from riser_soil.results.observer import Observer
 from riser_soil.results.record import Recorder
 from riser_soil.solve.solver import NotConvergedError
 
-SCENES = Path(__file__).parent.parent / "tests" / "scenes"
+ROOT = Path(__file__).parent.parent
+SCENES, LINES = ROOT / "tests" / "scenes", ROOT / "demos" / "lines"
 CATENARY, TANK, STORM = (SCENES / f"{name}.yaml" for name in ("catenary", "tank", "storm"))
 ELEMENTS = "riser.segments.0.elements={}"
 CASES: dict[str, tuple[Path, tuple[str, ...]]] = {
@@ -32,6 +33,8 @@ CASES: dict[str, tuple[Path, tuple[str, ...]]] = {
     "3D, 400 elements": (CATENARY, ("dimension=3", ELEMENTS.format(400), "line_types.flexible.GJ=2.0e4")),
     "hose in a tank, 200 elements": (TANK, ()),
     "storm over clay, 3D, 96 elements, 200 wave components": (STORM, ()),
+    "a buoy on three lines, 120 elements": (LINES / "mooring.yaml", ()),
+    "a lazy S over an arch, 108 elements": (LINES / "lazy_s.yaml", ()),
 }
 RAMP, STEPS = 150, 140  # steps until the surge has grown; steps of one period
 

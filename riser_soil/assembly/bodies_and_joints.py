@@ -10,6 +10,7 @@ import numpy as np
 
 from riser_soil.assembly.line_assembly import LineAssembly
 from riser_soil.assembly.sea import water_of
+from riser_soil.assembly.stage import loads_of_body
 from riser_soil.bodies.body import MovingBody, radius_of
 from riser_soil.bodies.joints import STIFF, JointOf, Joints, Side
 from riser_soil.bodies.loads import BodyDrag, BodyInertia, BodyProperties, BodyWeight, Release
@@ -75,6 +76,7 @@ class Hung:
                 parts.append(BodyInertia(body, self.given[name].mass_matrix()))
             if drag := _drag(scene, stage, body, self.given[name]):
                 parts.append(drag)
+            parts += loads_of_body(scene, body, stage)
         return parts
 
 

@@ -17,7 +17,7 @@ from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, MotionKind,
 from riser_soil.scene.rao import TRANSLATIONS
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage, TimedStage
+from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage, TimedStage, varying_in
 from riser_soil.solve.step_control import from_last_to_first
 
 if TYPE_CHECKING:
@@ -194,7 +194,7 @@ def cycle_count(scene: Scene, stage: Stage) -> float:
         return 0.0
     periods = (stage.duration / period for _, period in periods_of(scene, stage))
     given = [np.array(table.displacements) for table in _tables(stage)]
-    given += [np.array([factor for _, factor in load.history])[:, None] for load in stage.loads if load.history]
+    given += [np.array([factor for _, factor in load.history])[:, None] for load in varying_in(stage) if load.history]
     return max([*periods, *(0.5 * float(_turns(values).max()) for values in given)], default=0.0)
 
 
@@ -207,7 +207,7 @@ def _turns(values: Array) -> Array:
 def corner_count(scene: Scene, stage: QuasiStaticStage) -> float:
     """About how many `corners` there are, outputs left out."""
     of_periods = {period: PER_PERIOD * stage.duration / period for _, period in periods_of(scene, stage)}
-    bends = [np.array([t for t, _ in load.history or ()]) for load in stage.loads]
+    bends = [np.array([t for t, _ in load.history or ()]) for load in varying_in(stage)]
     given = np.concatenate([np.array([stage.duration]), *_rows(stage), *bends])
     return sum(of_periods.values()) + float(np.count_nonzero(np.unique(given) > 0.0))
 

@@ -21,12 +21,16 @@ from riser_soil.scene.stages import (
     Stage,
     StaticStage,
     TimedStage,
+    VaryingLoad,
     loads_in,
+    loads_on_body,
+    varying_in,
 )
 from riser_soil.scene.stages import Load as LoadScene
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
 if TYPE_CHECKING:
+    from riser_soil.bodies.body import MovingBody
     from riser_soil.riser.attachments import Masses, PointAttachment
     from riser_soil.riser.loads import AppliedLoad
 
@@ -50,7 +54,7 @@ def times_to_hit(scene: Scene, stage: TimedStage) -> list[float]:
     """Times [s] in a stage where output is due, a motion's ramp ends, or the history of a load or current bends."""
     motions = stage.motion.by_end.values() if stage.motion else ()
     ramps = [way.ramp for motion in motions for way in motion.ways.values() if way.ramp]
-    bends = [t for load in stage.loads for t, _ in load.history or ()]
+    bends = [t for load in varying_in(stage) for t, _ in load.history or ()]
     paces = {scene.output.interval, scene.output.xdmf_interval} - {None}
     bends += current_times(scene, stage)
     return [*ramps, *bends, *(t for pace in paces if pace for t in _multiples(pace, stage.duration))]
@@ -67,7 +71,19 @@ def loads_of(scene: Scene, line: Line, stage: Stage) -> list[Part]:
         return []
     from riser_soil.riser.loads import PointLoads
 
-    return [PointLoads(line, [_load(line, load, stage.kind == "static") for load in loads])]
+    static, places = stage.kind == "static", {"start": 0.0, "end": float(line.arc[-1]), None: 0.0}
+    arcs = (places[load.at] if isinstance(load.at, str | None) else load.at for load in loads)
+    return [PointLoads(line, [_applied(load, static, arc) for load, arc in zip(loads, arcs, strict=True)])]
+
+
+def loads_of_body(scene: Scene, body: MovingBody, stage: Stage) -> list[Part]:
+    """The same on a body."""
+    loads = loads_on_body(scene.stages, stage, body.name)
+    if not loads:
+        return []
+    from riser_soil.riser.loads import PointLoads
+
+    return [PointLoads(body, [_applied(load, stage.kind == "static", 0.0) for load in loads])]
 
 
 def _tensioners(scene: Scene) -> Iterator[LoadScene]:
@@ -80,19 +96,14 @@ def _tensioners(scene: Scene) -> Iterator[LoadScene]:
         yield LoadScene(at="end", force=(0.0, 0.0, end.tensioner.tension), history=always)
 
 
-def _load(line: Line, given: LoadScene, static: bool) -> AppliedLoad:
+def _applied(given: VaryingLoad, static: bool, arc: float) -> AppliedLoad:
     from riser_soil.riser.loads import AppliedLoad
 
-    places = {"start": 0.0, "end": float(line.arc[-1]), None: 0.0}
-    vectors = {k: getattr(given, k) for k in ("force", "moment", "distributed")}
-    return AppliedLoad(
-        _factor(given, static),
-        places[given.at] if isinstance(given.at, str | None) else given.at,
-        **{k: np.asarray(v) for k, v in vectors.items() if v is not None},
-    )
+    vectors = {k: getattr(given, k, None) for k in ("force", "moment", "distributed")}
+    return AppliedLoad(_factor(given, static), arc, **{k: np.asarray(v) for k, v in vectors.items() if v is not None})
 
 
-def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
+def _factor(given: VaryingLoad, static: bool) -> Callable[[float], float]:
     if given.history is None:
         return (lambda t: t) if static else (lambda t: 1.0)
     times, factors = np.array(given.history).T

@@ -35,7 +35,7 @@ class MovingBody(MovingNodes):
 
     def __init__(self, name: str, position: Array, turns: bool, lever: float, active: bool = True) -> None:
         frames = SpatialFrames(np.eye(3)[None], np.zeros((0, 2, 3, 3)))
-        super().__init__(name, np.array(position, dtype=float)[None], frames, np.zeros(0), active)
+        super().__init__(name, np.array(position, dtype=float)[None], frames, np.zeros(1), np.eye(3), active)
         self.turns, self.lever = turns, lever
         self.hold(False)
 

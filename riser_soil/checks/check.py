@@ -256,7 +256,7 @@ def _held(assembly: Assembly, cable: Catenary, low: int, towards_end: bool) -> f
     arc, z = assembly.line.arc, cable.curve.position[:, 2]
     steep = np.diff(z) / np.linalg.norm(cable.curve.chord, axis=1) * (1.0 if towards_end else -1.0)
     here = (each for each in assembly.attachments if (each.arc > arc[low]) == towards_end)
-    return float(sum(each.net_weight * steep[assembly.line.place(each.arc)[0]] for each in here))
+    return float(sum(each.net_weight * steep[assembly.line.element_at(each.arc)[0]] for each in here))
 
 
 def _of_taut(elements: Elements, tension: Array, start: Array, end: Array) -> str:

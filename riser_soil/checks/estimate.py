@@ -56,7 +56,6 @@ COPIES = 2.0  # of each file while it grows
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
 # cell, of the soil's factor by unknowns squared; of a step on condensed soil, which has these two once.
 BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED, ON_CONDENSED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9, 2e-2
-OF_LINES, ELEMENT_OF_LINES = 1.5e-2, 1.6e-4  # of a step of several lines, and of an element: not compiled
 LONGEST_AUTO = 0.05  # of a stage: the longest automatic step
 SAME = 1e-6  # steps
 
@@ -176,8 +175,7 @@ def size_of(scene: Scene) -> ProblemSize:
     steps, stops, records, pictures = (math.fsum(column) for column in zip(*stages, strict=True))
     waves = scene.water.waves if scene.water else None
     components = waves.count if waves else 0
-    of_step, of_element = (OF_LINES, ELEMENT_OF_LINES) if scene.lines else (STEP, ELEMENT)
-    of_riser = of_step + elements * (of_element + WAVE * components)
+    of_riser = STEP + elements * (ELEMENT + WAVE * components)
     apart = scene.soil is not None and scene.soil.model == "sections"
     of_soil = cells * CELL + (0.0 if apart else FACTORED * unknowns**2)
     condensed = scene.soil is not None and _condensed(scene, scene.soil)

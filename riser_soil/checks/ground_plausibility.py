@@ -16,7 +16,7 @@ from riser_soil.checks.motion_plausibility import farthest_move, top_speed
 from riser_soil.core.arrays import Array
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import GeneratedMesh
-from riser_soil.scene.stages import DynamicStage
+from riser_soil.scene.stages import DynamicStage, varying_in
 
 # Bounds of the penalty stiffness over the soil's Young's modulus: below it hides the soil, above it costs iterations.
 SOFT, STIFF = 1.0, 1e4
@@ -179,7 +179,7 @@ def _out_of_reach(assembly: Assembly) -> Iterator[str]:
 def _driven(scene: Scene) -> bool:
     """Whether more moves the riser than its ends."""
     water = scene.water is not None and (scene.water.current is not None or scene.water.waves is not None)
-    return water or any(stage.loads for stage in scene.stages)
+    return water or any(map(varying_in, scene.stages))
 
 
 def _rate_without_effect(assembly: Assembly) -> Iterator[str]:

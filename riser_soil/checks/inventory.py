@@ -14,6 +14,7 @@ from riser_soil.scene.lines import by_line, on_soil
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import varying_in
 
 
 def built(scene: Scene) -> tuple[str, ...]:
@@ -55,7 +56,7 @@ def _reasons_of_line(scene: Scene) -> dict[str, str]:
         "springs": "" if sprung else "no end has a rotational spring",
         "attachments": "" if scene.line.attachments else "nothing is attached to the riser",
         "contents": _no_contents(scene),
-        "loads": "" if any(s.loads for s in scene.stages) or tensioned else "no stage has loads",
+        "loads": "" if any(map(varying_in, scene.stages)) or tensioned else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "no stage is dynamic",
         "rotary inertia": _no_rotary_inertia(scene),
         "structural damping": _no_structural_damping(scene),

@@ -43,7 +43,7 @@ class PointAttachment:
 
 def places(line: Line, attachments: Sequence[PointAttachment]) -> tuple[IntArray, Array]:
     """Elements (m,) of the attachments, and where they sit in them, xi (m,)."""
-    found = [line.place(attachment.arc) for attachment in attachments]
+    found = [line.element_at(attachment.arc) for attachment in attachments]
     return np.array([e for e, _ in found], dtype=np.int64), np.array([xi for _, xi in found])
 
 
@@ -58,7 +58,7 @@ def split(line: Line, attachments: Sequence[PointAttachment]) -> tuple[list[Poin
     ends = (0, 0.0), (line.length.size - 1, 1.0)
     sorted_out: tuple[list[PointAttachment], list[PointAttachment]] = ([], [])
     for attachment in attachments:
-        sorted_out[line.place(attachment.arc) in ends].append(attachment)
+        sorted_out[line.element_at(attachment.arc) in ends].append(attachment)
     return sorted_out
 
 
@@ -86,7 +86,7 @@ def _at_ends(line: Line, attachments: Sequence[PointAttachment], values: Sequenc
     """Sums (2,) at the start and at the end of values of attachments there."""
     sums = np.zeros(2)
     for attachment, value in zip(attachments, values, strict=True):
-        sums[int(line.place(attachment.arc) != (0, 0.0))] += value
+        sums[int(line.element_at(attachment.arc) != (0, 0.0))] += value
     return sums
 
 

@@ -48,7 +48,7 @@ class Line(MovingNodes):
         name: str = "riser",
     ) -> None:
         self.dimension, self.start, self.end = dimension, start, end
-        self.arc, self.outer_diameter = layout.arc, layout.outer_diameter
+        self.outer_diameter = layout.outer_diameter
         self.direction = np.array([1.0, 0.0, 0.0]) if direction is None else direction
         self.normal = np.cross(self.direction, UP)
         self.basis, self.origin = self._axes(layout.position[0])
@@ -56,7 +56,7 @@ class Line(MovingNodes):
         self._check_plane(layout)
         self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
         frames, x = initial_frames(layout.rotation, layout.T0, self.basis), (layout.position - self.origin) @ self.basis
-        super().__init__(name, x, frames, np.diff(layout.arc), active)
+        super().__init__(name, x, frames, layout.arc, self.basis, active)
         self._ends = LineEnds(start, end, self.arc.size, self.frames, self.origin, self.basis, self.turning_axes)
         self.prescribe_spin(prescribe_spin)
 
@@ -104,14 +104,6 @@ class Line(MovingNodes):
         """Arc length that belongs to each node (nn,): half of each adjoining element."""
         half = 0.5 * self.length
         return np.asarray(np.append(half, 0.0) + np.append(0.0, half))
-
-    def place(self, arc: float) -> tuple[int, float]:
-        """Element at an arc length and the place xi in it, exactly 0 or 1 at a node: 0, save at the line's end."""
-        after = int(np.searchsorted(self.arc, arc + 1e-9 * self.arc[-1], side="right")) - 1
-        e = min(max(after, 0), self.length.size - 1)
-        xi = (arc - self.arc[e]) / self.length[e]
-        near = float(np.clip(np.round(xi), 0.0, 1.0))
-        return e, near if abs(arc - self.arc[e] - near * self.length[e]) < 1e-9 * self.arc[-1] else float(xi)
 
     def commit(self, state: State) -> None:
         super().commit(state)

@@ -1,4 +1,4 @@
-"""Point and distributed loads of a stage on the riser, with their load histories: the part "loads"."""
+"""Point and distributed loads of a stage on the riser, or on a body, with their load histories: the part "loads"."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from riser_soil.riser.attachments import GivenForces, add_given
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
+from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.rotations import moment_stiffness
 from riser_soil.riser.vectors import matrix, matvec, transpose, vector
@@ -61,11 +62,9 @@ class PointLoads(CompiledPart):
     A moment of fixed axis has no potential in space, so its tangent isn't symmetric there.
     """
 
-    line: Line
-
     name = "loads"
 
-    def __init__(self, line: Line, loads: list[AppliedLoad]) -> None:
+    def __init__(self, line: MovingNodes, loads: list[AppliedLoad]) -> None:
         super().__init__(line)
         self._along = [self._spread(load, load.distributed) for load in loads if load.distributed is not None]
         self._nodal: list[_Share] = []
@@ -75,6 +74,7 @@ class PointLoads(CompiledPart):
         moments = [_Share(load, self._node(load), load.moment) for load in loads if load.moment is not None]
         self._moments = moments if line.dimension == 3 else []
         if line.dimension == 2:
+            assert isinstance(line, Line)
             self._nodal += [share._replace(values=_in_plane(share.values, line)) for share in moments]
         self.traits = Traits("F", symmetric=not self._moments)
 
@@ -100,7 +100,7 @@ class PointLoads(CompiledPart):
             )
         if load.force is None:
             return
-        (e, xi), force = line.place(load.arc), load.force @ line.basis
+        (e, xi), force = line.element_at(load.arc), load.force @ line.basis
         if xi in (0.0, 1.0):
             self._nodal.append(_Share(load, e + int(xi), np.pad(force, (0, line.frames.dofs))))
         else:

@@ -68,15 +68,16 @@ class MovingNodes:
     """Field of nodes with `ndof` dofs each, interleaved: translations [m] and a rotation vector [rad], in space in body
     axes. Base of `Line` and `MovingBody`, which say what is prescribed.
 
-    x (nn, d), frames: the accepted configuration; length (ne,) of the elements between them. active: whether this rank
-    evaluates and owns it.
+    x (nn, d), frames: the accepted configuration; arc (nn,): their places along the chain; basis (3, d): its axes.
+    active: whether this rank evaluates and owns it.
     """
 
-    def __init__(self, name: str, x: Array, frames: Frames, length: Array, active: bool) -> None:
+    def __init__(self, name: str, x: Array, frames: Frames, arc: Array, basis: Array, active: bool) -> None:
         self.name = self.space = name
         self.x: Array = x
         self.chord: Array = np.diff(x, axis=0)
-        self.frames, self.length, self.active = frames, length, active
+        self.frames, self.arc, self.basis, self.active = frames, arc, basis, active
+        self.length = np.diff(arc)
         self.nodes, self.dimension = x.shape
         self.ndof = self.dimension + frames.dofs
         self.size = self.nodes * self.ndof
@@ -104,6 +105,16 @@ class MovingNodes:
     def _translations(self) -> IntArray:
         first = self.ndof * np.arange(self.nodes, dtype=np.int64)
         return np.asarray(first[:, None] + np.arange(self.dimension), dtype=np.int64)
+
+    def element_at(self, arc: float) -> tuple[int, float]:
+        """Element at an arc length and the place xi in it, exactly 0 or 1 at a node: 0, save at the chain's end."""
+        if self.nodes == 1:
+            return 0, 0.0
+        after = int(np.searchsorted(self.arc, arc + 1e-9 * self.arc[-1], side="right")) - 1
+        e = min(max(after, 0), self.length.size - 1)
+        xi = (arc - self.arc[e]) / self.length[e]
+        near = float(np.clip(np.round(xi), 0.0, 1.0))
+        return e, near if abs(arc - self.arc[e] - near * self.length[e]) < 1e-9 * self.arc[-1] else float(xi)
 
     def element_block(self) -> MatrixBlock:
         """Pattern of the field's name: all dofs of each element, or of a single node."""

@@ -8,7 +8,7 @@ from riser_soil.scene.lines import ENDS, arc_of, by_line, first_place
 from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, MidpointScheme, StaticStage
+from riser_soil.scene.stages import DynamicStage, MidpointScheme, OfBody, StaticStage
 
 _RESERVED = ("riser", "soil", "bodies", "joints", "results")
 _OF_STAGE = ("move", "motion", "loads")
@@ -37,6 +37,8 @@ def _without_lines(scene: Scene) -> Iterator[Problem]:
     for n, stage in enumerate(scene.stages):
         if stage.lines:
             yield Problem(("stages", n, "lines"), "the scene has riser, not lines", "give move, motion and loads here")
+        if stage.bodies:
+            yield Problem(("stages", n, "bodies"), "the scene has riser, not lines", "leave it out")
 
 
 def _moved(problems: list[Problem], name: str) -> Iterator[Problem]:
@@ -121,6 +123,18 @@ def _stages(scene: Scene) -> Iterator[Problem]:
                 for end in ENDS:
                     if getattr(moved, end, None) is not None and _jointed(scene, name, end):
                         yield Problem((*path, key, end), "a joint holds this end", "leave it out")
+        for name, acts in stage.bodies.items():
+            yield from _on_body(scene, ("stages", n, "bodies", name), name, acts)
+
+
+def _on_body(scene: Scene, path: Path, name: str, acts: OfBody) -> Iterator[Problem]:
+    if name not in scene.bodies:
+        allowed = f"must be one of bodies ({', '.join(scene.bodies)})"
+        yield Problem(path, allowed, f"name one of them{hint(name, scene.bodies)}")
+        return
+    for m, load in enumerate(acts.loads):
+        if load.moment is not None and not scene.bodies[name].turns:
+            yield Problem((*path, "loads", m, "moment"), "a point does not turn", "leave it out, or take kind: rigid")
 
 
 def _clearances(scene: Scene) -> Iterator[Problem]:

@@ -52,8 +52,8 @@ class Solver(BaseModel):
     )
     newton: Literal["snes", "compiled"] = Field(
         default="compiled",
-        description="the code that solves the steps; compiled: a riser alone by loops of its own, that over time steps "
-        "compiled, and all else by PETSc's SNES; snes: SNES throughout, with the same results",
+        description="the code that solves the steps; compiled: a riser alone by loops of its own, time steps of lines "
+        "and bodies by a compiled one, all else by PETSc's SNES; snes: SNES throughout, with the same results",
     )
     soil: Literal["auto", "condensed", "whole"] = Field(
         default="auto",

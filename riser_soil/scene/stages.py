@@ -1,8 +1,8 @@
 """Scene language: static, quasi-static and dynamic stages with their moves, motions, loads and time schemes."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
@@ -40,21 +40,14 @@ Place = Annotated[
 ]
 
 
-class Load(BaseModel):
-    """A load on the riser in global axes; it acts during its stage."""
+class VaryingLoad(BaseModel):
+    """What loads have in common: how they vary, and whether they stay."""
 
     model_config = FROZEN
 
-    at: Place | None = Field(
-        default=None,
-        description="where force and moment act: start, end or arc length [m]; not for distributed",
-    )
     force: Force | None = Field(default=None, description="point force [Fx, Fy, Fz] [N]")
     moment: Moment | None = Field(
         default=None, description="point moment about fixed axes [Mx, My, Mz] [N.m]"
-    )
-    distributed: ForcePerLength | None = Field(
-        default=None, description="force per unstressed length along the whole riser [qx, qy, qz] [N/m]"
     )
     history: tuple[tuple[Instant, Factor], ...] | None = Field(
         default=None,
@@ -65,6 +58,33 @@ class Load(BaseModel):
     keep: Literal[True, False] = Field(
         default=False,
         description="whether the load stays, as large as at its stage's end, in all stages that follow",
+    )
+
+    @model_validator(mode="after")
+    def _history_runs_forward(self) -> Self:
+        times = [t for t, _ in self.history or ()]
+        if self.history is not None and len(times) < 2:
+            raise wrong("history", "must have at least two points", "write [[t, factor], [t, factor]]")
+        if any(b - a < NEAREST for a, b in pairwise(times)):
+            allowed = f"times must increase, by {NEAREST:g} at least"
+            raise wrong("history", allowed, "sort the points [t, factor] by t")
+        return self
+
+    def kept_after(self, stage_end: float) -> Self:
+        """The load as it stays after a stage that ended at a time [s] (static: 1)."""
+        factor = 1.0 if self.history is None else _between(self.history, stage_end)
+        return self.model_copy(update={"history": ((0.0, factor), (1.0, factor))})
+
+
+class Load(VaryingLoad):
+    """A load on the riser in global axes; it acts during its stage."""
+
+    at: Place | None = Field(
+        default=None,
+        description="where force and moment act: start, end or arc length [m]; not for distributed",
+    )
+    distributed: ForcePerLength | None = Field(
+        default=None, description="force per unstressed length along the whole riser [qx, qy, qz] [N/m]"
     )
 
     @model_validator(mode="after")
@@ -79,21 +99,23 @@ class Load(BaseModel):
             raise wrong("at", "a distributed load acts along the whole riser, not at a place", remedy)
         return self
 
+
+class BodyLoad(VaryingLoad):
+    """A load on a body at the origin of its axes, in global axes; it acts during its stage."""
+
     @model_validator(mode="after")
-    def _history_runs_forward(self) -> Self:
-        times = [t for t, _ in self.history or ()]
-        if self.history is not None and len(times) < 2:
-            raise wrong("history", "must have at least two points", "write [[t, factor], [t, factor]]")
-        if any(b - a < NEAREST for a, b in pairwise(times)):
-            allowed = f"times must increase, by {NEAREST:g} at least"
-            raise wrong("history", allowed, "sort the points [t, factor] by t")
+    def _is_there(self) -> Self:
+        if self.force is None and self.moment is None:
+            raise wrong("force", "the load is missing", "give force [N] or moment [N.m]")
         return self
 
 
-    def kept_after(self, stage_end: float) -> "Load":
-        """The load as it stays after a stage that ended at a time [s] (static: 1)."""
-        factor = 1.0 if self.history is None else _between(self.history, stage_end)
-        return self.model_copy(update={"history": ((0.0, factor), (1.0, factor))})
+class OfBody(BaseModel):
+    """What happens to a body in a stage."""
+
+    model_config = FROZEN
+
+    loads: tuple[BodyLoad, ...] = Field(default=(), description="loads on it during this stage")
 
 
 def _between(points: tuple[tuple[float, float], ...], t: float) -> float:
@@ -191,6 +213,7 @@ Scheme = Annotated[
 _KIND = "static, quasi-static or dynamic"
 _LOADS = "loads on the riser during this stage"
 _OF_LINES = "what happens to each of several lines, {name: {move, motion, loads}}"
+_OF_BODIES = "what happens to each body, {name: {loads}}"
 _PRESSURE = "gauge pressure of the contents at pressure_level from this stage on [Pa]; by default as it was before"
 
 
@@ -204,6 +227,7 @@ class StaticStage(BaseModel):
     move: MovedEnds | None = Field(default=None, description="new prescribed positions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
     lines: dict[str, OfLine] = Field(default={}, description=_OF_LINES)
+    bodies: dict[str, OfBody] = Field(default={}, description=_OF_BODIES)
     pressure: Pressure | None = Field(
         default=None, description=f"{_PRESSURE}; it changes linearly over a static stage"
     )
@@ -236,6 +260,7 @@ class QuasiStaticStage(BaseModel):
     )
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
     lines: dict[str, OfLine] = Field(default={}, description=_OF_LINES)
+    bodies: dict[str, OfBody] = Field(default={}, description=_OF_BODIES)
     pressure: Pressure | None = Field(default=None, description=_PRESSURE)
 
     @model_validator(mode="after")
@@ -276,6 +301,7 @@ class DynamicStage(BaseModel):
     motion: Motion | None = Field(default=None, description="prescribed motions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description=_LOADS)
     lines: dict[str, OfLine] = Field(default={}, description=_OF_LINES)
+    bodies: dict[str, OfBody] = Field(default={}, description=_OF_BODIES)
     pressure: Pressure | None = Field(default=None, description=_PRESSURE)
     scheme: Scheme = Field(
         default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlphaParameters()),
@@ -306,12 +332,29 @@ TimedStage = QuasiStaticStage | DynamicStage
 Stage = Annotated[StaticStage | QuasiStaticStage | DynamicStage, OneOf(KINDS)]
 
 
+Given = TypeVar("Given", bound=VaryingLoad)
+
+
 def loads_in(stages: Sequence[Stage], stage: Stage) -> tuple[Load, ...]:
     """The loads of a stage, with those that earlier stages keep."""
+    return _with_kept(stages, stage, lambda each: each.loads)
+
+
+def loads_on_body(stages: Sequence[Stage], stage: Stage, name: str) -> tuple[BodyLoad, ...]:
+    """The same on a body."""
+    return _with_kept(stages, stage, lambda each: each.bodies[name].loads if name in each.bodies else ())
+
+
+def _with_kept(stages: Sequence[Stage], stage: Stage, of: Callable[[Stage], tuple[Given, ...]]) -> tuple[Given, ...]:
     names = [each.name for each in stages]
     before = stages[: names.index(stage.name)] if stage.name in names else ()
-    kept = (load.kept_after(each.end) for each in before for load in each.loads if load.keep)
-    return (*kept, *stage.loads)
+    kept = (load.kept_after(each.end) for each in before for load in of(each) if load.keep)
+    return (*kept, *of(stage))
+
+
+def varying_in(stage: Stage) -> list[VaryingLoad]:
+    """All loads that a stage itself has: on its riser, or one of its lines, and on bodies."""
+    return [*stage.loads, *(load for body in stage.bodies.values() for load in body.loads)]
 
 
 def pressure_in(stages: Sequence[Stage], stage: Stage, t: float, first: float) -> float:

@@ -96,6 +96,36 @@ def test_a_buoy_on_one_line_rises_over_its_anchor(body: dict[str, Any], tmp_path
     assert tension[[0, -1]] == pytest.approx([net - WET * L, net], rel=1e-6)
 
 
+def on_one_line(body: dict[str, Any], load: dict[str, Any], *stages: dict[str, Any]) -> dict[str, Any]:
+    """A buoy over its anchor, with a load on it that stays after the first stage."""
+    scene, arm = mooring(*stages, body=body), 1.0 if body is RIGID else 0.0
+    for kind, key in (("lines", "east"), ("joints", "east_top")):
+        scene[kind] = {key: scene[kind][key]}
+    scene["lines"]["east"]["segments"][0]["length"] = 75.0
+    scene["joints"]["east_top"]["between"][1]["offset"] = [0.0, 0.0, -arm]
+    scene["bodies"]["buoy"]["position"] = [RADIUS, 0.0, -22.0]
+    scene["stages"][0]["bodies"] = {"buoy": {"loads": [load | {"keep": True}]}}
+    return scene
+
+
+def test_a_force_pulls_a_buoy_aside_as_its_catenary_lets_it(tmp_path: Path) -> None:
+    """There it stays in a stage in motion, as the load does."""
+    F, net = 6.0e3, (POINT["volume"] * RHO - POINT["mass"]) * G
+    at_rest = {"name": "wait", "kind": "dynamic", "duration": 0.5, "time_step": 0.05}
+    found = ran(on_one_line(POINT, {"force": [0.0, F, 0.0]}, at_rest), tmp_path)
+    aside, high = spans(F, net, WET, CHAIN["EA"], 75.0)
+    for n in (0, -1):
+        assert found["bodies/buoy/position"][n] == pytest.approx([RADIUS, aside, high - DEPTH], abs=1e-3)
+
+
+def test_a_moment_heels_a_buoy_until_it_is_righted(tmp_path: Path) -> None:
+    """By buoyancy above, weight below, and the line's pull at its arm."""
+    M, B, W = 9.0e3, RIGID["volume"] * RHO * G, RIGID["mass"] * G
+    found = ran(on_one_line(RIGID, {"moment": [0.0, M, 0.0]}), tmp_path)
+    righting = B * RIGID["centre_of_buoyancy"][2] - W * RIGID["centre_of_gravity"][2] + (B - W) * 1.0
+    assert found["bodies/buoy/rotation"][-1] == pytest.approx([0.0, math.asin(M / righting), 0.0], abs=1e-5)
+
+
 def test_a_lazy_s_over_an_arch_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
     """Tensions within 1 % of a root finder's on elastic catenaries; the arch's place and angle, too."""
     found = ran(lazy_s(), tmp_path)
@@ -428,6 +458,12 @@ REFUSED = [
     (joint(TO_BUOY, TO_BUOY), "both points are of the same line or body"),
     (changed(output={"clearance": [{"between": ["east", "west"]}]}), "output.clearance.0.between.1: value .west."),
     (stage(**MOVED), "stages.0.move: value .*: does not say of which line it is"),
+    (stage(bodies={"boy": {}}), "stages.0.bodies.boy: .*must be one of bodies .buoy.; name one of them"),
+    (stage(bodies={"buoy": {"loads": [{"keep": True}]}}), "stages.0.bodies.buoy.loads.0.force: .*the load is missing"),
+    (
+        stage(bodies={"buoy": {"loads": [{"moment": [0.0, 1.0, 0.0]}]}}),
+        "stages.0.bodies.buoy.loads.0.moment: value .*: a point does not turn",
+    ),
     (stage(lines={"east": MOVED}), "stages.0.lines.east.move.end: value .*: a joint holds this end"),
     (
         changed(lines=mooring()["lines"] | {"east": mooring()["lines"]["east"] | {"segments": [MISSPELT]}}),

@@ -37,8 +37,9 @@ def buoy_in_waves() -> dict[str, Any]:
 
 
 def rigid_buoy() -> dict[str, Any]:
-    """One that turns, on lines at arms, one of them clamped to it."""
-    scene = mooring(shaken(), body=RIGID, elements=12)
+    """One that turns, on lines at arms, one of them clamped to it, with a load that varies."""
+    load = {"force": [2.0e3, 0.0, 1.0e3], "moment": [0.0, 3.0e3, 1.0e3], "history": [[0.0, 0.0], [0.3, 1.0]]}
+    scene = mooring(shaken() | {"bodies": {"buoy": {"loads": [load]}}}, body=RIGID, elements=12)
     scene["joints"]["north_top"]["kind"] = "clamped"
     return scene
 
