@@ -29,6 +29,8 @@ from riser_soil.solve.newton_progress import GOING_ON, SINGULAR
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
 
+MOST_JOINTS = 32  # from which on a sparse matrix of all is cheaper
+
 
 class JointData(NamedTuple):
     """m joints: laws; places of their nodes; left (1,): the share of the first gap that is open; forces (m, 12) and
@@ -198,8 +200,8 @@ def add_energy_of_joints(joints: JointData, energy: Array) -> None:
 
 
 def joint_border(lines: Sequence[PackedLine], beside: Sequence[Part]) -> JointBorder | None:
-    """That of lines and bodies beside which there are joints; None for anything else."""
-    if len(beside) != 1 or not isinstance(beside[0], Joints):
+    """That of lines and bodies beside which there are joints, not too many; None for anything else."""
+    if len(beside) != 1 or not isinstance(beside[0], Joints) or len(beside[0].joints) > MOST_JOINTS:
         return None
     return JointBorder(beside[0], lines)
 

@@ -202,6 +202,12 @@ def test_answers_of_joints_at_other_nodes_are_noticed() -> None:
     assert left_over(packed) > 1e-7
 
 
+def test_many_joints_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whose sparse factors cost less than dense ones."""
+    monkeypatch.setattr("riser_soil.solve.joint_border.MOST_JOINTS", len(bundle()["joints"]) - 1)
+    assert isinstance(last_stage("a bundle", "compiled").newton, Newton)
+
+
 def test_joints_store_what_they_stretch() -> None:
     """The loop's energy of joints is that of the part."""
     stage = last_stage("a bundle", "compiled")
