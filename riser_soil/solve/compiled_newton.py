@@ -22,8 +22,7 @@ from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
-from riser_soil.solve.compiled_mass import CompiledMass
-from riser_soil.solve.line_results import LineResults
+from riser_soil.solve.accepted_lines import CompiledMass, LineResults
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import CONVERGED, NAMES, OUTGROWN, StopLimits, largest_at
 from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
