@@ -365,7 +365,7 @@ class DragData(NamedTuple):
     motion: WaterMotion
 
 
-class Push(NamedTuple):
+class WaterOnBody(NamedTuple):
     """What the water does to a body where it is: arm of the centre of buoyancy in global axes; wet share, and its slope
     by immersion; velocity through the water, drag and its derivative, force of the water's acceleration, moment of drag
     and its slopes, in body axes; force of the moving surface upward, and its slopes by the wet share of the moving and
@@ -398,7 +398,7 @@ def _drag(part: DragData, w: Vec) -> tuple[Vec, Mat]:
 
 
 @njit
-def _pushed(part: DragData, at: Posture) -> Push:
+def _pushed(part: DragData, at: Posture) -> WaterOnBody:
     """What the water does to a body, where that is; the water's motion there is found."""
     c, arm = vector(part.centre), matvec(at.R, vector(part.centre))
     centre = add(at.x, arm)
@@ -417,11 +417,11 @@ def _pushed(part: DragData, at: Posture) -> Push:
     if part.buoyancy != 0.0:
         calm, calm_slope = wet(part.level - centre[2], part.radius)
         heave = -part.buoyancy * (share - calm)
-    return Push(arm, share, slope, through, drag, drag_by, push, twist, twist_by, heave, calm_slope)
+    return WaterOnBody(arm, share, slope, through, drag, drag_by, push, twist, twist_by, heave, calm_slope)
 
 
 @njit
-def _on_body(part: DragData, at: Posture, found: Push) -> tuple[Vec, Vec]:
+def _on_body(part: DragData, at: Posture, found: WaterOnBody) -> tuple[Vec, Vec]:
     """Force and moment about the origin in body axes."""
     force = add(scale(found.share, add(found.drag, found.push)), scale(found.heave, at.R[2]))
     return force, add(cross(vector(part.centre), force), scale(found.share, found.twist))
@@ -460,7 +460,7 @@ def _add_tangent_of_drag(
 
 
 @njit
-def _force_by(part: DragData, at: Posture, found: Push, moved: Mat, turned: Mat) -> Mat:
+def _force_by(part: DragData, at: Posture, found: WaterOnBody, moved: Mat, turned: Mat) -> Mat:
     """Derivative of the force in body axes, rates held: by dofs that move the centre and turn the body like that."""
     motion, inverse, up = part.motion, transpose(at.R), at.R[2]
     more = scale(found.slope, vecmat(vector(motion.immersion_gradient[0]), moved))

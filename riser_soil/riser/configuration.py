@@ -13,11 +13,10 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.riser import directors, hermite, line_kernels, spatial_directors
+from riser_soil.riser import directors, hermite, line_kernels, moving_nodes, spatial_directors
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.line_kernels import write_moved
-from riser_soil.riser.moving_nodes import MovingNodes
+from riser_soil.riser.moving_nodes import MovingNodes, write_moved
 
 
 class PlanarBase(NamedTuple):
@@ -221,12 +220,12 @@ def _keep(at: Configuration, v: Array, a: Array) -> None:
 
 @write_magnitudes.of(PlanarConfiguration)
 def _write_magnitudes_in_plane(at: PlanarConfiguration, out: Array) -> None:
-    line_kernels.write_magnitudes(at.x, at.angle.reshape((at.angle.size, 1)), out)
+    moving_nodes.write_magnitudes(at.x, at.angle.reshape((at.angle.size, 1)), out)
 
 
 @write_magnitudes.of(SpatialConfiguration)
 def _write_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
-    line_kernels.write_magnitudes(at.x, at.Theta, out)
+    moving_nodes.write_magnitudes(at.x, at.Theta, out)
 
 
 @write_maps.of(PlanarConfiguration)

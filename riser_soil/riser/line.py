@@ -15,7 +15,7 @@ from riser_soil.core.arrays import Array, BoolArray, as_list
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.errors import SceneError
-from riser_soil.riser import hermite, line_kernels
+from riser_soil.riser import line_kernels
 from riser_soil.riser.directors import initial_frames
 from riser_soil.riser.line_ends import End, LineEnds, free_turns, unit_lengths
 from riser_soil.riser.line_kernels import write_folded
@@ -89,10 +89,6 @@ class Line(MovingNodes):
     def held(self) -> AbstractContextManager[None]:
         """As long as this lasts all dofs are prescribed not to move."""
         return self._ends.held()
-
-    def scatter(self, element: Array, values: Array) -> None:
-        """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
-        hermite.scatter(element, self.nodal(values))
 
     @cached_property
     def lever(self) -> float:

@@ -1,4 +1,4 @@
-"""Kernels of the riser's line: places after increments, folded elements and what is said of them."""
+"""Elements that are folded, or swing too far in a step, and what is said of them."""
 
 from __future__ import annotations
 
@@ -8,38 +8,6 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-
-
-@njit
-def after_increments(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
-    """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof)."""
-    place, along = np.empty(x.shape), np.empty(chord.shape)
-    write_moved(x, chord, u, place, along)
-    return place, along
-
-
-@njit
-def write_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> None:
-    """Write what `after_increments` returns; chords add theirs, see `Line.commit`."""
-    for n in range(x.shape[0]):
-        for i in range(x.shape[1]):
-            place[n, i] = x[n, i] + u[n, i]
-    for e in range(chord.shape[0]):
-        for i in range(x.shape[1]):
-            along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
-
-
-@njit
-def write_magnitudes(x: Array, turned: Array, out: Array) -> None:
-    """Write the sizes (nn, ndof) of the coordinates: of places x (nn, d), and of turns (nn, r) [rad], at least one,
-    as cosines and sines of less are no more exact.
-    """
-    d = x.shape[1]
-    for n in range(x.shape[0]):
-        for i in range(d):
-            out[n, i] = abs(x[n, i])
-        for i in range(turned.shape[1]):
-            out[n, d + i] = max(abs(turned[n, i]), 1.0)
 
 
 @njit

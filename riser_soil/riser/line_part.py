@@ -28,7 +28,7 @@ from riser_soil.riser.part_kernels import (
     clear,
     collect,
     find_water,
-    forces_of,
+    forces_at,
     keep,
     turn,
     weigh,
@@ -145,7 +145,7 @@ class BoundPart:
 
     def __init__(self, line: MovingNodes, data: tuple[Any, ...], trials: LineTrials) -> None:
         self._data, self._trials, self.found = data, trials, -1
-        n, self.forces = 2 * line.ndof, forces_of(line)
+        n, self.forces = 2 * line.ndof, forces_at(trials.now.at)
         self.energy, self.turned_over = np.zeros(3), np.zeros(4)
         self.residual = np.zeros((line.length.size, n))
         self.K = Packed(line.element_block().zeros())

@@ -14,7 +14,6 @@ from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.attachments import GivenForces, add_given
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
-from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
@@ -74,7 +73,6 @@ class PointLoads(CompiledPart):
         moments = [_Share(load, self._node(load), load.moment) for load in loads if load.moment is not None]
         self._moments = moments if line.dimension == 3 else []
         if line.dimension == 2:
-            assert isinstance(line, Line)
             self._nodal += [share._replace(values=_in_plane(share.values, line)) for share in moments]
         self.traits = Traits("F", symmetric=not self._moments)
 
@@ -131,9 +129,9 @@ class PointLoads(CompiledPart):
         return Work(external=-self.taken(before, after))
 
 
-def _in_plane(moment: Array, line: Line) -> Array:
-    """A moment in global axes as what is conjugate to a node's dofs (3,)."""
-    return np.array([0.0, 0.0, moment @ line.normal])
+def _in_plane(moment: Array, line: MovingNodes) -> Array:
+    """A moment in global axes as what is conjugate to a node's dofs (3,): about the plane's normal."""
+    return np.array([0.0, 0.0, moment @ np.cross(*line.basis.T)])
 
 
 @add_forces.of(SpatialMoments)

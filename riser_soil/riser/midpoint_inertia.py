@@ -33,7 +33,6 @@ from riser_soil.riser.inertia import Inertia, RotaryInertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.midpoint_directors import DirectorMotion, Secant, directors
-from riser_soil.riser.moving_nodes import Trial
 
 
 class MidpointInertia(LinePart):
@@ -67,9 +66,8 @@ class MidpointInertia(LinePart):
         q: Array = hermite.interleave(self.line.nodal(nodal), at_ends, fixed(self.line.dimension))
         return q
 
-    def _step(self, trial: Trial) -> tuple[Secant, Array]:
+    def _step(self, state: State) -> tuple[Secant, Array]:
         """The tangents through the step, and the residual conjugate to the means of q (ne, 4, d)."""
-        state = trial.state
         secant, acceleration = self._tangents.accelerate(state.t, _turning(self.line, state.u))
         return secant, hermite.weigh(self.instant.M, self._interleave(state.a, acceleration))
 
@@ -77,14 +75,14 @@ class MidpointInertia(LinePart):
         if not self._tangents.within_step(state.t):
             self.instant.residual(state, forces)
         else:
-            secant, F = self.line.trial(state).once((self, "step"), self._step)
+            secant, F = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
             self.line.scatter(hermite.pull_back(F, secant.P), forces.inertia)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self._tangents.within_step(state.t):
             self.instant.tangent(state, weights, values)
         else:
-            secant, F = self.line.trial(state).once((self, "step"), self._step)
+            secant, F = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
             K, shift = values[self.line.name], weights.shift_a
             G = self._tangents.geometric(secant, _turning(self.line, state.u), F[:, 1::2])
             hermite.add_geometric(K, weights.inertia, G, self.line.dimension)
@@ -150,17 +148,17 @@ class MidpointRotaryInertia(LinePart):
         """Rates of the directors, each (ne, 2, d), at the end of a step of the midpoint rule."""
         return [director.rate(state.t, _turning(self.line, state.u)) for director in self._directors]
 
-    def _step(self, trial: Trial) -> list[tuple[Secant, Array]]:
+    def _step(self, state: State) -> list[tuple[Secant, Array]]:
         """The directors through the step, each with its force on their means (ne, 2, d)."""
-        middle = _turning(self.line, trial.state.u)
-        steps = [director.accelerate(trial.state.t, middle) for director in self._directors]
+        middle = _turning(self.line, state.u)
+        steps = [director.accelerate(state.t, middle) for director in self._directors]
         return [(secant, mass * a) for (secant, a), mass in zip(steps, self.masses, strict=True)]
 
     def residual(self, state: State, forces: Forces) -> None:
         if not self._directors[0].within_step(state.t):
             self.instant.residual(state, forces)
         else:
-            steps = self.line.trial(state).once((self, "step"), self._step)
+            steps = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
             self._scatter([secant.moments(F) for secant, F in steps], forces.inertia)
 
     def _scatter(self, moments: list[Array], out: Array) -> None:
@@ -181,7 +179,7 @@ class MidpointRotaryInertia(LinePart):
             self.instant.tangent(state, weights, values)
         else:
             middle, half = _turning(self.line, state.u), 0.5 * weights.shift_a
-            steps = self.line.trial(state).once((self, "step"), self._step)
+            steps = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
             for director, mass, (secant, F) in zip(self._directors, self.masses, steps, strict=True):
                 block = np.swapaxes(secant.P, 2, 3) @ (half * mass[..., None] * secant.by_end)
                 block += director.geometric(secant, middle, F)

@@ -9,13 +9,12 @@ from typing import Any, TypeVar
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.compiled import fixed
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, Orientation
-from riser_soil.riser.line_kernels import after_increments, write_magnitudes
 
 Made = TypeVar("Made")
 
@@ -123,6 +122,10 @@ class MovingNodes:
         dofs = first[:, None] + np.arange(min(2, self.nodes) * self.ndof)
         return MatrixBlock(dofs, dofs)
 
+    def scatter(self, element: Array, values: Array) -> None:
+        """Add element arrays (ne, 2 ndof) along the chain to the field's slice of a local array."""
+        hermite.scatter(element, self.nodal(values))
+
     def trial(self, state: State) -> Trial:
         """The nodes at a state, whose arrays must not change from then on.
 
@@ -179,3 +182,35 @@ class MovingNodes:
         self.forget()
         self.x, self.chord = saved["x"], saved["chord"]
         self.frames.restore(within(saved, "frames"))
+
+
+@njit
+def after_increments(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
+    """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof)."""
+    place, along = np.empty(x.shape), np.empty(chord.shape)
+    write_moved(x, chord, u, place, along)
+    return place, along
+
+
+@njit
+def write_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> None:
+    """Write what `after_increments` returns; chords add theirs, see `MovingNodes.commit`."""
+    for n in range(x.shape[0]):
+        for i in range(x.shape[1]):
+            place[n, i] = x[n, i] + u[n, i]
+    for e in range(chord.shape[0]):
+        for i in range(x.shape[1]):
+            along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
+
+
+@njit
+def write_magnitudes(x: Array, turned: Array, out: Array) -> None:
+    """Write the sizes (nn, ndof) of the coordinates: of places x (nn, d), and of turns (nn, r) [rad], at least one,
+    as cosines and sines of less are no more exact.
+    """
+    d = x.shape[1]
+    for n in range(x.shape[0]):
+        for i in range(d):
+            out[n, i] = abs(x[n, i])
+        for i in range(turned.shape[1]):
+            out[n, d + i] = max(abs(turned[n, i]), 1.0)

@@ -15,7 +15,6 @@ from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_geometric, collect_nodal, scatter, write_pulled_back
-from riser_soil.riser.moving_nodes import MovingNodes
 
 
 class LineForces(NamedTuple):
@@ -40,12 +39,12 @@ class LineWeights(NamedTuple):
     force: float
 
 
-def forces_of(line: MovingNodes) -> LineForces:
-    """Workspace for the residuals of a line."""
-    ne = line.length.size
-    conjugate = (np.zeros((ne, 4, line.dimension)) for _ in range(3))
-    of_elements = (np.zeros((ne, 2 * line.ndof)) for _ in range(2))
-    return LineForces(*conjugate, *of_elements, *(np.zeros((line.nodes, line.ndof)) for _ in range(3)))
+def forces_at(at: Configuration) -> LineForces:
+    """Workspace for the residuals in a configuration."""
+    (_, ndof), ne = at.v.shape, len(at.q)
+    conjugate = (np.zeros(at.q.shape) for _ in range(3))
+    of_elements = (np.zeros((ne, 2 * ndof)) for _ in range(2))
+    return LineForces(*conjugate, *of_elements, *(np.zeros(at.v.shape) for _ in range(3)))
 
 
 @bound_by_type

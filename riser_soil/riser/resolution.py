@@ -23,7 +23,6 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
-from riser_soil.riser.moving_nodes import Trial
 from riser_soil.riser.section_forces import end_forces
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation
@@ -61,8 +60,8 @@ def misfit(line: Line, elements: Elements, state: State, residual: Array) -> Ben
     trial = line.trial(state)
     tangent, out = trial.turn.tangent, (np.empty(line.length.size), np.empty(line.length.size))
     stiffness = *trial.turn.end_frames, *elements.flexibility, elements.larger_EI
-    on_ends = end_forces(line, trial, residual)
-    _write_misfits(line.length, *on_ends, line.basis, tangent, _turns(line, trial), *stiffness, *out)
+    on_ends = end_forces(line, state, residual)
+    _write_misfits(line.length, *on_ends, line.basis, tangent, _turns(line, state), *stiffness, *out)
     i, j = (int(values.argmax()) for values in out)
     return BendingMisfit(float(out[0][i]), i, float(out[1][j]), j)
 
@@ -129,15 +128,16 @@ def _write_over_stiffness(frame: Array, moment: Vec, y: float, z: float, out: Ar
         out[i] = frame[i, 1] * y * about_y + frame[i, 2] * z * about_z
 
 
-def _turns(line: Line, trial: Trial) -> Array:
+def _turns(line: Line, state: State) -> Array:
     """Rotation vectors (ne, 3) by which elements' ends turn against each other from the unstressed state on, less the
     twist.
     """
-    if not isinstance(trial.turn, SpatialOrientation):
-        angle = trial.turn.angle
+    turn = line.trial(state).turn
+    if not isinstance(turn, SpatialOrientation):
+        angle = turn.angle
         return np.asarray((angle[1:] - angle[:-1])[:, None] * line.normal)
     turns = np.empty((line.length.size, 3))
-    _write_turns(trial.turn.R, trial.turn.tangent, turns)
+    _write_turns(turn.R, turn.tangent, turns)
     return turns
 
 

@@ -15,10 +15,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import State
 from riser_soil.riser.configuration import Configuration, PlanarConfiguration, write_moment_maps
-from riser_soil.riser.directors import NO_FRAMES
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, LineTrials, overrides
-from riser_soil.riser.moving_nodes import Trial
 from riser_soil.riser.section_kernels import (
     SectionForces,
     SectionInput,
@@ -102,7 +100,8 @@ class BoundSections:
         self, line: Line, elements: Elements, at: Configuration, residual: Array, viscous: Array | None
     ) -> None:
         maps = np.empty((line.nodes, 3, line.frames.dofs))
-        frames = (NO_FRAMES, NO_FRAMES) if isinstance(at, PlanarConfiguration) else (at.frame1, at.frame2)
+        none = np.empty((0, 3, 3))
+        frames = (none, none) if isinstance(at, PlanarConfiguration) else (at.frame1, at.frame2)
         given = residual, NOTHING if viscous is None else viscous, at.x, maps, at.tangent, *frames
         constant = line.basis, line.origin, line.arc, elements.bends_beside, *elements.flexibility
         needed = SectionInput(*given, *(np.ascontiguousarray(values) for values in constant))
@@ -122,23 +121,23 @@ def add_at_ends(line: Line, state: State, nodal: Array, inside: SectionForces) -
     """Add what acts on the nodes at the line's ends, from `nodal_residual`, to what is exerted there: the sum is what
     the supports exert. A spring is a support, so its moment belongs to it.
     """
-    maps, d = _moment_maps(line, line.trial(state)), line.dimension
+    maps, d = _moment_maps(line, state), line.dimension
     for n in (0, -1):
         inside.end_force[n] += line.basis @ nodal[n, :d]
         inside.end_moment[n] += maps[n] @ nodal[n, d:]
 
 
-def end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
+def end_forces(line: Line, state: State, residual: Array) -> tuple[Array, Array]:
     """Force and moment on the elements' ends, each (ne, 2, 3), global axes."""
     shape = line.length.size, 2, 3
     force, moment = np.empty(shape), np.empty(shape)
-    write_end_forces(np.ascontiguousarray(residual), line.basis, _moment_maps(line, trial), force, moment)
+    write_end_forces(np.ascontiguousarray(residual), line.basis, _moment_maps(line, state), force, moment)
     return force, moment
 
 
-def _moment_maps(line: Line, trial: Trial) -> Array:
+def _moment_maps(line: Line, state: State) -> Array:
     """Maps (nn, 3, r) of what is conjugate to the rotation dofs of nodes to moments in global axes."""
-    maps: Array = trial.once("moment maps", lambda trial: trial.turn.moment_maps(line.turning_axes))
+    maps: Array = line.trial(state).once("moment maps", lambda trial: trial.turn.moment_maps(line.turning_axes))
     return maps
 
 

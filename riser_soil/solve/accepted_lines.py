@@ -28,7 +28,7 @@ from riser_soil.riser.part_kernels import (
     clear,
     collect,
     find_water,
-    forces_of,
+    forces_at,
     write_residual,
 )
 from riser_soil.riser.section_forces import BoundSections, nodal_residual, viscous_residual
@@ -48,7 +48,7 @@ class AcceptedLine:
         line, dofs = packed.line, packed.dofs
         self.line, self._update, self._placed = line, packed.parts.update_to, packed.placed
         self.mass = mass_of(line.nodes, dofs.fixed.ravel(), dofs.levers.ravel())
-        self._forces, self._energy = forces_of(line), np.zeros(3)
+        self._forces, self._energy = forces_at(packed.placed.at), np.zeros(3)
         inertial = packed.parts.in_groups("I")
         self._bind_state(packed.parts.in_groups("IF"), inertial)
         self._bind_mass(inertial)
@@ -239,7 +239,8 @@ class LineResults:
     @cached_property
     def _accepted(self) -> tuple[ElementForces, Bound]:
         """Forces where the line is accepted, in workspace of their own beside that of the loop, and what finds them."""
-        parts, at, out = self._packed.parts, self._packed.placed.at, forces_of(self._line)
+        parts, at = self._packed.parts, self._packed.placed.at
+        out = forces_at(at)
         here, forces = Packed(at), Packed(out)
         each = (bound(add_forces, data, here, forces) for data in parts.kernel_data)
         return ElementForces(self._line, at, out, parts.parts), in_turn(Bound(clear, forces), *each)

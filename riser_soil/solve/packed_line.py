@@ -31,7 +31,7 @@ from riser_soil.riser.part_kernels import (
     add_work,
     clear,
     collect,
-    forces_of,
+    forces_at,
     keep,
     turn,
     weigh,
@@ -98,7 +98,8 @@ class PackedLine:
         self, line: MovingNodes, parts: KernelParts, prescribed: BoolArray, levers: Array, weights: Packed
     ) -> None:
         self.line, self.parts, self.placed, shape = line, parts, PlacedLine(line), (line.nodes, line.ndof)
-        self.step, self.forces, self.at = StepData(*_zeros(6, shape)), forces_of(line), workspace_for(line)
+        self.step, self.at = StepData(*_zeros(6, shape)), workspace_for(line)
+        self.forces = forces_at(self.at)
         self.workspace = matrix_workspace(*shape, line.dimension)
         self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
