@@ -124,7 +124,7 @@ class CompiledNewton(StepSolver):
         """Why the loop does not get to balance, "" where it does; norms of the residual on the way. still: the step
         without increments.
         """
-        guess = State(step.t, step.guess.copy(), still.v.copy(), still.a.copy())
+        guess = State(step.t, step.guess.copy(), still.v, still.a)
         self.system.prescribe(guess)
         scheme, past, limits = step.scheme, step.scheme.past(step.start), self._limits(step)
         for _ in range(MOST_STARTS):
@@ -142,9 +142,9 @@ class CompiledNewton(StepSolver):
 
     def _limits(self, step: Step) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
-        smooth, moves = self.system.smooth, bool(step.guess[~self.system.prescribed].any())
-        gradual = self.system.gradual and self._border.gradual
-        return limits_of(self.settings, smooth, gradual, smooth or self.at_equilibrium or moves)
+        smooth, gradual = self.system.smooth, self.system.gradual and self._border.gradual
+        answers = smooth or self.at_equilibrium or bool(step.guess[~self.system.prescribed].any())
+        return limits_of(self.settings, smooth, gradual, answers)
 
     def _tangle(self) -> str:
         """Why what the loop has found is none of a line's states; "" where it is one."""
@@ -165,15 +165,12 @@ class CompiledNewton(StepSolver):
             self.iterations += newton.iterations - before
 
     def _state(self, step: Step, still: State) -> State:
-        """The state found."""
-        u, v, a = self._nothing.copy(), still.v.copy(), still.a.copy()
+        """The state found; `still` becomes it."""
+        u, v, a = self._nothing.copy(), still.v, still.a
         for packed in self._lines:
-            for whole, own in zip((u, v, a), (packed.step.u, packed.step.v, packed.step.a), strict=True):
-                whole[packed.line.part] = own.ravel()
+            at, found = packed.line.part, packed.step
+            u[at], v[at], a[at] = found.u.ravel(), found.v.ravel(), found.a.ravel()
         self._border.put_increments(step.scheme.weights(step.dt), u, v, a)
-        rest = self.system.prescribed_dofs
-        rest = rest[rest >= self.system.end_of_lines]
-        v[rest] = a[rest] = 0.0
         return State(step.t, u, v, a, dt=step.dt)
 
     def _forces(self) -> Forces:
@@ -181,9 +178,8 @@ class CompiledNewton(StepSolver):
         forces = Forces.zeros(len(self._nothing))
         for packed in self._lines:
             found, at = packed.forces, packed.line.part
-            groups = found.inertia, found.force, found.end
-            for whole, group in zip((forces.inertia, forces.force, forces.end), groups, strict=True):
-                whole[at] = group.ravel()
+            forces.inertia[at], forces.force[at] = found.inertia.ravel(), found.force.ravel()
+            forces.end[at] = found.end.ravel()
         return forces
 
     def commit(self, state: State) -> None:

@@ -309,6 +309,9 @@ class SoilBorder(LoopBorder):
         u[dofs] = moved
         v[dofs] += weights.shift_v * moved
         a[dofs] += weights.shift_a * moved
+        rest = self._system.prescribed_dofs
+        rest = rest[rest >= self._system.end_of_lines]
+        v[rest] = a[rest] = 0.0
 
     @property
     def holds(self) -> bool:
