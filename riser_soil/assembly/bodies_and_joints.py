@@ -11,9 +11,10 @@ import numpy as np
 from riser_soil.assembly.line_assembly import LineAssembly
 from riser_soil.assembly.sea import water_of
 from riser_soil.assembly.stage import loads_of_body
-from riser_soil.bodies.body import MovingBody, radius_of
+from riser_soil.bodies.body import BodyProperties, MovingBody, radius_of
+from riser_soil.bodies.drag import BodyDrag
 from riser_soil.bodies.joints import STIFF, JointOf, Joints, Side
-from riser_soil.bodies.loads import BodyDrag, BodyInertia, BodyProperties, BodyWeight, Release
+from riser_soil.bodies.loads import BodyInertia, BodyWeight, Release
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.scene.bodies import Body as BodyScene

@@ -1,4 +1,6 @@
-"""A body: one node that moves, and turns where it is rigid. It is a line of one node in space, without elements.
+"""A body: one node that moves, and turns where it is rigid, and what it is made of.
+
+It is a line of one node in space, without elements.
 
 As much of it is in the water as of a sphere of the same volume about its centre of buoyancy. With the height h of the
 water's surface above the centre, over the radius of that sphere, eta from -1 (dry) to 1 (wet), the wet share of a
@@ -10,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +21,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
+from riser_soil.riser.vectors import skew, vector
 
 AXES = ("x", "y", "z")
 
@@ -85,6 +89,43 @@ class MovingBody(MovingNodes):
         """ "body buoy, force z"."""
         kind = "force" if entry < 3 else "moment"
         return f"body {self.name}, {kind} {AXES[entry % 3]}"
+
+
+@dataclass(frozen=True, eq=False)
+class BodyProperties:
+    """mass [kg]; inertia (3,) about the centre of gravity [kg.m2]; gravity_centre, buoyancy_centre (3,) [m]; volume
+    [m3]; drag (3,): CdA [m2]; spin_drag (3,) [m5]; added_mass (3,) [kg]; added_inertia (3,) about the centre of
+    buoyancy [kg.m2]; by body axes. Of a point what turns is zero.
+    """
+
+    mass: float
+    inertia: Array
+    gravity_centre: Array
+    volume: float
+    buoyancy_centre: Array
+    drag: Array
+    spin_drag: Array
+    added_mass: Array
+    added_inertia: Array
+
+    @property
+    def radius(self) -> float:
+        return radius_of(self.volume)
+
+    def mass_matrix(self) -> Array:
+        """M (6, 6) about the origin of the body's axes."""
+        own = _about_origin(self.mass * np.eye(3), np.diag(self.inertia), self.gravity_centre)
+        return own + _about_origin(np.diag(self.added_mass), np.diag(self.added_inertia), self.buoyancy_centre)
+
+
+def _about_origin(mass: Array, inertia: Array, centre: Array) -> Array:
+    """Of a mass matrix (3, 3) at a centre that moves with b + W x c, and an inertia about it."""
+    lever = -_skew(centre)
+    return np.block([[mass, mass @ lever], [lever.T @ mass, inertia + lever.T @ mass @ lever]])
+
+
+def _skew(v: Array) -> Array:
+    return np.array(skew(vector(v)))
 
 
 def radius_of(volume: float) -> float:

@@ -7,6 +7,7 @@ shortening, is solved by `Newton`.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -18,14 +19,14 @@ from riser_soil.core.part import Energy, Forces, Part, State, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.line_part import LinePart, acting_on
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.accepted_lines import CompiledMass, LineResults
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import CONVERGED, NAMES, OUTGROWN, StopLimits, largest_at
-from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
+from riser_soil.solve.packed_line import KernelParts, LoopBorder, MakeBorder, PackedLine, PackedSystem
 from riser_soil.solve.solver import (
     NewtonSettings,
     NotConvergedError,
@@ -46,36 +47,37 @@ def compiled_newton(system: System, settings: NewtonSettings) -> CompiledNewton 
     """The compiled loop over lines and bodies, joined or not, or over a line on condensed soil; None where one of their
     parts has no kernels.
     """
+    fields = [field for field in system.model.lines if isinstance(field, MovingNodes)]
+    parts = [_with_kernels(acting_on(field, system.model.parts)) for field in fields]
+    known: list[Any] = [part for each in parts for part in each.parts]
+    make = _border_of(system, [part for part in system.model.parts if part not in known])
+    if make is None or len(fields) < len(system.model.lines):
+        return None
     weights = Packed(LineWeights(0.0, 0.0))
-    packed = [_packed(system, field, weights) for field in system.model.lines if isinstance(field, MovingNodes)]
-    lines = [line for line in packed if line is not None]
-    if len(lines) < len(system.model.lines):
-        return None
-    known: list[Any] = [part for line in lines for part in line.parts.parts]
-    border = _border_of(system, lines, [part for part in system.model.parts if part not in known])
-    if border is None:
-        return None
-    return CompiledNewton(system, settings, PackedSystem(lines, border, weights, settings.max_iterations))
+    lines = [
+        PackedLine(field, own, system.prescribed[field.part], system.levers[field.part], weights)
+        for field, own in zip(fields, parts, strict=True)
+    ]
+    return CompiledNewton(system, settings, PackedSystem(lines, make(lines), weights, settings.max_iterations))
 
 
-def _packed(system: System, field: MovingNodes, weights: Packed) -> PackedLine | None:
-    """A line or body with its parts that have kernels; None where it ends in a part without."""
-    asked = [(part, part.kernel_data()) for part in acting_on(field, system.model.parts)]
-    parts = KernelParts([(part, data) for part, data in asked if data is not None])
-    return PackedLine(field, parts, system.prescribed[field.part], system.levers[field.part], weights)
+def _with_kernels(parts: Sequence[LinePart]) -> KernelParts:
+    """Those that have kernels."""
+    asked = [(part, part.kernel_data()) for part in parts]
+    return KernelParts([(part, data) for part, data in asked if data is not None])
 
 
-def _border_of(system: System, lines: list[PackedLine], beside: list[Part]) -> LoopBorder | None:
+def _border_of(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     """What stands beside the lines, by the parts that are none of theirs alone; None where these have no kernels."""
     if system.model.others:
         from riser_soil.solve.soil_border import border_on_soil
 
-        return border_on_soil(system, lines, beside)
+        return border_on_soil(system, beside)
     if not beside:
-        return LoopBorder()
+        return lambda lines: LoopBorder()
     from riser_soil.solve.joint_border import joint_border
 
-    return joint_border(lines, beside)
+    return joint_border(beside)
 
 
 class CompiledNewton(StepSolver):

@@ -12,6 +12,7 @@ E takes the joints' rows. Rows that joints touch are few, as in `linear_solver`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ from riser_soil.core.part import Forces, Part, State
 from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.part_kernels import LineForces, LineWeights
 from riser_soil.solve.newton_progress import GOING_ON, SINGULAR
-from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.packed_line import LoopBorder, MakeBorder, PackedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
 
 MOST_JOINTS = 32  # from which on a sparse matrix of all is cheaper
@@ -199,11 +200,11 @@ def add_energy_of_joints(joints: JointData, energy: Array) -> None:
     energy[1] += energy_of(joints.laws, joints.places, joints.left[0])
 
 
-def joint_border(lines: Sequence[PackedLine], beside: Sequence[Part]) -> JointBorder | None:
+def joint_border(beside: Sequence[Part]) -> MakeBorder | None:
     """That of lines and bodies beside which there are joints, not too many; None for anything else."""
     if len(beside) != 1 or not isinstance(beside[0], Joints) or len(beside[0].joints) > MOST_JOINTS:
         return None
-    return JointBorder(beside[0], lines)
+    return partial(JointBorder, beside[0])
 
 
 class JointBorder(LoopBorder):
@@ -247,23 +248,23 @@ class JointBorder(LoopBorder):
         return [Bound(add_to_band, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self.lines]
 
     def factorise(self, progress: Packed) -> list[Bound]:
-        each = ((data, sides, line.packed_workspace, line.packed_dofs, progress) for line, sides, data in self._all())
+        data = self._packed
         return [
-            Bound(begin_copies, self._packed),
-            *(Bound(add_to_copies, *given) for given in each),
-            Bound(factorise_copies, self._packed, progress),
+            Bound(begin_copies, data),
+            *(
+                Bound(add_to_copies, data, sides, line.packed_workspace, line.packed_dofs, progress)
+                for line, sides in self.lines
+            ),
+            Bound(factorise_copies, data, progress),
         ]
 
     def couple(self) -> list[Bound]:
-        each = [(data, sides, line.packed_workspace, line.packed_dofs) for line, sides, data in self._all()]
+        data = self._packed
         return [
-            *(Bound(load_copies, *given) for given in each),
-            Bound(solve_copies, self._packed),
-            *(Bound(take_from_line, data, sides, dofs) for data, sides, _, dofs in each),
+            *(Bound(load_copies, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self.lines),
+            Bound(solve_copies, data),
+            *(Bound(take_from_line, data, sides, line.packed_dofs) for line, sides in self.lines),
         ]
-
-    def _all(self) -> list[tuple[PackedLine, Packed, Packed]]:
-        return [(line, sides, self._packed) for line, sides in self.lines]
 
     def account(self, energy: Packed) -> list[Bound]:
         return [Bound(add_energy_of_joints, self._packed, energy)]

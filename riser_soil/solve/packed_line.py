@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -290,6 +290,9 @@ class LoopBorder:
 
     def restore(self, saved: Saved) -> None:
         """Nothing is kept."""
+
+
+MakeBorder = Callable[[Sequence[PackedLine]], LoopBorder]
 
 
 class PackedSystem:

@@ -14,6 +14,7 @@ B is the riser's band, U the coupling, whose rows are zero but at few nodes, and
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -45,7 +46,7 @@ from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.soil.condensed import CondensedSoil, Reached
 from riser_soil.solve.newton_progress import GOING_ON, OUTGROWN, SINGULAR
-from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.packed_line import LoopBorder, MakeBorder, PackedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
 
 SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
@@ -145,14 +146,14 @@ def improve_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, facto
         border.u[j] -= answer[j]
 
 
-def border_on_soil(system: System, lines: Sequence[PackedLine], beside: Sequence[Part]) -> SoilBorder | None:
+def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     """That of a line on condensed soil, where contact has no history; None where there are no kernels."""
     contact = next((part for part in beside if isinstance(part, SurfaceContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
-    if len(lines) > 1 or len(beside) > 2 or contact is None or soil is None:
+    if len(system.model.lines) > 1 or len(beside) > 2 or contact is None or soil is None:
         return None
     touch = contact.touch_data()
-    return None if touch is None else SoilBorder(system, lines[0], contact, soil, touch)
+    return None if touch is None else partial(SoilBorder, system, contact, soil, touch)
 
 
 class SoilBorder(LoopBorder):
@@ -165,8 +166,14 @@ class SoilBorder(LoopBorder):
     left_to_newton = True
 
     def __init__(
-        self, system: System, packed: PackedLine, contact: SurfaceContact, soil: CondensedSoil, touch: TouchData
+        self,
+        system: System,
+        contact: SurfaceContact,
+        soil: CondensedSoil,
+        touch: TouchData,
+        lines: Sequence[PackedLine],
     ) -> None:
+        (packed,) = lines
         self._line, self._contact, self._soil, self._top = contact.line, contact, soil, soil.top
         self._system, self._packed, self.parts = system, packed, (contact, soil)
         points, ne = len(soil.top.points), self._line.length.size
