@@ -120,6 +120,7 @@ def test_soil_is_as_it_was_until_lines_and_bodies_hang_as_they_will() -> None:
 @pytest.mark.parametrize("model", ["block", "sections"])
 def test_two_ranks_find_the_same_on_soil(model: str, tmp_path: Path) -> None:
     scene = hung_over_clay(heave_of_top(), model=model)
+    scene["water"] |= {"current": {"profile": [[0.0, 0.0, 0.1], [15.0, 0.0, 0.3]]}}  # to one side, not to either
     one, other = (ran_on(scene, tmp_path / str(ranks), ranks) for ranks in (1, 2))
     assert other.summary["ranks"] == 2
     for line in ("lower", "upper"):
