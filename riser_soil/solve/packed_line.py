@@ -72,7 +72,7 @@ class KernelParts:
             self.update(t, t)
 
     def in_groups(self, groups: str) -> list[KernelData]:
-        """Numbers of the parts with forces in some of the groups."""
+        """Kernel data of the parts with forces in some of the groups."""
         return [held for part, held in self.with_data if set(part.traits.groups) & set(groups)]
 
     def add_work(self, before: State, after: State, rows: list[list[float]], work: dict[str, Work]) -> None:
