@@ -82,7 +82,7 @@ class DragData(NamedTuple):
 
 class WaterOnBody(NamedTuple):
     """What the water does to a body where it is: arm of the centre of buoyancy in global axes; wet share, and its slope
-    by immersion; velocity through the water, drag and its derivative, force of the water's acceleration, moment of drag
+    by immersion; drag and its derivative, force of the water's acceleration, moment of drag
     and its slopes, in body axes; force of the moving surface upward, and its slopes by the wet share of the moving and
     of calm water.
     """
@@ -90,7 +90,6 @@ class WaterOnBody(NamedTuple):
     arm: Vec
     share: float
     slope: float
-    through: Vec
     drag: Vec
     drag_by: Mat
     push: Vec
@@ -132,7 +131,7 @@ def _pushed(part: DragData, at: Posture) -> WaterOnBody:
     if part.buoyancy != 0.0:
         calm, calm_slope = wet(part.level - centre[2], part.radius)
         heave = -part.buoyancy * (share - calm)
-    return WaterOnBody(arm, share, slope, through, drag, drag_by, push, twist, twist_by, heave, calm_slope)
+    return WaterOnBody(arm, share, slope, drag, drag_by, push, twist, twist_by, heave, calm_slope)
 
 
 @njit

@@ -68,7 +68,7 @@ class AcceptedLine:
         self._find_matrices = in_turn(
             *(bound(find_water, data, here) for data in inertial if type(data) in find_water.kernels),
             bound(write_maps, at, maps),
-            Bound(loop.clear_tangent, K),
+            Bound(loop.set_zero, K),
             *(bound(add_tangent, data, here, maps, weights, K) for data in inertial),
         )
 

@@ -118,7 +118,7 @@ class CompiledNewton(StepSolver):
         near, self.at_equilibrium = self.at_equilibrium, False
         if self._solved is not None:
             return Solution(self._solved, self._forces(), norms)
-        if self._border.left_to_newton:
+        if self._border.leave_to_newton(step.before):
             return self._by_newton(step, near)
         raise NotConvergedError(failure)
 
@@ -158,7 +158,6 @@ class CompiledNewton(StepSolver):
     def _by_newton(self, step: Step, at_equilibrium: bool) -> Solution:
         """By Newton's method over the parts."""
         newton = self._newton
-        self._border.leave_to_newton(step.before)
         newton.renew()
         newton.at_equilibrium, before = at_equilibrium, newton.iterations
         try:

@@ -136,25 +136,28 @@ class PackedLine:
             Bound(loop.add_norms, forces, dofs, sums),
         ]
 
-    def tangents(self, contact: bool) -> tuple[list[Bound], list[Bound], list[Bound]]:
-        """Kernels that write the tangent but for contact's share, the same at held rates, and that add contact's.
+    def tangents(self, contact: bool) -> tuple[list[Bound], list[Bound], list[Bound], list[Bound]]:
+        """Kernels that write the tangent but for contact's share, and that add this; the same of both at held rates.
         contact: whether something beside the line's own parts touches it.
         """
         others = [each for each in self.parts.kernel_data if all(each is not one for one in self._touching)]
         touched = contact or len(self._touching) > 0
-        bulk, maps = Packed(np.empty_like(self.workspace.K)) if touched else self.K, self._maps
-        held = Packed(maps.value)  # without shifts
-        given = self.packed_at, maps, self.weights, self.K
-        added = [bound(add_tangent, each, *given) for each in self._touching]
+        bulk, held = Packed(np.empty_like(self.workspace.K)) if touched else self.K, Packed(self._maps.value)
         begun = [Bound(loop.begin_with, bulk, self.K)] if touched else []
-        return self._bulk(others, maps, bulk), self._bulk(others, held, bulk), [*begun, *added]
+
+        def contacts(maps: Packed) -> list[Bound]:
+            given = self.packed_at, maps, self.weights, self.K
+            return [*begun, *(bound(add_tangent, each, *given) for each in self._touching)]
+
+        moving = self._bulk(others, self._maps, bulk), contacts(self._maps)
+        return *moving, self._bulk(others, held, bulk), contacts(held)
 
     def _bulk(self, parts: Sequence[KernelData], maps: Packed, K: Packed) -> list[Bound]:
         now, forces, weights = self.packed_at, self.packed_forces, self.weights
         conjugate, turning = Packed(self.workspace.conjugate), Packed(self.workspace.turning)
         return [
             bound(write_maps, self.at, maps),
-            Bound(loop.clear_tangent, K),
+            Bound(loop.set_zero, K),
             *(bound(add_tangent, each, now, maps, weights, K) for each in parts),
             Bound(weigh, forces, weights, conjugate),
             bound(write_turning, self.at, conjugate, turning),
@@ -180,7 +183,7 @@ class PackedLine:
         self.work = np.zeros((len(turning), 4))
         then, now = Packed(self.placed.at), self.packed_at
         return [
-            Bound(loop.clear_account, Packed(self.work)),
+            Bound(loop.set_zero, Packed(self.work)),
             *(bound(add_energy, each, now, energy) for each in data),
             *(bound(add_work, each, then, now, Packed(row)) for each, row in zip(turning, self.work, strict=True)),
         ]
@@ -211,18 +214,18 @@ class LoopBorder:
 
     knows_round_off: whether a residual can be told from its round-off by `riser_loop.write_terms`; smooth: whether
     nothing touches the lines; gradual: whether a tangent may be kept beside contact, see `System`; parts: whose forces
-    are evaluated here; left_to_newton: whether a step that can't be solved here may be another solver's.
+    are evaluated here.
     """
 
     knows_round_off = smooth = gradual = True
-    left_to_newton = False
     parts: Sequence[Any] = ()
 
     def begin(self, before: State, step_to: float, guess: Array) -> None:
         """Begin a step from an accepted state to a time [s], with a first guess (size,) of all local increments."""
 
-    def leave_to_newton(self, before: State) -> None:
-        """Prepare another solver's step from an accepted state."""
+    def leave_to_newton(self, before: State) -> bool:
+        """Whether a step from an accepted state that can't be solved here may be `Newton`'s, for which all is ready."""
+        return False
 
     def widen(self) -> None:
         """Take in what the last trial has outgrown."""
@@ -297,7 +300,7 @@ MakeBorder = Callable[[Sequence[PackedLine]], LoopBorder]
 
 class PackedSystem:
     """Lines and bodies with what couples them, for the compiled loop. weights: as the lines have them; most: iterations
-    of a step.
+    of a step. evaluate, write_tangent, renew_contact, improve: pieces of the loop, to be looked at one by one.
     """
 
     def __init__(self, lines: Sequence[PackedLine], border: LoopBorder, weights: Packed, most: int) -> None:
@@ -308,7 +311,7 @@ class PackedSystem:
         self.energy = np.zeros(3)
         energy = Packed(self.energy)
         each = [kernel for line in lines for kernel in line.account(energy)]
-        self._account = in_turn(Bound(loop.clear_account, energy), *each, *border.account(energy))
+        self._account = in_turn(Bound(loop.set_zero, energy), *each, *border.account(energy))
 
     def _bind(self) -> None:
         """Bind the kernels of the loop to where they read and write."""
@@ -317,30 +320,26 @@ class PackedSystem:
         evaluate = [
             *(kernel for line in lines for kernel in line.evaluate()),
             *border.forces(),
-            Bound(loop.clear_account, sums),
+            Bound(loop.set_zero, sums),
             *(kernel for line in lines for kernel in line.balance(sums)),
             *border.norms(sums),
             Bound(loop.judge, sums, limits, progress),
             *border.outgrown(progress),
         ]
-        bulk, held, contact = (
+        bulk, contact, held_bulk, held_contact = (
             [kernel for line in each for kernel in line]
             for each in zip(*(line.tangents(not border.smooth) for line in lines), strict=True)
         )
         joined = border.bulk_tangent()
         contact += border.tangent()
-        factors = [
-            *(line.fill() for line in lines),
-            *border.fill(),
-            *(line.factorise(progress) for line in lines),
-            *border.factorise(progress),
-        ]
+        fill = [*(line.fill() for line in lines), *border.fill()]
+        factors = [*fill, *(line.factorise(progress) for line in lines), *border.factorise(progress)]
         sizes = [line.write_sizes for line in lines]
         terms = [Bound(loop.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
         looked = [Bound(loop.find_above, line.packed_dofs, above) for line in lines]
         probe = [
-            *held, *joined, *contact, *sizes, *terms, *border.terms(),
-            Bound(loop.clear_flag, above), *looked, Bound(loop.judge_round_off, above, progress),
+            *held_bulk, *joined, *held_contact, *sizes, *terms, *border.terms(),
+            Bound(loop.set_zero, above), *looked, Bound(loop.judge_round_off, above, progress),
         ]  # fmt: skip
         renew = [*bulk, *joined, *contact, *factors]
         touch = [*contact, *factors] if contact else []
@@ -349,9 +348,8 @@ class PackedSystem:
         tables = (Packed(calls(*kernels)) for kernels in each)
         tangles = (kernel for line in lines for kernel in line.look_for_tangles)
         self._solve = in_turn(Bound(loop.solve_step, *tables, limits, progress), *tangles)
-        filled = [line.fill() for line in lines]
         self.evaluate, self.renew_contact = in_turn(*evaluate), in_turn(*touch)
-        self.write_tangent = in_turn(*bulk, *joined, *contact, *filled, *border.fill(), *sizes)
+        self.write_tangent = in_turn(*bulk, *joined, *contact, *fill, *sizes)
         self.improve = in_turn(*factors, *improve)
 
     def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:

@@ -205,9 +205,9 @@ def add_norms(forces: LineForces, dofs: Dofs, sums: Array) -> None:
 
 
 @njit
-def clear_tangent(K: Array) -> None:
-    """Write zero."""
-    K[:] = 0.0
+def set_zero(values: Array) -> None:
+    """Write zero, or false."""
+    values[:] = 0
 
 
 @njit
@@ -225,12 +225,6 @@ def write_terms(workspace: MatrixWorkspace, dofs: Dofs) -> None:
     terms = dofs.terms.reshape(n)
     terms[:] = 0.0
     add_magnitudes(workspace.K, rows, rows, dofs.sizes.reshape(n), terms)
-
-
-@njit
-def clear_flag(above: BoolArray) -> None:
-    """Write that nothing is found."""
-    above[0] = False
 
 
 @njit
@@ -279,12 +273,6 @@ def improve(workspace: MatrixWorkspace, step: StepData, dofs: Dofs) -> None:
     banded.solve(workspace.ab, workspace.pivots, change, workspace.band)
     for k in range(size):
         u[k] -= 0.0 if fixed[k] else change[k]
-
-
-@njit
-def clear_account(account: Array) -> None:
-    """Write zero."""
-    account[:] = 0.0
 
 
 def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspace:

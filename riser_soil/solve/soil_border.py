@@ -163,7 +163,6 @@ class SoilBorder(LoopBorder):
     """
 
     knows_round_off = smooth = gradual = False
-    left_to_newton = True
 
     def __init__(
         self,
@@ -256,9 +255,10 @@ class SoilBorder(LoopBorder):
             self._system.renew_prescribed()
             self._prescribed = self._top.reached
 
-    def leave_to_newton(self, before: State) -> None:
+    def leave_to_newton(self, before: State) -> bool:
         """Newton's method needs a matrix for what is reached and may touch now."""
         self._contact.rebuild(State.at_rest(before.t, self._system.numbering.size))
+        return True
 
     @property
     def _slack(self) -> float:

@@ -22,6 +22,7 @@ from riser_soil.accuracy.search import first_setting
 from riser_soil.accuracy.settings import SETTINGS, settings_of, varied
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.assembly import build
+from riser_soil.assembly.stage import times_to_hit
 from riser_soil.cases.case_table import case_values
 from riser_soil.checks.check import describe
 from riser_soil.checks.overload import overload
@@ -30,6 +31,7 @@ from riser_soil.report.extremes import key_results_table
 from riser_soil.report.report import write_report
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.read import Run
+from riser_soil.scene.lines import by_line
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.whole_run import run
@@ -124,6 +126,16 @@ def test_a_moment_heels_a_buoy_until_it_is_righted(tmp_path: Path) -> None:
     found = ran(on_one_line(RIGID, {"moment": [0.0, M, 0.0]}), tmp_path)
     righting = B * RIGID["centre_of_buoyancy"][2] - W * RIGID["centre_of_gravity"][2] + (B - W) * 1.0
     assert found["bodies/buoy/rotation"][-1] == pytest.approx([0.0, math.asin(M / righting), 0.0], abs=1e-5)
+
+
+def test_steps_hit_the_bends_of_a_load_on_a_body() -> None:
+    """As they hit those of a load on a line."""
+    load = {"force": [1.0, 0.0, 0.0], "history": [[0.0, 0.0], [0.37, 1.0], [0.81, 0.0]]}
+    scene = scene_from_mapping(mooring(shaken() | {"bodies": {"buoy": {"loads": [load]}}}))
+    for view in by_line(scene).values():
+        _, stage = view.stages
+        assert isinstance(stage, DynamicStage)
+        assert {0.37, 0.81} <= {*times_to_hit(view, stage)}
 
 
 def test_a_lazy_s_over_an_arch_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
