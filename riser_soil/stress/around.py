@@ -89,13 +89,13 @@ def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Ans
 
 def _at_rest(run: Run) -> Iterator[Answer]:
     """Dynamic stages without motion: their extremes are the static stage's values."""
-    found = key_results(run.summary)
+    found = list(key_results(run.summary).values())
     static = next(stage["name"] for stage in run.summary["stages"] if stage["kind"] == "static")
-    for stage in (each["name"] for each in run.summary["stages"] if each["kind"] != "static"):
-        for name in ("top tension", "force at end", "force at start"):
-            before, now = found.get(f"{static}: {name}"), found.get(f"{stage}: {name}")
-            if before is not None and now is not None:
-                yield between(f"{now.key}, apart from rest [-]", _apart(now, before), 0.0, AT_REST)
+    before = {each.label: each for each in found if each.stage == static}
+    moving = {stage["name"] for stage in run.summary["stages"] if stage["kind"] != "static"}
+    for now in found:
+        if now.stage in moving and now.name in ("top tension", "force at end", "force at start") and now.label in before:
+            yield between(f"{now.key}, apart from rest [-]", _apart(now, before[now.label]), 0.0, AT_REST)
 
 
 def _apart(now: KeyResult, before: KeyResult) -> float:

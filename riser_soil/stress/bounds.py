@@ -12,7 +12,7 @@ import numpy as np
 from riser_soil.assembly.riser import attachments_of, elements_of
 from riser_soil.results.read import Run
 from riser_soil.results.summary import DOUBTFUL
-from riser_soil.scene.reader import read_scene
+from riser_soil.scene.lines import ENDS, by_line
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, loads_in
 
@@ -23,18 +23,18 @@ _ALONG_RISER = ("position", "effective_tension", "bending_moment")
 
 def bounds(run: Run) -> Iterator[Answer]:
     """All that apply to a finished run."""
-    wrong = sum(int((~np.isfinite(run[name])).sum()) for name in _ALONG_RISER if name in _recorded(run))
+    scene = run.read_scene()
+    fields = [name for name in _ALONG_RISER if name in ("position", *scene.output.fields)]
+    lines, views = run.of_lines, by_line(scene)
+    wrong = sum(int((~np.isfinite(own[name])).sum()) for own in lines.values() for name in fields)
     yield between("numbers that are none", wrong, 0, 0)
-    scene = read_scene(run.folder / "scene.yaml")
-    for stage, reported in zip(scene.stages, run.summary["stages"], strict=True):
+    tied = {point.line for joint in scene.joints.values() for point in joint.between if point.at not in ENDS}
+    for n, stage in enumerate(scene.stages):
         if isinstance(stage, DynamicStage):
-            yield from _energy(reported)
-        else:
-            yield from _balance(scene, stage, reported)
-
-
-def _recorded(run: Run) -> tuple[str, ...]:
-    return ("position", *run.scene["output"]["fields"])
+            yield from _energy(run.summary["stages"][n])
+            continue
+        for name in views.keys() - tied:
+            yield from _balance(views[name], views[name].stages[n], lines[name].summary["stages"][n], name)
 
 
 def worst_residual(stage: dict[str, Any]) -> float:
@@ -48,8 +48,10 @@ def _energy(stage: dict[str, Any]) -> Iterator[Answer]:
     yield between(f"{stage['name']}: {ENERGY} [-]", worst_residual(stage), 0.0, DOUBTFUL)
 
 
-def _balance(scene: Scene, stage: Stage, reported: dict[str, Any]) -> Iterator[Answer]:
-    """Vertical forces at the stage's end: reactions, contact, loads and weight; and no tension beyond their sum."""
+def _balance(scene: Scene, stage: Stage, reported: dict[str, Any], line: str) -> Iterator[Answer]:
+    """Vertical forces on a line at the stage's end: what holds its ends, contact, loads and weight; and no tension
+    beyond their sum. line: its name, "" of the only one.
+    """
     if not _still_and_submerged(scene):
         return
     final, weight, load = reported["final"], _weight(scene), _loads(scene, stage)
@@ -59,11 +61,11 @@ def _balance(scene: Scene, stage: Stage, reported: dict[str, Any]) -> Iterator[A
     largest = max(bending, *(abs(x) for x in forces))
     if largest == 0.0:
         return
-    missed = abs(sum(up)) / largest
-    yield between(f"{stage.name}: vertical forces out of balance, of the largest [-]", missed, 0.0, BALANCE)
+    missed, where = abs(sum(up)) / largest, f"{stage.name}: {line}".rstrip(": ") + ":"
+    yield between(f"{where} vertical forces out of balance, of the largest [-]", missed, 0.0, BALANCE)
     most = 2.0 * bending + sum(abs(x) for x in forces) + float(np.abs(load).sum())
     tension = max(abs(final[end]["effective_tension"]) for end in ("start", "end"))
-    yield between(f"{stage.name}: tension at an end [N]", tension, 0.0, most)
+    yield between(f"{where} tension at an end [N]", tension, 0.0, most)
 
 
 def _still_and_submerged(scene: Scene) -> bool:

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from riser_soil.accuracy.settings import SETTINGS, varied
+from riser_soil.scene.lines import risers, with_risers
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage
 
@@ -46,11 +47,11 @@ def extremes(scene: Scene) -> Iterator[ExtremeScene]:
                 f"{setting.words}, {factor:.3g} times as fine", varied(scene, setting, factor), against, apart
             )
     yield from _materials(scene)
-    if any(not isinstance(stage, StaticStage) and stage.motion for stage in scene.stages):
+    if any(_is_moved(stage) for stage in scene.stages):
         yield from _motions(scene)
-    straight = _with(scene.line, initial="straight")  # there is no catenary without weight
-    yield ExtremeScene("gravity 0", _with(scene, gravity=0.0, riser=straight))
-    if scene.dimension == "auto":
+    straight = {name: _with(line, initial="straight") for name, line in risers(scene).items()}
+    yield ExtremeScene("gravity 0", _with(with_risers(scene, straight), gravity=0.0))  # no catenary without weight
+    if scene.dimension == "auto" and not scene.lines:
         spatial = _with(scene, dimension=3, line_types=_line_types(scene, GJ=_as_stiff_as_bent))
         yield ExtremeScene("in three dimensions", spatial, BASE, SAME)
 
@@ -80,9 +81,8 @@ def _motions(scene: Scene) -> Iterator[ExtremeScene]:
     yield ExtremeScene("harmonic motion in a tenth of its period", _moved(scene, period=0.1))
     if scene.water is None or scene.water.waves is None:
         last = max((n for n, stage in enumerate(scene.stages) if isinstance(stage, StaticStage)), default=-1)
-        still = [stage if isinstance(stage, StaticStage) else _with(stage, motion=None) for stage in scene.stages]
         if last >= 0:
-            yield ExtremeScene("no motion", _with(scene, stages=tuple(still)), _AT_REST, SAME)
+            yield ExtremeScene("no motion", _with_motions(scene, lambda motion: None), _AT_REST, SAME)
 
 
 _AT_REST = "at rest"
@@ -123,14 +123,11 @@ def _as_stiff_as_bent(line: Any) -> float:
 
 def _moved(scene: Scene, **factors: float) -> Scene:
     """Harmonic motions with amplitude and period times a factor."""
-    return _with(scene, stages=tuple(_stage_moved(stage, factors) for stage in scene.stages))
 
+    def moved(motion: Any) -> Any:
+        return _with(motion, **{end: _end_moved(given, factors) for end, given in motion.by_end.items()})
 
-def _stage_moved(stage: Any, factors: dict[str, float]) -> Any:
-    if isinstance(stage, StaticStage) or stage.motion is None:
-        return stage
-    ends = {end: _end_moved(motion, factors) for end, motion in stage.motion.by_end.items()}
-    return _with(stage, motion=_with(stage.motion, **ends))
+    return _with_motions(scene, moved)
 
 
 def _end_moved(motion: Any, factors: dict[str, float]) -> Any:
@@ -139,3 +136,20 @@ def _end_moved(motion: Any, factors: dict[str, float]) -> Any:
         return motion
     size = tuple(factors.get("amplitude", 1.0) * x for x in harmonic.amplitude)
     return _with(motion, harmonic=_with(harmonic, amplitude=size, period=factors.get("period", 1.0) * harmonic.period))
+
+
+def _is_moved(stage: Any) -> bool:
+    """Whether a stage has motions of ends, of the riser's or of some line's."""
+    return any(getattr(owner, "motion", None) is not None for owner in (stage, *stage.lines.values()))
+
+
+def _with_motions(scene: Scene, change: Callable[[Any], Any]) -> Scene:
+    """With other motions of ends in the stages that have some."""
+
+    def changed(owner: Any) -> Any:
+        return owner if getattr(owner, "motion", None) is None else _with(owner, motion=change(owner.motion))
+
+    def of_stage(stage: Any) -> Any:
+        return changed(_with(stage, lines={name: changed(own) for name, own in stage.lines.items()}))
+
+    return _with(scene, stages=tuple(map(of_stage, scene.stages)))

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -21,6 +22,7 @@ from riser_soil.stress.limited_process import Ending, Limits, ended
 from riser_soil.stress.outcome import BROKEN, LONG, PASSED, REPORTED, WRONG, StressOutcome, outcome
 from riser_soil.whole_run import run
 from tests.stress.page import page
+from tests.support.line_scenes import CHAIN, mooring, shaken
 from tests.support.on_ranks import ROOT, environment
 from tests.support.riser_scenes import prescribed, riser_scene, static
 
@@ -96,6 +98,21 @@ def test_extremes_of_the_first_scene() -> None:
     assert not [name for name in found if "soil" in name or "penalty" in name], "it has springs alone"
 
 
+def test_extremes_of_several_lines() -> None:
+    found = {each.name: each for each in extremes(scene_from_mapping(mooring(shaken())))}
+    wild, still = (found[name].scene.stages[1].lines["east"].motion for name in _MOVED)
+    assert wild is not None
+    assert wild.start is not None
+    assert wild.start.harmonic is not None
+    assert wild.start.harmonic.amplitude == pytest.approx((10.0, 3.0, 5.0))
+    assert still is None
+    assert {line.initial for line in found["gravity 0"].scene.lines.values()} == {"straight"}
+    assert "in three dimensions" not in found, "they are in space already"
+
+
+_MOVED = ("harmonic motion times 10", "no motion")
+
+
 @pytest.mark.verify
 def test_the_cheapest_cases_end_as_they_are_to() -> None:
     call = [sys.executable, "-m", "tests.stress.run", "--quick", "--workers", "1"]
@@ -117,6 +134,39 @@ def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
     summary.write_text(json.dumps(reported))
     wrong = [answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds]
     assert wrong == ["static: vertical forces out of balance, of the largest [-]"]
+
+
+def test_forces_out_of_balance_are_found_on_a_line_of_several(tmp_path: Path) -> None:
+    """A weight on two lines, a third tied to one of these; then one reaction 1 % larger in the summary."""
+    lines: dict[str, Any] = {
+        "west": {"start": {"position": [-50.0, 0.0, 0.0]}, "end": "free"},
+        "east": {"start": {"position": [50.0, 0.0, 0.0]}, "end": "free"},
+        "low": {"start": {"position": [-50.0, 0.0, -30.0]}, "end": {"position": [-20.0, 0.0, -30.0]}},
+    }
+    for line in lines.values():
+        line["segments"] = [{"line_type": "chain", "length": 60.0 if line["end"] == "free" else 32.0, "elements": 12}]
+    hung = {name: {"kind": "pinned", "between": [{"line": name, "at": "end"}, {"body": "weight"}]} for name in _HUNG}
+    tie = {"kind": "sprung", "between": [{"line": "low", "at": 16.0}, {"line": "west", "at": 30.0}]}
+    tie["stiffness"] = {"translation": 10.0}
+    scene = {
+        "line_types": {"chain": CHAIN},
+        "bodies": {"weight": {"kind": "point", "position": [0.0, 0.0, -33.0], "mass": 500.0}},
+        "lines": lines,
+        "joints": {**hung, "tie": tie},
+        "stages": [static()],
+    }
+    run(scene_from_mapping(scene), tmp_path / "run")
+    judged = list(bounds(Run(tmp_path / "run")))
+    assert all(answer.holds for answer in judged)
+    assert {answer.what.split(": ")[1] for answer in judged[1:]} == {"east"}, "the tie pulls the others"
+    summary = tmp_path / "run" / "summary.json"
+    reported = json.loads(summary.read_text())
+    reported["stages"][0]["lines"]["east"]["final"]["start"]["force"][2] *= 1.01
+    summary.write_text(json.dumps(reported))
+    assert [answer.holds for answer in bounds(Run(tmp_path / "run"))] == [True, False, True]
+
+
+_HUNG = ("west", "east")
 
 
 def test_the_page_is_that_of_its_figures() -> None:
