@@ -1,19 +1,22 @@
-"""Hang-off: an end's place, or a segment's length, with which the riser at rest has the angle or tension asked for.
+"""Hang-off: ends' places, or segments' lengths, with which lines at rest have the angles or tensions asked for.
 
-The cable without bending stiffness tells where to begin. The riser itself is then taken through its first static stage,
-with its bending, ends and ground as in any run, and the secant method closes the rest.
+The cable without bending stiffness tells where to begin. The scene itself is then taken through its first static stage,
+with bending, ends, joints and ground as in any run, and the secant method closes the rest.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_end, reported, settled, with_value
+from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_ends, reported, settled, with_values
 from riser_soil.assembly.packages import communicator_of
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
@@ -25,95 +28,164 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, lay, run_stage
 
 ANGLE, TENSION = 0.002, 2e-5  # deg; of the tension asked for: a fifth of what is promised
-MOST = 12  # static solves
+MOST = 12  # static solves by end
+DIFFERENCE = 1e-3  # of a value, by which slopes are found where there are several
+LONGEST_STEP = 0.1  # of all values, of the first step from where the slopes are found
 
 
 @dataclass(frozen=True)
-class HungScene:
-    """The scene in numbers; what was asked for in it, the value [m] found, what the riser has there, static solves."""
+class FoundEnd:
+    """What was asked for at an end, the value [m] found, and what the riser has there."""
 
-    scene: Scene
     hung: HungEnd
     value: float
     reached: float
-    solves: int
 
     @property
     def reported(self) -> str:
         """In words."""
-        gives = f"gives {self.reached:.7g} {self.hung.asked.unit}"
-        return f"{reported(self.hung, self.value)} {gives} ({self.solves} static solves)"
+        return f"{reported(self.hung, self.value)} gives {self.reached:.7g} {self.hung.asked.unit}"
 
     @property
     def summary(self) -> dict[str, Any]:
-        """Block `hang_off` of summary.json."""
+        """In block `hang_off` of summary.json."""
         asked = self.hung.asked
         quantity = {"angle_deg": asked.angle} if asked.angle is not None else {"tension": asked.tension}
-        return {"end": self.hung.name, "asked": quantity, "reached": self.reached, "by": asked.by} | {
-            "value": self.value,
-            "static_solves": self.solves,
-        }
+        known = {"end": self.hung.name, "asked": quantity, "reached": self.reached}
+        return known | {"by": asked.by, "value": self.value}
+
+
+@dataclass(frozen=True)
+class HungScene:
+    """The scene in numbers; what was found at its ends, and the static solves that it took."""
+
+    scene: Scene
+    ends: tuple[FoundEnd, ...]
+    solves: int
+
+    @property
+    def reported(self) -> str:
+        """In words, a line each."""
+        return "\n".join(f"{each.reported} ({self.solves} static solves)" for each in self.ends)
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Block `hang_off` of summary.json, of several lines by name."""
+        found = {each.hung.line: each.summary | {"static_solves": self.solves} for each in self.ends}
+        return found if self.scene.lines else found[""]
 
 
 def hung(scene: Scene) -> HungScene | None:
-    """The scene with what its hang-off asks for solved; None where none is asked for; collective.
+    """The scene with what its hang-offs ask for solved; None where none is asked for; collective.
 
-    Raises SceneError where no value gives it, SolveError where none was found.
+    Raises SceneError where no values give it, SolveError where none were found.
     """
-    wanted, comm = hung_end(scene), communicator_of(scene)
-    if wanted is None:
+    ends = hung_ends(scene)
+    if not ends:
         return None
-    asked, (low, high) = wanted.asked.asked, wanted.limits
-    close = ANGLE if wanted.asked.angle is not None else TENSION * asked
-    value, before = by_cable(wanted, asked), (math.nan, math.nan)
-    for solves in range(1, MOST + 1):
-        found = with_value(wanted, value)
-        off = _reached(wanted, found, comm) - asked
-        if abs(off) <= close:
-            return HungScene(settled(wanted, value), wanted, value, asked + off, solves)
-        before, value = (value, off), min(max(_next(wanted, before, (value, off)), low), high)
-    raise SolveError(
-        f"{wanted.path}: {wanted.reported} was not reached in {MOST} static solves: with {before[0]:.6g} m it is off "
-        "by "
-        f"{before[1]:.3g} {wanted.asked.unit}; take finer elements or a stiffer solver.tolerance"
-    )
+    return _Search(ends, communicator_of(scene)).found()
 
 
-def _next(wanted: HungEnd, before: tuple[float, float], now: tuple[float, float]) -> float:
-    """The secant's zero; at first that of a cable whose aim is shifted by what the riser misses."""
-    (value, off), (earlier, earlier_off) = now, before
-    if math.isnan(earlier):
-        return by_cable(wanted, wanted.asked.asked - off)
-    return value - off * (value - earlier) / (off - earlier_off) if off != earlier_off else value
+class _Search:
+    """The search for values (ends,) [m] by Powell's hybrid method, from those of cables, then from those of cables
+    whose aims are shifted by what the lines miss, if that is nearer.
+    """
+
+    def __init__(self, ends: Sequence[HungEnd], comm: Communicator) -> None:
+        self._ends, self._comm = ends, comm
+        self._asked = np.array([each.asked.asked for each in ends])
+        self._close = np.array([ANGLE if each.asked.angle is not None else TENSION * each.asked.asked for each in ends])
+        self._low, self._high = np.transpose([each.bounds for each in ends])
+        self._tried: list[tuple[Array, Array]] = []  # values and what they miss, over what may be missed
+
+    def found(self) -> HungScene:
+        """What is close enough, or SolveError."""
+        from scipy.optimize import root
+
+        values = self._by_cables(self._asked)
+        if (off := self._off(values)).any():
+            nearer = self._by_cables(self._asked - off * self._close)
+            values = min(values, nearer, key=lambda each: float(np.linalg.norm(self._off(each))))
+        if self._off(values).any():
+            root(self._off, values, jac=self._slopes, options={"factor": LONGEST_STEP, "xtol": 0.0})
+        values, off = self._nearest
+        if self._missed(off).any():
+            raise self._failure()
+        ends = zip(self._ends, as_list(values), as_list(self._asked + off * self._close), strict=True)
+        scene = settled(self._ends, as_list(values))
+        return HungScene(scene, tuple(FoundEnd(*each) for each in ends), len(self._tried))
+
+    def _by_cables(self, asked: Array) -> Array:
+        return np.array([by_cable(*each) for each in zip(self._ends, asked, strict=True)])
+
+    def _off(self, values: Array) -> Array:
+        """What lines at rest have beyond what was asked for, over what may be missed (ends,); 0 where all is close."""
+        values = np.clip(values, self._low, self._high)
+        for known, off in self._tried:
+            if np.array_equal(known, values):
+                return self._missed(off)
+        if len(self._tried) == MOST * len(self._ends):
+            raise self._failure()
+        reached = _reached(self._ends, with_values(self._ends, as_list(values)), self._comm)
+        self._tried.append((values, (reached - self._asked) / self._close))
+        return self._missed(self._tried[-1][1])
+
+    def _missed(self, off: Array) -> Array:
+        return off.copy() if np.any(np.abs(off) > 1.0) else np.zeros_like(off)
+
+    @property
+    def _nearest(self) -> tuple[Array, Array]:
+        return min(self._tried, key=lambda each: float(np.abs(each[1]).max()))
+
+    def _slopes(self, values: Array) -> Array:
+        """Of what is missed [1/m] (ends, ends): of one end by the two values tried, of several one by one."""
+        off = self._off(values)
+        others = [self._tried[-1], self._tried[-2]] if len(values) == 1 else []
+        for other, seen in others:
+            if other != values:
+                return (seen - off)[:, None] / (other - values)
+        step = DIFFERENCE * values
+        return np.transpose([(self._off(values + step * unit) - off) / (step @ unit) for unit in np.eye(len(values))])
+
+    def _failure(self) -> SolveError:
+        values, off = self._nearest
+        worst = int(np.argmax(np.abs(off)))
+        missing, missed = self._ends[worst], off[worst] * self._close[worst]
+        return SolveError(
+            f"{missing.path}: {missing.reported} was not reached in {len(self._tried)} static solves: with "
+            f"{values[worst]:.6g} m it is off by {missed:.3g} {missing.asked.unit}; take finer elements or a stiffer "
+            "solver.tolerance"
+        )
 
 
-def _reached(wanted: HungEnd, scene: Scene, comm: Communicator) -> float:
-    """The riser's own angle [deg] or tension [N] at the end of the first stage; collective."""
+def _reached(ends: Sequence[HungEnd], scene: Scene, comm: Communicator) -> Array:
+    """The lines' own angles [deg] or tensions [N] (ends,) at the end of the first stage; collective."""
     assembly, clock = build(sized(scene), comm), Timer.new()
-    last = _LastStep(assembly, wanted)
+    last = _LastStep(assembly, ends)
     with agreeing(comm):
         before, _ = lay(assembly, clock)
         run_stage(assembly, assembly.scene.stages[0], before, last, clock)
-    return float(comm.bcast(last.seen))
+    return np.array(comm.bcast(last.seen))
 
 
 class _LastStep(StatelessObserver):
-    """Sees the angle or tension at the last step of a stage; on rank 0."""
+    """Sees the angles or tensions at the last step of a stage; on rank 0."""
 
-    def __init__(self, assembly: Assembly, wanted: HungEnd) -> None:
-        self._assembly, self._wanted, self.seen = assembly, wanted, math.nan
+    def __init__(self, assembly: Assembly, ends: Sequence[HungEnd]) -> None:
+        self._assembly, self._ends, self.seen = assembly, ends, list[float]()
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         pass
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
-        if not last or self._assembly.comm.rank != 0:
-            return
-        riser, at_end = riser_snapshot(self._assembly, stepper), self._wanted.name == "end"
-        if self._wanted.asked.angle is None:
-            self.seen = float(riser.effective_tension[-1 if at_end else 0])
-        else:
-            self.seen = from_vertical(riser.end_tangent if at_end else -riser.start_tangent)
+        if last and self._assembly.comm.rank == 0:
+            self.seen = [self._seen(hung, stepper) for hung in self._ends]
+
+    def _seen(self, hung: HungEnd, stepper: TimeStepper) -> float:
+        riser, at_end = riser_snapshot(self._assembly.by_line[hung.line], stepper), hung.name == "end"
+        if hung.asked.angle is None:
+            return float(riser.effective_tension[-1 if at_end else 0])
+        return from_vertical(riser.end_tangent if at_end else -riser.start_tangent)
 
     def relaxed(self, relaxed: object) -> None:
         pass

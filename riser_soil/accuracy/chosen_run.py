@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from riser_soil.errors import SceneError
+from riser_soil.scene.lines import risers
 from riser_soil.scene.scene import Scene
 
 
@@ -52,8 +53,8 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
 
 
 def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
-    """The scene with its hang-off solved, where it asks for one, and what its summary tells of that; collective."""
-    if scene.lines or not scene.line.hangs_off:
+    """The scene with its hang-offs solved, where it asks for some, and what its summary tells of that; collective."""
+    if not any(line.hangs_off for line in risers(scene).values()):
         return scene, {}
     from riser_soil.assembly.packages import communicator_of
     from riser_soil.hang_off import hung

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.hang_off import hung_end
+from riser_soil.assembly.hang_off import hung_ends
 from riser_soil.assembly.line_assembly import LineAssembly, add_seabed, line_assembly
 from riser_soil.assembly.scales import Scales, of_several
 from riser_soil.assembly.soil_block import condensed_of
@@ -366,7 +366,7 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     if scene.accuracy is not None:
         raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")
-    if scene.riser is not None and (asking := hung_end(scene)) is not None:
+    for asking in hung_ends(scene):
         raise SceneError(f"{asking.path}: is to be solved first, by riser_soil.hang_off")
     scene = sized(scene)
     spins = spinning(scene)

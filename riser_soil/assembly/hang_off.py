@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +13,10 @@ from riser_soil.assembly.shape import catenary_between
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.bathymetry import ground_height
-from riser_soil.scene.cross_checks import conflicts
+from riser_soil.scene.line_checks import all_conflicts
+from riser_soil.scene.lines import ENDS, by_line, risers, with_risers
 from riser_soil.scene.problem import message
-from riser_soil.scene.riser import Riser, Support
+from riser_soil.scene.riser import Riser, Segment, Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import HangOff
 from riser_soil.scene.variants import with_end_at, with_segment_as_long
@@ -27,20 +29,27 @@ CLOSE = 1e-12  # of what is solved for: how closely the cable's is found
 
 @dataclass(frozen=True)
 class HungEnd:
-    """The end of a scene that hangs off: its name, start or end, and what it asks for.
+    """The end of a line that hangs off: the line's name, "" of the only one, the end's, start or end, and what it asks
+    for.
 
     What is solved for, `value` [m], is the horizontal distance of the ends or the length of the segment at the other
     end; the scene has a first guess.
     """
 
     scene: Scene
+    line: str
     name: str
     asked: HangOff
 
     @property
     def path(self) -> str:
         """Its key in the scene."""
-        return f"riser.{self.name}.hang_off"
+        return f"{f'lines.{self.line}' if self.line else 'riser'}.{self.name}.hang_off"
+
+    @property
+    def riser(self) -> Riser:
+        """The line, its ends where joints hold them."""
+        return _riser(self.scene, self.line)
 
     @property
     def other(self) -> str:
@@ -49,7 +58,7 @@ class HungEnd:
     @property
     def span(self) -> Array:
         """From the other end to this one (3,) [m]."""
-        here, there = (_position(self.scene.line, name) for name in (self.name, self.other))
+        here, there = (_position(self.riser, name) for name in (self.name, self.other))
         return here - there
 
     @property
@@ -58,25 +67,36 @@ class HungEnd:
         return math.hypot(*self.span[:2])
 
     @property
+    def segments(self) -> tuple[Segment, ...]:
+        """Those of the line as it is given."""
+        return risers(self.scene)[self.line].segments
+
+    @property
     def segment(self) -> int:
         """Number of the segment at the other end."""
-        return 0 if self.name == "end" else len(self.scene.line.segments) - 1
+        return 0 if self.name == "end" else len(self.segments) - 1
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Least and largest value that is looked at [m]."""
-        L, rise = self.scene.line.length, float(self.span[2])
+        """Least and largest value that is looked at [m], the ends being where they are at first."""
+        L, rise = self.riser.length, float(self.span[2])
         if self.asked.by == "length":
-            rest = L - self.scene.line.segments[self.segment].length
+            rest = L - self.segments[self.segment].length
             slack = math.fsum([rise, self.layback, L])
             return max(math.hypot(rise, self.layback) / LONGEST - rest, NEAREST * L), max(slack - rest, NEAREST * slack)
         return NEAREST * L, max(math.sqrt(max((LONGEST * L) ** 2 - rise**2, 0.0)), 2.0 * NEAREST * L)
 
     @property
+    def bounds(self) -> tuple[float, float]:
+        """The same for the riser at rest: what a joint holds goes elsewhere."""
+        low, high = self.limits
+        return (NEAREST * low, math.inf) if getattr(self.riser, self.other).jointed else (low, high)
+
+    @property
     def reported(self) -> str:
         """What is asked for, in words."""
         what = "a hang-off angle" if self.asked.angle is not None else "a top tension"
-        return f"{what} of {self.asked.asked:g} {self.asked.unit}"
+        return f"{self.line + ': ' if self.line else ''}{what} of {self.asked.asked:g} {self.asked.unit}"
 
 
 def reported(hung: HungEnd, value: float) -> str:
@@ -84,44 +104,57 @@ def reported(hung: HungEnd, value: float) -> str:
     if hung.asked.by == "length":
         return f"{hung.reported}: a length of {value:.6g} m of segments.{hung.segment}"
     name = hung.name if hung.asked.by == "layback" else hung.other
-    place = ", ".join(f"{x:.6g}" for x in _position(with_value(hung, value).line, name))
+    riser = _riser(with_values([hung], [value]), hung.line)
+    place = ", ".join(f"{x:.6g}" for x in _position(riser, name))
     return f"{hung.reported}: a layback of {value:.6g} m, the {name} at [{place}],"
 
 
-def hung_end(scene: Scene) -> HungEnd | None:
-    """The end that hangs off; None where none does."""
-    for name in ("start", "end"):
-        end = getattr(scene.line, name)
-        if isinstance(end, Support) and end.hang_off is not None:
-            return HungEnd(scene, name, end.hang_off)
-    return None
+def hung_ends(scene: Scene) -> list[HungEnd]:
+    """The ends that hang off, at most one of each line."""
+    ends = [(line, name, getattr(riser, name)) for line, riser in risers(scene).items() for name in ENDS]
+    return [
+        HungEnd(scene, line, name, end.hang_off)
+        for line, name, end in ends
+        if isinstance(end, Support) and end.hang_off is not None
+    ]
 
 
-def with_value(hung: HungEnd, value: float) -> Scene:
-    """The scene with a value of what is solved for [m], and no hang-off asked any more."""
-    plain = getattr(hung.scene.line, hung.name).model_copy(update={"hang_off": None})
-    scene = hung.scene.model_copy(update={"riser": hung.scene.line.model_copy(update={hung.name: plain})})
+def with_values(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
+    """The scene of the ends with values of what is solved for [m], and no hang-off asked any more."""
+    scene = ends[0].scene
+    for hung, value in zip(ends, values, strict=True):
+        scene = _with_value(scene, hung, value)
+    return scene
+
+
+def _with_value(before: Scene, hung: HungEnd, value: float) -> Scene:
+    riser = risers(before)[hung.line]
+    plain = getattr(riser, hung.name).model_copy(update={"hang_off": None})
+    scene = with_risers(before, {**risers(before), hung.line: riser.model_copy(update={hung.name: plain})})
     if hung.asked.by == "length":
-        return with_segment_as_long(scene, hung.segment, value)
+        return with_segment_as_long(scene, hung.line, hung.segment, value)
     name, sign = (hung.name, 1.0) if hung.asked.by == "layback" else (hung.other, -1.0)
     ahead = hung.span * [1.0, 1.0, 0.0] * (sign * (value / hung.layback - 1.0))
-    x, y, z = (float(each) for each in _position(scene.line, name) + ahead)
-    return _as_high_over_the_ground(with_end_at(scene, name, (x, y, z)), scene, hung.other)
+    x, y, z = (float(each) for each in _position(riser, name) + ahead)
+    moved = with_end_at(scene, hung.line, name, (x, y, z))
+    return _as_high_over_the_ground(moved, scene, hung.line, hung.other)
 
 
-def _as_high_over_the_ground(scene: Scene, before: Scene, name: str) -> Scene:
+def _as_high_over_the_ground(scene: Scene, before: Scene, line: str, name: str) -> Scene:
     """With the lower end as high over the ground as before: it moved, or the ground below it with the riser's start."""
-    x, y, z = getattr(scene.line, name).position
-    rise = ground_height(scene, (x, y, z)) - ground_height(before, getattr(before.riser, name).position)
-    return with_end_at(scene, name, (x, y, z + rise)) if rise else scene
+    now, was = by_line(scene)[line], by_line(before)[line]
+    x, y, z = getattr(now.riser, name).position
+    rise = ground_height(now, (x, y, z)) - ground_height(was, getattr(was.riser, name).position)
+    return with_end_at(scene, line, name, (x, y, z + rise)) if rise else scene
 
 
-def settled(hung: HungEnd, value: float) -> Scene:
-    """The same, once the value is found; SceneError where the scene can't be with it."""
-    scene = with_value(hung, value)
-    for problem in conflicts(scene):
+def settled(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
+    """The same, once the values are found; SceneError where the scene can't be with them."""
+    scene = with_values(ends, values)
+    for problem in all_conflicts(scene):
         wrong = message(problem, scene.model_dump(by_alias=True))
-        raise SceneError(f"{hung.path}: {reported(hung, value)} but then {wrong}")
+        found = " and ".join(reported(hung, value) for hung, value in zip(ends, values, strict=True))
+        raise SceneError(f"{ends[0].path}: {found} but then {wrong}")
     return scene
 
 
@@ -155,11 +188,15 @@ def _looked_at(hung: HungEnd) -> Array:
 
 def _seen(hung: HungEnd, value: float) -> float:
     """The cable's angle from the vertical [deg] or tension [N] at the end that hangs off."""
-    scene = with_value(hung, value)
-    start, end = (_position(scene.line, name) for name in ("start", "end"))
+    scene = by_line(with_values([hung], [value]))[hung.line]
+    start, end = (_position(scene.line, name) for name in ENDS)
     cable = catenary_between(scene, elements_of(scene), attachments_of(scene), start, end)
     tension = float(cable.tension[-1 if hung.name == "end" else 0])
     return tension if hung.asked.angle is None else math.degrees(math.asin(min(1.0, cable.H / tension)))
+
+
+def _riser(scene: Scene, line: str) -> Riser:
+    return by_line(scene)[line].line
 
 
 def _position(riser: Riser, name: str) -> Array:

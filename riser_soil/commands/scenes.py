@@ -45,18 +45,19 @@ def read(scene: str, overrides: list[str] | None) -> "Scene":
 
 
 def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
-    """The scene with its hang-off as a cable would have it, where it asks for one."""
-    if scene.lines or not scene.line.hangs_off:
+    """The scene with its hang-offs as a cable would have them, where it asks for some."""
+    from riser_soil.scene.lines import risers
+
+    if not any(line.hangs_off for line in risers(scene).values()):
         return scene
-    from riser_soil.assembly.hang_off import by_cable, hung_end, reported, settled
+    from riser_soil.assembly.hang_off import by_cable, hung_ends, reported, settled
 
     with placed(file, overrides):
-        wanted = hung_end(scene)
-        assert wanted is not None
-        value = by_cable(wanted, wanted.asked.asked)
-        found = settled(wanted, value)
-    if rank() == 0:
-        print(f"{reported(wanted, value)} by the cable without bending stiffness; a run solves it on the riser itself")
+        ends = hung_ends(scene)
+        values = [by_cable(hung, hung.asked.asked) for hung in ends]
+        found = settled(ends, values)
+    for each in zip(ends, values, strict=True) if rank() == 0 else ():
+        print(f"{reported(*each)} by the cable without bending stiffness; a run solves it on the riser itself")
     return found
 
 

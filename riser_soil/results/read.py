@@ -141,6 +141,8 @@ class Run:
         own = {"stages": [{key: value for key, value in stage.items() if key not in OF_ALL} for stage in stages]}
         if bars := found.get("error_bars"):
             own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["of"] == line]}
+        if hung := found.get("hang_off"):
+            own["hang_off"] = hung.get(line)
         return found | own
 
     @cached_property

@@ -86,6 +86,8 @@ def _wanting_of_hang_off(scene: Scene, name: str) -> Iterator[tuple[str, str]]:
         yield f"is that of the first stage at rest, and the first stage is {first.kind}", "begin with a static stage"
     elif first.move is not None:
         yield "is that of the first stage, which moves an end", "let a later stage move it"
+    if here.hang_off.by == "anchor" and there.jointed:
+        yield f"by: anchor moves the {other}, which a joint holds", "take by: layback or length"
     if here.position[2] <= there.position[2]:
         yield f"the {name} is not above the {other}", "give it to the upper end, or correct the positions"
     if here.position[:2] == there.position[:2]:

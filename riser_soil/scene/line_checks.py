@@ -6,7 +6,6 @@ from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import ENDS, arc_of, by_line, first_place
 from riser_soil.scene.problem import Path, Problem, hint
-from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, MidpointScheme, OfBody, StaticStage
 
@@ -180,8 +179,3 @@ def _not_yet(scene: Scene) -> Iterator[Problem]:
         if rigid and isinstance(stage, DynamicStage) and isinstance(stage.scheme, MidpointScheme):
             text = "the midpoint rule is not there yet for rigid bodies"
             yield Problem(("stages", n, "scheme"), text, "take another scheme, or points")
-    for name, line in scene.lines.items():
-        for end in ENDS:
-            support = getattr(line, end)
-            if isinstance(support, Support) and support.hang_off is not None:
-                yield Problem(("lines", name, end, "hang_off"), "is not there yet for several lines", _LATER)

@@ -40,11 +40,22 @@ def with_segments(scene: Scene, segments: Mapping[str, tuple[Segment, ...]]) -> 
     return with_risers(scene, {name: each.model_copy(update={"segments": segments[name]}) for name, each in lines})
 
 
+def acts_on(stage: Stage, line: str) -> Any:
+    """What happens to a line in a stage, with move or motion and loads; that of the only one, "", the stage has."""
+    return stage.lines.get(line, OfLine()) if line else stage
+
+
+def with_acts(stage: Stage, line: str, **changes: Any) -> Stage:
+    """The stage with other values there."""
+    acts = acts_on(stage, line).model_copy(update=changes)
+    return stage.model_copy(update={"lines": {**stage.lines, line: acts}}) if line else acts
+
+
 def _of_line(scene: Scene, name: str) -> Scene:
     line = scene.lines[name]
     ends: dict[str, Any] = {key: _end(scene, name, key) for key in ENDS}
     cut = {"segments": tuple(_cut(line, sorted(_inner_arcs(scene, name))))}
-    stages = tuple(_stage(stage, stage.lines.get(name, OfLine()), line) for stage in scene.stages)
+    stages = tuple(_stage(stage, acts_on(stage, name), line) for stage in scene.stages)
     several: dict[str, Any] = {"lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "stages": stages}
     own = several | {"riser": line.model_copy(update=ends | cut)}
     if scene.soil is not None and scene.soil.line == name:

@@ -5,41 +5,44 @@ from typing import Any
 
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.attachments import Attachment
-from riser_soil.scene.motions import ArcMotion, MotionKind, Vessel, VesselHistory
+from riser_soil.scene.joints import Joint, JointPoint
+from riser_soil.scene.lines import acts_on, risers, with_acts, with_risers
+from riser_soil.scene.motions import ArcMotion, Motion, MotionKind, Vessel, VesselHistory
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import Load, Stage, StaticStage, TimedStage
+from riser_soil.scene.stages import Load, Stage, StaticStage
 from riser_soil.scene.vectors import minus, plus
 
 ArcMap = Callable[[float], float]
 
 
-def with_end_at(scene: Scene, name: str, place: Vector) -> Scene:
-    """The scene with an end at a place [m]; hubs and vessels that move it keep their place beside it, until a static
-    stage moves it to a place of its own.
+def with_end_at(scene: Scene, line: str, name: str, place: Vector) -> Scene:
+    """The scene with an end of a line, "" of the only one, at a place [m]; hubs and vessels that move it keep their
+    place beside it, until a static stage moves it to a place of its own.
     """
-    end = getattr(scene.line, name)
-    riser = scene.line.model_copy(update={name: end.model_copy(update={"position": place})})
-    stages = tuple(_stages(scene, name, minus(place, end.position)))
-    return scene.model_copy(update={"riser": riser, "stages": stages})
+    riser = risers(scene)[line]
+    end = getattr(riser, name)
+    stages = tuple(_stages(scene, line, name, minus(place, end.position)))
+    moved = riser.model_copy(update={name: end.model_copy(update={"position": place})})
+    return with_risers(scene, {**risers(scene), line: moved}).model_copy(update={"stages": stages})
 
 
-def _stages(scene: Scene, name: str, by: Vector) -> Iterator[Stage]:
+def _stages(scene: Scene, line: str, name: str, by: Vector) -> Iterator[Stage]:
     for stage in scene.stages:
+        acts = acts_on(stage, line)
         if isinstance(stage, StaticStage):
-            by = (0.0, 0.0, 0.0) if getattr(stage.move, name, None) is not None else by
+            by = (0.0, 0.0, 0.0) if getattr(acts.move, name, None) is not None else by
             yield stage
+        elif acts.motion is not None and name in acts.motion.by_end:
+            yield with_acts(stage, line, motion=_shifted(acts.motion, name, by))
         else:
-            yield _shifted(stage, name, by)
+            yield stage
 
 
-def _shifted(stage: TimedStage, name: str, by: Vector) -> TimedStage:
-    if stage.motion is None or name not in stage.motion.by_end:
-        return stage
-    given = stage.motion.by_end[name]
+def _shifted(motion: Motion, name: str, by: Vector) -> Motion:
+    given = motion.by_end[name]
     ways = {key: _beside(way, by) for key, way in given.ways.items()}
-    motion = stage.motion.model_copy(update={name: given.model_copy(update=ways)})
-    return stage.model_copy(update={"motion": motion})
+    return motion.model_copy(update={name: given.model_copy(update=ways)})
 
 
 def _beside(way: MotionKind, by: Vector) -> MotionKind:
@@ -52,30 +55,27 @@ def _beside(way: MotionKind, by: Vector) -> MotionKind:
             return way
 
 
-def with_segment_as_long(scene: Scene, number: int, length: float) -> Scene:
-    """The scene with a segment of a length [m], in as many elements. Attachments, loads and sections keep their places
-    in their segments; in this one in proportion.
+def with_segment_as_long(scene: Scene, line: str, number: int, length: float) -> Scene:
+    """The scene with a segment of a line, "" of the only one, of a length [m], in as many elements. Attachments, loads,
+    joints and sections keep their places in their segments; in this one in proportion.
     """
-    segments = scene.line.segments
+    riser = risers(scene)[line]
+    segments = riser.segments
     before, old = sum(segment.length for segment in segments[:number]), segments[number].length
 
     def at(arc: float) -> float:
         return arc if arc <= before else max(arc - old, before) + length * min((arc - before) / old, 1.0)
 
-    stages = tuple(
-        stage.model_copy(update={"loads": tuple(_load(load, at) for load in stage.loads)}) for stage in scene.stages
-    )
-    arcs = scene.output.sections.arcs
-    sections = scene.output.sections.model_copy(update={"arcs": None if arcs is None else tuple(map(at, arcs))})
-    riser: dict[str, Any] = {"attachments": tuple(_attachment(each, at) for each in scene.line.attachments)}
-    riser["segments"] = (*segments[:number], _as_long(segments[number], length), *segments[number + 1 :])
-    return scene.model_copy(
-        update={
-            "riser": scene.line.model_copy(update=riser),
-            "stages": stages,
-            "output": scene.output.model_copy(update={"sections": sections}),
-        }
-    )
+    changed: dict[str, Any] = {"attachments": tuple(_attachment(each, at) for each in riser.attachments)}
+    changed["segments"] = (*segments[:number], _as_long(segments[number], length), *segments[number + 1 :])
+    found = with_risers(scene, {**risers(scene), line: riser.model_copy(update=changed)})
+    own: dict[str, Any] = {"stages": tuple(_with_loads(stage, line, at) for stage in scene.stages)}
+    own["joints"] = {name: _joint(joint, line, at) for name, joint in scene.joints.items()}
+    on_soil = not line or (scene.soil is not None and scene.soil.line == line)
+    if on_soil and (arcs := scene.output.sections.arcs) is not None:
+        sections = scene.output.sections.model_copy(update={"arcs": tuple(map(at, arcs))})
+        own["output"] = scene.output.model_copy(update={"sections": sections})
+    return found.model_copy(update=own)
 
 
 def _as_long(segment: Segment, length: float) -> Segment:
@@ -86,6 +86,20 @@ def _as_long(segment: Segment, length: float) -> Segment:
 
 def _attachment(given: Attachment, at: ArcMap) -> Attachment:
     return given.model_copy(update={"at": tuple(map(at, given.arcs)), "from_": None, "to": None, "spacing": None})
+
+
+def _with_loads(stage: Stage, line: str, at: ArcMap) -> Stage:
+    loads = acts_on(stage, line).loads
+    return with_acts(stage, line, loads=tuple(_load(load, at) for load in loads)) if loads else stage
+
+
+def _joint(joint: Joint, line: str, at: ArcMap) -> Joint:
+    def moved(point: JointPoint) -> JointPoint:
+        if point.line != line or not isinstance(point.at, float):
+            return point
+        return point.model_copy(update={"at": at(point.at)})
+
+    return joint.model_copy(update={"between": tuple(map(moved, joint.between))})
 
 
 def _load(load: Load, at: ArcMap) -> Load:

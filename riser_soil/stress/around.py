@@ -93,8 +93,9 @@ def _at_rest(run: Run) -> Iterator[Answer]:
     static = next(stage["name"] for stage in run.summary["stages"] if stage["kind"] == "static")
     before = {each.label: each for each in found if each.stage == static}
     moving = {stage["name"] for stage in run.summary["stages"] if stage["kind"] != "static"}
+    names = ("top tension", "force at end", "force at start")
     for now in found:
-        if now.stage in moving and now.name in ("top tension", "force at end", "force at start") and now.label in before:
+        if now.stage in moving and now.name in names and now.label in before:
             yield between(f"{now.key}, apart from rest [-]", _apart(now, before[now.label]), 0.0, AT_REST)
 
 

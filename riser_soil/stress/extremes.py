@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from riser_soil.accuracy.settings import SETTINGS, varied
-from riser_soil.scene.lines import risers, with_risers
+from riser_soil.scene.lines import acts_on, risers, with_acts, with_risers
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage
 
@@ -47,7 +47,7 @@ def extremes(scene: Scene) -> Iterator[ExtremeScene]:
                 f"{setting.words}, {factor:.3g} times as fine", varied(scene, setting, factor), against, apart
             )
     yield from _materials(scene)
-    if any(_is_moved(stage) for stage in scene.stages):
+    if any(_is_moved(acts_on(stage, line)) for stage in scene.stages for line in risers(scene)):
         yield from _motions(scene)
     straight = {name: _with(line, initial="straight") for name, line in risers(scene).items()}
     yield ExtremeScene("gravity 0", _with(with_risers(scene, straight), gravity=0.0))  # no catenary without weight
@@ -138,18 +138,17 @@ def _end_moved(motion: Any, factors: dict[str, float]) -> Any:
     return _with(motion, harmonic=_with(harmonic, amplitude=size, period=factors.get("period", 1.0) * harmonic.period))
 
 
-def _is_moved(stage: Any) -> bool:
-    """Whether a stage has motions of ends, of the riser's or of some line's."""
-    return any(getattr(owner, "motion", None) is not None for owner in (stage, *stage.lines.values()))
+def _is_moved(acts: Any) -> bool:
+    """Whether what happens to a line has motions of its ends."""
+    return getattr(acts, "motion", None) is not None
 
 
 def _with_motions(scene: Scene, change: Callable[[Any], Any]) -> Scene:
-    """With other motions of ends in the stages that have some."""
-
-    def changed(owner: Any) -> Any:
-        return owner if getattr(owner, "motion", None) is None else _with(owner, motion=change(owner.motion))
-
-    def of_stage(stage: Any) -> Any:
-        return changed(_with(stage, lines={name: changed(own) for name, own in stage.lines.items()}))
-
-    return _with(scene, stages=tuple(map(of_stage, scene.stages)))
+    """With other motions of ends where there are some."""
+    stages = []
+    for stage in scene.stages:
+        for line in risers(scene):
+            if _is_moved(acts := acts_on(stage, line)):
+                stage = with_acts(stage, line, motion=change(acts.motion))
+        stages.append(stage)
+    return _with(scene, stages=tuple(stages))

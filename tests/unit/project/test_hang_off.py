@@ -11,19 +11,23 @@ import pytest
 from scipy.optimize import brentq
 from typer.testing import CliRunner
 
-from riser_soil.assembly.hang_off import by_cable, hung_end, settled, with_value
+from riser_soil.assembly.hang_off import by_cable, hung_ends, settled, with_values
 from riser_soil.commands.app import app
 from riser_soil.errors import SceneError
-from riser_soil.hang_off import HungScene, from_vertical, hung
+from riser_soil.hang_off import FoundEnd, from_vertical, hung
+from riser_soil.results import Run
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, stage_histories, static
 
 W, L, RISE = 200.0, 60.0, 40.0
 CHAIN: Mapping = {"EA": 1.0e10, "EI": 0.0, "submerged_weight": W}
 STIFF: Mapping = CHAIN | {"EI": 2.0e5}
+IN_SPACE: Mapping = CHAIN | {"EI": 1.0, "GJ": 1.0}
 
 
 def hanging(pipe: Mapping = CHAIN, end: str = "end", elements: int = 30, **asked: Any) -> Mapping:
@@ -33,10 +37,11 @@ def hanging(pipe: Mapping = CHAIN, end: str = "end", elements: int = 30, **asked
     return riser_scene(static(), pipe=pipe, length=L, elements=elements, start=start, end=last, gravity=9.81)
 
 
-def solved(scene: Mapping) -> HungScene:
+def solved(scene: Mapping) -> tuple[Scene, FoundEnd]:
     found = hung(scene_from_mapping(scene))
     assert found is not None
-    return found
+    (only,) = found.ends
+    return found.scene, only
 
 
 def catenary(layback: float, length: float = L) -> tuple[float, float]:
@@ -51,17 +56,17 @@ def catenary(layback: float, length: float = L) -> tuple[float, float]:
 
 @pytest.mark.parametrize("end", ["end", "start"])
 def test_angle_of_a_cable(end: str) -> None:
-    found = solved(hanging(end=end, angle=20.0))
+    scene, found = solved(hanging(end=end, angle=20.0))
     assert found.reached == pytest.approx(20.0, abs=0.002)
     assert catenary(found.value)[0] == pytest.approx(20.0, abs=0.03), "by the elements"
-    assert getattr(found.scene.riser, end).position == pytest.approx((found.value, 0.0, RISE))
-    assert getattr(found.scene.riser, end).hang_off is None
+    assert getattr(scene.riser, end).position == pytest.approx((found.value, 0.0, RISE))
+    assert getattr(scene.riser, end).hang_off is None
 
 
 def test_tension_of_a_cable_by_its_length() -> None:
-    found = solved(hanging(tension=1.1e4, by="length"))
+    scene, found = solved(hanging(tension=1.1e4, by="length"))
     assert found.reached == pytest.approx(1.1e4, rel=2e-5)
-    assert found.scene.line.segments[0].length == found.value != L
+    assert scene.line.segments[0].length == found.value != L
     assert catenary(30.0, found.value)[1] == pytest.approx(1.1e4, rel=1e-3), "by the elements"
 
 
@@ -70,8 +75,8 @@ def test_tension_of_a_cable_by_its_length() -> None:
 )
 def test_a_stiff_riser_has_what_was_asked_for_in_its_run(asked: Mapping, promised: float) -> None:
     """Not what a cable has with that layback, by far more than what is promised."""
-    found = solved(hanging(STIFF, **asked))
-    ((seen,),) = [[history.end] for history in stage_histories(found.scene)]
+    scene, found = solved(hanging(STIFF, **asked))
+    ((seen,),) = [[history.end] for history in stage_histories(scene)]
     reached = from_vertical(seen.end_tangent) if "angle" in asked else float(seen.effective_tension[-1])
     wanted = found.hung.asked.asked
     assert reached == pytest.approx(wanted, abs=promised)
@@ -81,9 +86,67 @@ def test_a_stiff_riser_has_what_was_asked_for_in_its_run(asked: Mapping, promise
         assert seen.position[0] == pytest.approx([30.0 - found.value, 0.0, 0.0])
 
 
+def test_several_lines_side_by_side() -> None:
+    scene = hanging(IN_SPACE, angle=20.0)
+    first = scene.pop("riser")
+    ends = {end: prescribed(x, 5.0, z) for end, x, z in (("start", 0.0, 0.0), ("end", 30.0, RISE))}
+    ends["end"]["hang_off"] = {"tension": 1.1e4}
+    scene["lines"] = {"first": first, "second": first | ends}
+    found = hung(scene_from_mapping(scene))
+    assert found is not None
+    angle, tension = (catenary(each.value)[n] for n, each in enumerate(found.ends))
+    assert angle == pytest.approx(20.0, abs=0.03), "by the elements"
+    assert tension == pytest.approx(1.1e4, rel=1e-3)
+    end = found.scene.lines["second"].end
+    assert isinstance(end, Support)
+    assert end.position == pytest.approx((found.ends[1].value, 5.0, RISE))
+    assert found.summary["second"]["asked"] == {"tension": 1.1e4}
+
+
+def on_a_weight(**asked: Any) -> Mapping:
+    """Two lines from supports to a weight between them, each of which asks for an angle by its length."""
+    lines: Mapping = {}
+    for name, x in (("west", -50.0), ("east", 50.0)):
+        segments = [{"line_type": "pipe", "length": 60.0, "elements": 20}]
+        lines[name] = {"segments": segments, "start": prescribed(x, 0.0, 0.0), "end": "free"}
+        lines[name]["start"]["hang_off"] = {"angle": asked[name], "by": "length"}
+    return {
+        "line_types": {"pipe": IN_SPACE},
+        "lines": lines,
+        "bodies": {"weight": {"kind": "point", "position": [0.0, 0.0, -35.0], "mass": 2.0e3}},
+        "joints": {f"{name}_end": {"kind": "pinned", "between": _between(name)} for name in lines},
+        "stages": [static()],
+    }
+
+
+def _between(line: str) -> list[Mapping]:
+    return [{"line": line, "at": "end"}, {"body": "weight"}]
+
+
+def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
+    """Both pull with the same H, and together bear all weight, of which each angle's tangent gives a share."""
+    found = hung(scene_from_mapping(on_a_weight(west=45.0, east=40.0)))
+    assert found is not None
+    assert [each.reached for each in found.ends] == pytest.approx([45.0, 40.0], abs=0.002)
+    assert found.solves < 12
+    weight = 2.0e3 * 9.81 + W * sum(each.value for each in found.ends)
+    H = weight / sum(1.0 / np.tan(np.radians(angle)) for angle in (45.0, 40.0))
+    run(found.scene, tmp_path / "run")
+    for line, angle in (("west", 45.0), ("east", 40.0)):
+        end = Run(tmp_path / "run" / line).summary["stages"][0]["final"]["start"]
+        assert end["effective_tension"] == pytest.approx(H / np.sin(np.radians(angle)), rel=1e-3)
+        assert end["angle_deg"] == pytest.approx(angle - 90.0, abs=0.002)
+
+
+def test_no_anchor_moves_that_a_joint_holds() -> None:
+    scene = on_a_weight(west=45.0, east=40.0)
+    scene["lines"]["east"]["start"]["hang_off"]["by"] = "anchor"
+    with pytest.raises(SceneError, match=r"lines.east.start.hang_off: .* by: anchor moves the end"):
+        scene_from_mapping(scene)
+
+
 def test_a_cable_is_where_it_begins() -> None:
-    wanted = hung_end(scene_from_mapping(hanging(angle=20.0)))
-    assert wanted is not None
+    (wanted,) = hung_ends(scene_from_mapping(hanging(angle=20.0)))
     assert catenary(by_cable(wanted, 20.0))[0] == pytest.approx(20.0, abs=1e-4)
 
 
@@ -131,9 +194,7 @@ def test_commands_tell_what_was_found(tmp_path: Path) -> None:
 
 
 def guessed(scene: Mapping, value: float, folder: Path = Path()) -> Scene:
-    wanted = hung_end(scene_from_mapping(scene, folder))
-    assert wanted is not None
-    return with_value(wanted, value)
+    return with_values(hung_ends(scene_from_mapping(scene, folder)), [value])
 
 
 @pytest.mark.parametrize("end", ["end", "start"])
@@ -192,7 +253,6 @@ def test_the_anchor_stays_on_its_ground(end: str, ground: float, after: float, b
 def test_a_scene_that_cannot_be_with_what_was_found_is_reported(tmp_path: Path) -> None:
     (tmp_path / "seabed.csv").write_text("x [m], y [m], z [m]\n-5, -5, 0\n-5, 5, 0\n30, -5, 0\n30, 5, 0\n")
     scene = hanging(angle=20.0) | {"seabed": {"kind": "rigid", "contact_at": "axis", "grid": "seabed.csv"}}
-    wanted = hung_end(scene_from_mapping(scene | {"dimension": 2}, tmp_path))
-    assert wanted is not None
+    ends = hung_ends(scene_from_mapping(scene | {"dimension": 2}, tmp_path))
     with pytest.raises(SceneError, match=r"^riser.end.hang_off: .* but then seabed.grid: .* lies beyond the grid"):
-        settled(wanted, 35.0)
+        settled(ends, [35.0])

@@ -48,7 +48,7 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
     "jinja2": "riser_soil.report",
     "numba": "riser_soil.core",
     "fatpack": "riser_soil.fatigue",
-    "scipy.optimize": ("riser_soil.calibration", "riser_soil.assembly.hang_off"),
+    "scipy.optimize": ("riser_soil.calibration", "riser_soil.assembly.hang_off", "riser_soil.hang_off"),
     "scipy.stats": ("riser_soil.calibration", "riser_soil.statistics"),
     "scipy.signal": "riser_soil.statistics",
     "xarray": ("riser_soil.results", "riser_soil.cases", "riser_soil.modes"),

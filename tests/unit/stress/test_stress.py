@@ -146,7 +146,7 @@ def test_forces_out_of_balance_are_found_on_a_line_of_several(tmp_path: Path) ->
     for line in lines.values():
         line["segments"] = [{"line_type": "chain", "length": 60.0 if line["end"] == "free" else 32.0, "elements": 12}]
     hung = {name: {"kind": "pinned", "between": [{"line": name, "at": "end"}, {"body": "weight"}]} for name in _HUNG}
-    tie = {"kind": "sprung", "between": [{"line": "low", "at": 16.0}, {"line": "west", "at": 30.0}]}
+    tie: dict[str, Any] = {"kind": "sprung", "between": [{"line": "low", "at": 16.0}, {"line": "west", "at": 30.0}]}
     tie["stiffness"] = {"translation": 10.0}
     scene = {
         "line_types": {"chain": CHAIN},
