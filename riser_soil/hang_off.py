@@ -83,10 +83,10 @@ def hung(scene: Scene) -> HungScene | None:
     ends = hung_ends(scene)
     if not ends:
         return None
-    return _Search(ends, communicator_of(scene)).found()
+    return _HangOffSearch(ends, communicator_of(scene)).found()
 
 
-class _Search:
+class _HangOffSearch:
     """The search for values (ends,) [m] by Powell's hybrid method, from those of cables, then from those of cables
     whose aims are shifted by what the lines miss, if that is nearer.
     """
