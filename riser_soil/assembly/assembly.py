@@ -21,7 +21,7 @@ from riser_soil.core.saved_state import Saved, gathered, restore_all
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
-from riser_soil.scene.lines import by_line, on_soil, spinning
+from riser_soil.scene.lines import by_line, on_soil, placing, spinning
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -373,7 +373,8 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
     assembly = Assembly(scene, comm, {})
     for name, view in by_line(scene).items():
         turns = name in spins if scene.lines else None
-        assembly.lines[name] = line_assembly(view, name or "riser", comm.rank == 0, turns)
+        with placing(name):
+            assembly.lines[name] = line_assembly(view, name or "riser", comm.rank == 0, turns)
     if scene.bodies or scene.joints:
         from riser_soil.assembly.bodies_and_joints import hung_of
 

@@ -14,7 +14,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.line_checks import all_conflicts
-from riser_soil.scene.lines import ENDS, by_line, risers, with_risers
+from riser_soil.scene.lines import ENDS, by_line, placing, risers, with_risers
 from riser_soil.scene.problem import message
 from riser_soil.scene.riser import Riser, Segment, Support
 from riser_soil.scene.scene import Scene
@@ -190,7 +190,8 @@ def _seen(hung: HungEnd, value: float) -> float:
     """The cable's angle from the vertical [deg] or tension [N] at the end that hangs off."""
     scene = by_line(with_values([hung], [value]))[hung.line]
     start, end = (_position(scene.line, name) for name in ENDS)
-    cable = catenary_between(scene, elements_of(scene), attachments_of(scene), start, end)
+    with placing(hung.line):
+        cable = catenary_between(scene, elements_of(scene), attachments_of(scene), start, end)
     tension = float(cable.tension[-1 if hung.name == "end" else 0])
     return tension if hung.asked.angle is None else math.degrees(math.asin(min(1.0, cable.H / tension)))
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
 from riser_soil.core.quantities import Vector
+from riser_soil.errors import SceneError
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.riser import Riser, Segment, Support
@@ -51,13 +53,24 @@ def with_acts(stage: Stage, line: str, **changes: Any) -> Stage:
     return stage.model_copy(update={"lines": {**stage.lines, line: acts}}) if line else acts
 
 
+@contextmanager
+def placing(line: str) -> Iterator[None]:
+    """What is found wrong with a line's own scene gets the path that it has in the whole one; "" of the only one."""
+    try:
+        yield
+    except SceneError as err:
+        if line and str(err).startswith("riser"):
+            raise SceneError(f"lines.{line}{str(err).removeprefix('riser')}") from err
+        raise
+
+
 def _of_line(scene: Scene, name: str) -> Scene:
-    line = scene.lines[name]
+    line, arcs = scene.lines[name], sorted(_inner_arcs(scene, name))
     ends: dict[str, Any] = {key: _end(scene, name, key) for key in ENDS}
-    cut = {"segments": tuple(_cut(line, sorted(_inner_arcs(scene, name))))}
+    cut = {"segments": tuple(_cut(line, arcs))}
     stages = tuple(_stage(stage, acts_on(stage, name), line) for stage in scene.stages)
     several: dict[str, Any] = {"lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "stages": stages}
-    own = several | {"riser": line.model_copy(update=ends | cut)}
+    own = several | {"riser": line.model_copy(update=ends | cut).tied_at(arcs)}
     if scene.soil is not None and scene.soil.line == name:
         return scene.model_copy(update=own | {"soil": scene.soil.model_copy(update={"line": None})})
     return scene.model_copy(update=own | _without_soil(scene))

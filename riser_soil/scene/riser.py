@@ -1,6 +1,7 @@
 """Scene language: the riser, its segments, contents, end supports and shapes."""
 
 import math
+from collections.abc import Sequence
 from itertools import accumulate
 from typing import Annotated, Any, Literal, Self
 
@@ -267,6 +268,18 @@ class Riser(BaseModel):
         description="shape at the beginning: straight, catenary, unstressed or {points: ...}; by default "
         "catenary when both ends have a position and gravity acts, else unstressed",
     )
+    _tied: bool = PrivateAttr(default=False)
+
+    def tied_at(self, arcs: Sequence[float]) -> Self:
+        """The line of several that joints hold at arcs [m] between its ends."""
+        line = self.model_copy()
+        line._tied = bool(arcs)
+        return line
+
+    @property
+    def tied(self) -> bool:
+        """Whether joints hold it between its ends."""
+        return self._tied
 
     @model_validator(mode="after")
     def _not_too_fine(self) -> Self:

@@ -264,6 +264,37 @@ def test_lines_tied_along_their_length_keep_their_distance(tmp_path: Path) -> No
     assert found["clearance/light_heavy/distance"][-1] == pytest.approx(0.4, abs=0.05)
 
 
+def test_a_line_with_free_ends_hangs_on_its_ties(tmp_path: Path) -> None:
+    """A straight pipe 2 m below a stiff one that bears both: its supports take the weight of the two."""
+    lines: dict[str, Any] = {
+        name: {"segments": [{"line_type": "pipe", "length": 20.0, "elements": 10}], "initial": "straight"} | ends
+        for name, ends in (
+            ("above", {end: {"position": [x, 0.0, 0.0]} for end, x in (("start", 0.0), ("end", 20.0))}),
+            ("below", {"start": "free", "end": "free", "initial": {"points": [[0.0, 0.0, -2.0], [20.0, 0.0, -2.0]]}}),
+        )
+    }
+    ties = {
+        f"tie{arc:g}": {"kind": "pinned", "keep_distance": True}
+        | {"between": [{"line": name, "at": arc} for name in ("above", "below")]}
+        for arc in (2.0, 10.0, 18.0)
+    }
+    pipe = {"EA": 1.0e8, "EI": 1.0e6, "GJ": 1.0e6, "submerged_weight": 50.0}
+    scene = {"line_types": {"pipe": pipe}, "lines": lines, "joints": ties, "stages": [static()]}
+    found = ran(scene, tmp_path)
+    ends = found.of_line("above").summary["stages"][0]["final"]
+    assert ends["start"]["force"][2] + ends["end"]["force"][2] == pytest.approx(2.0 * 50.0 * 20.0, rel=1e-6)
+    gap = found.of_line("above")["position"][-1] - found.of_line("below")["position"][-1]
+    assert gap[[1, 5, 9]] == pytest.approx(np.tile([0.0, 0.0, 2.0], (3, 1)), abs=1e-3)
+
+
+def test_what_is_wrong_with_a_line_has_its_path(tmp_path: Path) -> None:
+    scene = mooring()
+    scene["line_types"]["floating"] = CHAIN | {"submerged_weight": 0.0}
+    scene["lines"]["north"]["segments"][0]["line_type"] = "floating"
+    with pytest.raises(SceneError, match=r"^lines\.north\.initial: catenary"):
+        run(scene_from_mapping(scene), tmp_path)
+
+
 def test_files_of_a_run(tmp_path: Path) -> None:
     output = {"clearance": [{"between": ["east", "north"], "beyond": 20.0}]}
     found = ran(mooring(shaken(0.2), output=output), tmp_path)
