@@ -10,7 +10,7 @@ cell and two runs agree by chance. Then elements are finer, as they cost little 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -71,16 +71,30 @@ def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None
     """Those of a scene, run one after the other; collective, their values on rank 0. varying: those of error bars by
     default.
 
-    One that fails leaves nothing to compare the next ones with: they are not run.
+    In the place of a finer one that fails comes one that is as much coarser. Where that fails, too, there is nothing to
+    compare the next ones with: they are not run.
     """
     chain: list[ComparisonRun] = []
-    if scene.soil is not None and "soil_mesh" not in {setting.name for setting in settings_of(scene)}:
+    known = {setting.name for setting in settings_of(scene)}
+    if scene.soil is not None and "soil_mesh" not in known:
         chain.append(ComparisonRun("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
-    for step in _steps(scene, variations(scene) if varying is None else varying):
+    now = _recording_all(scene)
+    for source, factors in variations(scene) if varying is None else varying:
+        varied_by = {name: factor for name, factor in factors.items() if name in known}
+        step = _step(now, source, varied_by)
+        if step is None:
+            continue
         if any(before.extremes is None for before in chain):
-            chain.append(ComparisonRun(step.source, step.finer, None, "a coarser run before failed"))
-        else:
-            chain.append(_run(step, comm))
+            chain.append(ComparisonRun(source, step.finer, None, "a coarser run before failed"))
+            continue
+        found = _run(step, comm)
+        if found.extremes is None and step.scene is not None and step.finer > 1.0:
+            coarser = _step(now, source, {name: 1.0 / factor for name, factor in varied_by.items()})
+            assert coarser is not None
+            if (other := _run(coarser, comm)).extremes is not None:
+                found, step = other, coarser
+        chain.append(found)
+        now = step.scene or now
     return chain
 
 
@@ -142,16 +156,6 @@ class NextScene:
     finer: float
     scene: Scene | None
     reason: str = ""
-
-
-def _steps(scene: Scene, varying: Sequence[Variation]) -> Iterator[NextScene]:
-    """One scene after the other; one that can't be is None, and the next ones follow the one before it."""
-    now, known = _recording_all(scene), {setting.name for setting in settings_of(scene)}
-    for source, factors in varying:
-        step = _step(now, source, {name: factor for name, factor in factors.items() if name in known})
-        if step is not None:
-            yield step
-            now = step.scene or now
 
 
 def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> NextScene | None:

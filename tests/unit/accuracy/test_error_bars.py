@@ -276,6 +276,21 @@ def test_coarser_run_that_fails_is_reported_and_its_run_stays(
     assert "its coarser run failed: no convergence at 3 s" in capsys.readouterr().out
 
 
+def test_in_the_place_of_a_finer_run_that_fails_comes_a_coarser_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_from_mapping(SCENES["hose swings on a rigid floor"])
+    elements = scene.line.element_count
+
+    def fails_if_finer(looked_at: Scene, comm: object) -> RunPeaks:
+        if looked_at.line.element_count > elements:
+            raise SolveError("no convergence")
+        return RunPeaks()
+
+    monkeypatch.setattr(chain, "peaks_of", fails_if_finer)
+    found = chain.comparison_runs(scene, Alone())
+    assert [(each.source, each.extremes is not None) for each in found] == [("time", True), ("mesh", True)]
+    assert found[1].finer == pytest.approx(0.5)
+
+
 def test_error_that_one_rank_may_have_met_alone_is_no_failed_coarser_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """The others are within the comparison run still, and would not hear of the next one."""
 
