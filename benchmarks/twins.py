@@ -21,7 +21,6 @@ from riser_soil.core.part import Forces, Part, State, Weights
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.inertia import RotaryInertia
 from riser_soil.riser.line import Line
-from riser_soil.riser.midpoint_directors import directors
 from riser_soil.riser.structural_damping import StructuralDamping
 
 COUNT, REPEATS = 100, 300
@@ -81,7 +80,6 @@ def actions(stage: TimedStage) -> dict[str, Action]:
         "elastic elements (forces and tangent)": both(Beam(line, elements), line, state),
         "structural damping (forces and tangent)": both(StructuralDamping(line, damped), line, state),
         "rotary inertia (moments and tangent)": both(RotaryInertia(line, np.ones(line.length.size)), line, state),
-        "midpoint rule's directors (secant and geometric)": midpoint(line, state),
     }
 
 
@@ -116,12 +114,6 @@ def both(part: Part, line: Line, state: State) -> Action:
         part.tangent(state, WEIGHTS, values)
 
     return act
-
-
-def midpoint(line: Line, state: State) -> Action:
-    moving, middle = directors(line.frames, 0), np.ascontiguousarray(line.nodal(state.u)[:, line.dimension :])
-    force = np.ones((line.length.size, 2, line.dimension))
-    return lambda: moving.geometric(moving.secant(middle), middle, force)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import sys
 from pathlib import Path
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -32,3 +33,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     long = [tests / name for name in (tests / "long_files.txt").read_text(encoding="utf-8").splitlines()]
     places = {path: n for n, path in enumerate(long)}
     items.sort(key=lambda item: places.get(item.path, len(long)))
+
+
+def pytest_sessionfinish() -> None:
+    """What is measured of a worker is written before it ends, which it may do without notice."""
+    if (measured := sys.modules.get("coverage")) and (running := measured.Coverage.current()):
+        running.save()

@@ -40,12 +40,13 @@ class SpatialBase(NamedTuple):
 class PlanarConfiguration(NamedTuple):
     """Trial configuration of a plane line; see `directors` and `hermite`. D and R: see `fixed`.
 
-    angle (nn,); end_angle (ne, 2); tangent (ne, 2, 2); P (ne, 2, 2, 1); q, rate and acceleration (ne, 4, 2); v and a
-    (nn, 3): rates and accelerations of the dofs.
+    angle (nn,), after the increments Theta (nn, 1); end_angle (ne, 2); tangent (ne, 2, 2); P (ne, 2, 2, 1); q, rate and
+    acceleration (ne, 4, 2); v and a (nn, 3): rates and accelerations of the dofs.
     """
 
     x: Array
     chord: Array
+    Theta: Array
     angle: Array
     end_angle: Array
     tangent: Array
@@ -119,7 +120,7 @@ def workspace_for(line: MovingNodes) -> Configuration:
     shapes |= {"q": (ne, 4, d), "rate": (ne, 4, d), "acceleration": (ne, 4, d), "a": (nn, d + r)}
     given: dict[str, Any] = {"D": fixed(d), "R": fixed(r)}
     if isinstance(line.frames, PlanarFrames):
-        shapes |= {"angle": (nn,), "end_angle": (ne, 2)}
+        shapes |= {"Theta": (nn, 1), "angle": (nn,), "end_angle": (ne, 2)}
         return PlanarConfiguration(**given, **_empty(shapes))
     shapes |= {"Rn": (nn, 3, 3), "Theta": (nn, 3), "frames": (nn, 3, 3), "H": (nn, 3, 3)}
     shapes |= {"frame1": (ne, 3, 3), "frame2": (ne, 3, 3)}
@@ -178,6 +179,7 @@ def write_folded(at: Configuration, base: Base, out: IntArray) -> None:
 def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Array, a: Array) -> None:
     write_moved(base.x, base.chord, u, at.x, at.chord)
     for n in range(u.shape[0]):
+        at.Theta[n, 0] = u[n, 2]
         at.angle[n] = base.angle[n] + u[n, 2]
     normal = at.P.reshape((at.P.shape[0], 2, 2))
     directors.write_ends(at.angle, base.alpha0, at.end_angle, at.tangent, normal)

@@ -87,6 +87,12 @@ class Inertia(CompiledPart):
 @add_forces.of(Mass)
 def _add_forces(part: Mass, at: Configuration, out: LineForces) -> None:
     add_weighed(part.M, at.acceleration, out.inertia_q, at.D)
+    add_forces_at_ends(part, at, out)
+
+
+@njit
+def add_forces_at_ends(part: Mass, at: Configuration, out: LineForces) -> None:
+    """Add those of what sits at the line's ends."""
     last = at.a.shape[0] - 1
     for i in range(len(at.D)):
         out.inertia[0, i] += part.ends[0] * at.a[0, i]
@@ -96,6 +102,12 @@ def _add_forces(part: Mass, at: Configuration, out: LineForces) -> None:
 @add_tangent.of(Mass)
 def _add_tangent(part: Mass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     add_mass_to(K, weights.inertia, at.P, maps.acceleration_rows, part.M, at.D, at.R)
+    add_tangent_at_ends(part, at, maps, weights, K)
+
+
+@njit
+def add_tangent_at_ends(part: Mass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    """Add that of what sits at the line's ends."""
     follows, last, second = weights.inertia * maps.shift_a, K.shape[0] - 1, K.shape[1] // 2
     for i in range(len(at.D)):
         K[0, i, i] += follows * part.ends[0]
@@ -104,6 +116,12 @@ def _add_tangent(part: Mass, at: Configuration, maps: Maps, weights: LineWeights
 
 @add_energy.of(Mass)
 def _add_energy(part: Mass, at: Configuration, energy: Array) -> None:
+    add_kinetic(part, at, at.rate, energy)
+
+
+@njit
+def add_kinetic(part: Mass, at: Configuration, rate: Array, energy: Array) -> None:
+    """Add the kinetic energy of rates q' (ne, 4, d)."""
     last = at.v.shape[0] - 1
     for i in range(len(at.D)):
         energy[0] += 0.5 * (part.ends[0] * at.v[0, i] ** 2 + part.ends[1] * at.v[last, i] ** 2)
@@ -112,8 +130,8 @@ def _add_energy(part: Mass, at: Configuration, energy: Array) -> None:
             for a in range(4):
                 momentum = 0.0
                 for b in range(4):
-                    momentum += part.M[e, a, b] * at.rate[e, b, i]
-                energy[0] += 0.5 * at.rate[e, a, i] * momentum
+                    momentum += part.M[e, a, b] * rate[e, b, i]
+                energy[0] += 0.5 * rate[e, a, i] * momentum
 
 
 class SpatialRotaryMass(NamedTuple):

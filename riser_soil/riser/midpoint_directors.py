@@ -9,14 +9,18 @@ momentum doesn't show.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
+from riser_soil.riser.configuration import Configuration, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.directors import Frames, PlanarFrames
+from riser_soil.riser.line import Line
 from riser_soil.riser.rotations import exp_coefficients, moment_stiffness
 from riser_soil.riser.spatial_directors import SpatialFrames, node_frames
 from riser_soil.riser.vectors import (
@@ -44,56 +48,48 @@ class Secant(NamedTuple):
     P: Array
     by_end: Array
 
-    def moments(self, F: Array) -> Array:
-        """P^T F (ne, 2, r) of forces F (ne, 2, d) on the means."""
-        return np.asarray(np.einsum("esik,esi->esk", self.P, F))
+
+class Motion(NamedTuple):
+    """Of m directors at element ends in a step. fixed: as in the sections, (m, ne, 2, 3) in space, in a plane (m, 1)
+    how far ahead of the tangent they turn [rad]; rate (m, ne, 2, d): where the step begins; elapsed (1,): since then
+    [s].
+    """
+
+    fixed: Array
+    rate: Array
+    elapsed: Array
 
 
 class PlanarDirectors:
-    """Tangents (column 0) or normals (column 1) of a line in its plane.
-
-    Secant and geometric stiffness cost 0.6 to 0.7 of those of `SpatialDirectors` (`benchmarks.twins`).
-    """
+    """Tangents (column 0) or normals (column 1) of a line in its plane."""
 
     def __init__(self, frames: PlanarFrames, column: int) -> None:
-        self._frames, self._ahead = frames, 0.5 * math.pi * column
+        self._frames, self.fixed = frames, np.array([0.5 * math.pi * column])
 
     def secant(self, middle: Array) -> Secant:
         """For the rotation increments to the middle (nn, 1)."""
-        return Secant(*_planar_secant(self._frames.turn(middle).end_angle + self._ahead, middle))
+        return Secant(*_planar_secant(self._frames.turn(middle).end_angle + self.fixed[0], middle))
 
     def rates(self, v: Array) -> Array:
         """(ne, 2, 2) at the accepted configuration, from angular velocities (nn, 1)."""
-        angle = self._frames.turn(np.zeros_like(v)).end_angle + self._ahead
+        angle = self._frames.turn(np.zeros_like(v)).end_angle + self.fixed[0]
         turned = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
         return np.asarray(np.stack([v[:-1], v[1:]], axis=1) * turned)
-
-    def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
-        """(ne, 2, 1, 1): derivative of P^T F at fixed F (ne, 2, 2)."""
-        return np.asarray(_planar_geometric(secant.by_end, F))
 
 
 class SpatialDirectors:
     """Tangents (column 0) or normals (columns 1 and 2) of a line in space."""
 
     def __init__(self, frames: SpatialFrames, column: int) -> None:
-        self._frames, self._fixed = frames, np.ascontiguousarray(frames.T0[..., column])
+        self._frames, self.fixed = frames, np.ascontiguousarray(frames.T0[..., column])
 
     def secant(self, middle: Array) -> Secant:
         """For the rotation increments to the middle (nn, 3)."""
-        return Secant(*_secant(self._frames.R, np.ascontiguousarray(middle), self._fixed))
+        return Secant(*_secant(self._frames.R, np.ascontiguousarray(middle), self.fixed))
 
     def rates(self, v: Array) -> Array:
         """(ne, 2, 3) at the accepted configuration, from body-axes angular velocities (nn, 3)."""
-        turning, R = np.cross(np.stack([v[:-1], v[1:]], axis=1), self._fixed), self._frames.R
-        return np.asarray(np.einsum("esij,esj->esi", np.stack([R[:-1], R[1:]], axis=1), turning))
-
-    def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
-        """(ne, 2, 3, 3): derivative of P^T F at fixed F (ne, 2, 3)."""
-        force = np.ascontiguousarray(F)
-        return np.asarray(
-            _geometric(self._frames.R, np.ascontiguousarray(middle), secant.mean, secant.by_end, force)
-        )
+        return np.asarray(_rates(self._frames.R, np.ascontiguousarray(v), self.fixed))
 
 
 Directors = PlanarDirectors | SpatialDirectors
@@ -107,53 +103,104 @@ def directors(frames: Frames, column: int) -> Directors:
 
 
 class DirectorMotion:
-    """Directors and their rates over a step.
+    """Directors of a line and their rates over a step; data: what kernels know of them.
 
     The rates (ne, 2, d) at its end are those of the midpoint rule, whose mean over the step is change/dt. They need not
     be at right angles to the directors.
     """
 
-    def __init__(self, moving: Directors) -> None:
-        self._moving = moving
-        self._t = math.inf
-        self._rate: Array = np.zeros(0)
+    def __init__(self, line: Line, columns: Iterable[int]) -> None:
+        self._moving = [directors(line.frames, column) for column in columns]
+        fixed = np.stack([each.fixed for each in self._moving])
+        rate = np.zeros((len(fixed), line.length.size, 2, line.dimension))
+        self.data, self._t = Motion(fixed, rate, np.zeros(1)), math.inf
 
     def begin(self, t: float, v: Array) -> None:
         """Start from the accepted configuration with angular velocities v (nn, r)."""
-        self._t, self._rate = t, self._moving.rates(v)
+        self._start(t, [each.rates(v) for each in self._moving])
 
-    def within_step(self, t: float) -> bool:
-        """Whether a time lies beyond the last accepted one."""
-        return t > self._t
+    def _start(self, t: float, rates: Iterable[Array]) -> None:
+        self._t, self.data.elapsed[0] = t, 0.0
+        for kept, rate in zip(self.data.rate, rates, strict=True):
+            kept[...] = rate
 
-    def accelerate(self, t: float, middle: Array) -> tuple[Secant, Array]:
-        """The step with its middle at time t, and the directors' mean accelerations over it (ne, 2, d)."""
-        secant, dt = self._moving.secant(middle), 2.0 * (t - self._t)
-        return secant, 2.0 / dt * (secant.change / dt - self._rate)
+    def go_to(self, t: float) -> None:
+        """To a time of the step, or to its start."""
+        self.data.elapsed[0] = max(t - self._t, 0.0)
 
-    def rate(self, t: float, end: Array) -> Array:
-        """Rates (ne, 2, d) at the end of a step, reached by the increments `end` (nn, r); or at its start."""
-        if not self.within_step(t):
-            return self._rate
-        return 2.0 / (t - self._t) * self._moving.secant(0.5 * end).change - self._rate
+    def rates(self, t: float, end: Array) -> list[Array]:
+        """Rates, each (ne, 2, d), at the end of a step, reached by the increments `end` (nn, r); or at its start."""
+        if t <= self._t:
+            return [rate.copy() for rate in self.data.rate]
+        by = 2.0 / (t - self._t)
+        pairs = zip(self._moving, self.data.rate, strict=True)
+        return [by * each.secant(0.5 * end).change - rate for each, rate in pairs]
 
-    def excess(self, v: Array, mass: Array) -> Array:
-        """Moments of momentum (ne, 2, r) that the rates have beyond those of angular velocities v, once accepted."""
-        return self._moving.secant(np.zeros_like(v)).moments(mass * (self._rate - self._moving.rates(v)))
+    def spins(self, v: Array) -> list[tuple[Array, Array]]:
+        """Of each director once accepted: P (ne, 2, d, r), and its rate beyond that of angular velocities v."""
+        pairs = zip(self._moving, self.data.rate, strict=True)
+        return [(each.secant(np.zeros_like(v)).P, rate - each.rates(v)) for each, rate in pairs]
 
     def commit(self, t: float, end: Array) -> None:
         """Accept a step; to be called before the line's frames do."""
-        self._rate, self._t = self.rate(t, end), t
+        self._start(t, self.rates(t, end))
 
     def state(self) -> Saved:
-        return {"t": np.array(self._t), "rate": self._rate}
+        return {"t": np.array(self._t), "rate": self.data.rate.copy()}
 
     def restore(self, saved: Saved) -> None:
-        self._t, self._rate = float(saved["t"]), saved["rate"]
+        self._start(float(saved["t"]), [*saved["rate"]])
 
-    def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
-        """(ne, 2, r, r): derivative of P^T F at fixed F (ne, 2, d)."""
-        return self._moving.geometric(secant, middle, F)
+
+@by_type
+def secant_within(at: Configuration, fixed: Array, share: float) -> Secant:
+    """Of a director over a step, its middle at a share of the rotation increments of a configuration."""
+    raise NotImplementedError
+
+
+@by_type
+def turning_within(at: Configuration, secant: Secant, F: Array) -> Array:
+    """(ne, 2, r, r): derivative of P^T F at fixed F (ne, 2, d) by the rotation increments of the middle."""
+    raise NotImplementedError
+
+
+@secant_within.of(PlanarConfiguration)
+def _secant_in_plane(at: PlanarConfiguration, fixed: Array, share: float) -> Secant:
+    angle = at.end_angle + fixed[0]
+    for e in range(angle.shape[0]):
+        for side in range(2):
+            angle[e, side] -= (1.0 - share) * at.Theta[e + side, 0]
+    mean, change, P, by_end = _planar_secant(angle, share * at.Theta)
+    return Secant(mean, change, P, by_end)
+
+
+@secant_within.of(SpatialConfiguration)
+def _secant_in_space(at: SpatialConfiguration, fixed: Array, share: float) -> Secant:
+    mean, change, P, by_end = _secant(at.Rn, share * at.Theta, fixed)
+    return Secant(mean, change, P, by_end)
+
+
+@turning_within.of(PlanarConfiguration)
+def _turning_in_plane(at: PlanarConfiguration, secant: Secant, F: Array) -> Array:
+    return _planar_geometric(secant.by_end, F)
+
+
+@turning_within.of(SpatialConfiguration)
+def _turning_in_space(at: SpatialConfiguration, secant: Secant, F: Array) -> Array:
+    return _geometric(at.Rn, at.Theta, secant.mean, secant.by_end, F)
+
+
+@njit
+def accelerations_within(motion: Motion, k: int, change: Array) -> Array:
+    """Mean accelerations (ne, 2, d) of a director over a step in whose middle it is."""
+    dt = 2.0 * motion.elapsed[0]
+    return 2.0 / dt * (change / dt - motion.rate[k])
+
+
+@njit
+def rates_within(motion: Motion, k: int, change: Array) -> Array:
+    """Rates (ne, 2, d) of a director at the end of a step."""
+    return 2.0 / motion.elapsed[0] * change - motion.rate[k]
 
 
 @njit
@@ -214,6 +261,16 @@ def _secant(Rn: Array, Theta: Array, fixed: Array) -> tuple[Array, Array, Array,
                 turned = scale(2.0, cross(end_spins[k], end))
                 by_end[e, side, 0, k], by_end[e, side, 1, k], by_end[e, side, 2, k] = turned
     return mean, change, P, by_end
+
+
+@njit
+def _rates(R: Array, v: Array, fixed: Array) -> Array:
+    rates = np.empty(fixed.shape)
+    for e in range(fixed.shape[0]):
+        for side in range(2):
+            turning = cross(vector(v[e + side]), vector(fixed[e, side]))
+            rates[e, side, 0], rates[e, side, 1], rates[e, side, 2] = matvec(matrix(R[e + side]), turning)
+    return rates
 
 
 @njit

@@ -19,194 +19,250 @@ Meth. Engng 54 (2002), who keep the rates as they are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import fixed
-from riser_soil.core.part import Energy, Forces, MatrixBlock, Part, State, Traits, Weights
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.part import Part, State, Traits
 from riser_soil.core.roles import MomentumCorrecting
-from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
+from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import hermite
-from riser_soil.riser.inertia import Inertia, RotaryInertia
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.inertia import (
+    Inertia,
+    Mass,
+    PlanarRotaryMass,
+    RotaryInertia,
+    SpatialRotaryMass,
+    add_forces_at_ends,
+    add_kinetic,
+    add_tangent_at_ends,
+)
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.midpoint_directors import DirectorMotion, Secant, directors
+from riser_soil.riser.line_part import CompiledPart
+from riser_soil.riser.midpoint_directors import (
+    DirectorMotion,
+    Motion,
+    Secant,
+    accelerations_within,
+    rates_within,
+    secant_within,
+    turning_within,
+)
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 
 
-class MidpointInertia(LinePart):
-    """The line's mass in steps of the midpoint rule (group I).
+class MidpointMass(NamedTuple):
+    """The mass at an instant, and its tangents in a step."""
 
-    instant: the same mass at an instant, as evaluated at accepted states.
+    mass: Mass
+    tangents: Motion
+
+
+class MidpointRotaryMass(NamedTuple):
+    """The rotary inertia at an instant, and masses (m, ne) [kg m2] on directors in a step."""
+
+    instant: PlanarRotaryMass | SpatialRotaryMass
+    masses: Array
+    directors: Motion
+
+
+class MidpointPart(CompiledPart):
+    """Inertia in steps of the midpoint rule (group I), and between them that of an instant.
+
+    instant: the same at an instant. columns: of the directors that it sits on, see `midpoint_directors`.
     """
 
     line: Line
 
-    name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
+    traits = Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
 
-    def __init__(self, instant: Inertia) -> None:
+    def __init__(self, instant: Inertia | RotaryInertia, columns: Iterable[int]) -> None:
         super().__init__(instant.line)
-        self.instant = instant
-        self._tangents = DirectorMotion(directors(self.line.frames, 0))
+        self._motion = DirectorMotion(self.line, columns)
 
     def begin(self, state: State) -> None:
         """Start from an accepted state."""
-        self._tangents.begin(state.t, _turning(self.line, state.v))
+        self._motion.begin(state.t, self._turning(state.v))
 
-    def blocks(self) -> dict[str, MatrixBlock]:
-        return self.instant.blocks()
+    def renew_kernel_data(self, start: float, end: float) -> None:
+        self._motion.go_to(end)
+
+    def rates(self, state: State) -> list[Array]:
+        """Of the directors, each (ne, 2, d), at the end of a step, as the midpoint rule has them."""
+        return self._motion.rates(state.t, self._turning(state.u))
+
+    def commit(self, state: State) -> None:
+        self._motion.commit(state.t, self._turning(state.u))
+
+    def state(self) -> Saved:
+        return self._motion.state()
+
+    def restore(self, saved: Saved) -> None:
+        self._motion.restore(saved)
+
+    def _turning(self, values: Array) -> Array:
+        """Rotation dofs of the nodes (nn, r)."""
+        return self.line.nodal(values)[:, self.line.dimension :]
+
+
+class MidpointInertia(MidpointPart):
+    """The line's mass."""
+
+    name = "inertia"
+
+    def __init__(self, instant: Inertia) -> None:
+        super().__init__(instant, [0])
+        self.instant = instant
+
+    def make_kernel_data(self) -> MidpointMass:
+        return MidpointMass(self.instant.make_kernel_data(), self._motion.data)
 
     def q_rate(self, state: State) -> Array:
         """q' (ne, 4, d) at the end of a step, as the midpoint rule has it."""
-        rate = self._tangents.rate(state.t, _turning(self.line, state.u))
-        return self._interleave(state.v, rate)
-
-    def _interleave(self, nodal: Array, at_ends: Array) -> Array:
-        q: Array = hermite.interleave(self.line.nodal(nodal), at_ends, fixed(self.line.dimension))
+        (rate,) = self.rates(state)
+        q: Array = hermite.interleave(self.line.nodal(state.v), rate, fixed(self.line.dimension))
         return q
-
-    def _step(self, state: State) -> tuple[Secant, Array]:
-        """The tangents through the step, and the residual conjugate to the means of q (ne, 4, d)."""
-        secant, acceleration = self._tangents.accelerate(state.t, _turning(self.line, state.u))
-        return secant, hermite.weigh(self.instant.M, self._interleave(state.a, acceleration))
-
-    def residual(self, state: State, forces: Forces) -> None:
-        if not self._tangents.within_step(state.t):
-            self.instant.residual(state, forces)
-        else:
-            secant, F = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
-            self.line.scatter(hermite.pull_back(F, secant.P), forces.inertia)
-
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if not self._tangents.within_step(state.t):
-            self.instant.tangent(state, weights, values)
-        else:
-            secant, F = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
-            K, shift = values[self.line.name], weights.shift_a
-            G = self._tangents.geometric(secant, _turning(self.line, state.u), F[:, 1::2])
-            hermite.add_geometric(K, weights.inertia, G, self.line.dimension)
-            hermite.add_mass(K, weights.inertia, secant.P, 0.5 * shift * secant.by_end, shift, self.instant.M)
 
     def add_momentum_correction(self, state: State, out: Array) -> None:
         """Add P^T M (q' - q'(v)) at an accepted state to a local array [N s, N m s]."""
         if self.line.active:
-            trial = self.line.trial(state)
-            excess = hermite.weigh(self.instant.M, self.q_rate(state) - trial.q_rate)
-            self.line.scatter(trial.pull_back(excess), out)
-
-    def element_forces(self, state: State) -> Array | None:
-        """Element residual (ne, 2 ndof) at an accepted state."""
-        return self.instant.element_forces(state)
+            ((P, excess),) = self._motion.spins(self._turning(state.v))
+            still = np.zeros((self.line.nodes, self.line.dimension))
+            beyond = hermite.interleave(still, excess, fixed(self.line.dimension))
+            self.line.scatter(hermite.pull_back(hermite.weigh(self.instant.M, beyond), P), out)
 
     def nodal_forces(self, state: State) -> Array | None:
         """Residual (nn, ndof) of what sits at the line's ends, if anything, at an accepted state."""
         return self.instant.nodal_forces(state)
 
-    def energy(self, state: State) -> Energy:
-        """Kinetic energy at the start or the end of a step."""
-        rate = self.q_rate(state)
-        return Energy(kinetic=0.5 * float(np.sum(rate * hermite.weigh(self.instant.M, rate))))
 
-    def commit(self, state: State) -> None:
-        self._tangents.commit(state.t, _turning(self.line, state.u))
+@add_forces.of(MidpointMass)
+def _add_forces(part: MidpointMass, at: Configuration, out: LineForces) -> None:
+    if part.tangents.elapsed[0] == 0.0:
+        add_forces(part.mass, at, out)
+    else:
+        secant, F = _through_step(part, at)
+        pulled = np.empty(out.inertia_e.shape)
+        hermite.write_pulled_back(F, secant.P, pulled, at.D, at.R)
+        for e in range(pulled.shape[0]):
+            for i in range(pulled.shape[1]):
+                out.inertia_e[e, i] += pulled[e, i]
+        add_forces_at_ends(part.mass, at, out)
 
-    def state(self) -> Saved:
-        return self._tangents.state()
 
-    def restore(self, saved: Saved) -> None:
-        self._tangents.restore(saved)
+@njit
+def _through_step(part: MidpointMass, at: Configuration) -> tuple[Secant, Array]:
+    """The tangents in a step whose middle this is, and the residual conjugate to the means of q (ne, 4, d)."""
+    secant = secant_within(at, part.tangents.fixed[0], 1.0)
+    acceleration = accelerations_within(part.tangents, 0, secant.change)
+    F = np.zeros(at.q.shape)
+    hermite.add_weighed(part.mass.M, hermite.interleave(at.a, acceleration, at.D), F, at.D)
+    return secant, F
 
 
-class MidpointRotaryInertia(LinePart):
-    """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their directors.
+@add_tangent.of(MidpointMass)
+def _add_tangent(part: MidpointMass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    if part.tangents.elapsed[0] == 0.0:
+        add_tangent(part.mass, at, maps, weights, K)
+    else:
+        secant, F = _through_step(part, at)
+        rows = np.empty((K.shape[0], len(at.D), K.shape[2]))
+        hermite.write_all_rows(0.5 * maps.shift_a * secant.by_end, maps.shift_a, rows, at.D, at.R)
+        hermite.add_mass_to(K, weights.inertia, secant.P, rows, part.mass.M, at.D, at.R)
+        turning = turning_within(at, secant, np.ascontiguousarray(F[:, 1::2]))
+        hermite.add_geometric(K, weights.inertia, turning, len(at.D))
+        add_tangent_at_ends(part.mass, at, maps, weights, K)
 
-    instant: the same inertia at an instant, as evaluated at accepted states. masses: of element ends
-    on each of the directors [kg m2], (ne, 1, 1).
-    """
 
-    line: Line
+@add_energy.of(MidpointMass)
+def _add_energy(part: MidpointMass, at: Configuration, energy: Array) -> None:
+    """Where a step begins or ends."""
+    rate = part.tangents.rate[0]
+    if part.tangents.elapsed[0] > 0.0:
+        rate = rates_within(part.tangents, 0, secant_within(at, part.tangents.fixed[0], 0.5).change)
+    add_kinetic(part.mass, at, hermite.interleave(at.v, rate, at.D), energy)
 
-    name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
+
+class MidpointRotaryInertia(MidpointPart):
+    """The sections' rotary inertia: mass that sits on their directors. masses (m, ne) [kg m2]: of element ends."""
+
+    name = "rotary inertia"
 
     def __init__(self, instant: RotaryInertia) -> None:
-        super().__init__(instant.line)
-        self.instant = instant
         on = instant.on_directors()
-        self.masses = [mass[:, None, None] for mass in on.values()]
-        self._directors = [DirectorMotion(directors(self.line.frames, k)) for k in on]
+        super().__init__(instant, on)
+        self.instant, self.masses = instant, np.stack([*on.values()])
 
-    def begin(self, state: State) -> None:
-        """Start from an accepted state."""
-        for director in self._directors:
-            director.begin(state.t, _turning(self.line, state.v))
-
-    def blocks(self) -> dict[str, MatrixBlock]:
-        return self.instant.blocks()
-
-    def rates(self, state: State) -> Sequence[Array]:
-        """Rates of the directors, each (ne, 2, d), at the end of a step of the midpoint rule."""
-        return [director.rate(state.t, _turning(self.line, state.u)) for director in self._directors]
-
-    def _step(self, state: State) -> list[tuple[Secant, Array]]:
-        """The directors through the step, each with its force on their means (ne, 2, d)."""
-        middle = _turning(self.line, state.u)
-        steps = [director.accelerate(state.t, middle) for director in self._directors]
-        return [(secant, mass * a) for (secant, a), mass in zip(steps, self.masses, strict=True)]
-
-    def residual(self, state: State, forces: Forces) -> None:
-        if not self._directors[0].within_step(state.t):
-            self.instant.residual(state, forces)
-        else:
-            steps = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
-            self._scatter([secant.moments(F) for secant, F in steps], forces.inertia)
-
-    def _scatter(self, moments: list[Array], out: Array) -> None:
-        """Add moments on element ends, each (ne, 2, r), to a local array."""
-        element = np.zeros((len(self.line.length), 2, self.line.ndof))
-        element[:, :, self.line.dimension :] = np.sum(moments, axis=0)
-        self.line.scatter(element.reshape(len(element), -1), out)
+    def make_kernel_data(self) -> MidpointRotaryMass:
+        return MidpointRotaryMass(self.instant.make_kernel_data(), self.masses, self._motion.data)
 
     def add_momentum_correction(self, state: State, out: Array) -> None:
         """Add P^T M (d' - d'(v)) at an accepted state to a local array [N m s]."""
         if self.line.active:
-            v = _turning(self.line, state.v)
-            excesses = zip(self._directors, self.masses, strict=True)
-            self._scatter([director.excess(v, mass) for director, mass in excesses], out)
+            element = np.zeros((len(self.line.length), 2, self.line.ndof))
+            for mass, (P, excess) in zip(self.masses, self._motion.spins(self._turning(state.v)), strict=True):
+                element[:, :, self.line.dimension :] += np.einsum("e,esik,esi->esk", mass, P, excess)
+            self.line.scatter(element.reshape(len(element), -1), out)
 
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if not self._directors[0].within_step(state.t):
-            self.instant.tangent(state, weights, values)
-        else:
-            middle, half = _turning(self.line, state.u), 0.5 * weights.shift_a
-            steps = self.line.trial(state).once((self, "step"), lambda trial: self._step(trial.state))
-            for director, mass, (secant, F) in zip(self._directors, self.masses, steps, strict=True):
-                block = np.swapaxes(secant.P, 2, 3) @ (half * mass[..., None] * secant.by_end)
-                block += director.geometric(secant, middle, F)
-                hermite.add_geometric(values[self.line.name], weights.inertia, block, self.line.dimension)
 
-    def element_forces(self, state: State) -> Array | None:
-        """Element residual (ne, 2 ndof) at an accepted state."""
-        return self.instant.element_forces(state)
+@add_forces.of(MidpointRotaryMass)
+def _add_rotary_forces(part: MidpointRotaryMass, at: Configuration, out: LineForces) -> None:
+    if part.directors.elapsed[0] == 0.0:
+        add_forces(part.instant, at, out)
+    else:
+        n, d = at.v.shape[1], len(at.D)
+        for k in range(part.masses.shape[0]):
+            secant, F = _director_through_step(part, at, k)
+            for e in range(F.shape[0]):
+                for side in range(2):
+                    for j in range(len(at.R)):
+                        for i in range(d):
+                            out.inertia_e[e, side * n + d + j] += secant.P[e, side, i, j] * F[e, side, i]
 
-    def energy(self, state: State) -> Energy:
-        """Kinetic energy at the start or the end of a step."""
-        squares = (mass * rate**2 for mass, rate in zip(self.masses, self.rates(state), strict=True))
-        return Energy(kinetic=0.5 * sum(float(np.sum(square)) for square in squares))
 
-    def commit(self, state: State) -> None:
-        for director in self._directors:
-            director.commit(state.t, _turning(self.line, state.u))
+@njit
+def _director_through_step(part: MidpointRotaryMass, at: Configuration, k: int) -> tuple[Secant, Array]:
+    """A director in a step whose middle this is, and the force on its mean (ne, 2, d)."""
+    secant = secant_within(at, part.directors.fixed[k], 1.0)
+    F = accelerations_within(part.directors, k, secant.change)
+    for e in range(F.shape[0]):
+        F[e] *= part.masses[k, e]
+    return secant, F
 
-    def state(self) -> Saved:
-        return gathered(self._by_number)
 
-    def restore(self, saved: Saved) -> None:
-        restore_all(self._by_number, saved)
+@add_tangent.of(MidpointRotaryMass)
+def _add_rotary_tangent(
+    part: MidpointRotaryMass, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    if part.directors.elapsed[0] == 0.0:
+        add_tangent(part.instant, at, maps, weights, K)
+    else:
+        for k in range(part.masses.shape[0]):
+            secant, F = _director_through_step(part, at, k)
+            block, P, by_end = turning_within(at, secant, F), secant.P, secant.by_end
+            for e in range(F.shape[0]):
+                follows = 0.5 * maps.shift_a * part.masses[k, e]
+                for side in range(2):
+                    for j in range(len(at.R)):
+                        for c in range(len(at.R)):
+                            for i in range(len(at.D)):
+                                block[e, side, j, c] += follows * P[e, side, i, j] * by_end[e, side, i, c]
+            hermite.add_geometric(K, weights.inertia, block, len(at.D))
 
-    @property
-    def _by_number(self) -> dict[str, DirectorMotion]:
-        return {str(k): director for k, director in enumerate(self._directors)}
+
+@add_energy.of(MidpointRotaryMass)
+def _add_rotary_energy(part: MidpointRotaryMass, at: Configuration, energy: Array) -> None:
+    """Where a step begins or ends."""
+    for k in range(part.masses.shape[0]):
+        rate = part.directors.rate[k]
+        if part.directors.elapsed[0] > 0.0:
+            rate = rates_within(part.directors, k, secant_within(at, part.directors.fixed[k], 0.5).change)
+        for e in range(rate.shape[0]):
+            energy[0] += 0.5 * part.masses[k, e] * np.sum(rate[e] ** 2)
 
 
 def over_steps(instant: Part) -> Part:
@@ -215,8 +271,3 @@ def over_steps(instant: Part) -> Part:
         return MidpointInertia(instant)
     assert isinstance(instant, RotaryInertia)
     return MidpointRotaryInertia(instant)
-
-
-def _turning(line: Line, values: Array) -> Array:
-    """Rotation dofs of the nodes (nn, r)."""
-    return line.nodal(values)[:, line.dimension :]

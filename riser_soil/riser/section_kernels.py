@@ -17,6 +17,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, views
 from riser_soil.core.compiled import njit
 
+NEGLIGIBLE = 1e-9  # of the line's largest moment: one that is none but for round-off
 TIE = 1e-9  # of a value, by which another must be larger to count as larger: round-off does not choose
 
 
@@ -187,7 +188,7 @@ def _write_curvatures(free: Array, first: Array, second: Array, y: Array, z: Arr
 
     free (nn, 3): the moment that bends; first, second: see `SectionInput`; y, z (ne,): 1/EI.
     """
-    beside = out.curvature_beside
+    beside, negligible = out.curvature_beside, NEGLIGIBLE * largest_of(out.bending_moment)
     out.curvature[:] = 0.0
     for e in range(len(beside)):
         for end in range(2):
@@ -202,7 +203,8 @@ def _write_curvatures(free: Array, first: Array, second: Array, y: Array, z: Arr
             n, size = e + end, out.bending_moment[e + end]
             beside[e, end] = k
             out.curvature[n] += k if n == 0 or n == len(beside) else 0.5 * k
-            out.curvature_slope[e, end] = out.moment_slope[e, end] * k / size if size > 0.0 else 0.0
+            bends = k / size if size > negligible else max(y[e], z[e])
+            out.curvature_slope[e, end] = out.moment_slope[e, end] * bends
 
 
 @njit
@@ -241,17 +243,35 @@ def write_end_forces(residual: Array, basis: Array, maps: Array, force: Array, m
 
 @njit
 def moment_slopes(moment: Array, force: Array, tangent: Array, out: Array) -> None:
-    """Slopes of the moment's magnitude at the ends of the elements, into out (ne, 2) [N]; 0 where there is no moment.
+    """Slopes of the moment's magnitude at the ends of the elements, into out (ne, 2) [N]. From an end where it is none
+    but for round-off, as in a hinge, it grows; 0 in elements without any at their ends, as of a chain.
 
     moment (nn, 3): across the line at nodes; force, tangent (ne, 2, 3): of the section and unit, at the elements' ends.
     """
+    sizes = np.empty(len(moment))
+    for n in range(len(moment)):
+        sizes[n] = math.sqrt(moment[n, 0] ** 2 + moment[n, 1] ** 2 + moment[n, 2] ** 2)
+    negligible = NEGLIGIBLE * largest_of(sizes)
     for e in range(len(out)):
+        if max(sizes[e], sizes[e + 1]) <= negligible:
+            out[e, 0] = out[e, 1] = 0.0
+            continue
         for end in range(2):
-            M, F, t = moment[e + end], force[e, end], tangent[e, end]
-            size = math.sqrt(M[0] * M[0] + M[1] * M[1] + M[2] * M[2])
-            turned = M[0] * (F[1] * t[2] - F[2] * t[1]) + M[1] * (F[2] * t[0] - F[0] * t[2])
-            turned += M[2] * (F[0] * t[1] - F[1] * t[0])
-            out[e, end] = turned / size if size > 0.0 else 0.0
+            M, F, t, size = moment[e + end], force[e, end], tangent[e, end], sizes[e + end]
+            x, y, z = F[1] * t[2] - F[2] * t[1], F[2] * t[0] - F[0] * t[2], F[0] * t[1] - F[1] * t[0]
+            if size > negligible:
+                out[e, end] = (M[0] * x + M[1] * y + M[2] * z) / size
+            else:
+                out[e, end] = (1.0 - 2.0 * end) * math.sqrt(x * x + y * y + z * z)
+
+
+@njit
+def largest_of(sizes: Array) -> float:
+    """0 of none."""
+    largest = 0.0
+    for size in sizes:
+        largest = max(largest, size)
+    return largest
 
 
 @njit

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -104,39 +105,47 @@ class CompiledNewton(StepSolver):
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
+        begun = self._begun(step)
         for line in self._lines:
-            line.parts.update(step.before.t, step.t)
+            line.parts.update(step.before.t, begun.t)
         for results in self._results.values():
             results.forget()
-        still = step.scheme.trial(step.before, step.t, step.dt, self._nothing)
-        failure, norms = self._iterate(step, still)
-        self._solved = None if failure else self._state(step, still)
+        failure, norms = self._iterate(step, begun)
+        solution = None if failure else Solution(self._state(step, begun), self._forces(), norms)
+        # What the loop leaves behind is the step's end, but of a scheme that balances forces elsewhere.
+        self._solved = solution.state if solution is not None and step.scheme.moves == 1.0 else None
         if self._solved is not None:
             for results in self._results.values():
                 results.solved(self._solved)
         self.system.clock.add("compiled loop", since)
         near, self.at_equilibrium = self.at_equilibrium, False
-        if self._solved is not None:
-            return Solution(self._solved, self._forces(), norms)
+        if solution is not None:
+            return solution
         if self._border.leave_to_newton(step.before):
             return self._by_newton(step, near)
         raise NotConvergedError(failure)
 
-    def _iterate(self, step: Step, still: State) -> tuple[str, list[float]]:
-        """Why the loop does not get to balance, "" where it does; norms of the residual on the way. still: the step
-        without increments.
-        """
-        guess = State(step.t, step.guess.copy(), still.v, still.a)
-        self.system.prescribe(guess)
+    def _begun(self, step: Step) -> State:
+        """Where the step is balanced: the first guess, and rates of no increments but those that are prescribed."""
+        still = step.scheme.trial(step.before, step.t, step.dt, self._nothing.copy())
+        self.system.prescribe(still)
+        begun = step.scheme.balanced_at(step.before, still, step.dt)
+        fixed = self.system.prescribed_dofs
+        guess = step.guess / step.scheme.moves
+        guess[fixed] = begun.u[fixed]
+        return replace(begun, u=guess)
+
+    def _iterate(self, step: Step, begun: State) -> tuple[str, list[float]]:
+        """Why the loop does not get to balance, "" where it does; norms of the residual on the way."""
         scheme, past, limits = step.scheme, step.scheme.past(step.start), self._limits(step)
         for _ in range(MOST_STARTS):
-            self._border.begin(step.before, step.t, step.guess)
-            self.packed.begin(guess, past, scheme.weights(step.dt), limits)
+            self._border.begin(step.before, begun.t, begun.u)
+            self.packed.begin(begun, past, scheme.weights(step.dt), limits)
             outcome, taken = self.packed.solve()
             self.iterations += taken
             norms: list[float] = as_list(self.packed.progress.norms[: taken + 1])
             if outcome == CONVERGED:
-                return self._tangle() or ("" if self._border.holds else NAMES[OUTGROWN]), norms
+                return self._tangle(step, begun) or ("" if self._border.holds else NAMES[OUTGROWN]), norms
             if outcome != OUTGROWN:
                 break
             self._border.widen()
@@ -146,14 +155,19 @@ class CompiledNewton(StepSolver):
         """A smooth motion takes an iteration, which answers its load."""
         smooth, gradual = self.system.smooth, self.system.gradual and self._border.gradual
         answers = smooth or self.at_equilibrium or bool(step.guess[~self.system.prescribed].any())
-        return limits_of(self.settings, smooth, gradual, answers)
+        limits, moves = limits_of(self.settings, smooth, gradual, answers), step.scheme.moves
+        # Newton's own norm is that of the balance by the increments of the whole step, see `balance_of`.
+        return limits._replace(tolerance=limits.tolerance / moves, floor=limits.floor / moves)
 
-    def _tangle(self) -> str:
+    def _tangle(self, step: Step, begun: State) -> str:
         """Why what the loop has found is none of a line's states; "" where it is one."""
-        for packed in self._lines:
-            if isinstance(packed.line, Line) and (reason := packed.line.folding(*packed.folding)):
-                return reason
-        return ""
+        lines = [(packed, packed.line) for packed in self._lines if isinstance(packed.line, Line)]
+        if step.scheme.moves == 1.0:
+            reasons = (line.folding(*packed.folding) for packed, line in lines)
+        else:
+            end = self._state(step, begun)
+            reasons = (line.inadmissible(end, step.before) for _, line in lines)
+        return next(filter(None, reasons), "")
 
     def _by_newton(self, step: Step, at_equilibrium: bool) -> Solution:
         """By Newton's method over the parts."""
@@ -165,12 +179,16 @@ class CompiledNewton(StepSolver):
         finally:
             self.iterations += newton.iterations - before
 
-    def _state(self, step: Step, still: State) -> State:
-        """The state found; `still` becomes it."""
-        u, v, a = self._nothing.copy(), still.v, still.a
+    def _state(self, step: Step, begun: State) -> State:
+        """The state found at the step's end."""
+        u, v, a = self._nothing.copy(), begun.v, begun.a
         for packed in self._lines:
             at, found = packed.line.part, packed.step
             u[at], v[at], a[at] = found.u.ravel(), found.v.ravel(), found.a.ravel()
+        if step.scheme.moves != 1.0:
+            end = step.scheme.trial(step.before, step.t, step.dt, step.scheme.moves * u)
+            self.system.prescribe(end)
+            return end
         self._border.put_increments(step.scheme.weights(step.dt), u, v, a)
         return State(step.t, u, v, a, dt=step.dt)
 

@@ -235,7 +235,8 @@ def let_go() -> None:
     """Part all objects from their contexts here."""
     while PythonContext.in_use:
         _, thing = PythonContext.in_use.popitem()
-        thing.setType("none" if isinstance(thing, PETSc.PC) else "preonly")
+        if thing:  # one that was destroyed without being reset is null
+            thing.setType("none" if isinstance(thing, PETSc.PC) else "preonly")
 
 
 class BorderedBand(PythonContext):

@@ -12,16 +12,16 @@ from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step, StepSolver
-from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme, Static
+from riser_soil.solve.time_scheme import Scheme, Static
 
 INSTANT = Static(seconds=0.0)  # what flows under rate keeps its stress
 
 
 def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepSolver:
     """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: on one rank for lines and bodies, or
-    for a line on condensed soil, in time steps of Newmark's scheme or generalised-alpha.
+    for a line on condensed soil, in time steps.
     """
-    if system.comm.size > 1 or settings.snes or not isinstance(scheme, GeneralizedAlpha):
+    if system.comm.size > 1 or settings.snes or not scheme.dynamic:
         return Newton(system, settings)
     if system.whole_soil is None:
         from riser_soil.solve.compiled_newton import compiled_newton

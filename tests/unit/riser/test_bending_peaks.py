@@ -62,5 +62,11 @@ def test_slopes_follow_from_the_shear_across_the_moment() -> None:
     out = np.empty((1, 2))
     moment_slopes(moment, np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
     assert out == pytest.approx(-math.hypot(4.0, 12.0))
+    round_off = np.array([1e-13, -1e-13, 2e-13])
+    hinged = np.array([round_off, moment[0]])  # at the start, and then at the end
+    moment_slopes(hinged, np.tile(-force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
+    assert out == pytest.approx(math.hypot(4.0, 12.0))
+    moment_slopes(hinged[::-1], np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
+    assert out == pytest.approx(-math.hypot(4.0, 12.0))
     moment_slopes(0.0 * moment, np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
     assert not out.any()

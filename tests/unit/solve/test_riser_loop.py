@@ -12,15 +12,12 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_banded
 
-from benchmarks.stage import last_stage
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core import banded
 from riser_soil.core.arrays import Array
-from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.seabed.grounds import Plane
-from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import GOING_ON, StopLimits
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.riser_loop import NewtonProgress, keeps
@@ -28,8 +25,6 @@ from riser_soil.solve.solver import NotConvergedError
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.riser_loop import (
-    CASES,
-    SCENES,
     Compiled,
     all_parts,
     require_kernels_of_parts,
@@ -50,8 +45,9 @@ def test_the_mass_in_a_plane_is_that_of_the_parts() -> None:
     require_mass(at, all_parts(at))
 
 
-def test_steps_in_a_plane_are_those_of_snes() -> None:
-    require_steps_of_snes("surge in a plane")
+@pytest.mark.parametrize("case", ["surge in a plane", "midpoint rule in a plane"])
+def test_steps_in_a_plane_are_those_of_snes(case: str) -> None:
+    require_steps_of_snes(case)
 
 
 def test_tangles_in_a_plane_are_those_of_the_line() -> None:
@@ -130,12 +126,6 @@ def test_a_singular_matrix_is_reported(wrong: float) -> None:
     ab[:3, 1] = 1.0
     ab[1, 1] = wrong
     assert not banded.factorise(ab, np.zeros(3, dtype=np.int64), band)
-
-
-def test_the_midpoint_rule_is_left_to_snes() -> None:
-    scene, overrides = CASES["surge in a plane"]
-    asked = *overrides, "stages.1.scheme={midpoint: {}}", "solver.newton=compiled"
-    assert isinstance(last_stage(SCENES / f"{scene}.yaml", asked, Timer.new()).newton, Newton)
 
 
 def test_a_step_that_fails_says_why_as_snes_does() -> None:
