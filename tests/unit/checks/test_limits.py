@@ -107,7 +107,7 @@ def test_what_may_not_fit_into_the_memory_is_warned_of_with_the_numbers(
         monkeypatch.setattr(limits, "available_memory", lambda share=share: share * need)
         found = limits.tight(limits.size_that_fits(scene, tmp_path, COMM), COMM)
         assert len(found) == reported
-        assert all(re.match("the run may end .*: " + numbers, warning) for warning in found)
+        assert all(re.match("the run may end.*: " + numbers, warning) for warning in found)
     monkeypatch.setattr(limits, "available_memory", lambda: 0.75 * need)
     with pytest.raises(SceneError, match=numbers):
         limits.size_that_fits(scene, tmp_path, COMM)

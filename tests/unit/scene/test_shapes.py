@@ -46,7 +46,7 @@ def test_arc_that_turns_the_other_way() -> None:
 
 
 def test_arc_of_another_length_than_the_riser_is_refused() -> None:
-    with pytest.raises(SceneError, match=telling("riser.unstressed.arc:", "length is 20 m", "segments sum to 10 m")):
+    with pytest.raises(SceneError, match=telling("riser.unstressed.arc:", "length is 20 m", "segments", "to 10 m")):
         shapes.circle(ARC, [0.0, 20.0, 0.0], [0.0, 0.0, 0.0], 1.0, UP)
 
 

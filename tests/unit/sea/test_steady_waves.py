@@ -246,7 +246,7 @@ REGULAR = {"regular": {"height": 8.0, "period": 10.0, "direction_deg": 180.0}}
 def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> None:
     scene = scene_in({"surface_level": 100.0, "waves": REGULAR})
     (reported,) = reported_regular(scene)
-    assert "theory of fifth order: 160" in reported
+    assert "fifth order: 160" in reported
     assert list(wave_warnings(scene)) == []
     assert resolved_dimension(scene) == 2
     echo = tmp_path / "scene.yaml"
