@@ -12,6 +12,7 @@ from typer.testing import CliRunner, Result
 from riser_soil.__main__ import app
 from tests.support.bad_scenes import ALL, GOOD, Bad
 from tests.support.on_ranks import HANGS
+from tests.support.said import line_with
 
 
 def run(arguments: list[str]) -> Result:
@@ -80,7 +81,7 @@ def test_very_many_mistakes_are_cut_short(tmp_path: Path) -> None:
     wrong_keys = "".join(f"wrong_{n}: 1\n" for n in range(50))
     lines = refused(tmp_path, write(tmp_path, GOOD + wrong_keys))
     assert len(lines) == 21
-    assert lines[-1] == "... and 30 more problems"
+    line_with(lines[-1], "30 more problems")
 
 
 BROKEN = {
@@ -133,16 +134,16 @@ def test_numbers_too_large_are_refused(tmp_path: Path) -> None:
 
 
 def test_missing_file_and_folder(tmp_path: Path) -> None:
-    assert refused(tmp_path, tmp_path / "none.yaml") == [
-        f"{tmp_path / 'none.yaml'}: there is no such file; correct the name of the scene file"
-    ]
+    (line,) = refused(tmp_path, tmp_path / "none.yaml")
+    line_with([line], f"{tmp_path / 'none.yaml'}:", "no such file")
     assert "is a folder" in refused(tmp_path, tmp_path)[0]
 
 
 def test_text_must_be_utf8(tmp_path: Path) -> None:
     file = tmp_path / "case.yaml"
     file.write_bytes(b"gravity: 9.81\ntitle: Fl\xe4che\n")
-    assert refused(tmp_path, file) == [f"{file}:2: not UTF-8 text; save the scene as UTF-8"]
+    (line,) = refused(tmp_path, file)
+    line_with([line], f"{file}:2:", "not UTF-8")
 
 
 OVERRIDES = {
@@ -188,7 +189,7 @@ def test_a_riser_with_a_free_end(assignment: str, tmp_path: Path) -> None:
 
 def test_a_run_must_be_there_to_begin_with(tmp_path: Path) -> None:
     (line,) = refused(tmp_path, write(tmp_path, GOOD), "--set", "initial={from: nowhere}")
-    assert "initial.from: value \"nowhere\": there is no such folder as" in line
+    line_with([line], "initial.from:", 'value "nowhere":', "no such folder")
     (tmp_path / "empty").mkdir()
     assert "holds no finished run" in refused(tmp_path, write(tmp_path, GOOD), "--set", "initial.from=empty")[0]
 
@@ -202,7 +203,7 @@ def test_finished_run_is_not_overwritten(tmp_path: Path) -> None:
 
 def test_result_folder_must_not_be_a_file(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("mine", encoding="utf-8")
-    assert "is a file, not a folder" in refused(tmp_path, write(tmp_path, GOOD))[0]
+    line_with(refused(tmp_path, write(tmp_path, GOOD))[:1], f"{tmp_path / 'out'}:", "is a file")
 
 
 @pytest.mark.parametrize("command", ["run", "check"])
@@ -212,8 +213,7 @@ def test_the_true_command(command: str, tmp_path: Path) -> None:
     done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=HANGS, check=False)
     assert done.returncode == 2
     assert done.stdout == ""
-    assert done.stderr.splitlines() == [
-        "case.yaml:16: riser.segments.0.lenght: value 148.0: no such key here, known are line_type, length, "
-        'elements, element_length; correct or remove it (did you mean "length"?)'
-    ]
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("case.yaml:16: riser.segments.0.lenght: value 148.0:")
+    line_with([line], "no such key", "line_type, length, elements, element_length", 'did you mean "length"?')
     assert list(tmp_path.iterdir()) == [file]

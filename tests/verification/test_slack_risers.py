@@ -14,6 +14,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.said import line_with, telling
 
 W, PIPE = 500.0, {"EA": 1e8, "EI": 1e4, "GJ": 1e4, "submerged_weight": 500.0, "outer_diameter": 0.2, "mass": 60.0}
 
@@ -44,7 +45,7 @@ def test_hairpin_under_coinciding_ends(tmp_path: Path, capsys: pytest.CaptureFix
     assert np.linalg.norm(np.diff(position, axis=0), axis=1).sum() == pytest.approx(60.0, rel=5e-3)
     laying = found.summary["laying"]
     assert laying["slack"] > 1.0
-    assert f"the riser is slack: laid {laying['slack']:.4g} m too far" in capsys.readouterr().out
+    line_with(capsys.readouterr().out, "riser is slack:", f"{laying['slack']:.4g} m too far")
 
 
 def test_a_taut_vertical_riser_is_not_called_slack(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,15 +82,13 @@ def test_dynamics_may_come_first(tmp_path: Path) -> None:
 
 def test_a_loop_too_tight_for_its_elements_is_reported(tmp_path: Path) -> None:
     seabed = {"kind": "rigid", "level": 0.0, "contact_at": "axis"}
-    lies, asked = r"would lie \d[\d.e+-]* m beyond its place", r"take elements well below \(EI/w\)\^\(1/3\) = 2.71 m"
-    with pytest.raises(SolveError, match=f"the riser is slack: .* {lies}.* {asked}"):
+    with pytest.raises(SolveError, match=r"is slack: .* \d[\d.e+-]* m beyond .*\(EI/w\)\^\(1/3\) = 2\.71 m"):
         done(slack_scene(40.0, 0.0, 15.0, length=200.0, elements=20, seabed=seabed), tmp_path)
 
 
 def test_a_riser_that_stretches_beyond_all_measure_is_not_laid(tmp_path: Path) -> None:
     """Under its weight of 30 kN an EA of 1 N gives strains in the thousands: nothing is tried, and no time spent."""
-    far, length = r"would lie \S+ m beyond its place, \S+ times its length of 60 m", r"its weight, 3e\+04 N"
-    with pytest.raises(SolveError, match=f"too soft along its axis: .* {far}.* {length} .*least EA given is 1 N"):
+    with pytest.raises(SolveError, match=telling("too soft", "beyond", "times", "60 m", "3e+04 N", "EA", "is 1 N")):
         done(slack_scene(0.0, 0.0, 40.0, pipe=PIPE | {"EA": 1.0}), tmp_path)
 
 

@@ -16,6 +16,7 @@ from riser_soil.scene.stages import QuasiStaticStage, StaticStage, pressure_in
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.said import telling
 
 G, RHO, OIL, L = 9.81, 1025.0, 850.0, 40.0
 OUTER, INNER, MASS = 0.3, 0.2, 120.0
@@ -133,7 +134,7 @@ def test_over_a_static_stage_the_pressure_changes_with_the_load_factor() -> None
 
 
 def test_a_pressure_needs_contents() -> None:
-    with pytest.raises(SceneError, match=r"stages\.0\.pressure.*is that of the contents, and the riser is empty"):
+    with pytest.raises(SceneError, match=telling("stages.0.pressure:", "contents", "riser is empty")):
         scene_from_mapping(hanging(0.0) | {"stages": [static(pressure=1.0e6)]})
 
 

@@ -41,6 +41,7 @@ from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
+from tests.support.said import line_with
 
 KEY = "hang: top tension"
 # As calibrated by the page of error bars, and the orders that it assumes.
@@ -231,10 +232,10 @@ def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
 
 def test_no_bar_without_a_coarser_run() -> None:
     """What is known is told by source; what stands behind one that failed is not compared with what stands before."""
-    failed = ComparisonRun("time", 0.2, None, "its coarser run failed: it did")
+    failed = ComparisonRun("time", 0.2, None, "it did")
     bar = bar_of(1000.0, 1000.0, failed, comparison_run("mesh", 2.0, 1001.0))
     assert bar.bar is None
-    assert "its coarser run failed: it did" in bar.reason
+    assert "it did" in bar.reason
     assert bar.by_source["mesh"] == 0.0
 
 
@@ -273,7 +274,7 @@ def test_coarser_run_that_fails_is_reported_and_its_run_stays(
     reported = run_reported(tmp_path, "cantilever let go")
     assert reported["finished"]
     assert {bar["bar"] for bar in reported["error_bars"]["quantities"]} == {None}
-    assert "its coarser run failed: no convergence at 3 s" in capsys.readouterr().out
+    line_with(capsys.readouterr().out, "coarser run failed:", "no convergence", "3 s")
 
 
 def test_in_the_place_of_a_finer_run_that_fails_comes_a_coarser_one(monkeypatch: pytest.MonkeyPatch) -> None:

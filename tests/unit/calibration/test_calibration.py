@@ -17,6 +17,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
 from riser_soil.soil.clay import UndrainedClay
+from tests.support.said import telling
 
 SCENE = Path(__file__).parents[3] / "demos/pipe_segment/scene.yaml"
 SLICE = ("soil.mesh.size_at_riser=0.075", "soil.block.x=[0.1125, 0.1875]")
@@ -90,7 +91,7 @@ def test_a_scene_that_is_no_segment_is_refused(override: str, said: str) -> None
 
 
 def test_a_penetration_of_the_wrong_unit_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="w reaches 6 m, more than the pipe's diameter"):
+    with pytest.raises(SceneError, match=telling("w reaches 6 m", "pipe's diameter")):
         calibrate(written(tmp_path, GOOD.replace("[mm]", "[m]")), SCENE, ["soil.law.su=1e3:9e3"], tmp_path / "out")
 
 
@@ -106,7 +107,7 @@ def test_resistance_is_per_length_of_pipe_on_soil(tmp_path: Path) -> None:
 
 
 def test_other_files_are_not_overwritten(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"more than a calibration, data\.csv"):
+    with pytest.raises(SceneError, match=telling("more than a calibration", "data.csv")):
         calibrate(written(tmp_path, GOOD), SCENE, ["soil.law.su=1e3:9e3"], tmp_path, force=True)
 
 

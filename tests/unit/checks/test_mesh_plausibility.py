@@ -15,6 +15,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
+from tests.support.said import line_with
 
 
 def on_block(*stages: Mapping, su: float = 6000.0, **soil: Any) -> Mapping:
@@ -39,12 +40,11 @@ def test_cells_and_elements_that_suit_are_not_reported() -> None:
 def test_cells_and_elements_longer_than_the_bend_on_soil_are_reported() -> None:
     """(4 EI/E)^(1/4) = (2e5/1.8e6)^(1/4) = 0.58 m."""
     (reported,) = warned(on_block(LAY, mesh=sizes(1.0, 0.012)))
-    assert reported.startswith("soil.mesh cells along it of 1 m are long beside the 0.577 m")
+    line_with([reported], "soil.mesh cells", "1 m", "long", "0.577 m")
     scene = on_block(LAY, mesh=sizes(0.5, 0.012))
     scene["riser"]["segments"][0]["elements"] = 12
     (reported,) = warned(scene)
-    assert reported.startswith("elements of the riser over the soil of 1 m are long beside the 0.577 m")
-    assert "take at most 0.29 m" in reported
+    line_with([reported], "elements", "over the soil", "1 m", "long", "0.577 m", "at most 0.29 m")
 
 
 def test_sections_deep_beside_the_bend_on_soil_are_reported() -> None:
@@ -52,7 +52,7 @@ def test_sections_deep_beside_the_bend_on_soil_are_reported() -> None:
     block = {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 3.0}
     (reported,) = warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections", block=block))
     excess = math.log(3.0 / (2.516 * 0.577)) / (math.log(12.0 / 0.0236) - 0.5)
-    assert f"within 0.577 m on 3 m of soil, it settles by about {excess:.0%} more than on a block" in reported
+    line_with([reported], "0.577 m", "3 m of soil", "settles", f"{excess:.0%} more")
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), block=block)) == []
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections")) == []
 
@@ -61,7 +61,7 @@ def test_long_cells_under_an_oblique_riser_are_reported() -> None:
     scene = on_block(LAY, mesh=sizes(0.5, 0.25))
     scene["riser"]["end"]["position"] = [18.0, 13.5, 15.0]
     scene["soil"]["block"]["y"] = [-1.0, 8.0]
-    assert [reported for reported in warned(scene) if "size_at_riser.along 0.5 m has no effect" in reported]
+    line_with(warned(scene), "soil.mesh.size_at_riser.along 0.5 m", "no effect")
 
 
 def test_a_block_that_the_touchdown_point_will_leave_is_reported() -> None:
@@ -79,8 +79,7 @@ def test_what_cells_miss_grows_with_their_size() -> None:
     assert missed(half, fine) == pytest.approx(0.52)
     reported = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
     assert reported is not None
-    assert "0.5 m along and 0.012 m across, where 0.0236 m touch" in reported
-    assert reported.endswith("and 2% less on these cells")
+    line_with(reported, "0.5 m along", "0.012 m across", "0.0236 m touch", "2% less")
     wide = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))))
     assert wide is not None
     assert int(wide.rsplit("%")[0].rsplit(" ")[-1]) > 20
@@ -100,16 +99,12 @@ def test_a_block_too_shallow_and_narrow_is_reported_after_the_run(tmp_path: Path
     bottom, sides = [
         reported for reported in stage_warnings(scene, tmp_path) if "changes the soil's stress" in reported
     ]
-    assert "at the block's bottom by" in bottom
-    assert "take a deeper one" in bottom
-    assert "sides along the riser" in sides
-    assert "take a wider one" in sides
-    assert "told above 15%" in sides
+    line_with([bottom], "block's bottom", "deeper")
+    line_with([sides], "sides along the riser", "wider", "15%")
 
 
 def test_a_block_that_was_left_is_reported_after_the_run(tmp_path: Path) -> None:
     block = {"x": [2.0, 5.0], "y": [-1.0, 1.0], "depth": 1.0}
     scene = touchdown(LAY, su=6000.0)
     scene["soil"]["block"] = block
-    (reported,) = [reported for reported in stage_warnings(scene, tmp_path) if "left the soil's block" in reported]
-    assert "where the seabed bears the riser" in reported
+    line_with(stage_warnings(scene, tmp_path), "left the soil's block", "seabed bears")

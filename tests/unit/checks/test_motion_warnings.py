@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import hypot
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 from riser_soil.checks.motion_plausibility import motion_warnings
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.riser_scenes import Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.said import line_with, lines_with
 
 PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
 HARMONIC: Mapping = {"amplitude": [0.0, 0.0, 2.0], "period": 6.2831853}  # 2 m/s at its middle
@@ -45,8 +47,7 @@ def moved(name: str = "move", duration: float = 6.2831853, time_step: float = 0.
 )
 def test_a_start_at_full_speed_is_reported_and_a_ramp_heals_it(motion: Mapping, speed: str) -> None:
     (reported,) = warnings(static(), moved(**motion))
-    assert reported.startswith(f"stages.1.motion.end: the end starts at {speed} from rest, at once")
-    assert reported.endswith("give the motion a ramp [s]")
+    line_with([reported], "stages.1.motion.end:", f"starts at {speed}", "ramp [s]")
     ((kind, given),) = motion.items()
     assert not warnings(static(), moved(**{kind: given | {"ramp": 3.0}}))
 
@@ -54,7 +55,7 @@ def test_a_start_at_full_speed_is_reported_and_a_ramp_heals_it(motion: Mapping, 
 def test_a_table_that_starts_moving(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{-3 * t},0,0\n" for t in range(8)))
     (reported,) = warnings(moved(table="t.csv"), folder=tmp_path)
-    assert "the end starts at 3 m/s" in reported
+    line_with([reported], "end", "starts at 3 m/s")
     rows = "".join(f"{t},{-0.1 * t**3},0,0\n" for t in range(8))
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows)
     assert not warnings(moved(table="t.csv"), folder=tmp_path)
@@ -63,9 +64,9 @@ def test_a_table_that_starts_moving(tmp_path: Path) -> None:
 def test_what_stops_dead_is_reported() -> None:
     ramped: dict[str, Any] = {"harmonic": HARMONIC | {"ramp": 3.0}}
     (reported,) = warnings(moved(**ramped), dynamic(1.0, 0.1, "still"))
-    assert reported.startswith("stages.1: the end stops dead as the stage begins, its velocity jumping by 2 m/s")
+    line_with([reported], "stages.1:", "end", "stops dead", "2 m/s")
     (reported,) = warnings(moved(**ramped), moved("again", **ramped))
-    assert reported.startswith("stages.1: the end takes up another motion as the stage begins")
+    line_with([reported], "stages.1:", "end", "another motion")
     assert not warnings(moved(**ramped), moved("on", harmonic=HARMONIC))  # a whole period later it is the same sine
     assert not warnings(moved(**ramped), static())
     assert len(warnings(moved(**ramped), static(), moved("again", harmonic=HARMONIC))) == 1
@@ -75,19 +76,18 @@ def test_what_stops_dead_is_reported() -> None:
 @pytest.mark.parametrize(
     ("period", "waves", "time_step", "says"),
     [
-        (4.0, None, 0.5, "steps of 0.5 s are long beside the period of the end's harmonic, 4 s: take at most a tenth"),
-        (4.0, None, 0.4, None),
-        (4.0, SWELL, 0.5, "the end's harmonic, 4 s"),
-        (9.0, SWELL, 0.9, "steps of 0.9 s are long beside the period of the waves, 8 s: take at most a tenth of it"),
-        (9.0, SWELL, 0.8, None),
+        (4.0, None, 0.5, ("0.5 s", "end's harmonic", "4 s", "a tenth")),
+        (4.0, None, 0.4, ()),
+        (4.0, SWELL, 0.5, ("end's harmonic", "4 s")),
+        (9.0, SWELL, 0.9, ("0.9 s", "period of the waves", "8 s", "a tenth")),
+        (9.0, SWELL, 0.8, ()),
     ],
 )
-def test_long_time_steps(period: float, waves: Mapping | None, time_step: float, says: str | None) -> None:
+def test_long_time_steps(period: float, waves: Mapping | None, time_step: float, says: tuple[str, ...]) -> None:
     water: dict[str, Any] = {"water": {"surface_level": 10.0, "waves": waves}} if waves else {}
     harmonic = {"amplitude": [0.0, 0.0, 2.0], "period": period, "ramp": period}
     reported = warnings(static(), moved(harmonic=harmonic, time_step=time_step), **water)
-    assert len(reported) == (says is not None)
-    assert all(says in warning and warning.startswith("stages.1.time_step: ") for warning in reported if says)
+    assert len(reported) == len(lines_with(reported, "stages.1.time_step:", *says)) == bool(says)
 
 
 @pytest.mark.parametrize(
@@ -103,14 +103,10 @@ def test_long_time_steps(period: float, waves: Mapping | None, time_step: float,
     ],
 )
 def test_ends_that_go_farther_apart_than_the_riser_is_long(stage: Mapping, path: str, apart: float) -> None:
-    (reported,) = [warning for warning in warnings(static(), stage) if "long" in warning]
-    assert reported.startswith(f"{path}: the ends come to be ")
-    found = float(reported.split("come to be ")[1].split(" m apart")[0])
+    reported = line_with(warnings(static(), stage), f"{path}:", "ends", "60 m long")
+    found, stretched = (float(x) for x in re.findall(r"([\d.]+)(?: m apart|%)", reported))
     assert found == pytest.approx(apart, abs=0.1)
-    assert "but the riser is only 60 m long: it is stretched by " in reported
-    assert float(reported.split("stretched by ")[1].split("%")[0]) == pytest.approx(
-        100.0 * (found / 60.0 - 1.0), abs=0.01
-    )
+    assert stretched == pytest.approx(100.0 * (found / 60.0 - 1.0), abs=0.01)
 
 
 def test_ends_that_stay_within_the_length_are_not_reported() -> None:
@@ -124,7 +120,7 @@ def test_motions_go_on_from_where_the_stage_before_left_the_end() -> None:
     heave = moved(harmonic=HARMONIC | {"amplitude": [2.0, 0.0, 4.0], "ramp": 3.0})
     assert not warnings(static(), heave)
     (reported,) = warnings(static(), pull, heave)
-    assert reported.startswith("stages.2.motion: the ends come to be 6")
+    assert re.match(r"stages\.2\.motion: .* 6[\d.]* m apart", reported)
 
 
 def test_a_table_that_leads_too_far_at_one_of_its_rows_is_reported(tmp_path: Path) -> None:

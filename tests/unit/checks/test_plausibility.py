@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.said import line_with
 
 ONE_CELL: Mapping = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
 ROPE: Mapping = {"EA": 1.0e4, "EI": 1.0, "mass": 5.0, "outer_diameter": 0.02}
@@ -40,7 +42,7 @@ def test_axial_strain_beyond_what_beams_stand_for(tmp_path: Path, capsys: pytest
 
     much, little = reported(pulled(force("much", 5.7e3), force("little", 0.9e3)), tmp_path)
     (warning,) = much
-    assert warning.startswith("the riser is strained along its axis by 0.57 at arc ")
+    assert re.search(r"along its axis.* 0\.57 at arc\s\d", warning)
     assert "at most 10%" in warning
     assert little == []
     assert f"warning: much: {warning}\n" in capsys.readouterr().out
@@ -52,7 +54,7 @@ def test_strain_by_bending(tmp_path: Path) -> None:
     scene = pulled(curl)
     scene["riser"]["segments"][0] |= {"length": 0.5, "elements": 20}
     ((warning,),) = reported(scene, tmp_path)
-    assert warning.startswith("the pipe's outside is strained by bending, curvature times D/2, by 0.12 at arc ")
+    assert re.search(r"by bending,.* 0\.12 at arc\s\d", warning)
 
 
 def test_a_stage_tells_its_worst_instant(tmp_path: Path) -> None:
@@ -87,8 +89,7 @@ def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -
     hang, *others = reported(riser_scene(*stages, **options, gravity=9.81), tmp_path)
     assert hang == []
     for (warning,) in others:
-        assert warning.startswith("elements of 7.5 m are too long for the bending at arc 146.25 m: at ")
-        assert "N.m, 46% of the stage's largest (told above 20%)" in warning
+        line_with([warning], "7.5 m", "too long", "bending", "arc 146.25 m", "N.m, 46%", "above 20%")
 
 
 @pytest.mark.parametrize(
@@ -111,9 +112,8 @@ def test_soil_that_is_never_touched_is_reported_after_the_last_stage(tmp_path: P
     aside["soil"] |= {"block": {"x": [18.0, 21.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
     lay, moved = reported(aside, tmp_path / "aside")
     assert lay == []
-    (warning,) = (text for text in moved if "touch the soil" in text)
-    assert warning.startswith("in no stage did the riser touch the soil, x from 18 to 21 m and y from -1 to 1 m: ")
-    assert "at the end it touches down at [6" in warning
+    warning = line_with(moved, "in no stage", "touch the soil", "18 to 21 m", "-1 to 1 m")
+    assert "touches down at [6" in warning
 
 
 def test_soil_that_is_touched_is_not_reported(tmp_path: Path) -> None:

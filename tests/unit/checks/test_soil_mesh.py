@@ -18,6 +18,7 @@ from riser_soil.soil.grading import BlockSpec, graded, in_units
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.sections import smoothed
 from riser_soil.soil.soil import Soil
+from tests.support.said import line_with, telling
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
 
 COMM = MPI.COMM_SELF
@@ -40,7 +41,7 @@ def test_graded_levels_are_fine_at_the_riser_and_reach_the_far_size() -> None:
 
 
 def test_more_cells_in_a_row_than_anyone_means_are_refused() -> None:
-    with pytest.raises(MeshError, match=r"1e\+09 m of the block in cells .* at most 100,000 are made"):
+    with pytest.raises(MeshError, match=telling("1e+09 m", "block", "at most 100,000")):
         graded(0.0, 1e9, (0.0, 0.5), 0.5, 2.0)
 
 
@@ -146,9 +147,9 @@ def test_supports_hold_bottom_and_sides_and_leave_the_top_free(kind: str) -> Non
 def test_messages_name_the_node() -> None:
     soil = soil_on(small_block("hex"))
     entry = 3 * int(np.argmin(np.linalg.norm(soil.field.points - [2.0, 0.0, -0.5], axis=1))) + 2
-    assert soil.field.describe(entry) == "soil node at (2, 0, -0.5) m, z displacement"
+    line_with(soil.field.describe(entry), "soil node", "(2, 0, -0.5) m", "z displacement")
     surface_entry = 3 * int(np.argmin(np.linalg.norm(soil.surface.points - [2.0, 0.0, 0.0], axis=1)))
-    assert soil.surface.describe(surface_entry) == "soil surface at (2, 0) m, x displacement"
+    line_with(soil.surface.describe(surface_entry), "soil surface", "(2, 0) m", "x displacement")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -237,7 +238,7 @@ def test_invariants_of_a_geostatic_start() -> None:
 
 
 def test_initial_stress_beyond_yield_is_refused_with_numbers() -> None:
-    with pytest.raises(SceneError, match=r"soil.K0 = 0.1: at depth 0\.\d+ m .* 1\.\d+ times") as caught:
+    with pytest.raises(SceneError, match=r"soil\.K0 = 0\.1: .* 0\.\d+ m .* 1\.\d+ times") as caught:
         Soil(small_block("hex"), CLAY, level=0.0, unit_weight=20.0e3, K0=0.1)
     assert "\n" not in str(caught.value)
 
@@ -252,7 +253,7 @@ def test_inverted_cell_is_refused() -> None:
     grid = small_block("hex")
     inside = int(np.argmin(np.linalg.norm(grid.nodes.points - [1.0, 0.5, -0.5], axis=1)))
     grid.nodes.points[inside] += [0.9, 0.0, 0.0]
-    with pytest.raises(MeshError, match=r"the cell at \(.*\) m is inverted or flat"):
+    with pytest.raises(MeshError, match=r"cell at \(.*\) m .*inverted"):
         soil_on(grid)
 
 

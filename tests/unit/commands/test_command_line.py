@@ -18,6 +18,7 @@ from riser_soil.__main__ import app
 from riser_soil.errors import Interruption, MeshError, ResultsError, RiserSoilError, SceneError, SolveError
 from riser_soil.scene.scene import Scene
 from tests.support.on_ranks import HANGS
+from tests.support.said import line_with
 
 ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
@@ -156,7 +157,7 @@ def test_check_prints_what_would_be_built(invoke: Invoke) -> None:
 @pytest.mark.parametrize("target", ["/dev/full", "a closed pipe"])
 @pytest.mark.parametrize("arguments", [["schema"], ["check", str(SCENE)]])
 def test_standard_output_that_takes_no_more_is_reported_in_one_line(arguments: list[str], target: str) -> None:
-    why = "No space left on device" if target == "/dev/full" else "Broken pipe"
+    why = "No space left" if target == "/dev/full" else "Broken pipe"
     if target == "/dev/full":
         output = os.open(target, os.O_WRONLY)
     else:
@@ -165,18 +166,20 @@ def test_standard_output_that_takes_no_more_is_reported_in_one_line(arguments: l
     call = [sys.executable, "-m", "riser_soil", *arguments]
     done = subprocess.run(call, cwd=ROOT, stdout=output, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
     os.close(output)
-    assert (done.returncode, done.stderr) == (4, f"standard output: cannot be written: {why}\n")
+    assert done.returncode == 4
+    assert done.stderr == line_with(done.stderr, "standard output:", "cannot be written:", why) + "\n"
 
 
 def test_a_disk_that_is_full_elsewhere_is_reported_in_one_line(invoke: Invoke) -> None:
     result, _ = invoke("run", str(SCENE), failure=OSError(errno.ENOSPC, "No space left on device", "a/cache"))
-    assert (result.exit_code, result.stderr) == (4, "a/cache: cannot be written: No space left on device\n")
+    assert result.exit_code == 4
+    assert result.stderr == line_with(result.stderr, "a/cache:", "cannot be written:", "No space left") + "\n"
 
 
 def test_interruptions_have_the_status_of_their_signal(invoke: Invoke) -> None:
     result, _ = invoke("run", str(SCENE), failure=Interruption(signal.SIGINT))
     assert result.exit_code == 130
-    assert result.stderr == "ended by SIGINT before the first stage; nothing was computed\n"
+    assert result.stderr == line_with(result.stderr, "SIGINT", "before the first stage", "nothing was computed") + "\n"
 
 
 @pytest.mark.parametrize("arguments", [["x" * 300 + ".yaml"], [str(SCENE), "-o", "x" * 300]])
@@ -194,8 +197,7 @@ def test_a_tmpdir_that_is_none_is_replaced_and_reported(tmp_path: Path) -> None:
     call = [sys.executable, "-m", "riser_soil", "check", str(SCENE)]
     done = subprocess.run(call, cwd=ROOT, env=given, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0
-    assert done.stderr.startswith(f"TMPDIR={tmp_path / 'file'}: is no folder that can be written; ")
-    assert done.stderr.count("\n") == 1
+    assert done.stderr == line_with(done.stderr, f"TMPDIR={tmp_path / 'file'}:", "no folder") + "\n"
 
 
 def test_the_user_s_own_scene_is_not_replaced(invoke: Invoke, tmp_path: Path) -> None:
@@ -203,7 +205,7 @@ def test_the_user_s_own_scene_is_not_replaced(invoke: Invoke, tmp_path: Path) ->
     for options in ([], ["--force"]):
         result, calls = invoke("run", "scene.yaml", "-o", ".", *options)
         assert result.exit_code == 2
-        assert result.stderr.startswith("scene.yaml: was not written by riser_soil")
+        assert result.stderr.startswith("scene.yaml: was not written")
         assert calls.folders == []
 
 

@@ -46,10 +46,10 @@ def test_wrong_scene_is_reported_once(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("failing", ["(0, 1)", "(0,)", "(1,)"])
 def test_failed_solve_ends_all_ranks_and_is_reported_once(failing: str, tmp_path: Path) -> None:
-    script = DRIVER.replace("FAILING", failing).replace("FAILURE", "SolveError('no convergence at arc 24 m')")
+    script = DRIVER.replace("FAILING", failing).replace("FAILURE", "SolveError('failed at 24 m')")
     done = mpirun(2, "-c", script, folder=tmp_path)
     assert done.returncode == 3
-    assert done.stderr.count("no convergence at arc 24 m") == 1
+    assert done.stderr.count("failed at 24 m") == 1
     assert "Traceback" not in done.stderr
 
 

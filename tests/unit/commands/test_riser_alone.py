@@ -17,6 +17,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
 from riser_soil.whole_run import run
 from tests.support.on_ranks import ROOT
+from tests.support.said import line_with, telling
 from tests.support.without_packages import FOR_USERS, SOIL, riser_soil_without
 
 SCENE = "tests/scenes/catenary.yaml"
@@ -55,20 +56,15 @@ def test_soil_says_in_one_line_what_it_lacks_and_who_has_it(tmp_path: Path) -> N
     assert done.returncode == SceneError.exit_status
     (line,) = done.stderr.strip().splitlines()
     assert line.startswith("demos/touchdown_clay/scene.yaml")
-    for reported in (
-        "soil: needs dolfinx, PETSc, MPI, gmsh and scipy",
-        "are not installed",
-        "apt install python3-dolfinx",
-    ):
-        assert reported in line
-    assert "conda-forge: conda install fenics-dolfinx petsc4py mpi4py python-gmsh; Docker:" in line
+    line_with([line], "soil:", "dolfinx, PETSc, MPI, gmsh", "scipy", "not installed", "apt install python3-dolfinx")
+    line_with([line], "conda-forge:", "conda install fenics-dolfinx petsc4py", "mpi4py python-gmsh;", "Docker:")
     assert not (tmp_path / "soil").exists()
 
 
 def test_snes_asked_for_says_that_it_needs_petsc(tmp_path: Path) -> None:
     done = riser_soil_without(["petsc4py"], "check", SCENE, "--set", "solver.newton=snes")
     assert done.returncode == SceneError.exit_status
-    assert "solver.newton: snes: needs PETSc and MPI; PETSc is not installed" in done.stderr
+    line_with(done.stderr, "solver.newton:", "snes:", "needs PETSc and MPI", "PETSc is not installed")
 
 
 def test_a_motion_table_says_that_it_needs_scipy(tmp_path: Path) -> None:
@@ -79,7 +75,7 @@ def test_a_motion_table_says_that_it_needs_scipy(tmp_path: Path) -> None:
     done = riser_soil_without(["scipy"], "check", SCENE, "--set", motion)
     assert done.returncode == SceneError.exit_status
     (line,) = done.stderr.strip().splitlines()
-    assert line == "scipy: is needed here and not installed; pip install 'riser_soil[tables]' brings it"
+    line_with([line], "scipy:", "not installed", "pip install 'riser_soil[tables]'")
 
 
 @pytest.fixture
@@ -102,7 +98,7 @@ def test_one_of_several_needs_mpi4py(no_mpi_yet: None, monkeypatch: pytest.Monke
     """Each would take itself for the only one, and write the same results."""
     monkeypatch.setenv(name, LAUNCHED[name])
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(SceneError, match=f"{name}={LAUNCHED[name]}: this process is one of several"):
+    with pytest.raises(SceneError, match=telling(f"{name}={LAUNCHED[name]}:", "one of several")):
         communicator.world()
 
 

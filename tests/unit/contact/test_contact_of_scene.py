@@ -16,6 +16,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.law import NormalLaw
 from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.driven_stage import built
+from tests.support.said import telling
 from tests.support.soil_loops import after, at
 
 WEIGHT, D, E = 700.0, 0.3, 1.2e6
@@ -78,7 +79,7 @@ def test_suction_that_ends_before_its_cap_is_refused() -> None:
     """On soil its cap lies at an opening of CAP/D over the stiffness per area."""
     width = contact_width(Scales(float(with_contact().scales.weight), D, 0.0), E)
     peak = CAP / D * width / (20.0 * E)
-    with pytest.raises(SceneError, match=rf"cap of 300 N/m at {peak:g} m on the soil"):
+    with pytest.raises(SceneError, match=telling("contact.suction.reach", "cap of 300 N/m", f"{peak:g} m on the soil")):
         with_contact(suction={"cap": CAP, "reach": 0.99 * peak}, stiffness=20.0 * E)
 
 

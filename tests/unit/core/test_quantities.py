@@ -15,6 +15,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from tests.support.bad_scenes import GOOD
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.said import telling
 
 OUTSIDE = [
     ("gravity=1.0e-300", "gravity: value 1e-300: must be 0, or from 1e-09 to 1e+09 m/s2"),
@@ -48,7 +49,7 @@ def test_what_lies_outside_is_refused_with_its_range(change: str, says: str, tmp
 def test_the_elements_of_all_segments_are_counted() -> None:
     scene = touchdown(LAY)
     scene["riser"]["segments"] = [{"line_type": "flexible", "length": 15.0, "elements": 700_000}] * 2
-    with pytest.raises(SceneError, match=r"riser\.segments: .* 1400000 elements together, more than 1000000"):
+    with pytest.raises(SceneError, match=telling("riser.segments:", "1400000 elements", "more than 1000000")):
         scene_from_mapping(scene)
 
 
@@ -79,7 +80,7 @@ def test_tables_keep_within_as_well(table: str, tmp_path: Path) -> None:
 def test_suction_reaches_beyond_its_peak() -> None:
     scene = {key: value for key, value in touchdown(LAY).items() if key != "soil"}
     scene["contact"] = {"suction": {"cap": 50.0, "reach": 5e-4}}
-    with pytest.raises(SceneError, match=r"^contact\.suction\.reach = 0\.0005 m: suction has .* raise reach"):
+    with pytest.raises(SceneError, match=r"^contact\.suction\.reach = 0\.0005 m: .* raise reach"):
         build(scene_from_mapping(scene), MPI.COMM_SELF)
 
 

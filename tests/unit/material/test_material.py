@@ -23,6 +23,7 @@ from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.laws import LAWS
 from tests.support.coupled_scenes import touchdown
 from tests.support.on_ranks import HANGS, ROOT, environment
+from tests.support.said import line_with
 
 E, NU, SU = 1.2e6, 0.45, 4.0e3
 G = E / (2.0 * (1.0 + NU))
@@ -162,7 +163,7 @@ def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> N
     low, high = 0.1 * largest + q0, 0.7 * largest - q0
     added = np.diff(reported["strain_of_stress_cycles"])
     np.testing.assert_allclose(added, 3.0 * a / E * np.log((a**2 - low**2) / (a**2 - high**2)), rtol=0.03)
-    assert f"{added[-1]:.5f} more by the last one" in done.output
+    assert f"{added[-1]:.5f} more by the last" in done.output
 
 
 @pytest.mark.parametrize("law", [IWAN, ELASTIC], ids=["iwan", "linear elastic"])
@@ -190,8 +191,7 @@ def test_drained_triaxial_compression_of_sand_fails_as_coulomb_says(material: Ca
 def test_more_stress_than_the_soil_bears_is_reported_and_leaves_nothing(material: Call) -> None:
     done = material(IWAN, "tau_xz [kPa]\n1.0\n5.0\n")
     assert done.exit_code == 3
-    assert "path.csv, row 2: no strain brings tau_xz" in done.output
-    assert done.output.count("\n") == 1
+    assert done.output == line_with(done.output, "path.csv, row 2:", "no strain", "tau_xz") + "\n"
     assert not Path("scene_material").exists()
 
 
@@ -238,7 +238,7 @@ def test_what_makes_no_sense_is_reported(
 def test_a_scene_without_soil_is_refused(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["material", str(ROOT / "demos/first_scene.yaml"), "-o", str(tmp_path / "out")])
     assert done.exit_code == 2
-    assert "soil: the scene has none" in done.output
+    line_with(done.output, "soil:", "scene has none")
     assert not (tmp_path / "out").exists()
 
 
@@ -254,7 +254,7 @@ def test_files_are_replaced_by_force_only_and_foreign_ones_never(material: Call)
     foreign.write_text("my own table\n")
     refused = material(ELASTIC, path, "--force")
     assert refused.exit_code == 2
-    assert "was not written by riser_soil" in refused.output
+    line_with(refused.output, f"{foreign}:", "not written by riser_soil")
     assert foreign.read_text() == "my own table\n"
 
 
@@ -320,5 +320,4 @@ def test_stress_beyond_slow_strength_is_borne_by_creep(material: Call) -> None:
 def test_time_that_does_not_grow_is_reported(material: Call, times: str) -> None:
     done = material(VISCOUS, f"time [s], gamma_xz [-]\n{times}, 0.1\n")
     assert done.exit_code == 2
-    assert f"path.csv:{2 + times.count(chr(10))}: time must grow from row to row" in done.output
-    assert done.output.count("\n") == 1
+    assert done.output == line_with(done.output, f"path.csv:{2 + times.count(chr(10))}:", "time must grow") + "\n"

@@ -22,6 +22,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea.components import wave_number
 from riser_soil.sea.spectra import mean_period
 from tests.support.orcaflex_data import data_text
+from tests.support.said import line_with, telling
 
 G = 9.80665
 
@@ -72,7 +73,7 @@ def test_what_is_not_carried_over_is_reported_by_line(tmp_path: Path) -> None:
     reported = dict(imported(tmp_path, text).remarks)
     words = {line: text.splitlines()[line - 1].split()[0] for line in reported}
     assert [*words.values()] == ["WindSpeed:", "-", "LayAzimuth:", "-"]
-    assert reported[max(reported)] == "Lines Other: a scene has one riser; --line 'Other' imports this one"
+    line_with([reported[max(reported)]], "Lines Other:", "one riser", "--line 'Other'")
 
 
 def test_a_value_that_nothing_knows_is_reported(tmp_path: Path) -> None:
@@ -120,7 +121,8 @@ def test_the_imported_scene_runs(name: str, tmp_path: Path) -> None:
     arguments = ["import", str(tmp_path / "riser.yml"), "-o", str(tmp_path / "scene.yaml")]
     done = CliRunner().invoke(app, arguments)
     assert done.exit_code == 0, done.output
-    assert "# riser.yml:42: not carried over: Environment: WindSpeed 12" in (tmp_path / "scene.yaml").read_text()
+    written = (tmp_path / "scene.yaml").read_text()
+    line_with(written, "# riser.yml:42:", "not carried over:", "Environment:", "WindSpeed 12")
     scene = Scene.from_file(tmp_path / "scene.yaml").changed({"stages.1.duration": 2.0})
     assert run(scene, tmp_path / "out", quiet=True).finished
     again = CliRunner().invoke(app, arguments)
@@ -264,7 +266,7 @@ def test_a_file_that_gives_no_scene_has_one_line(old: str, new: str, reported: s
 
 def test_no_such_line(tmp_path: Path) -> None:
     (tmp_path / "riser.yml").write_text(data_text())
-    with pytest.raises(SceneError, match="no line Third; it has Riser, Other"):
+    with pytest.raises(SceneError, match=telling("no line Third", "Riser, Other")):
         scene_of(read_data(tmp_path / "riser.yml"), "Third")
 
 

@@ -9,6 +9,7 @@ from riser_soil.plots.curves import along_arc, end_reactions, end_tension, envel
 from riser_soil.results import Run
 from riser_soil.results.netcdf import SERIES
 from tests.support.recorded_run import record
+from tests.support.said import line_with
 
 
 @pytest.fixture
@@ -43,7 +44,7 @@ def test_reactions_and_tension_in_time(run: Run, tmp_path: Path) -> None:
     end_reactions(panels[:4], {"one": run, "other": run}, since=0.5)
     seen = run.time >= 0.5
     assert panels[3].lines[1].get_data()[1] == pytest.approx(1e-3 * run["end_force"][seen, 2])
-    assert panels[0].get_ylabel() == "H at the start [kN], + towards start"
+    line_with(panels[0].get_ylabel(), "H at the start", "[kN]", "+ towards start")
     end_tension(panels[4], run)
     assert panels[4].lines[0].get_data()[1] == pytest.approx(1e-3 * run["effective_tension"][:, -1])
     assert save(figure, tmp_path / "curves.png").read_bytes().startswith(b"\x89PNG")
@@ -56,12 +57,12 @@ def test_instants_are_spread_over_the_records(run: Run) -> None:
 def test_contact_force_has_a_sign_as_the_ground_may_hold_the_riser_by_suction(run: Run) -> None:
     _, (axes,) = sheet(1, 1)
     along_arc(axes, run, "contact_force")
-    assert axes.get_ylabel() == "contact force per length [kN/m], + pushes"
-    assert SERIES["contact_force"].sign == "positive where the ground pushes"
+    line_with(axes.get_ylabel(), "contact force", "[kN/m]", "+ pushes")
+    line_with(SERIES["contact_force"].sign, "positive", "ground pushes")
 
 
 def test_whatever_lies_along_the_riser_can_be_drawn(run: Run) -> None:
     _, (axes,) = sheet(1, 1)
     along_arc(axes, run, "slip")
     assert axes.lines[0].get_data()[1] == pytest.approx(run["slip"][-1])
-    assert axes.get_ylabel() == "length of the way that the riser has slid over the seabed so far [m]"
+    line_with(axes.get_ylabel(), "way", "slid", "seabed", "[m]")

@@ -16,6 +16,7 @@ from riser_soil.__main__ import app
 from riser_soil.errors import ResultsError, WriteError
 from riser_soil.plots import film
 from tests.support.recorded_run import block, record
+from tests.support.said import line_with, telling
 
 FAKE = """#!/bin/sh
 for last; do :; done
@@ -68,7 +69,7 @@ def test_an_mp4_is_ffmpeg_s(folder: Path, monkeypatch: pytest.MonkeyPatch) -> No
     nowhere = folder / "bin"
     nowhere.mkdir()
     monkeypatch.setenv("PATH", str(nowhere))
-    with pytest.raises(ResultsError, match=r"^an MP4 needs the program ffmpeg, .* write a \.gif instead$"):
+    with pytest.raises(ResultsError, match=telling("MP4", "ffmpeg", ".gif instead")):
         film(folder, folder / "film.mp4", period=0.2)
     assert not [*folder.glob("*.mp4"), *folder.glob(".*part*")]
     program = nowhere / "ffmpeg"
@@ -77,7 +78,7 @@ def test_an_mp4_is_ffmpeg_s(folder: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("PATH", os.pathsep.join([str(nowhere), os.defpath]))
     call, size = film(folder, folder / "film.mp4", period=0.2).read_text(encoding="utf-8").splitlines()
     assert int(size) == 2 * 960 * 540 * 3
-    assert "-s 960x540 -r 5 -i - -pix_fmt yuv420p" in call
+    line_with(call, "-s 960x540", "-r 5", "-i -", "-pix_fmt yuv420p")
 
 
 @pytest.mark.parametrize(
@@ -100,7 +101,7 @@ def test_what_cannot_be_filmed_is_said_and_leaves_no_file(
 
 def test_no_soil_or_no_folder_is_said(tmp_path: Path) -> None:
     record(tmp_path, duration=0.3)
-    with pytest.raises(ResultsError, match="the run has no soil, so there is nothing to colour or to magnify"):
+    with pytest.raises(ResultsError, match=telling(f"{tmp_path}:", "no soil", "magnify")):
         film(tmp_path, tmp_path / "film.gif", magnify=5.0)
     with pytest.raises(WriteError, match="there is no folder"):
         film(tmp_path, tmp_path / "nowhere" / "film.gif")

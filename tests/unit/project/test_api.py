@@ -22,6 +22,7 @@ from riser_soil.results import folder as run_folder
 from tests.support.on_ranks import ROOT
 from tests.support.pages import DOCS, blocks
 from tests.support.recorded_run import block, record
+from tests.support.said import telling
 
 FIRST = ROOT / "demos/first_scene.yaml"
 TWENTY_SEEDS = next(text for text in blocks(ROOT / "docs/python.md", "python") if "range(1, 21)" in text)
@@ -74,13 +75,13 @@ def test_a_changed_scene_is_another_one() -> None:
 
 def test_mistakes_are_reported_with_their_place() -> None:
     scene = Scene.from_file(FIRST)
-    with pytest.raises(SceneError, match=r"^gravity = -1\.0: gravity: value -1\.0: must be"):
+    with pytest.raises(SceneError, match=r"^gravity = -1\.0: gravity: value -1\.0:"):
         scene.changed({"gravity": -1.0})
-    with pytest.raises(SceneError, match=r"^riser\.segments\.7 = 1: riser\.segments: a number from 0 to 1 must follow"):
+    with pytest.raises(SceneError, match=r"^riser\.segments\.7 = 1: riser\.segments: .*0 to 1\b"):
         scene.changed({"riser.segments.7": 1})
     with pytest.raises(SceneError, match=r"first_scene\.yaml:13: riser: too long"), scene.placing_errors():
         raise SceneError("riser: too long")
-    with pytest.raises(SceneError, match="there is no such file"):
+    with pytest.raises(SceneError, match=telling("nowhere.yaml:", "no such file")):
         run("nowhere.yaml")
     with pytest.raises(SceneError, match=r"^scene: line_types: missing"):
         run({"riser": {}})

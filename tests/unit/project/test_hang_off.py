@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.said import telling
 
 W, L, RISE = 200.0, 60.0, 40.0
 CHAIN: Mapping = {"EA": 1.0e10, "EI": 0.0, "submerged_weight": W}
@@ -141,7 +143,7 @@ def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
 def test_no_anchor_moves_that_a_joint_holds() -> None:
     scene = on_a_weight(west=45.0, east=40.0)
     scene["lines"]["east"]["start"]["hang_off"]["by"] = "anchor"
-    with pytest.raises(SceneError, match=r"lines.east.start.hang_off: .* by: anchor moves the end"):
+    with pytest.raises(SceneError, match=telling("lines.east.start.hang_off:", "by: anchor")):
         scene_from_mapping(scene)
 
 
@@ -151,7 +153,7 @@ def test_a_cable_is_where_it_begins() -> None:
 
 
 def test_what_no_layback_gives_is_reported() -> None:
-    with pytest.raises(SceneError, match=r"^riser.end.hang_off: a hang-off angle of 85 deg is out of reach"):
+    with pytest.raises(SceneError, match=telling("riser.end.hang_off:", "angle of 85 deg", "out of reach")):
         solved(hanging(angle=85.0))
 
 
@@ -184,7 +186,7 @@ def test_commands_tell_what_was_found(tmp_path: Path) -> None:
     file = tmp_path / "scene.yaml"
     file.write_text(json.dumps(hanging(angle=20.0)))
     guessed = CliRunner().invoke(app, ["check", str(file)])
-    assert guessed.output.startswith("a hang-off angle of 20 deg: a layback of ")
+    assert re.search(r"angle of 20 deg: .*layback of \d", guessed.output.splitlines()[0])
     assert CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "run")]).exit_code == 0
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     reported, final = summary["hang_off"], summary["stages"][0]["final"]
@@ -254,5 +256,5 @@ def test_a_scene_that_cannot_be_with_what_was_found_is_reported(tmp_path: Path) 
     (tmp_path / "seabed.csv").write_text("x [m], y [m], z [m]\n-5, -5, 0\n-5, 5, 0\n30, -5, 0\n30, 5, 0\n")
     scene = hanging(angle=20.0) | {"seabed": {"kind": "rigid", "contact_at": "axis", "grid": "seabed.csv"}}
     ends = hung_ends(scene_from_mapping(scene | {"dimension": 2}, tmp_path))
-    with pytest.raises(SceneError, match=r"^riser.end.hang_off: .* but then seabed.grid: .* lies beyond the grid"):
+    with pytest.raises(SceneError, match=telling("riser.end.hang_off:", "seabed.grid:", "beyond the grid")):
         settled(ends, [35.0])

@@ -11,6 +11,7 @@ from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
 from riser_soil.results.doubtful_extremes import AT, JUDGED, TimeResolution
 from riser_soil.results.figures import places_of
 from riser_soil.results.indicators import ImpactLoss, StageIndicators
+from tests.support.said import line_with
 
 SHARE = 0.3  # of the second difference around an extreme: how far it may be off, as calibrated
 SIZE = int(AT.max()) + 1
@@ -114,10 +115,9 @@ def followed(tensions: list[float], dt: float = 0.1, lost: float = 0.0, local_er
 def test_a_tension_that_turns_sharply_is_a_warning() -> None:
     """Up and down by 200 N at 1000 N: 0.3 times 400 N of 1000 N; steps of 0.1 s sqrt(0.01/0.12)."""
     found = followed([600.0, 800.0, 1000.0, 800.0, 600.0])
-    assert list(found.warnings()) == [
-        "the largest tension at the end may be off by some 120 N, 0.12 of 1000 N (told above 0.03): that sharply it "
-        "turns between steps of 0.1 s; take a time_step of 0.029 s, or auto"
-    ]
+    (reported,) = found.warnings()
+    line_with([reported], "largest tension", "at the end", "120 N", "0.12 of 1000 N", "above 0.03", "steps of 0.1 s")
+    line_with([reported], "time_step of 0.029 s", "auto")
     assert list(followed([980.0, 995.0, 1000.0, 995.0, 980.0]).warnings()) == []
 
 
@@ -136,10 +136,9 @@ def test_a_least_tension_that_turns_sharply_is_a_warning() -> None:
     """Down by 40 N and up again: 0.3 times 80 N of the largest 1000 N, beside a tenth of 150 N, and to a third of that
     as the square of the step; the largest value of the least tension is not asked.
     """
-    assert judged([230.0, 190.0, 150.0, 190.0, 230.0]) == [
-        "the least effective tension may be off by some 24 N, 0.024 of 1000 N (told above 0.015): that sharply it "
-        "turns between steps of 0.1 s; take a time_step of 0.046 s, or auto"
-    ]
+    (reported,) = judged([230.0, 190.0, 150.0, 190.0, 230.0])
+    line_with([reported], "least effective tension", "24 N", "0.024 of 1000 N", "above 0.015", "steps of 0.1 s")
+    line_with([reported], "time_step of 0.046 s", "auto")
     assert judged([150.0, 190.0, 230.0, 190.0, 150.0]) == []
 
 
@@ -155,7 +154,7 @@ def test_least_tension_is_reported_from_a_tenth_of_its_size(least: float, allowe
         off = factor * allowed / (2.0 * SHARE)
         reported = judged([least + 2.0 * off, least + off, least, least + off, least + 2.0 * off])
         assert bool(reported) == warned
-        assert not reported or ("where the riser is compressed" in reported[0]) == (least < 0.0)
+        assert not reported or ("riser is compressed" in reported[0]) == (least < 0.0)
 
 
 def test_tension_and_moment_are_reported_of_each() -> None:
@@ -169,7 +168,7 @@ def test_tension_and_moment_are_reported_of_each() -> None:
 def test_automatic_steps_are_to_take_a_smaller_tolerance() -> None:
     """Steps that are 0.456 as long have 0.456³ of the local error."""
     (reported,) = judged([230.0, 190.0, 150.0, 190.0, 230.0], automatic=True)
-    assert reported.endswith("between steps of 0.1 s; take a tolerance of 0.095 of this one")
+    line_with([reported], "steps of 0.1 s", "tolerance of 0.095")
 
 
 def test_steps_that_are_reported_are_those_around_the_extreme() -> None:
@@ -187,8 +186,8 @@ def test_tension_beside_the_weight_is_too_small_to_judge() -> None:
 def test_impact_that_loses_the_motion_is_a_warning() -> None:
     reported = list(followed([1000.0] * 3, lost=20.0).warnings())
     assert len(reported) == 1
-    assert "impact lost 38.1 J to the time step and not to the ground, 38% of the 100 J" in reported[0]
-    assert "a period of 0.5 s, 5 steps; take a time_step of 0.005 s" in reported[0]
+    line_with(reported, "impact lost 38.1 J", "time step", "38% of the 100 J")
+    line_with(reported, "period of 0.5 s", "5 steps", "time_step of 0.005 s")
     assert list(followed([1000.0] * 3, lost=2.0).warnings()) == []
 
 
@@ -215,7 +214,7 @@ def test_what_the_scheme_puts_in_as_well_is_no_loss() -> None:
 def test_steps_that_misplace_the_riser_are_a_warning() -> None:
     reported = list(followed([1000.0] * 3, local_error=0.9).warnings())
     assert len(reported) == 1
-    assert "by some 0.9 m of its own, 3 diameters" in reported[0]
+    line_with(reported, "0.9 m", "3 diameters")
     assert list(followed([1000.0] * 3, local_error=0.5).warnings()) == []
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from riser_soil.errors import SceneError
 from riser_soil.results.whole_file import refuse_file, written_together
+from tests.support.said import telling
 
 NAMES = "a.txt", "b.txt"
 
@@ -48,9 +49,9 @@ def test_after_an_error_a_folder_is_as_it_was(tmp_path: Path) -> None:
 
 def test_what_cannot_be_a_folder_is_said_in_one_line(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(SceneError, match="cannot be used as the output folder: Not a directory") as caught:
+    with pytest.raises(SceneError, match=telling("cannot be used", "Not a directory")) as caught:
         write(tmp_path / "file" / "below")
     assert "\n" not in str(caught.value)
-    with pytest.raises(SceneError, match="is a file, not a folder"):
+    with pytest.raises(SceneError, match=telling(f"{tmp_path / 'file'}:", "is a file")):
         refuse_file(tmp_path / "file")
     refuse_file(tmp_path / "nothing")

@@ -14,6 +14,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
+from tests.support.said import telling
 
 PIPE: Mapping = {"EA": 1.0e8, "EI": 2.0e4, "outer_diameter": 0.2, "mass": 50.0}
 TAPER: Mapping = {"length": 2.0, "base_diameter": 0.6, "tip_diameter": 0.25, "E": 6.0e7, "density": 1200.0}
@@ -94,5 +95,5 @@ def test_stiffeners_that_do_not_fit(change: Mapping, reported: str) -> None:
 def test_a_free_end_has_no_base() -> None:
     given = scene()
     given["riser"]["start"]["rotation"] = "free"
-    with pytest.raises(SceneError, match="has no base to bend against"):
+    with pytest.raises(SceneError, match=telling("riser.start.bend_stiffener:", "no base")):
         scene_from_mapping(given)

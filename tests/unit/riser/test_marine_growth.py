@@ -22,6 +22,7 @@ from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.riser_scenes import IN_WAVES, in_waves, prescribed, riser_scene, stage_histories, static
+from tests.support.said import telling
 from tests.support.sample_line import Sample, sample
 
 RHO, G, D, T, DENSITY = 1025.0, 9.81, 0.3, 0.05, 1325.0
@@ -130,7 +131,7 @@ def test_tangents_stay_exact(make: Callable[[Sample], Part]) -> None:
 
 def test_growth_without_end_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(assembled, "MOST_SHAPES", 2)
-    with pytest.raises(SceneError, match=r"water\.marine_growth: it changes the riser's first shape"):
+    with pytest.raises(SceneError, match=telling("water.marine_growth:", "first shape")):
         built(hanging([[-20.0, 0.1, 1600.0], [60.0, 0.0, 1600.0]]))
 
 
@@ -161,5 +162,5 @@ def test_growth_needs_a_diameter() -> None:
     pipe = scene["line_types"]["pipe"]
     del pipe["outer_diameter"], pipe["drag"], pipe["added_mass"]
     pipe["submerged_weight"] = 100.0
-    with pytest.raises(SceneError, match="marine growth lies around the outer diameter"):
+    with pytest.raises(SceneError, match=telling("marine growth", "outer diameter")):
         scene_from_mapping(scene)

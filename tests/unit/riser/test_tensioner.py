@@ -9,6 +9,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.said import telling
 
 W, L, EA, T = 400.0, 50.0, 1.0e7, 4.0e4
 PIPE: Mapping = {"EA": EA, "EI": 1.0e4, "GJ": 1.0e4, "mass": 60.0, "submerged_weight": W}
@@ -43,5 +44,5 @@ def test_heave_does_not_reach_the_riser() -> None:
 def test_somebody_must_hold_the_height() -> None:
     given = scene(static())
     given["riser"]["start"]["tensioner"] = {"tension": 1.0}
-    with pytest.raises(SceneError, match="nothing holds the riser's height"):
+    with pytest.raises(SceneError, match=telling("nothing holds", "riser's height")):
         scene_from_mapping(given)

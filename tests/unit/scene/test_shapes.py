@@ -12,6 +12,7 @@ from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
+from tests.support.said import telling
 
 ARC = np.linspace(0.0, 10.0, 11)
 EAST, NORTH, UP = np.eye(3)
@@ -45,7 +46,7 @@ def test_arc_that_turns_the_other_way() -> None:
 
 
 def test_arc_of_another_length_than_the_riser_is_refused() -> None:
-    with pytest.raises(SceneError, match=r"its length is 20 m, but the segments sum to 10 m"):
+    with pytest.raises(SceneError, match=telling("riser.unstressed.arc:", "length is 20 m", "segments", "to 10 m")):
         shapes.circle(ARC, [0.0, 20.0, 0.0], [0.0, 0.0, 0.0], 1.0, UP)
 
 

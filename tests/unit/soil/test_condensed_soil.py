@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -23,6 +24,7 @@ from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, Watcher, before_commit, built
+from tests.support.said import line_with, telling
 
 ELASTIC: Mapping = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}
 FRICTION = {"axial": 0.4, "lateral": 0.7}
@@ -226,9 +228,9 @@ def reason(mapping: Mapping, ranks: int = 1) -> str:
 def test_what_is_condensed_and_what_is_not() -> None:
     elastic = scene("node", "hex", 2, "auto")
     assert reason(elastic) == ""
-    assert reason(elastic, ranks=2) == "the run is on 2 ranks"
+    line_with(reason(elastic, ranks=2), "2 ranks")
     assert reason(scene("node", "hex", 2, "whole")) == "solver.soil is whole"
-    assert reason(touchdown(LAY)) == "it is not linear, its law is von-mises"
+    line_with(reason(touchdown(LAY)), "not linear", "von-mises")
 
 
 def test_check_tells_how_the_soil_is_solved_for() -> None:
@@ -236,19 +238,19 @@ def test_check_tells_how_the_soil_is_solved_for() -> None:
         describe(scene_from_mapping(mapping))
         for mapping in (scene("node", "hex", 2, "auto"), scene("node", "hex", 2, "whole"), touchdown(LAY))
     )
-    assert "soil: condensed to what the riser touches of its surface" in condensed
-    assert "soil: solved for as a whole, not condensed: solver.soil is whole" in whole
+    line_with(condensed, "soil:", "condensed to", "surface")
+    line_with(whole, "soil:", "not condensed:", "solver.soil is whole")
     assert "condensed" not in clay
 
 
 def test_it_is_not_condensed_where_that_costs_more(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("riser_soil.assembly.soil_block.MOST", 0.05)
-    assert "unknowns of its surface lie under the riser" in reason(scene("node", "hex", 2, "auto"))
+    assert re.search(r"\d unknowns .*under the riser", reason(scene("node", "hex", 2, "auto")))
     assert reason(scene("node", "hex", 2, "condensed")) == ""
 
 
 def test_clay_is_refused_where_condensed_soil_is_asked_for() -> None:
     mapping = touchdown(LAY)
     mapping["solver"]["soil"] = "condensed"
-    with pytest.raises(SceneError, match=r"solver\.soil: the soil can't be condensed: it is not linear, its law"):
+    with pytest.raises(SceneError, match=telling("solver.soil:", "can't be condensed:", "not linear")):
         built(mapping)

@@ -13,6 +13,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.riser import graded_lengths
 from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.said import telling
 
 
 def test_doubling() -> None:
@@ -68,5 +69,5 @@ def test_checks_and_elements_agree_on_the_nodes() -> None:
 
 
 def test_a_moment_between_graded_nodes_is_sent_to_the_nearest() -> None:
-    with pytest.raises(SceneError, match="the nearest is at 7 m"):
+    with pytest.raises(SceneError, match=telling("nearest", "at 7 m")):
         scene_from_mapping(graded(load_at=7.5))

@@ -24,6 +24,7 @@ from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.said import telling
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import KINDS, distorted, moved, sheared, small_block
 from tests.support.soil_loops import after, at, forces, through, work
@@ -73,7 +74,7 @@ def shape(assembly: Assembly) -> Array:
 
 
 def test_without_its_entry_a_law_is_no_part_of_the_language() -> None:
-    with pytest.raises(SceneError, match=rf"soil.law.kind: .*must be one of {SOIL_WORDS};"):
+    with pytest.raises(SceneError, match=telling("soil.law.kind:", f"one of {SOIL_WORDS};")):
         scene_from_mapping(on_soil(ELASTIC | {"kind": "toy"}))
     assert "OtherElastic" not in schema_text()
 
@@ -88,12 +89,12 @@ def test_scene_with_a_new_soil_law() -> None:
     assert {"$ref": "#/$defs/OtherElastic"} in definitions["SoilScene"]["properties"]["law"]["anyOf"][0]["oneOf"]
     assert "soil" in describe(scene)
     for wrong, reported in {
-        "toys": rf'soil.law.kind: value "toys": must be one of {SOIL_WORDS}, toy; .*did you mean "toy"',
-        "von-mises": "soil.law.su: missing: the key is required here",
+        "toys": ("soil.law.kind:", 'value "toys":', f"one of {SOIL_WORDS}, toy;", 'did you mean "toy"'),
+        "von-mises": ("soil.law.su:", "missing:", "required"),
     }.items():
-        with pytest.raises(SceneError, match=reported):
+        with pytest.raises(SceneError, match=telling(*reported)):
             scene_from_mapping(on_soil(ELASTIC | {"kind": wrong}))
-    with pytest.raises(SceneError, match=r"soil.law.Young: .* no such key here, known are kind, E, nu"):
+    with pytest.raises(SceneError, match=telling("soil.law.Young:", "no such key", "kind, E, nu")):
         scene_from_mapping(on_soil(ELASTIC | {"kind": "toy", "Young": 1.0}))
 
 
@@ -167,7 +168,7 @@ TOY_BED: Mapping = {"kind": "toy", "k": 1.0e5, "limit": 400.0, "h": 2.0e4}
 
 
 def test_without_its_entry_a_seabed_law_is_no_part_of_the_language() -> None:
-    with pytest.raises(SceneError, match=r"seabed.law.kind: .*must be one of randolph-quiggin, aubeny-biscontin;"):
+    with pytest.raises(SceneError, match=telling("seabed.law.kind:", "one of randolph-quiggin, aubeny-biscontin;")):
         scene_from_mapping(lying())
 
 

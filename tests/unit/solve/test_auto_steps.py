@@ -12,6 +12,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.solve.step_control import AutoSteps
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene
+from tests.support.said import line_with
 
 TOLERANCE = 1e-3
 
@@ -111,7 +112,7 @@ def test_what_fails_for_other_reasons_is_halved_down_to_the_smallest() -> None:
 
 
 def test_fault_states_error_and_tolerance() -> None:
-    assert "0.005 m exceeds the tolerance of 0.001 m" in AutoSteps(1.0, TOLERANCE, 1e-5, 0.1).rejection(0.005)
+    line_with(AutoSteps(1.0, TOLERANCE, 1e-5, 0.1).rejection(0.005), "0.005 m", "tolerance of 0.001 m")
 
 
 def test_output_ramps_and_bends_of_loads_are_hit() -> None:

@@ -11,6 +11,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.solve.linear_solver import BorderedBand, SingularError, bandwidth, complaint
+from tests.support.said import line_with
 
 
 def matrix(chain: int, border: int, band: int, touched: slice) -> Array:
@@ -71,14 +72,14 @@ def test_a_singular_matrix_is_reported(row: int) -> None:
     pc, mat = solver(entries, 30)
     with pytest.raises((SingularError, PETSc.Error)) as failure:
         pc.setUp()
-    assert complaint(failure.value) == "the linear solver failed (the matrix is singular)"
+    line_with(complaint(failure.value), "linear solver failed", "matrix is singular")
     mat.destroy()
 
 
 def test_a_singular_matrix_is_reported_where_petsc_makes_an_error_of_its_own() -> None:
     err = PETSc.Error(-1)
     err.__cause__ = SingularError()
-    assert complaint(err) == "the linear solver failed (the matrix is singular)"
+    line_with(complaint(err), "linear solver failed", "matrix is singular")
 
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from riser_soil.core.part import Energy
 from riser_soil.solve.local_error import EnergyGain
+from tests.support.said import line_with
 
 STILL = Energy(kinetic=100.0, strain=0.0, potential=0.0)
 
@@ -19,7 +20,7 @@ def moving(gained: float) -> Energy:
 def test_a_step_that_makes_much_is_rejected() -> None:
     """More than a fifth of the energy in motion, 100 J."""
     gain = EnergyGain(STILL)
-    assert "the step's solution makes 20.1 J" in gain.rejection(STILL, moving(20.1), 0.0, 0.0, 0.0)
+    line_with(gain.rejection(STILL, moving(20.1), 0.0, 0.0, 0.0), "the step's", "makes 20.1 J")
     assert "the step's" not in gain.rejection(STILL, moving(19.9), 0.0, 0.0, 0.0)
     assert gain.rejection(STILL, moving(25.0), 0.0, 25.0, 0.0) == "", "put in from outside"
     assert gain.rejection(STILL, moving(25.0), 0.0, 0.0, negligible=25.0) == ""
@@ -47,7 +48,7 @@ def test_steps_that_make_a_little_each_are_rejected_once_their_sum_is_too_much()
     for _ in range(2):
         assert gain.rejection(STILL, moving(2.0), 0.0, 0.0, 0.0) == ""
         gain.accept(STILL, moving(2.0), 0.0, 0.0)
-    assert "6 J out of nothing, beside 102 J turned over" in gain.rejection(STILL, moving(2.0), 0.0, 0.0, 0.0)
+    line_with(gain.rejection(STILL, moving(2.0), 0.0, 0.0, 0.0), "6 J out of nothing", "102 J turned over")
     assert gain.rejection(STILL, moving(0.98), 0.0, 0.0, 0.0) == "", "4.98 J in all"
     assert gain.rejection(STILL, moving(1.2), 0.0, 0.0, 0.0) != ""
     assert gain.rejection(STILL, moving(2.0), 0.0, 0.0, negligible=1.4) != ""
@@ -83,7 +84,7 @@ def test_what_was_stored_or_went_through_counts_as_turned_over(
     for _ in range(4):
         assert gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0) == ""
         gain.accept(STILL, moving(12.0), 0.0, 0.0)
-    assert "60 J out of nothing, beside 1e+03 J turned over" in gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0)
+    line_with(gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0), "60 J", "out of nothing", "1e+03 J turned over")
 
 
 @pytest.mark.parametrize(("dissipated", "work"), [(500.0, 0.0), (0.0, 500.0)])
@@ -93,15 +94,15 @@ def test_work_and_losses_add_up_over_steps(dissipated: float, work: float) -> No
         gain.accept(STILL, Energy(kinetic=100.0, potential=work - dissipated), dissipated, work)
     for _ in range(4):
         gain.accept(STILL, moving(12.0), 0.0, 0.0)
-    assert "beside 1e+03 J turned over" in gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0)
+    assert "1e+03 J turned over" in gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0)
 
 
 def test_what_may_have_moved_before_a_step_or_after_it_counts() -> None:
     """Motion of 100 J that becomes strain, and strain that becomes motion, each with 6 J more than there were."""
     moves, strained = STILL, Energy(strain=106.0)
-    assert "make 6 J out of nothing" in EnergyGain(STILL).rejection(moves, strained, 0.0, 0.0, 0.0)
+    line_with(EnergyGain(STILL).rejection(moves, strained, 0.0, 0.0, 0.0), "make 6 J", "out of nothing")
     moves, strained = moving(6.0), Energy(strain=100.0)
-    assert "make 6 J out of nothing" in EnergyGain(STILL).rejection(strained, moves, 0.0, 0.0, 0.0)
+    line_with(EnergyGain(STILL).rejection(strained, moves, 0.0, 0.0, 0.0), "make 6 J", "out of nothing")
 
 
 def test_what_moves_nothing_does_not_count() -> None:

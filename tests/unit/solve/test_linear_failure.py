@@ -16,6 +16,7 @@ from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.on_ranks import mpirun
+from tests.support.said import line_with
 from tests.support.toy_chain import Chain, Springs
 
 SCRIPT = '''
@@ -124,7 +125,7 @@ def test_other_errors_are_no_complaint_of_the_linear_solver(code: int) -> None:
 
 
 def test_a_complaint_without_words_is_one() -> None:
-    assert complaint(PETSc.Error(76)).startswith("the linear solver failed (MUMPS")
+    line_with(complaint(PETSc.Error(76)), "linear solver failed", "MUMPS")
 
 
 def test_a_dense_border_without_stiffness_fails_and_is_reported() -> None:

@@ -30,6 +30,7 @@ from riser_soil.results import Run
 from tests.support.browser import visit
 from tests.support.on_ranks import ROOT
 from tests.support.recorded_run import block, record
+from tests.support.said import line_with, telling
 
 SCENE = (ROOT / "demos/first_scene.yaml").read_text(encoding="utf-8")
 WARNING = "elements are <long>"
@@ -121,7 +122,7 @@ def test_the_page_prints_on_pages(page: Path, tmp_path: Path) -> None:
 def test_one_run_begins_on_the_first_page(page: Path) -> None:
     """In print a run begins a page, but for one that the title alone would stand before."""
     text = page.read_text(encoding="utf-8")
-    assert "header + section.run { break-before: auto }" in text
+    assert re.search(r"header \+ section\.run \{\s*break-before: auto\b", text)
     assert re.search(r'</header>\s*<section class="run"', text)
 
 
@@ -156,7 +157,7 @@ def test_energy_and_versions_and_warnings(run: Run) -> None:
 def test_the_scene_in_words(run: Run) -> None:
     scene = read(run)
     assert scene is not None
-    assert "The ground is a spring seabed." in prose(scene, run)
+    line_with(prose(scene, run), "ground", "spring seabed")
     assert row(pipes_table(scene), "flexible")["EI [N.m²]"] == "50000"
     assert row(segments_table(scene), "flexible")["to arc [m]"] == "50"
     reported = row(parts_table(scene), "seabed.stiffness")
@@ -180,11 +181,11 @@ def test_contents_ends_and_walls_of_the_scene(run: Run, tmp_path: Path) -> None:
     pipe = row(pipes_table(scene), "flexible")
     assert (pipe["yield stress [Pa]"], pipe["design factor [-]"]) == ("4.48e+08", "0.67")
     assert "damping ratio [-]" not in pipe
-    assert segments_table(scene).rows[1][-1] == "elements of 1 to 4 m"
+    line_with(segments_table(scene).rows[1][-1], "elements", "1 to 4 m")
     assert row(parts_table(scene), "riser.contents.pressure")["unit"] == "Pa"
     assert row(parts_table(scene), "riser.end.position")["value"] == "(80, 0, 100)"
     assert row(parts_table(scene), "riser.end.rotation")["unit"] == "", "free has none"
-    assert "Its end hangs off with 90 kN, as asked, by a layback of 81.25 m." in prose(scene, Run(folder))
+    line_with(prose(scene, Run(folder)), "end hangs off", "90 kN", "layback of 81.25 m")
 
 
 def test_components_of_round_off_are_left_out(run: Run) -> None:
@@ -195,8 +196,8 @@ def test_components_of_round_off_are_left_out(run: Run) -> None:
     stage["extremes"]["start"]["moment"] |= reported
     stage["extremes"]["end"]["moment"] |= {"min": reported["min"], "max": [0.0] * 3}
     table = ends_table(stage)
-    assert [words for words, *_ in table.rows if "moment" in words] == ["moment at the start, y"]
-    assert row(table, "moment at the start, y")["at the end"] == "0"
+    (moment,) = (words for words, *_ in table.rows if "moment" in words)
+    assert row(table, line_with([moment], "moment", "start, y"))["at the end"] == "0"
     assert "moment at the end" not in table.note
 
 
@@ -209,7 +210,7 @@ def test_two_runs_side_by_side(run: Run, tmp_path: Path) -> None:
     changed = other.summary["stages"][1]["extremes"]["max_bending_moment"]
     changed["max"] *= 1.1
     reported = row(key_results_table(runs), "heave: largest bending moment")
-    assert reported["differs from one by [%]"] == "+10"
+    assert [value for head, value in reported.items() if "differs from one" in head] == ["+10"]
 
 
 @pytest.mark.parametrize(
@@ -233,18 +234,18 @@ def test_a_run_whose_scene_is_gone_is_reported_without_it(run: Run, tmp_path: Pa
     shutil.copytree(run.folder, folder)
     (folder / "scene.yaml").unlink()
     reported = write_report([folder], tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "# scene.yaml can&#39;t be read: No such file or directory" in reported
+    line_with(reported, "# scene.yaml", "can&#39;t be read:", "No such file")
     assert "Stage heave (dynamic)" in reported
 
 
 def test_what_cannot_be_reported_is_said(run: Run, tmp_path: Path) -> None:
     with pytest.raises(WriteError, match="there is no folder"):
         write_report([run.folder], tmp_path / "nowhere" / "report.html")
-    with pytest.raises(ResultsError, match="is not the folder of a run"):
+    with pytest.raises(ResultsError, match=telling(f"{tmp_path}:", "not the folder")):
         write_report([tmp_path], tmp_path / "report.html")
-    with pytest.raises(ResultsError, match='"storm" is no stage of the run'):
+    with pytest.raises(ResultsError, match=telling('"storm"', "no stage")):
         write_report([run.folder], tmp_path / "report.html", "storm")
     assert not [*tmp_path.glob("*.html"), *tmp_path.glob(".*")]
     done = CliRunner().invoke(app, ["report", str(run.folder), "-o", str(tmp_path / "report.pdf")])
     assert done.exit_code == 2
-    assert "a report is an .html file" in done.output
+    line_with(done.output, "report.pdf:", ".html file")

@@ -25,6 +25,7 @@ from tests.stress.page import page
 from tests.support.line_scenes import CHAIN, mooring, shaken
 from tests.support.on_ranks import ROOT, environment
 from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.said import line_with
 
 FIRST_SCENE = ROOT / "demos" / "first_scene.yaml"
 RIGHT, OFF = near("T [N]", 101.0, 100.0, rel=0.02), near("T [N]", 103.0, 100.0, rel=0.02)
@@ -132,8 +133,8 @@ def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
     reported = json.loads(summary.read_text())
     reported["stages"][0]["final"]["end"]["force"][2] *= 1.01
     summary.write_text(json.dumps(reported))
-    wrong = [answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds]
-    assert wrong == ["static: vertical forces out of balance, of the largest [-]"]
+    (wrong,) = (answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds)
+    line_with([wrong], "static:", "vertical forces", "out of balance")
 
 
 def test_forces_out_of_balance_are_found_on_a_line_of_several(tmp_path: Path) -> None:
