@@ -21,13 +21,15 @@ from riser_soil.core.saved_state import Saved
 from riser_soil.riser.configuration import Configuration, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.directors import Frames, PlanarFrames
 from riser_soil.riser.line import Line
-from riser_soil.riser.rotations import exp_coefficients, moment_stiffness
-from riser_soil.riser.spatial_directors import SpatialFrames, node_frames
+from riser_soil.riser.rotations import exp_coefficients, left_tangent, moment_stiffness
+from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.vectors import (
+    Mat,
     Vec,
     add,
     cross,
     dot,
+    matmul,
     matrix,
     matvec,
     scale,
@@ -52,12 +54,14 @@ class Secant(NamedTuple):
 class Motion(NamedTuple):
     """Of m directors at element ends in a step. fixed: as in the sections, (m, ne, 2, 3) in space, in a plane (m, 1)
     how far ahead of the tangent they turn [rad]; rate (m, ne, 2, d): where the step begins; elapsed (1,): since then
-    [s].
+    [s]. secant, turning (ne, 2, r, r): workspace for one of them.
     """
 
     fixed: Array
     rate: Array
     elapsed: Array
+    secant: Secant
+    turning: Array
 
 
 class PlanarDirectors:
@@ -68,7 +72,9 @@ class PlanarDirectors:
 
     def secant(self, middle: Array) -> Secant:
         """For the rotation increments to the middle (nn, 1)."""
-        return Secant(*_planar_secant(self._frames.turn(middle).end_angle + self.fixed[0], middle))
+        found = secant_workspace(len(middle) - 1, 2, 1)
+        _write_planar(self._frames.turn(middle).end_angle, self.fixed[0], middle, 1.0, 0.0, found)
+        return found
 
     def rates(self, v: Array) -> Array:
         """(ne, 2, 2) at the accepted configuration, from angular velocities (nn, 1)."""
@@ -85,7 +91,9 @@ class SpatialDirectors:
 
     def secant(self, middle: Array) -> Secant:
         """For the rotation increments to the middle (nn, 3)."""
-        return Secant(*_secant(self._frames.R, np.ascontiguousarray(middle), self.fixed))
+        found = secant_workspace(len(middle) - 1, 3, 3)
+        _write_spatial(self._frames.R, np.ascontiguousarray(middle), self.fixed[None], 0, 1.0, found)
+        return found
 
     def rates(self, v: Array) -> Array:
         """(ne, 2, 3) at the accepted configuration, from body-axes angular velocities (nn, 3)."""
@@ -112,8 +120,9 @@ class DirectorMotion:
     def __init__(self, line: Line, columns: Iterable[int]) -> None:
         self._moving = [directors(line.frames, column) for column in columns]
         fixed = np.stack([each.fixed for each in self._moving])
-        rate = np.zeros((len(fixed), line.length.size, 2, line.dimension))
-        self.data, self._t = Motion(fixed, rate, np.zeros(1)), math.inf
+        ne, d, r = line.length.size, line.dimension, line.frames.dofs
+        workspace = secant_workspace(ne, d, r), np.empty((ne, 2, r, r))
+        self.data, self._t = Motion(fixed, np.zeros((len(fixed), ne, 2, d)), np.zeros(1), *workspace), math.inf
 
     def begin(self, t: float, v: Array) -> None:
         """Start from the accepted configuration with angular velocities v (nn, r)."""
@@ -152,84 +161,94 @@ class DirectorMotion:
         self._start(float(saved["t"]), [*saved["rate"]])
 
 
-@by_type
-def secant_within(at: Configuration, fixed: Array, share: float) -> Secant:
-    """Of a director over a step, its middle at a share of the rotation increments of a configuration."""
-    raise NotImplementedError
+def secant_workspace(ne: int, d: int, r: int) -> Secant:
+    return Secant(np.empty((ne, 2, d)), np.empty((ne, 2, d)), np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)))
 
 
 @by_type
-def turning_within(at: Configuration, secant: Secant, F: Array) -> Array:
-    """(ne, 2, r, r): derivative of P^T F at fixed F (ne, 2, d) by the rotation increments of the middle."""
-    raise NotImplementedError
+def write_secant(at: Configuration, motion: Motion, k: int, share: float) -> None:
+    """Write that of a director over a step whose middle is at a share of a configuration's rotation increments."""
 
 
-@secant_within.of(PlanarConfiguration)
-def _secant_in_plane(at: PlanarConfiguration, fixed: Array, share: float) -> Secant:
-    angle = at.end_angle + fixed[0]
-    for e in range(angle.shape[0]):
-        for side in range(2):
-            angle[e, side] -= (1.0 - share) * at.Theta[e + side, 0]
-    mean, change, P, by_end = _planar_secant(angle, share * at.Theta)
-    return Secant(mean, change, P, by_end)
+@by_type
+def write_turning_of(at: Configuration, motion: Motion, F: Array) -> None:
+    """Write the derivative of P^T F at fixed F (ne, 2, d) by the rotation increments of the middle, where `at` is, of
+    the secant written last.
+    """
 
 
-@secant_within.of(SpatialConfiguration)
-def _secant_in_space(at: SpatialConfiguration, fixed: Array, share: float) -> Secant:
-    mean, change, P, by_end = _secant(at.Rn, share * at.Theta, fixed)
-    return Secant(mean, change, P, by_end)
+@write_secant.of(PlanarConfiguration)
+def _write_secant_in_plane(at: PlanarConfiguration, motion: Motion, k: int, share: float) -> None:
+    _write_planar(at.end_angle, motion.fixed[k, 0], at.Theta, share, 1.0 - share, motion.secant)
 
 
-@turning_within.of(PlanarConfiguration)
-def _turning_in_plane(at: PlanarConfiguration, secant: Secant, F: Array) -> Array:
-    return _planar_geometric(secant.by_end, F)
+@write_secant.of(SpatialConfiguration)
+def _write_secant_in_space(at: SpatialConfiguration, motion: Motion, k: int, share: float) -> None:
+    _write_spatial(at.Rn, at.Theta, motion.fixed, k, share, motion.secant)
 
 
-@turning_within.of(SpatialConfiguration)
-def _turning_in_space(at: SpatialConfiguration, secant: Secant, F: Array) -> Array:
-    return _geometric(at.Rn, at.Theta, secant.mean, secant.by_end, F)
-
-
-@njit
-def accelerations_within(motion: Motion, k: int, change: Array) -> Array:
-    """Mean accelerations (ne, 2, d) of a director over a step in whose middle it is."""
-    dt = 2.0 * motion.elapsed[0]
-    return 2.0 / dt * (change / dt - motion.rate[k])
-
-
-@njit
-def rates_within(motion: Motion, k: int, change: Array) -> Array:
-    """Rates (ne, 2, d) of a director at the end of a step."""
-    return 2.0 / motion.elapsed[0] * change - motion.rate[k]
-
-
-@njit
-def _planar_secant(angle: Array, middle: Array) -> tuple[Array, Array, Array, Array]:
-    """angle (ne, 2): of the directors at the rotation increments to the middle (nn, 1)."""
-    ne = angle.shape[0]
-    mean, change = np.empty((ne, 2, 2)), np.empty((ne, 2, 2))
-    P, by_end = np.empty((ne, 2, 2, 1)), np.empty((ne, 2, 2, 1))
-    for e in range(ne):
-        for side in range(2):
-            cosine, sine = math.cos(angle[e, side]), math.sin(angle[e, side])
-            near, far = math.cos(middle[e + side, 0]), 2.0 * math.sin(middle[e + side, 0])
-            p, z = near * cosine, near * sine
-            way_p, way_z = -far * sine, far * cosine
-            mean[e, side, 0], mean[e, side, 1] = p, z
-            change[e, side, 0], change[e, side, 1] = way_p, way_z
-            P[e, side, 0, 0], P[e, side, 1, 0] = -z, p
-            by_end[e, side, 0, 0], by_end[e, side, 1, 0] = -2.0 * (z + 0.5 * way_z), 2.0 * (p + 0.5 * way_p)
-    return mean, change, P, by_end
-
-
-@njit
-def _planar_geometric(by_end: Array, F: Array) -> Array:
+@write_turning_of.of(PlanarConfiguration)
+def _write_turning_in_plane(at: PlanarConfiguration, motion: Motion, F: Array) -> None:
     """The directors' ends turn on by a right angle from `by_end`."""
-    G = np.empty((F.shape[0], 2, 1, 1))
+    G, by_end = motion.turning, motion.secant.by_end
     for e in range(F.shape[0]):
         for side in range(2):
             G[e, side, 0, 0] = 0.5 * (by_end[e, side, 0, 0] * F[e, side, 1] - by_end[e, side, 1, 0] * F[e, side, 0])
-    return G
+
+
+@write_turning_of.of(SpatialConfiguration)
+def _write_turning_in_space(at: SpatialConfiguration, motion: Motion, F: Array) -> None:
+    G, secant = motion.turning, motion.secant
+    for e in range(F.shape[0]):
+        for side in range(2):
+            n, force = e + side, vector(F[e, side])
+            spins, changes = transpose(matrix(at.H[n])), transpose(matrix(secant.by_end[e, side]))
+            lever = moment_stiffness(
+                matrix(at.Rn[n]), vector(at.Theta[n]), cross(vector(secant.mean[e, side]), force)
+            )
+            for k in range(3):
+                for j in range(3):
+                    G[e, side, k, j] = 0.5 * dot(spins[k], cross(changes[j], force)) + lever[k][j]
+
+
+@njit
+def write_accelerations(motion: Motion, k: int, out: Array) -> None:
+    """Write mean accelerations (ne, 2, d) of a director over a step, by the secant of its middle."""
+    dt, change, rate = 2.0 * motion.elapsed[0], motion.secant.change, motion.rate
+    for e in range(out.shape[0]):
+        for side in range(2):
+            for i in range(out.shape[2]):
+                out[e, side, i] = 2.0 / dt * (change[e, side, i] / dt - rate[k, e, side, i])
+
+
+@njit
+def write_rates_at_end(at: Configuration, motion: Motion, k: int, out: Array) -> None:
+    """Write rates (ne, 2, d) of a director where a step begins, or where it ends in this configuration."""
+    elapsed, change, rate = motion.elapsed[0], motion.secant.change, motion.rate
+    if elapsed > 0.0:
+        write_secant(at, motion, k, 0.5)
+    for e in range(out.shape[0]):
+        for side in range(2):
+            for i in range(out.shape[2]):
+                before = rate[k, e, side, i]
+                out[e, side, i] = 2.0 / elapsed * change[e, side, i] - before if elapsed > 0.0 else before
+
+
+@njit
+def _write_planar(end_angle: Array, ahead: float, Theta: Array, share: float, beyond: float, out: Secant) -> None:
+    """end_angle (ne, 2): of the tangents, at `beyond` of the increments Theta (nn, 1) past the middle at a share."""
+    for e in range(end_angle.shape[0]):
+        for side in range(2):
+            half = share * Theta[e + side, 0]
+            angle = end_angle[e, side] + ahead - beyond * Theta[e + side, 0]
+            cosine, sine = math.cos(angle), math.sin(angle)
+            near, far = math.cos(half), 2.0 * math.sin(half)
+            p, z = near * cosine, near * sine
+            way_p, way_z = -far * sine, far * cosine
+            out.mean[e, side, 0], out.mean[e, side, 1] = p, z
+            out.change[e, side, 0], out.change[e, side, 1] = way_p, way_z
+            out.P[e, side, 0, 0], out.P[e, side, 1, 0] = -z, p
+            out.by_end[e, side, 0, 0], out.by_end[e, side, 1, 0] = -2.0 * (z + 0.5 * way_z), 2.0 * (p + 0.5 * way_p)
 
 
 @njit
@@ -241,26 +260,27 @@ def _change(rotation: Vec, d: Vec) -> Vec:
 
 
 @njit
-def _secant(Rn: Array, Theta: Array, fixed: Array) -> tuple[Array, Array, Array, Array]:
-    ne = fixed.shape[0]
-    mean, change = np.empty((ne, 2, 3)), np.empty((ne, 2, 3))
-    P, by_end = np.empty((ne, 2, 3, 3)), np.empty((ne, 2, 3, 3))
-    _, H = node_frames(Rn, Theta)
-    _, H1 = node_frames(Rn, 2.0 * Theta)
-    for e in range(ne):
+def _write_spatial(Rn: Array, Theta: Array, fixed: Array, director: int, share: float, out: Secant) -> None:
+    mean, change, P, by_end = out
+    for e in range(mean.shape[0]):
         for side in range(2):
-            n, d = e + side, vector(fixed[e, side])
-            start = matvec(matrix(Rn[n]), d)
-            way = matvec(matrix(Rn[n]), _change(scale(2.0, vector(Theta[n])), d))
+            n, d = e + side, vector(fixed[director, e, side])
+            R, half = matrix(Rn[n]), scale(share, vector(Theta[n]))
+            start, way = matvec(R, d), matvec(R, _change(scale(2.0, half), d))
             middle, end = add(start, scale(0.5, way)), add(start, way)
             mean[e, side, 0], mean[e, side, 1], mean[e, side, 2] = middle
             change[e, side, 0], change[e, side, 1], change[e, side, 2] = way
-            spins, end_spins = transpose(matrix(H[n])), transpose(matrix(H1[n]))
+            spins, end_spins = transpose(_spins(R, half)), transpose(_spins(R, scale(2.0, half)))
             for k in range(3):
                 P[e, side, 0, k], P[e, side, 1, k], P[e, side, 2, k] = cross(spins[k], middle)
                 turned = scale(2.0, cross(end_spins[k], end))
                 by_end[e, side, 0, k], by_end[e, side, 1, k], by_end[e, side, 2, k] = turned
-    return mean, change, P, by_end
+
+
+@njit
+def _spins(R: Mat, rotation: Vec) -> Mat:
+    """H: the spin in global axes that increments of a rotation vector give, of a frame that was R before it."""
+    return matmul(R, left_tangent(rotation))
 
 
 @njit
@@ -271,18 +291,3 @@ def _rates(R: Array, v: Array, fixed: Array) -> Array:
             turning = cross(vector(v[e + side]), vector(fixed[e, side]))
             rates[e, side, 0], rates[e, side, 1], rates[e, side, 2] = matvec(matrix(R[e + side]), turning)
     return rates
-
-
-@njit
-def _geometric(Rn: Array, Theta: Array, mean: Array, by_end: Array, F: Array) -> Array:
-    G = np.empty(by_end.shape)
-    _, H = node_frames(Rn, Theta)
-    for e in range(F.shape[0]):
-        for side in range(2):
-            n, force = e + side, vector(F[e, side])
-            spins, changes = transpose(matrix(H[n])), transpose(matrix(by_end[e, side]))
-            lever = moment_stiffness(matrix(Rn[n]), vector(Theta[n]), cross(vector(mean[e, side]), force))
-            for k in range(3):
-                for j in range(3):
-                    G[e, side, k, j] = 0.5 * dot(spins[k], cross(changes[j], force)) + lever[k][j]
-    return G

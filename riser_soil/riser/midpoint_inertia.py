@@ -46,28 +46,36 @@ from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.midpoint_directors import (
     DirectorMotion,
     Motion,
-    Secant,
-    accelerations_within,
-    rates_within,
-    secant_within,
-    turning_within,
+    write_accelerations,
+    write_rates_at_end,
+    write_secant,
+    write_turning_of,
 )
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 
 
 class MidpointMass(NamedTuple):
-    """The mass at an instant, and its tangents in a step."""
+    """The mass at an instant, and its tangents in a step. Workspace: their accelerations or rates, and forces on them,
+    at_ends (ne, 2, d); q (ne, 4, d) and F (ne, 4, d), conjugate to it; rows (ne, d, n), see `hermite.write_rows`.
+    """
 
     mass: Mass
     tangents: Motion
+    at_ends: Array
+    q: Array
+    F: Array
+    rows: Array
 
 
 class MidpointRotaryMass(NamedTuple):
-    """The rotary inertia at an instant, and masses (m, ne) [kg m2] on directors in a step."""
+    """The rotary inertia at an instant, and masses (m, ne) [kg m2] on directors in a step. at_ends (ne, 2, d):
+    workspace for accelerations or rates of one of these, and forces on it.
+    """
 
     instant: PlanarRotaryMass | SpatialRotaryMass
     masses: Array
     directors: Motion
+    at_ends: Array
 
 
 class MidpointPart(CompiledPart):
@@ -119,7 +127,9 @@ class MidpointInertia(MidpointPart):
         self.instant = instant
 
     def make_kernel_data(self) -> MidpointMass:
-        return MidpointMass(self.instant.make_kernel_data(), self._motion.data)
+        ne, d = self.line.length.size, self.line.dimension
+        q, F, rows = np.empty((ne, 4, d)), np.empty((ne, 4, d)), np.empty((ne, d, 2 * self.line.ndof))
+        return MidpointMass(self.instant.make_kernel_data(), self._motion.data, np.empty((ne, 2, d)), q, F, rows)
 
     def q_rate(self, state: State) -> Array:
         """q' (ne, 4, d) at the end of a step, as the midpoint rule has it."""
@@ -145,23 +155,19 @@ def _add_forces(part: MidpointMass, at: Configuration, out: LineForces) -> None:
     if part.tangents.elapsed[0] == 0.0:
         add_forces(part.mass, at, out)
     else:
-        secant, F = _through_step(part, at)
-        pulled = np.empty(out.inertia_e.shape)
-        hermite.write_pulled_back(F, secant.P, pulled, at.D, at.R)
-        for e in range(pulled.shape[0]):
-            for i in range(pulled.shape[1]):
-                out.inertia_e[e, i] += pulled[e, i]
+        _go_through_step(part, at)
+        hermite.collect_nodal(part.F, part.tangents.secant.P, out.inertia, at.D, at.R)
         add_forces_at_ends(part.mass, at, out)
 
 
 @njit
-def _through_step(part: MidpointMass, at: Configuration) -> tuple[Secant, Array]:
-    """The tangents in a step whose middle this is, and the residual conjugate to the means of q (ne, 4, d)."""
-    secant = secant_within(at, part.tangents.fixed[0], 1.0)
-    acceleration = accelerations_within(part.tangents, 0, secant.change)
-    F = np.zeros(at.q.shape)
-    hermite.add_weighed(part.mass.M, hermite.interleave(at.a, acceleration, at.D), F, at.D)
-    return secant, F
+def _go_through_step(part: MidpointMass, at: Configuration) -> None:
+    """Write the tangents in a step whose middle this is, and the residual F conjugate to the means of q."""
+    write_secant(at, part.tangents, 0, 1.0)
+    write_accelerations(part.tangents, 0, part.at_ends)
+    hermite.write_interleaved(at.a, part.at_ends, part.q, at.D)
+    part.F[:] = 0.0
+    hermite.add_weighed(part.mass.M, part.q, part.F, at.D)
 
 
 @add_tangent.of(MidpointMass)
@@ -169,22 +175,30 @@ def _add_tangent(part: MidpointMass, at: Configuration, maps: Maps, weights: Lin
     if part.tangents.elapsed[0] == 0.0:
         add_tangent(part.mass, at, maps, weights, K)
     else:
-        secant, F = _through_step(part, at)
-        rows = np.empty((K.shape[0], len(at.D), K.shape[2]))
-        hermite.write_all_rows(0.5 * maps.shift_a * secant.by_end, maps.shift_a, rows, at.D, at.R)
-        hermite.add_mass_to(K, weights.inertia, secant.P, rows, part.mass.M, at.D, at.R)
-        turning = turning_within(at, secant, np.ascontiguousarray(F[:, 1::2]))
-        hermite.add_geometric(K, weights.inertia, turning, len(at.D))
+        _go_through_step(part, at)
+        secant, F, follows = part.tangents.secant, part.F, 0.5 * maps.shift_a
+        for e in range(F.shape[0]):
+            for side in range(2):
+                for i in range(len(at.D)):
+                    part.at_ends[e, side, i] = F[e, 2 * side + 1, i]
+        write_turning_of(at, part.tangents, part.at_ends)
+        for e in range(F.shape[0]):
+            for side in range(2):
+                for i in range(len(at.D)):
+                    for k in range(len(at.R)):
+                        secant.by_end[e, side, i, k] *= follows
+        hermite.write_all_rows(secant.by_end, maps.shift_a, part.rows, at.D, at.R)
+        hermite.add_mass_to(K, weights.inertia, secant.P, part.rows, part.mass.M, at.D, at.R)
+        hermite.add_geometric(K, weights.inertia, part.tangents.turning, len(at.D))
         add_tangent_at_ends(part.mass, at, maps, weights, K)
 
 
 @add_energy.of(MidpointMass)
 def _add_energy(part: MidpointMass, at: Configuration, energy: Array) -> None:
     """Where a step begins or ends."""
-    rate = part.tangents.rate[0]
-    if part.tangents.elapsed[0] > 0.0:
-        rate = rates_within(part.tangents, 0, secant_within(at, part.tangents.fixed[0], 0.5).change)
-    add_kinetic(part.mass, at, hermite.interleave(at.v, rate, at.D), energy)
+    write_rates_at_end(at, part.tangents, 0, part.at_ends)
+    hermite.write_interleaved(at.v, part.at_ends, part.q, at.D)
+    add_kinetic(part.mass, at, part.q, energy)
 
 
 class MidpointRotaryInertia(MidpointPart):
@@ -198,7 +212,8 @@ class MidpointRotaryInertia(MidpointPart):
         self.instant, self.masses = instant, np.stack([*on.values()])
 
     def make_kernel_data(self) -> MidpointRotaryMass:
-        return MidpointRotaryMass(self.instant.make_kernel_data(), self.masses, self._motion.data)
+        at_ends = np.empty((self.line.length.size, 2, self.line.dimension))
+        return MidpointRotaryMass(self.instant.make_kernel_data(), self.masses, self._motion.data, at_ends)
 
     def add_momentum_correction(self, state: State, out: Array) -> None:
         """Add P^T M (d' - d'(v)) at an accepted state to a local array [N m s]."""
@@ -214,24 +229,25 @@ def _add_rotary_forces(part: MidpointRotaryMass, at: Configuration, out: LineFor
     if part.directors.elapsed[0] == 0.0:
         add_forces(part.instant, at, out)
     else:
-        n, d = at.v.shape[1], len(at.D)
-        for k in range(part.masses.shape[0]):
-            secant, F = _director_through_step(part, at, k)
+        P, F, n, d = part.directors.secant.P, part.at_ends, at.v.shape[1], len(at.D)
+        for m in range(part.masses.shape[0]):
+            _move_director(part, at, m)
             for e in range(F.shape[0]):
                 for side in range(2):
                     for j in range(len(at.R)):
                         for i in range(d):
-                            out.inertia_e[e, side * n + d + j] += secant.P[e, side, i, j] * F[e, side, i]
+                            out.inertia_e[e, side * n + d + j] += P[e, side, i, j] * F[e, side, i]
 
 
 @njit
-def _director_through_step(part: MidpointRotaryMass, at: Configuration, k: int) -> tuple[Secant, Array]:
-    """A director in a step whose middle this is, and the force on its mean (ne, 2, d)."""
-    secant = secant_within(at, part.directors.fixed[k], 1.0)
-    F = accelerations_within(part.directors, k, secant.change)
-    for e in range(F.shape[0]):
-        F[e] *= part.masses[k, e]
-    return secant, F
+def _move_director(part: MidpointRotaryMass, at: Configuration, m: int) -> None:
+    """Write a director in a step whose middle this is, and the force on its mean."""
+    write_secant(at, part.directors, m, 1.0)
+    write_accelerations(part.directors, m, part.at_ends)
+    for e in range(part.at_ends.shape[0]):
+        for side in range(2):
+            for i in range(len(at.D)):
+                part.at_ends[e, side, i] *= part.masses[m, e]
 
 
 @add_tangent.of(MidpointRotaryMass)
@@ -241,28 +257,30 @@ def _add_rotary_tangent(
     if part.directors.elapsed[0] == 0.0:
         add_tangent(part.instant, at, maps, weights, K)
     else:
-        for k in range(part.masses.shape[0]):
-            secant, F = _director_through_step(part, at, k)
-            block, P, by_end = turning_within(at, secant, F), secant.P, secant.by_end
-            for e in range(F.shape[0]):
-                follows = 0.5 * maps.shift_a * part.masses[k, e]
+        secant, block = part.directors.secant, part.directors.turning
+        for m in range(part.masses.shape[0]):
+            _move_director(part, at, m)
+            write_turning_of(at, part.directors, part.at_ends)
+            for e in range(block.shape[0]):
+                follows = 0.5 * maps.shift_a * part.masses[m, e]
                 for side in range(2):
                     for j in range(len(at.R)):
                         for c in range(len(at.R)):
                             for i in range(len(at.D)):
-                                block[e, side, j, c] += follows * P[e, side, i, j] * by_end[e, side, i, c]
+                                by_end = secant.by_end[e, side, i, c]
+                                block[e, side, j, c] += follows * secant.P[e, side, i, j] * by_end
             hermite.add_geometric(K, weights.inertia, block, len(at.D))
 
 
 @add_energy.of(MidpointRotaryMass)
 def _add_rotary_energy(part: MidpointRotaryMass, at: Configuration, energy: Array) -> None:
     """Where a step begins or ends."""
-    for k in range(part.masses.shape[0]):
-        rate = part.directors.rate[k]
-        if part.directors.elapsed[0] > 0.0:
-            rate = rates_within(part.directors, k, secant_within(at, part.directors.fixed[k], 0.5).change)
-        for e in range(rate.shape[0]):
-            energy[0] += 0.5 * part.masses[k, e] * np.sum(rate[e] ** 2)
+    for m in range(part.masses.shape[0]):
+        write_rates_at_end(at, part.directors, m, part.at_ends)
+        for e in range(part.at_ends.shape[0]):
+            for side in range(2):
+                for i in range(len(at.D)):
+                    energy[0] += 0.5 * part.masses[m, e] * part.at_ends[e, side, i] ** 2
 
 
 def over_steps(instant: Part) -> Part:
