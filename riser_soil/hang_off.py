@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_ends, reported, settled, with_values
+from riser_soil.assembly.hang_off import HungEnd, by_cable, first_value, hung_ends, reported, settled, with_values
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.system import Timer
-from riser_soil.errors import SolveError
+from riser_soil.errors import SceneError, SolveError
 from riser_soil.interruption import agreeing
 from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.scene.scene import Scene
@@ -102,10 +102,9 @@ class _HangOffSearch:
         """What is close enough, or SolveError."""
         from scipy.optimize import root
 
-        values = self._by_cables(self._asked)
+        values = np.array([first_value(each) for each in self._ends])
         if (off := self._off(values)).any():
-            nearer = self._by_cables(self._asked - off * self._close)
-            values = min(values, nearer, key=lambda each: float(np.linalg.norm(self._off(each))))
+            values = min(self._shifted(values, off), key=lambda each: float(np.linalg.norm(self._off(each))))
         if self._off(values).any():
             root(self._off, values, jac=self._slopes, options={"factor": LONGEST_STEP, "xtol": 0.0})
         values, off = self._nearest
@@ -114,6 +113,13 @@ class _HangOffSearch:
         ends = zip(self._ends, as_list(values), as_list(self._asked + off * self._close), strict=True)
         scene = settled(self._ends, as_list(values))
         return HungScene(scene, tuple(FoundEnd(*each) for each in ends), len(self._tried))
+
+    def _shifted(self, values: Array, off: Array) -> list[Array]:
+        """The values, and those of cables with shifted aims, where there are such cables."""
+        try:
+            return [values, self._by_cables(self._asked - off * self._close)]
+        except SceneError:
+            return [values]
 
     def _by_cables(self, asked: Array) -> Array:
         return np.array([by_cable(*each) for each in zip(self._ends, asked, strict=True)])
@@ -140,7 +146,7 @@ class _HangOffSearch:
     def _slopes(self, values: Array) -> Array:
         """Of what is missed [1/m] (ends, ends): of one end by the two values tried, of several one by one."""
         off = self._off(values)
-        others = [self._tried[-1], self._tried[-2]] if len(values) == 1 else []
+        others = self._tried[:-3:-1] if len(values) == 1 else []
         for other, seen in others:
             if other != values:
                 return (seen - off)[:, None] / (other - values)

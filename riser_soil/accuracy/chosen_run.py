@@ -5,10 +5,13 @@ What isn't needed isn't imported.
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from riser_soil.errors import SceneError
+from riser_soil.errors import Interruption, MemoryShortageError, SceneError, SolveError
 from riser_soil.scene.lines import risers
 from riser_soil.scene.scene import Scene
 
@@ -22,6 +25,12 @@ def run_as_asked(
     if restart and force:
         raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
     scene, more = in_numbers(scene)
+    more = more or (_solved_before(folder) if restart else {})
+    with _telling(more, folder, scene):
+        _run(scene, folder, force, error_bars, restart)
+
+
+def _run(scene: Scene, folder: Path, force: bool, error_bars: bool, restart: bool) -> None:
     if scene.accuracy is not None:
         from riser_soil.accuracy.target_run import run_to_accuracy
 
@@ -35,12 +44,37 @@ def run_as_asked(
         from riser_soil.whole_run import run
 
         run(scene, folder, force, restart=restart)
-    if more:
-        from riser_soil.assembly.packages import communicator_of
-        from riser_soil.results.summary import add_to_summary
 
-        if communicator_of(scene).rank == 0:
-            add_to_summary(folder, more)
+
+def _solved_before(folder: Path) -> dict[str, Any]:
+    """What the summary of a run that goes on tells of its hang-offs."""
+    from riser_soil.results.folder import SUMMARY
+
+    file = folder / SUMMARY
+    known = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    return {key: known[key] for key in ("hang_off",) if key in known}
+
+
+@contextmanager
+def _telling(more: Mapping[str, Any], folder: Path, scene: Scene) -> Iterator[None]:
+    """Blocks that the summary of a run gets, also of one that ends before its time."""
+    try:
+        yield
+    except (SolveError, MemoryShortageError, Interruption):
+        _add(more, folder, scene)
+        raise
+    _add(more, folder, scene)
+
+
+def _add(more: Mapping[str, Any], folder: Path, scene: Scene) -> None:
+    if not more:
+        return
+    from riser_soil.assembly.packages import communicator_of
+    from riser_soil.results.folder import SUMMARY
+    from riser_soil.results.summary import add_to_summary
+
+    if communicator_of(scene).rank == 0 and (folder / SUMMARY).is_file():
+        add_to_summary(folder, more)
 
 
 def _refuse_restart(restart: bool, folder: Path) -> None:

@@ -8,7 +8,7 @@ passes through zero has no relative error:
 
 | quantity | floor of its scale |
 |---|---|
-| forces | 0.1 of the largest key result force of the stage |
+| forces | 0.1 of the largest key result force of the stage; of several lines of a line's own, or 1e-3 of all |
 | arc length of the touchdown point, place of a body | the distance of the line's ends, as they count from anywhere |
 | bending moment | 1e-9 of that largest force times that distance, above round-off alone |
 | curvature, settlement | 1e-6 over that distance, 1e-7 of it, likewise |
@@ -17,18 +17,20 @@ passes through zero has no relative error:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from riser_soil.core.outputs import upper_end
 
 FORCE_FLOOR = 0.1  # of the largest key result force
+OF_ALL_LINES = 0.01  # of that of all lines, which that of one counts as at least: free ends have none but round-off
 MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
 
 SETTLEMENT, TOUCHDOWN = "soil settlement", "touchdown arc"  # the latter least or largest in stages that move
 
 Reported = Mapping[str, Any]
+Known = tuple[str, str, float, str, str]
 
 
 @dataclass(frozen=True)
@@ -77,8 +79,9 @@ def key_results(summary: Reported) -> dict[str, KeyResult]:
 
 def _of_whole_stage(stage: Reported) -> Iterator[KeyResult]:
     lines = {line: own for line, own in _by_line(stage).items() if own["final"] is not None}
+    least = OF_ALL_LINES * max((_largest_force(list(_values(own))) for own in lines.values()), default=0.0)
     for line, own in lines.items():
-        yield from _of_stage(own, line)
+        yield from _of_stage(own, line, least)
     length = max((_span(own["final"]) for own in lines.values()), default=0.0)
     for name, body in stage.get("bodies", {}).items():
         yield from _of_body(stage, name, body["position"], length)
@@ -97,9 +100,10 @@ def _by_line(stage: Reported) -> dict[str, Reported]:
     return {line: {**stage, **own} for line, own in stage.get("lines", {"": {}}).items()}
 
 
-def _of_stage(stage: Reported, line: str) -> list[KeyResult]:
+def _of_stage(stage: Reported, line: str, least: float) -> list[KeyResult]:
+    """least: what its largest force counts as, at least [N]."""
     values, length = list(_values(stage)), _span(stage["final"])
-    force = max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
+    force = max(_largest_force(values), least)
     floors = {"N": FORCE_FLOOR * force, "N.m": MOMENT_FLOOR * force * length, "m": SETTLEMENT_FLOOR * length}
     floors["1/m"] = CURVATURE_FLOOR / length if length > 0.0 else 0.0
 
@@ -112,12 +116,13 @@ def _of_stage(stage: Reported, line: str) -> list[KeyResult]:
     ]
 
 
+def _largest_force(values: Sequence[Known]) -> float:
+    return max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
+
+
 def _span(final: Reported) -> float:
     """Distance of a line's ends [m]."""
     return math.dist(final["start"]["position"], final["end"]["position"])
-
-
-Known = tuple[str, str, float, str, str]
 
 
 def _values(stage: Reported) -> Iterator[Known]:

@@ -158,6 +158,16 @@ def settled(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
     return scene
 
 
+def first_value(hung: HungEnd) -> float:
+    """The value [m] to begin with: a cable's; the given one where none has it and a joint lets the other end go."""
+    try:
+        return by_cable(hung, hung.asked.asked)
+    except SceneError:
+        if not getattr(hung.riser, hung.other).jointed:
+            raise
+        return hung.segments[hung.segment].length if hung.asked.by == "length" else hung.layback
+
+
 def by_cable(hung: HungEnd, asked: float) -> float:
     """The value [m] with which a cable without bending stiffness has an angle [deg] or tension [N].
 

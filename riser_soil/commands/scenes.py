@@ -50,11 +50,11 @@ def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
 
     if not any(line.hangs_off for line in risers(scene).values()):
         return scene
-    from riser_soil.assembly.hang_off import by_cable, hung_ends, reported, settled
+    from riser_soil.assembly.hang_off import first_value, hung_ends, reported, settled
 
     with placed(file, overrides):
         ends = hung_ends(scene)
-        values = [by_cable(hung, hung.asked.asked) for hung in ends]
+        values = [first_value(hung) for hung in ends]
         found = settled(ends, values)
     for each in zip(ends, values, strict=True) if rank() == 0 else ():
         print(f"{reported(*each)} by the cable without bending stiffness; a run solves it on the riser itself")

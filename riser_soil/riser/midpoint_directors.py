@@ -51,7 +51,7 @@ class Secant(NamedTuple):
     by_end: Array
 
 
-class Motion(NamedTuple):
+class DirectorsInStep(NamedTuple):
     """Of m directors at element ends in a step. fixed: as in the sections, (m, ne, 2, 3) in space, in a plane (m, 1)
     how far ahead of the tangent they turn [rad]; rate (m, ne, 2, d): where the step begins; elapsed (1,): since then
     [s]. secant, turning (ne, 2, r, r): workspace for one of them.
@@ -122,7 +122,7 @@ class DirectorMotion:
         fixed = np.stack([each.fixed for each in self._moving])
         ne, d, r = line.length.size, line.dimension, line.frames.dofs
         workspace = secant_workspace(ne, d, r), np.empty((ne, 2, r, r))
-        self.data, self._t = Motion(fixed, np.zeros((len(fixed), ne, 2, d)), np.zeros(1), *workspace), math.inf
+        self.data, self._t = DirectorsInStep(fixed, np.zeros((len(fixed), ne, 2, d)), np.zeros(1), *workspace), math.inf
 
     def begin(self, t: float, v: Array) -> None:
         """Start from the accepted configuration with angular velocities v (nn, r)."""
@@ -166,29 +166,29 @@ def secant_workspace(ne: int, d: int, r: int) -> Secant:
 
 
 @by_type
-def write_secant(at: Configuration, motion: Motion, k: int, share: float) -> None:
+def write_secant(at: Configuration, motion: DirectorsInStep, k: int, share: float) -> None:
     """Write that of a director over a step whose middle is at a share of a configuration's rotation increments."""
 
 
 @by_type
-def write_turning_of(at: Configuration, motion: Motion, F: Array) -> None:
+def write_turning_of(at: Configuration, motion: DirectorsInStep, F: Array) -> None:
     """Write the derivative of P^T F at fixed F (ne, 2, d) by the rotation increments of the middle, where `at` is, of
     the secant written last.
     """
 
 
 @write_secant.of(PlanarConfiguration)
-def _write_secant_in_plane(at: PlanarConfiguration, motion: Motion, k: int, share: float) -> None:
+def _write_secant_in_plane(at: PlanarConfiguration, motion: DirectorsInStep, k: int, share: float) -> None:
     _write_planar(at.end_angle, motion.fixed[k, 0], at.Theta, share, 1.0 - share, motion.secant)
 
 
 @write_secant.of(SpatialConfiguration)
-def _write_secant_in_space(at: SpatialConfiguration, motion: Motion, k: int, share: float) -> None:
+def _write_secant_in_space(at: SpatialConfiguration, motion: DirectorsInStep, k: int, share: float) -> None:
     _write_spatial(at.Rn, at.Theta, motion.fixed, k, share, motion.secant)
 
 
 @write_turning_of.of(PlanarConfiguration)
-def _write_turning_in_plane(at: PlanarConfiguration, motion: Motion, F: Array) -> None:
+def _write_turning_in_plane(at: PlanarConfiguration, motion: DirectorsInStep, F: Array) -> None:
     """The directors' ends turn on by a right angle from `by_end`."""
     G, by_end = motion.turning, motion.secant.by_end
     for e in range(F.shape[0]):
@@ -197,7 +197,7 @@ def _write_turning_in_plane(at: PlanarConfiguration, motion: Motion, F: Array) -
 
 
 @write_turning_of.of(SpatialConfiguration)
-def _write_turning_in_space(at: SpatialConfiguration, motion: Motion, F: Array) -> None:
+def _write_turning_in_space(at: SpatialConfiguration, motion: DirectorsInStep, F: Array) -> None:
     G, secant = motion.turning, motion.secant
     for e in range(F.shape[0]):
         for side in range(2):
@@ -212,7 +212,7 @@ def _write_turning_in_space(at: SpatialConfiguration, motion: Motion, F: Array) 
 
 
 @njit
-def write_accelerations(motion: Motion, k: int, out: Array) -> None:
+def write_accelerations(motion: DirectorsInStep, k: int, out: Array) -> None:
     """Write mean accelerations (ne, 2, d) of a director over a step, by the secant of its middle."""
     dt, change, rate = 2.0 * motion.elapsed[0], motion.secant.change, motion.rate
     for e in range(out.shape[0]):
@@ -222,7 +222,7 @@ def write_accelerations(motion: Motion, k: int, out: Array) -> None:
 
 
 @njit
-def write_rates_at_end(at: Configuration, motion: Motion, k: int, out: Array) -> None:
+def write_rates_at_end(at: Configuration, motion: DirectorsInStep, k: int, out: Array) -> None:
     """Write rates (ne, 2, d) of a director where a step begins, or where it ends in this configuration."""
     elapsed, change, rate = motion.elapsed[0], motion.secant.change, motion.rate
     if elapsed > 0.0:

@@ -45,7 +45,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.midpoint_directors import (
     DirectorMotion,
-    Motion,
+    DirectorsInStep,
     write_accelerations,
     write_rates_at_end,
     write_secant,
@@ -60,7 +60,7 @@ class MidpointMass(NamedTuple):
     """
 
     mass: Mass
-    tangents: Motion
+    tangents: DirectorsInStep
     at_ends: Array
     q: Array
     F: Array
@@ -74,7 +74,7 @@ class MidpointRotaryMass(NamedTuple):
 
     instant: PlanarRotaryMass | SpatialRotaryMass
     masses: Array
-    directors: Motion
+    directors: DirectorsInStep
     at_ends: Array
 
 

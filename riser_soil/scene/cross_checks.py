@@ -29,6 +29,7 @@ _POINTS_TOLERANCE = 0.05
 _MEETING = 1e-6
 # Strain of a riser pulled straight between its ends beyond which the positions must be a mistake.
 _GREATEST_STRAIN = 0.1
+_GREATEST_STRAIN_AT_FIRST = 0.5  # of a line that a joint lets go to where it belongs: the place of its body is a guess
 # Part of its length by which a riser may start shorter when it is laid straight between its ends.
 _GREATEST_SLACK = 1e-3
 
@@ -181,7 +182,8 @@ def _long_enough(scene: Scene) -> Iterator[Problem]:
     if not isinstance(start, Support) or not isinstance(end, Support):
         return
     distance = math.dist(start.position, end.position)
-    if distance > (1.0 + _GREATEST_STRAIN) * length:
+    greatest = _GREATEST_STRAIN_AT_FIRST if start.jointed or end.jointed else _GREATEST_STRAIN
+    if distance > (1.0 + greatest) * length:
         apart = f"the ends are {distance:.6g} m apart, but the riser is only {length:.6g} m long"
         yield Problem(("riser", "end", "position"), apart, "lengthen the segments or bring the ends together")
 

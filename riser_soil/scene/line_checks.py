@@ -4,7 +4,9 @@ from collections.abc import Iterator
 
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
-from riser_soil.scene.lines import ENDS, arc_of, by_line, first_place
+from riser_soil.scene.lines import ENDS, acts_on, arc_of, by_line, first_place
+from riser_soil.scene.motions import Vessel, VesselHistory
+from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, MidpointScheme, OfBody, StaticStage
@@ -18,7 +20,7 @@ def all_conflicts(scene: Scene) -> list[Problem]:
     """All conflicts of a scene, whether it has one line or several."""
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
-    checks = (_names, _joints, _stages, _clearances, _soil, _seabed, _not_yet)
+    checks = (_names, _joints, _stages, _clearances, _soil, _seabed, _for_nothing, _hang_offs, _not_yet)
     own = [problem for check in checks for problem in check(scene)]
     if own:
         return own
@@ -160,6 +162,44 @@ def _seabed(scene: Scene) -> Iterator[Problem]:
         key = "slope_deg" if seabed.slope_deg else "profile"
         allowed = f"seabed.{key} needs it where there are several lines, each in a plane of its own"
         yield Problem(("seabed", "direction_deg"), allowed, "say which way it runs, from x towards y [deg]")
+
+
+def _for_nothing(scene: Scene) -> Iterator[Problem]:
+    """What no line has anything of."""
+    if scene.contact is not None and scene.seabed is None and scene.soil is None:
+        yield Problem(("contact",), "there is nothing to touch", "add seabed or soil, or leave out contact")
+    if scene.soil is None and scene.output.sections != SettlementSections():
+        yield Problem(("output", "sections"), "are those of soil, and the scene has none", "add soil, or leave it out")
+    if all(line.contents is None for line in scene.lines.values()):
+        for n, stage in enumerate(scene.stages):
+            if stage.pressure is not None:
+                remedy = "give a line contents, or leave it out"
+                yield Problem(("stages", n, "pressure"), "is that of contents, and all lines are empty", remedy)
+
+
+def _hang_offs(scene: Scene) -> Iterator[Problem]:
+    """An end that takes its vessel along must be the only one on it."""
+    for name, line in scene.lines.items():
+        for end in ENDS:
+            asked = getattr(getattr(line, end), "hang_off", None)
+            moved = {"layback": end, "anchor": "start" if end == "end" else "end"}.get(asked.by) if asked else None
+            mine = _vessels(scene, name, moved) if moved else []
+            others = [key for key in _moved_ends(scene) if key != (name, moved)]
+            if any(vessel in _vessels(scene, *key) for vessel in mine for key in others):
+                allowed = "another end hangs on the same vessel, which would come along with this one alone"
+                remedy = "take by: length, or move the other end"
+                yield Problem(("lines", name, end, "hang_off"), allowed, remedy)
+
+
+def _moved_ends(scene: Scene) -> Iterator[tuple[str, str]]:
+    return ((name, end) for name in scene.lines for end in ENDS)
+
+
+def _vessels(scene: Scene, line: str, end: str) -> list[Vessel | VesselHistory]:
+    """Those that an end is part of, stage by stage."""
+    motions = (getattr(acts_on(stage, line), "motion", None) for stage in scene.stages)
+    given = (motion.by_end[end] for motion in motions if motion is not None and end in motion.by_end)
+    return [way for each in given for way in each.ways.values() if isinstance(way, Vessel | VesselHistory)]
 
 
 def _jointed(scene: Scene, name: str, end: str) -> bool:

@@ -70,7 +70,7 @@ def _of_line(scene: Scene, name: str) -> Scene:
     cut = {"segments": tuple(_cut(line, arcs))}
     stages = tuple(_stage(stage, acts_on(stage, name), line) for stage in scene.stages)
     several: dict[str, Any] = {"lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "stages": stages}
-    own = several | {"riser": line.model_copy(update=ends | cut).tied_at(arcs)}
+    own = several | {"riser": line.model_copy(update=ends | cut).tied(bool(arcs) and _leads_to_hold(scene, name))}
     if scene.soil is not None and scene.soil.line == name:
         return scene.model_copy(update=own | {"soil": scene.soil.model_copy(update={"line": None})})
     return scene.model_copy(update=own | _without_soil(scene))
@@ -79,6 +79,17 @@ def _of_line(scene: Scene, name: str) -> Scene:
 def on_soil(scene: Scene) -> Scene | None:
     """The line that lies on the soil, as of `by_line`; None without soil."""
     return None if scene.soil is None else by_line(scene).get(scene.soil.line or "")
+
+
+def _leads_to_hold(scene: Scene, name: str) -> bool:
+    """Whether joints lead from a line to one with a support, or to a body."""
+    reached, new = set[str](), {name}
+    while new:
+        reached |= new
+        pairs = [[point.line or point.body or "" for point in joint.between] for joint in scene.joints.values()]
+        new = {other for pair in pairs if reached & {*pair} for other in pair} - reached
+    held = (getattr(scene.lines[other], end) for other in reached & {*scene.lines} for end in ENDS)
+    return bool(reached & {*scene.bodies}) or any(isinstance(end, Support) for end in held)
 
 
 def _without_soil(scene: Scene) -> dict[str, Any]:
@@ -174,8 +185,8 @@ def spinning(scene: Scene) -> set[str]:
         if joint.kind == "pinned" or (joint.stiffness is not None and joint.stiffness.rotation is None):
             continue
         names = [point.line for point in joint.between if point.line is not None]
-        if len(names) == 1:
-            held.add(names[0])
+        if len(names) < 2:  # held by the body, or between bodies
+            held.update(names)
             continue
         joined = groups[names[0]] | groups[names[1]]
         groups |= dict.fromkeys(joined, joined)

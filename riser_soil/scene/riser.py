@@ -1,7 +1,6 @@
 """Scene language: the riser, its segments, contents, end supports and shapes."""
 
 import math
-from collections.abc import Sequence
 from itertools import accumulate
 from typing import Annotated, Any, Literal, Self
 
@@ -270,14 +269,14 @@ class Riser(BaseModel):
     )
     _tied: bool = PrivateAttr(default=False)
 
-    def tied_at(self, arcs: Sequence[float]) -> Self:
-        """The line of several that joints hold at arcs [m] between its ends."""
+    def tied(self, is_tied: bool) -> Self:
+        """The line of several, and whether joints hold it between its ends."""
         line = self.model_copy()
-        line._tied = bool(arcs)
+        line._tied = is_tied
         return line
 
     @property
-    def tied(self) -> bool:
+    def is_tied(self) -> bool:
         """Whether joints hold it between its ends."""
         return self._tied
 

@@ -88,7 +88,7 @@ def _nearest_node(scene: Scene, arc: float) -> float:
 
 def _at_rest(scene: Scene, n: int) -> Iterator[Problem]:
     """What keeps a riser from having an equilibrium."""
-    if scene.line.tied:
+    if scene.line.is_tied:
         return
     if scene.line.start == scene.line.end == "free":
         remedy = "give an end a position, or make the stage dynamic"

@@ -90,9 +90,11 @@ def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Ans
 def _at_rest(run: Run) -> Iterator[Answer]:
     """Dynamic stages without motion: their extremes are the static stage's values."""
     found = list(key_results(run.summary).values())
-    static = next(stage["name"] for stage in run.summary["stages"] if stage["kind"] == "static")
-    before = {each.label: each for each in found if each.stage == static}
-    moving = {stage["name"] for stage in run.summary["stages"] if stage["kind"] != "static"}
+    statics, moving = (
+        [stage["name"] for stage in run.summary["stages"] if (stage["kind"] == "static") is still]
+        for still in (True, False)
+    )
+    before = {each.label: each for each in found if each.stage == statics[-1]}
     names = ("top tension", "force at end", "force at start")
     for now in found:
         if now.stage in moving and now.name in names and now.label in before:

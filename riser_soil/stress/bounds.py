@@ -83,8 +83,9 @@ def _weight(scene: Scene) -> float:
 
 
 def _loads(scene: Scene, stage: Stage) -> np.ndarray:
-    """Sum of a stage's loads at its end (3,) [N]."""
-    total = np.zeros(3)
+    """Sum of a stage's loads at its end (3,) [N], with what tensioners pull."""
+    tensioners = (getattr(end, "tensioner", None) for end in (scene.line.start, scene.line.end))
+    total = np.array([0.0, 0.0, sum(each.tension for each in tensioners if each is not None)])
     for load in loads_in(scene.stages, stage):
         factor = 1.0 if load.history is None else load.history[-1][1]
         total += factor * np.asarray(load.force or (0.0, 0.0, 0.0))

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from riser_soil.accuracy.settings import SETTINGS, varied
 from riser_soil.scene.lines import acts_on, risers, with_acts, with_risers
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import StaticStage
+from riser_soil.scene.stages import StaticStage, varying_in
 
 BASE = "as it is"
 CLOSE, NEAR, SAME = 0.02, 0.1, 1e-4  # what key results may differ by, of their scales
@@ -79,10 +79,19 @@ def _motions(scene: Scene) -> Iterator[ExtremeScene]:
     for factor in (10.0, 0.1):
         yield ExtremeScene(f"harmonic motion times {factor:g}", _moved(scene, amplitude=factor))
     yield ExtremeScene("harmonic motion in a tenth of its period", _moved(scene, period=0.1))
-    if scene.water is None or scene.water.waves is None:
-        last = max((n for n, stage in enumerate(scene.stages) if isinstance(stage, StaticStage)), default=-1)
-        if last >= 0:
-            yield ExtremeScene("no motion", _with_motions(scene, lambda motion: None), _AT_REST, SAME)
+    if (scene.water is None or scene.water.waves is None) and _ends_at_rest(scene):
+        yield ExtremeScene("no motion", _with_motions(scene, lambda motion: None), _AT_REST, SAME)
+
+
+def _ends_at_rest(scene: Scene) -> bool:
+    """Whether static stages alone have loads, which stay, and dynamic ones come after them."""
+    kinds = [isinstance(stage, StaticStage) for stage in scene.stages]
+    stays = all(still and load.keep for still, stage in zip(kinds, scene.stages, strict=True) for load in _loads(stage))
+    return kinds[0] and kinds == sorted(kinds, reverse=True) and stays
+
+
+def _loads(stage: Any) -> list[Any]:
+    return [*varying_in(stage), *(load for own in stage.lines.values() for load in own.loads)]
 
 
 _AT_REST = "at rest"

@@ -31,7 +31,7 @@ from riser_soil.report.extremes import key_results_table
 from riser_soil.report.report import write_report
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.read import Run
-from riser_soil.scene.lines import by_line
+from riser_soil.scene.lines import by_line, spinning
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.whole_run import run
@@ -286,6 +286,56 @@ def test_a_line_with_free_ends_hangs_on_its_ties(tmp_path: Path) -> None:
     assert ends["start"]["force"][2] + ends["end"]["force"][2] == pytest.approx(2.0 * 50.0 * 20.0, rel=1e-6)
     gap = found.of_line("above")["position"][-1] - found.of_line("below")["position"][-1]
     assert gap[[1, 5, 9]] == pytest.approx(np.tile([0.0, 0.0, 2.0], (3, 1)), abs=1e-3)
+
+
+def test_ties_to_nothing_hold_nothing() -> None:
+    """Two lines with free ends, tied to each other alone, and then to one that is held."""
+    lines: dict[str, Any] = {
+        name: {"segments": [{"line_type": "chain", "length": 20.0, "elements": 4}], "start": "free", "end": "free"}
+        for name in ("one", "other")
+    }
+    tie = {"kind": "pinned", "between": [{"line": "one", "at": 10.0}, {"line": "other", "at": 10.0}]}
+    scene: dict[str, Any] = {"line_types": {"chain": CHAIN}, "lines": lines, "joints": {"tie": tie}}
+    scene["stages"] = [static()]
+    with pytest.raises(SceneError, match=telling("stages.0", "free ends")):
+        scene_from_mapping(scene)
+    lines["held"] = lines["one"] | {"start": {"position": [0.0, 0.0, 0.0]}}
+    scene["joints"]["hung"] = {"kind": "pinned", "between": [{"line": "held", "at": 10.0}, {"line": "one", "at": 15.0}]}
+    assert scene_from_mapping(scene).joints
+
+
+SECTIONS = {"output": {"sections": {"arcs": [20.0]}}}
+
+
+def test_what_no_line_has_anything_of_is_refused() -> None:
+    for given, key in (({"contact": {"stiffness": 1.0e5}}, "contact:"), (SECTIONS, "output.sections:")):
+        with pytest.raises(SceneError, match=telling(key)):
+            scene_from_mapping(mooring() | given)
+    scene = mooring()
+    scene["stages"][0]["pressure"] = 1.0e6
+    with pytest.raises(SceneError, match=telling("stages.0.pressure:")):
+        scene_from_mapping(scene)
+
+
+def test_bodies_clamped_to_each_other_spin_no_line() -> None:
+    scene = mooring(body=RIGID)
+    scene["bodies"]["fin"] = scene["bodies"]["buoy"] | {"position": [0.0, 0.0, -15.0]}
+    between = [{"body": "buoy", "offset": [0.0, 0.0, 5.0]}, {"body": "fin"}]
+    scene["joints"]["rod"] = {"kind": "clamped", "between": between}
+    assert spinning(scene_from_mapping(scene)) == {"east", "north", "south"}
+
+
+def test_forces_of_free_ends_count_beside_those_of_all_lines() -> None:
+    """Round-off has no error of its own: of the largest force of all lines a thousandth is the least scale."""
+    end = {"position": [0.0, 0.0, 0.0], "resultant_force": 0.0, "effective_tension": 0.0}
+    ends: dict[str, Any] = {"start": end, "end": end}
+    final: dict[str, Any] = ends | {"max_bending_moment": {"value": 1.0}, "max_curvature": {"value": 1.0}}
+    final |= {"min_effective_tension": {"value": 0.0}, "touchdown_arc": None, "contact_force": 0.0}
+    pulled = final | {"end": ends["end"] | {"resultant_force": 1.0e5}}
+    stage = {"name": "rest", "kind": "static", "lines": {"free": {"final": final}, "held": {"final": pulled}}}
+    found = key_results({"stages": [stage]})
+    assert found["rest: free force at end"].scale == pytest.approx(1.0e2)
+    assert found["rest: held force at start"].scale == pytest.approx(1.0e4)
 
 
 def test_what_is_wrong_with_a_line_has_its_path(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,16 @@ import pytest
 from scipy.optimize import brentq
 from typer.testing import CliRunner
 
-from riser_soil.assembly.hang_off import by_cable, hung_ends, settled, with_values
+from riser_soil.accuracy.chosen_run import run_as_asked
+from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_ends, settled, with_values
 from riser_soil.commands.app import app
-from riser_soil.errors import SceneError
+from riser_soil.errors import Interruption, SceneError
 from riser_soil.hang_off import FoundEnd, from_vertical, hung
 from riser_soil.results import Run
+from riser_soil.results.observer import Observer
 from riser_soil.scene.cross_checks import conflicts
-from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
@@ -138,6 +142,66 @@ def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
         end = Run(tmp_path / "run" / line).summary["stages"][0]["final"]["start"]
         assert end["effective_tension"] == pytest.approx(H / np.sin(np.radians(angle)), rel=1e-3)
         assert end["angle_deg"] == pytest.approx(angle - 90.0, abs=0.002)
+
+
+def test_a_joint_goes_farther_than_its_line_is_long_at_first(tmp_path: Path) -> None:
+    """The weight's place is a guess; the scene in numbers can be run again."""
+    scene = on_a_weight(west=30.0, east=30.0)
+    scene["bodies"]["weight"]["position"] = [0.0, 0.0, -100.0]
+    scene["line_types"]["pipe"] = IN_SPACE | {"EA": 1.0e7}
+    for line in scene["lines"].values():
+        line["segments"][0]["length"] = 120.0
+    found = hung(scene_from_mapping(scene))
+    assert found is not None
+    lengths = [each.value for each in found.ends]
+    assert lengths[0] == pytest.approx(lengths[1], rel=1e-4)
+    assert lengths[0] < np.hypot(50.0, 100.0) / 1.1
+    (tmp_path / "scene.yaml").write_text(dump_scene(found.scene))
+    assert read_scene(str(tmp_path / "scene.yaml")).lines["west"].length == lengths[0]
+
+
+def test_a_shifted_aim_that_no_cable_reaches_ends_no_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Aims beyond what was asked for are out of reach: one value is tried, and slopes are found by differences."""
+    original = by_cable
+
+    def at_most(wanted: HungEnd, asked: float) -> float:
+        if asked != 15.0:
+            raise SceneError("out of reach")
+        return original(wanted, asked)
+
+    monkeypatch.setattr("riser_soil.hang_off.by_cable", at_most)
+    _, found = solved(hanging(STIFF, angle=15.0))
+    assert found.reached == pytest.approx(15.0, abs=0.002)
+
+
+def test_a_vessel_that_another_end_hangs_on_does_not_come_along(tmp_path: Path) -> None:
+    (tmp_path / "vessel.csv").write_text("t [s], heave [m]\n0, 0\n1, 1\n2, 0\n3, 0\n")
+    scene = hanging(IN_SPACE | {"mass": 20.0}, angle=20.0)
+    riser = scene.pop("riser")
+    scene["lines"] = {"first": riser, "second": riser | {"end": prescribed(30.0, 0.0, RISE)}}
+    vessel = {"end": {"vessel_history": {"file": "vessel.csv", "reference": [60.0, 0.0, 45.0]}}}
+    moved = {name: {"motion": vessel} for name in scene["lines"]}
+    scene["stages"] = [static(), dynamic(1.0, 0.1, "sail", lines=moved)]
+    with pytest.raises(SceneError, match=telling("lines.first.end.hang_off:", "vessel")):
+        scene_from_mapping(scene, tmp_path)
+
+
+def test_a_run_that_ends_early_tells_what_was_found_and_so_does_its_restart(tmp_path: Path) -> None:
+    scene = hanging(CHAIN | {"mass": 20.0}, angle=20.0)
+    scene["stages"] = [static(), dynamic(0.5, 0.1)]
+    given, folder, usual = scene_from_mapping(scene), tmp_path / "run", Observer.record
+
+    def record_and_leave(self: Observer, *reported: Any, **more: Any) -> None:
+        usual(self, *reported, **more)
+        signal.raise_signal(signal.SIGTERM)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Observer, "record", record_and_leave)
+        with pytest.raises(Interruption):
+            run_as_asked(given, folder)
+    first = json.loads((folder / "summary.json").read_text())["hang_off"]
+    run_as_asked(read_scene(str(folder / "scene.yaml")), folder, restart=True)
+    assert json.loads((folder / "summary.json").read_text())["hang_off"] == first
 
 
 def test_no_anchor_moves_that_a_joint_holds() -> None:

@@ -111,6 +111,18 @@ def test_extremes_of_several_lines() -> None:
     assert "in three dimensions" not in found, "they are in space already"
 
 
+def test_loads_that_do_not_stay_leave_no_rest() -> None:
+    load: dict[str, Any] = {"force": [0.0, 0.0, 100.0]}
+    kept = {"rest": {"bodies": {"buoy": {"loads": [load | {"keep": True}]}}}}
+    for acting, there in ((kept, True), ({"rest": {"bodies": {"buoy": {"loads": [load]}}}}, False)):
+        scene = mooring(shaken())
+        scene["stages"][0] |= acting["rest"]
+        assert ("no motion" in {each.name for each in extremes(scene_from_mapping(scene))}) == there
+    scene = mooring(shaken())
+    scene["stages"][1]["lines"]["north"] = {"loads": [load | {"at": "end"}]}
+    assert "no motion" not in {each.name for each in extremes(scene_from_mapping(scene))}
+
+
 _MOVED = ("harmonic motion times 10", "no motion")
 
 
@@ -135,6 +147,15 @@ def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
     summary.write_text(json.dumps(reported))
     (wrong,) = (answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds)
     line_with([wrong], "static:", "vertical forces", "out of balance")
+
+
+def test_a_tensioner_bears_what_hangs_on_it(tmp_path: Path) -> None:
+    pipe = {"EA": 2.0e9, "EI": 9.0e6, "submerged_weight": 500.0}
+    ends = {"start": prescribed(0.0, 0.0, -100.0), "end": prescribed(0.0, 0.0, 0.0) | {"tensioner": {"tension": 8.0e4}}}
+    run(scene_from_mapping(riser_scene(static(), pipe=pipe, length=100.0, elements=10, gravity=9.81, **ends)), tmp_path)
+    judged = list(bounds(Run(tmp_path)))
+    assert len(judged) == 3
+    assert all(answer.holds for answer in judged)
 
 
 def test_forces_out_of_balance_are_found_on_a_line_of_several(tmp_path: Path) -> None:
