@@ -101,7 +101,7 @@ def assess(file: Path, given: Fatigue) -> YearlyDamage:
         if first is None:
             first, chosen = history, _chosen(file, history, given.arcs)
         if not same_sections(first, history):
-            raise ResultsError(f"{run.folder}: has other nodes or walls than {runs[0].folder}; cases share one riser")
+            raise ResultsError(f"{run.place}: has other nodes or walls than {runs[0].place}; cases share one riser")
         rates.append(damage_rates(history, how, [int(i) for i in chosen]) * case.share * YEAR)
         histories.append(history)
     assert first is not None  # a fatigue file has a case at least

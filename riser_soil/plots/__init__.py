@@ -61,7 +61,7 @@ def film(
             options = [f"{name}={value}" for name, value in given.items() if value is not None]
             _draw(["film", str(folder), str(part), *options])
         elif field is not None or magnify is not None:
-            raise ResultsError(f"{run.folder}: the run has no soil, so there is nothing to colour or to magnify")
+            raise ResultsError(f"{run.place}: the run has no soil, so there is nothing to colour or to magnify")
         else:
             from riser_soil.plots.riser_film import film_riser
 

@@ -91,12 +91,12 @@ def _filmed(run: Run, stage: str | None, period: float | None) -> tuple[float, f
 
 def _prepared(run: Run, times: tuple[float, float], field: FilmedField, magnify: float | None) -> _Film:
     if not run.has_soil:
-        raise ResultsError(f"{run.folder}: the run has no soil, so there is nothing to film")
+        raise ResultsError(f"{run.place}: the run has no soil, so there is nothing to film")
     slack = _SLACK * (times[1] - times[0])
     frames = np.flatnonzero((run.soil_times >= times[0] - slack) & (run.soil_times <= times[1] + slack))
     if len(frames) < 2:
         raise ResultsError(
-            f"{run.folder}: soil.vtkhdf has {len(frames)} frame(s) of {times[0]:g} to {times[1]:g} s; a film takes "
+            f"{run.place}: soil.vtkhdf has {len(frames)} frame(s) of {times[0]:g} to {times[1]:g} s; a film takes "
             "two; shorten output.xdmf_interval of the scene and run again"
         )
     require(run.soil_frame(int(frames[0])), "the film", "displacement", field.output)

@@ -38,7 +38,7 @@ def film_riser(run: Run, file: Path, stage: str | None = None, period: float | N
     records = filmed_records(of_stage, MOST_FRAMES) if period is None else cycles(run, number, period)[-1].records
     if len(records) < 2:
         raise ResultsError(
-            f'{run.folder}: stage "{of_stage.name}" has {len(records)} record(s) to film, and a film takes two; '
+            f'{run.place}: stage "{of_stage.name}" has {len(records)} record(s) to film, and a film takes two; '
             "shorten output.interval of the scene and run again"
         )
     write_film(file, _pictures(run, records), float(np.diff(run.time[records]).mean()))

@@ -114,7 +114,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _read(run: Run) -> _Frame:
     if run.time.size == 0:
-        raise ResultsError(f"{run.folder}: nothing was recorded, so there is nothing to draw")
+        raise ResultsError(f"{run.place}: nothing was recorded, so there is nothing to draw")
     frame = run.soil_frame() if run.has_soil and run.soil_times.size else None
     at = -1 if frame is None else int(np.abs(run.time - frame.time).argmin())
     position, touchdown_arc = run["position"][at], float(run["touchdown_arc"][at])

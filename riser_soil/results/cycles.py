@@ -32,7 +32,7 @@ def stage_of_kind(run: Run, name: str | None, *kinds: str) -> int:
     if chosen not in found:
         words = " or ".join(kinds)
         known = f"its {words} stages: {', '.join(found)}" if found else f"it has no {words} stage"
-        raise ResultsError(f'{run.folder}: "{chosen}" is no {words} stage of the run; {known}')
+        raise ResultsError(f'{run.place}: "{chosen}" is no {words} stage of the run; {known}')
     return found[chosen]
 
 
@@ -58,7 +58,7 @@ def period_of(run: Run, stage: int) -> float:
     if len(found) != 1:
         reported = f"has the periods {', '.join(f'{T:g}' for T in sorted(found))} s" if found else "has no one period"
         raise ResultsError(
-            f'{run.folder}: stage "{run.stage_names[stage]}" {reported}; give the length of a cycle, period'
+            f'{run.place}: stage "{run.stage_names[stage]}" {reported}; give the length of a cycle, period'
         )
     return found.pop()
 
@@ -84,7 +84,7 @@ def cycles(run: Run, stage: int, period: float) -> list[Cycle]:
     passed = (run.time[records] - since) / period
     whole = int(np.floor(passed.max(initial=0.0) + SLACK))
     if whole < 1:
-        raise ResultsError(f'{run.folder}: stage "{run.stage_names[stage]}" has no whole cycle of {period:g} s')
+        raise ResultsError(f'{run.place}: stage "{run.stage_names[stage]}" has no whole cycle of {period:g} s')
     return [
         Cycle(since + (n + 1) * period, records[(passed > n - SLACK) & (passed < n + 1 + SLACK)]) for n in range(whole)
     ]

@@ -209,7 +209,7 @@ class Run:
     def soil_times(self) -> Array:
         """(nf,) s, times of the soil's frames."""
         if not self.has_soil:
-            raise ResultsError(f"{self.folder}: has no soil: no {run_folder.SOIL_NUMBERS}")
+            raise ResultsError(f"{self.place}: has no soil: no {run_folder.SOIL_NUMBERS}")
         with self._open(run_folder.SOIL_NUMBERS) as store:
             return vtkhdf.times(store)
 

@@ -58,14 +58,14 @@ def stage_records(run: Run, name: str | None = None) -> StageRecords:
     stages, of_record = run.summary["stages"], _stage_of_records(run)
     recorded = [n for n in range(len(stages)) if (of_record == n).any()]
     if not recorded:
-        raise ResultsError(f"{run.folder}: nothing was recorded, so there is nothing to draw")
+        raise ResultsError(f"{run.place}: nothing was recorded, so there is nothing to draw")
     if name is None:
         timed = [n for n in recorded if stages[n]["kind"] != "static"]
         return _of(run, (timed or recorded)[-1], of_record)
     named = [n for n in recorded if stages[n]["name"] == name]
     if not named:
         known = ", ".join(stages[n]["name"] for n in recorded)
-        raise ResultsError(f'{run.folder}: "{name}" is no stage of the run with records; it has {known}')
+        raise ResultsError(f'{run.place}: "{name}" is no stage of the run with records; it has {known}')
     return _of(run, named[-1], of_record)
 
 

@@ -69,7 +69,7 @@ def records_of(
     for run, values in zip(runs, evened, strict=True):
         if len(values) < FEWEST:
             raise ResultsError(
-                f"{run.folder}: has {len(values)} values at the step of the coarsest run, {step:g} s, fewer than "
+                f"{run.place}: has {len(values)} values at the step of the coarsest run, {step:g} s, fewer than "
                 f"{FEWEST}; take runs of like output.interval together"
             )
     return Records(name, output.units, step, float(sampled[0].time[0]), places, evened)
@@ -78,11 +78,11 @@ def records_of(
 def _places(runs: Sequence[Run], arcs: Sequence[float] | None) -> Array:
     for run in runs:
         if arcs is None and not np.array_equal(run.arc, runs[0].arc):
-            raise ResultsError(f"{run.folder}: has other nodes than {runs[0].folder}; give places with --arc")
+            raise ResultsError(f"{run.place}: has other nodes than {runs[0].place}; give places with --arc")
         beyond = [arc for arc in arcs or () if not run.arc[0] <= arc <= run.arc[-1]]
         if beyond:
             raise ResultsError(
-                f"--arc {beyond[0]:g}: is not on the riser of {run.folder}, which is {run.arc[-1]:g} m long"
+                f"--arc {beyond[0]:g}: is not on the riser of {run.place}, which is {run.arc[-1]:g} m long"
             )
     return runs[0].arc if arcs is None else np.array(arcs, dtype=float)
 
@@ -93,7 +93,7 @@ def _sampled(run: Run, variable: str, component: str, places: Array, stage: str 
     taken = (run["stage"] == number) & (time >= since)
     if np.count_nonzero(taken) < FEWEST:
         raise ResultsError(
-            f'{run.folder}: stage "{run.stage_names[number]}" has {np.count_nonzero(taken)} records from {since:g} s '
+            f'{run.place}: stage "{run.stage_names[number]}" has {np.count_nonzero(taken)} records from {since:g} s '
             f"on, fewer than {FEWEST}; take a longer stage or a shorter --since"
         )
     values = _component(run[variable][taken], component)
@@ -101,7 +101,7 @@ def _sampled(run: Run, variable: str, component: str, places: Array, stage: str 
         values = np.array([np.interp(places, run.arc, row) for row in values])
     values = values.reshape(len(values), -1)
     if not np.isfinite(values).all():
-        raise ResultsError(f"{run.folder}: {variable} is not known at all times; choose another place or output")
+        raise ResultsError(f"{run.place}: {variable} is not known at all times; choose another place or output")
     return _Sampled(time[taken], values)
 
 
