@@ -1,7 +1,8 @@
 """Hang-off: ends' places, or segments' lengths, with which lines at rest have the angles or tensions asked for.
 
 The cable without bending stiffness tells where to begin. The scene itself is then taken through its first static stage,
-with bending, ends, joints and ground as in any run, and the secant method closes the rest.
+with bending, ends, joints and ground as in any run, and the secant method, of several ends Powell's hybrid method,
+closes the rest.
 """
 
 from __future__ import annotations
