@@ -137,8 +137,7 @@ class Run:
         found, line = self._whole_summary, self._group[:-1]
         if not line:
             return found
-        stages = [stage | stage["lines"][line] for stage in found["stages"]]
-        own = {"stages": [{key: value for key, value in stage.items() if key not in OF_ALL} for stage in stages]}
+        own: dict[str, Any] = {"stages": [_stage_of_line(stage, line) for stage in found["stages"]]}
         if bars := found.get("error_bars"):
             own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["of"] == line]}
         if hung := found.get("hang_off"):
@@ -227,6 +226,16 @@ class Run:
             return reading(path)
         except OSError as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
+
+
+def _stage_of_line(stage: dict[str, Any], line: str) -> dict[str, Any]:
+    """A stage of the summary with a line's figures in it; indicators of the steps are those of all lines."""
+    own, shared = stage["lines"][line], stage.get("indicators", {})
+    found = {key: value for key, value in (stage | own).items() if key not in OF_ALL}
+    indicators = shared | own.get("indicators", {})
+    if "time_step" in shared:
+        indicators["time_step"] = shared["time_step"] | indicators["time_step"]
+    return found | {"indicators": indicators}
 
 
 def load(path: Path, group: str = "") -> xr.Dataset:

@@ -48,13 +48,14 @@ from tests.support.line_scenes import (
     RIGID,
     WET,
     G,
+    as_line,
     lazy_s,
     lazy_s_by_catenaries,
     mooring,
     shaken,
     spans,
 )
-from tests.support.riser_scenes import dynamic, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with, telling
 from tests.support.vtk_reading import read_by_vtk
 
@@ -327,6 +328,35 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     x, other = (found.of_line(name)["position"][-1] for name in ("east", "north"))
     nearest = np.linalg.norm(x[:17, None] - other[None, :17], axis=2).min()
     assert found["clearance/east_north/distance"][-1] == pytest.approx(nearest - CHAIN["outer_diameter"], rel=0.02)
+
+
+def test_indicators_of_a_line_are_those_of_a_riser(tmp_path: Path) -> None:
+    """In its own entry, with what the whole step has at its stage."""
+    pipe = {"EA": 1.0e8, "EI": 1.0e3, "GJ": 1.0e3, "mass": 20.0, "outer_diameter": 0.1, "submerged_weight": 100.0}
+    moved = dynamic(1.0, 0.1, motion={"end": {"harmonic": {"amplitude": [0.0, 0.0, 0.5], "period": 2.0}}})
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(20.0, 0.0, 10.0)}
+    more = ends | {"dimension": 3, "gravity": G, "riser": {"initial": "catenary"}}
+    scene = riser_scene(static(), moved, pipe=pipe, length=25.0, elements=10, **more)
+    alone, several = (ran(each, tmp_path / name) for name, each in (("riser", scene), ("lines", as_line(scene))))
+    expected = [stage["indicators"] for stage in alone.summary["stages"]]
+    assert [*expected[0]] == ["bending"]
+    assert [*expected[1]] == ["bending", "time_step", "impact"]
+    found = [stage["indicators"] for stage in several.of_line("only").summary["stages"]]
+    for one, other in zip(expected, found, strict=True):
+        assert flat(other) == pytest.approx(flat(one), rel=1e-6, nan_ok=True)
+    assert flat(expected[1])["time_step.end.effective_tension.max"] > 0.0
+    shared = several.summary["stages"][1]["indicators"]
+    assert {"local_error", "lost"} < {key.split(".")[1] for key in flat(shared)}
+    assert not any("effective_tension" in key for key in flat(shared))
+
+
+def flat(nested: dict[str, Any], path: str = "") -> dict[str, float]:
+    """Values by path; nan for null."""
+    found: dict[str, float] = {}
+    for key, value in nested.items():
+        number = np.nan if value is None else value
+        found |= flat(value, f"{path}{key}.") if isinstance(value, dict) else {path + key: number}
+    return found
 
 
 def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
