@@ -43,12 +43,16 @@ def _without_lines(scene: Scene) -> Iterator[Problem]:
 def _moved(problems: list[Problem], name: str) -> Iterator[Problem]:
     """With the paths that the keys of a line have in the scene."""
     for problem in problems:
-        path = problem.path
-        if path[:1] == ("riser",):
-            path = ("lines", name, *path[1:])
-        elif path[:1] == ("stages",) and len(path) > 2 and path[2] in _OF_STAGE:
-            path = (*path[:2], "lines", name, *path[2:])
-        yield Problem(path, problem.allowed, problem.remedy)
+        yield Problem(path_of_line(problem.path, name), problem.allowed, problem.remedy)
+
+
+def path_of_line(path: Path, name: str) -> Path:
+    """A path in a line's own scene, as it is in the whole one."""
+    if path[:1] == ("riser",):
+        return ("lines", name, *path[1:])
+    if path[:1] == ("stages",) and len(path) > 2 and path[2] in _OF_STAGE:
+        return (*path[:2], "lines", name, *path[2:])
+    return path
 
 
 def _names(scene: Scene) -> Iterator[Problem]:

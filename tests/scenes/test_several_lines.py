@@ -26,6 +26,7 @@ from riser_soil.assembly.stage import times_to_hit
 from riser_soil.cases.case_table import case_values
 from riser_soil.checks.check import describe
 from riser_soil.checks.overload import overload
+from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import ResultsError, SceneError
 from riser_soil.report.extremes import key_results_table
 from riser_soil.report.report import write_report
@@ -321,6 +322,11 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert all(f"{tmp_path.name} {name}" in page for name in NAMES)
     with pytest.raises(ResultsError, match=telling("no line west", "east, north, south")):
         found.of_line("west")
+    with h5py.File(tmp_path / "results.nc") as file:
+        assert {"time", "work", "clearance", "work_supports"} < {*file}
+        for name in {*file} - {*NAMES}:
+            with pytest.raises(SceneError, match=telling(f"lines.{name}", "rename")):
+                scene_from_mapping(with_line_named(name))
     summary = json.loads((tmp_path / "summary.json").read_text())["stages"][1]
     place = found["bodies/buoy/position"]
     assert summary["bodies"]["buoy"]["position"]["final"] == pytest.approx(place[-1])
@@ -513,6 +519,10 @@ def joint(*between: dict[str, Any], **more: Any) -> dict[str, Any]:
 
 def stage(**more: Any) -> dict[str, Any]:
     return changed(stages=[static("rest", **more)])
+
+
+def clearances(*pairs: tuple[str, str]) -> dict[str, Any]:
+    return changed(output={"clearance": [{"between": [*pair], "beyond": 5.0 * n} for n, pair in enumerate(pairs)]})
 
 
 TO_BUOY, EAST, NORTH = {"body": "buoy"}, {"line": "east", "at": "end"}, {"line": "north", "at": "end"}
