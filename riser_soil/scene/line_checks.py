@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import ENDS, arc_of, by_line, first_place
@@ -9,7 +10,16 @@ from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, MidpointScheme, OfBody, StaticStage
 
-_RESERVED = ("riser", "soil", "bodies", "joints", "results")
+_FILES = ("soil", "results")  # other files of a run
+# At the root of results.nc, beside what steps have, and of modes.nc.
+_IN_RESULTS = (
+    *("time", "stage", "step", "step_time", "step_stage", "component", "section", "offset"),
+    *("bodies", "joints", "clearance"),
+    *(output.name for output in OF_STEP),
+)
+_IN_MODES = ("mode", "direction", "frequency", "period", "share")
+_RESERVED = frozenset((*_FILES, *_IN_RESULTS, *_IN_MODES))
+_OF_LEDGER = ("dissipated_", "work_")  # of parts
 _OF_STAGE = ("move", "motion", "loads")
 _LATER = "leave it out, or take a scene of one line"
 
@@ -63,7 +73,7 @@ def _names(scene: Scene) -> Iterator[Problem]:
     for name in scene.lines:
         if name in scene.bodies:
             yield Problem(("bodies", name), "a line has the same name", "rename one of the two")
-        if name in _RESERVED[1:]:
+        if name in _RESERVED or name.startswith(_OF_LEDGER):
             yield Problem(("lines", name), "is the name of another file or group of the results", "rename it")
 
 
@@ -149,6 +159,10 @@ def _clearances(scene: Scene) -> Iterator[Problem]:
                 yield Problem((*path, m), allowed, f"name one of them{hint(name, scene.lines)}")
         if pair.between[0] == pair.between[1]:
             yield Problem(path, "a line has no clearance from itself", "name two lines")
+        before = [other.key for other in scene.output.clearance[:n]]
+        if pair.key in before:
+            allowed = f"is {pair.key} in the results, as output.clearance.{before.index(pair.key)} is"
+            yield Problem(path, allowed, "leave one out, turn the two names round, or rename a line")
 
 
 def _soil(scene: Scene) -> Iterator[Problem]:

@@ -55,9 +55,10 @@ from tests.support.line_scenes import (
     mooring,
     shaken,
     spans,
+    with_line_named,
 )
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
-from tests.support.said import line_with, telling
+from tests.support.said import line_with, lines_with, telling
 from tests.support.vtk_reading import read_by_vtk
 
 ELEMENTS, TIME_STEP = (setting for setting in SETTINGS if setting.name in ("elements", "time_step"))
@@ -437,6 +438,21 @@ def test_check_names_each_line(tmp_path: Path) -> None:
     assert re.search(r"estimated time: .* \d+ steps", said)
 
 
+def test_a_load_that_ends_with_its_stage_is_told_of() -> None:
+    """On a line and on a body, each by its path; not one that stays."""
+    force = {"force": [0.0, 200.0, 0.0]}
+    on_line: list[dict[str, Any]] = [{"at": 65.0, **force}]
+    on_body: list[dict[str, Any]] = [{**force}]
+    acts = {"lines": {"east": {"loads": on_line}}, "bodies": {"buoy": {"loads": on_body}}}
+    scene = mooring(shaken()) | {"stages": [static("rest", **acts), shaken()]}
+    said = [*physical_warnings(build(scene_from_mapping(scene), MPI.COMM_SELF))]
+    line_with(said, "stages.0.lines.east.loads.0", "[0.0, 200.0, 0.0] N", "at 65.0", "shaken", "keep: true")
+    line_with(said, "stages.0.bodies.buoy.loads.0", "[0.0, 200.0, 0.0] N", "shaken", "keep: true")
+    for load in (*on_line, *on_body):
+        load["keep"] = True
+    assert not lines_with(physical_warnings(build(scene_from_mapping(scene), MPI.COMM_SELF)), "keep: true")
+
+
 def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
     seabed = {"kind": "spring", "level": -DEPTH - 0.5, "stiffness": 1e4}
     scene = scene_from_mapping(mooring(shaken(0.5), body=RIGID, seabed=seabed))
@@ -542,6 +558,7 @@ REFUSED = [
     (joint(EAST, NORTH), "nothing says where the joint is at first"),
     (joint(TO_BUOY, TO_BUOY), "both points are of the same line or body"),
     (changed(output={"clearance": [{"between": ["east", "west"]}]}), "output.clearance.0.between.1: value .west."),
+    (clearances(("east", "north"), ("east", "north")), "output.clearance.1.between: .*is east_north .*clearance.0 is"),
     (stage(**MOVED), "stages.0.move: value .*: does not say of which line it is"),
     (stage(bodies={"boy": {}}), "stages.0.bodies.boy: .*must be one of bodies .buoy.; name one of them"),
     (stage(bodies={"buoy": {"loads": [{"keep": True}]}}), "stages.0.bodies.buoy.loads.0.force: .*the load is missing"),
@@ -555,6 +572,27 @@ REFUSED = [
         "lines.east.segments.0.line_type: value .chian.: must be a key of line_types",
     ),
 ]
+
+
+def test_pairs_of_one_name_in_the_results_are_refused() -> None:
+    """Joined by _ two pairs of other names are one; the other way round, a pair is another."""
+    scene = clearances(("east", "north"), ("north", "east"))
+    assert len(scene_from_mapping(scene).output.clearance) == 2
+    for kind in ("lines", "joints"):
+        given = scene[kind]
+        given |= {key.replace("north", "west_north"): deepcopy(each) for key, each in given.items() if "north" in key}
+        given |= {key.replace("east", "east_west"): deepcopy(each) for key, each in given.items() if "east" in key}
+    for key in ("west_north", "east_west"):
+        scene["joints"][f"{key}_top"]["between"][0]["line"] = key
+    scene["output"]["clearance"] = [{"between": ["east", "west_north"]}, {"between": ["east_west", "north"]}]
+    with pytest.raises(SceneError, match=telling("output.clearance.1.between", "east_west_north", "rename")):
+        scene_from_mapping(scene)
+
+
+@pytest.mark.parametrize("name", ["time", "newton_iterations", "work_supports", "clearance", "results", "frequency"])
+def test_names_that_results_have_otherwise_are_refused(name: str) -> None:
+    with pytest.raises(SceneError, match=telling(f"lines.{name}", "results", "rename")):
+        scene_from_mapping(with_line_named(name))
 
 
 @pytest.mark.parametrize(("scene", "message"), REFUSED)

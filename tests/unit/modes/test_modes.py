@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import xarray
@@ -22,7 +23,7 @@ from riser_soil.modes.eigenpairs import FEW, lowest
 from riser_soil.modes.modes import Modes, modes_of
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping, touchdown
-from tests.support.line_scenes import NAMES, POINT, RIGID, mooring
+from tests.support.line_scenes import NAMES, POINT, RIGID, mooring, with_line_named
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with, telling
 
@@ -388,4 +389,8 @@ def test_modes_of_several_lines_have_groups_and_a_picture(tmp_path: Path) -> Non
     assert np.max(shapes, axis=0) == pytest.approx(np.ones(4), abs=0.3)
     with xarray.open_dataset(folder / "modes.nc", engine="h5netcdf") as stored:
         assert stored["frequency"].shape == (4,)
+    with h5py.File(folder / "modes.nc") as file:
+        for name in {*file} - {*NAMES}:
+            with pytest.raises(SceneError, match=telling(f"lines.{name}", "rename")):
+                scene_from_mapping(with_line_named(name))
     assert (folder / "modes.png").read_bytes().startswith(b"\x89PNG")
