@@ -90,13 +90,17 @@ class Run:
         """Each line's, by name; of a run of one riser itself, by ""."""
         return {"": self} if self._group or not self.lines else {name: self.of_line(name) for name in self.lines}
 
+    def require_one_line(self, wanted: str) -> None:
+        """ResultsError where this is the whole run of several lines, which has not what is wanted: its lines have."""
+        if self.lines and not self._group:
+            each = ", ".join(str(self.folder / line) for line in self.lines)
+            raise ResultsError(f"{self.folder}: {wanted} is not of the run but of its lines: take one of {each}")
+
     def __getitem__(self, name: str) -> Array:
         with self._open(run_folder.SERIES) as file:
             path = self._path_of(file, name)
             if path is None:
-                if self.lines and not self._group:
-                    each = ", ".join(str(self.folder / line) for line in self.lines)
-                    raise ResultsError(f"{self.folder}: {name} is not of the run but of its lines: take one of {each}")
+                self.require_one_line(name)
                 known = ", ".join(sorted(file[self._group or "/"]))
                 raise ResultsError(f"{self.place}: results.nc has no {name}; it has {known}")
             stored = file[path]

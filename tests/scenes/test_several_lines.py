@@ -28,6 +28,7 @@ from riser_soil.checks.check import describe
 from riser_soil.checks.overload import overload
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import ResultsError, SceneError
+from riser_soil.fatigue.stress_history import stress_history
 from riser_soil.report.extremes import key_results_table
 from riser_soil.report.report import write_report
 from riser_soil.results.peaks import RunPeaks
@@ -321,6 +322,8 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert {"east top tension", "north largest bending moment"} <= named
     page = write_report([tmp_path], tmp_path / "report.html").read_text()
     assert all(f"{tmp_path.name} {name}" in page for name in NAMES)
+    with pytest.raises(ResultsError, match=telling("stress", "not of the run", f"{tmp_path / 'east'}")):
+        stress_history(found)
     with pytest.raises(ResultsError, match=telling("no line west", "east, north, south")):
         found.of_line("west")
     with h5py.File(tmp_path / "results.nc") as file:
