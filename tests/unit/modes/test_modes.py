@@ -21,6 +21,7 @@ from riser_soil.__main__ import app
 from riser_soil.errors import SceneError, SolveError
 from riser_soil.modes.eigenpairs import FEW, lowest
 from riser_soil.modes.modes import Modes, modes_of
+from riser_soil.modes.report import table
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.line_scenes import NAMES, POINT, RIGID, mooring, with_line_named
@@ -369,6 +370,9 @@ def test_a_rigid_buoy_on_a_light_tether() -> None:
         M += np.diag([rope["mass"] * LENGTH**3 / 3.0, J + RIGID["added_inertia"][about]])
         expected += np.sqrt(eigh(K, M, eigvals_only=True)).tolist()
     assert modes.frequency == pytest.approx(np.sort(expected) / (2.0 * np.pi), rel=1e-3, abs=1e-4)
+    assert (modes.direction[0], modes.moving_most[0]) == ("of a body", "buoy")
+    assert [line.split().count("-") for line in table(modes, 5)[2:]] == [4, 0, 0, 0, 0]
+    assert line_with(table(modes, 5), "of a body").endswith("  buoy")
     turn = modes.bodies["buoy"].rotation
     assert np.abs(turn[0]).argmax() == 2
     assert np.abs(turn[3:, :2]).max() > 0.3
