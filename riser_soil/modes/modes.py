@@ -75,8 +75,8 @@ class Modes(NamedTuple):
     of 1 of an axis, of a pipe's surface as it twists, or of a body. share (n, 4): of the squared displacement along the
     lines, by DIRECTIONS: across the pipe in the vertical plane from start to end, across it out of this plane, along
     it, and of the pipe's surface as it twists; nan where lines stay in place as bodies move; nan, and no shape, where
-    the nodes turn but stay in place, in half waves as short as elements. asymmetry: see `Eigenpairs`. stage: name of the static
-    stage.
+    the nodes turn but stay in place, in half waves as short as elements. asymmetry: see `Eigenpairs`. stage: name of
+    the static stage.
     """
 
     frequency: Array

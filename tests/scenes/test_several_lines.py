@@ -29,7 +29,7 @@ from riser_soil.checks.overload import overload
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import ResultsError, SceneError
 from riser_soil.fatigue.stress_history import stress_history
-from riser_soil.report.extremes import key_results_table
+from riser_soil.report.extremes import hung_table, key_results_table
 from riser_soil.report.report import write_report
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.read import Run
@@ -322,6 +322,13 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert {"east top tension", "north largest bending moment"} <= named
     page = write_report([tmp_path], tmp_path / "report.html").read_text()
     assert all(f"{tmp_path.name} {name}" in page for name in NAMES)
+    assert page.count("<td>body buoy</td>") == page.count("<td>clearance east_north</td>") == 2
+    rest, moved = (row for row in hung_table(found.summary).rows if row[1] == "clearance east_north")
+    first, *distances = found["clearance/east_north/distance"]
+    assert float(rest[4]) == pytest.approx(first, rel=1e-4)
+    assert [float(moved[n]) for n in (4, 5, 7)] == pytest.approx(
+        [distances[-1], min(distances), max(distances)], rel=1e-4
+    )
     with pytest.raises(ResultsError, match=telling("stress", "not of the run", f"{tmp_path / 'east'}")):
         stress_history(found)
     with pytest.raises(ResultsError, match=telling("no line west", "east, north, south")):
