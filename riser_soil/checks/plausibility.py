@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -11,8 +11,10 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.bending_plausibility import bending_warnings
 from riser_soil.checks.inventory import has_dynamics
 from riser_soil.core.arrays import BoolArray
+from riser_soil.scene.line_checks import path_of_line
+from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Load, Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, Load, OfBody, Stage, StaticStage, VaryingLoad
 
 
 def physical_warnings(assembly: Assembly) -> Iterator[str]:
@@ -20,10 +22,17 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
     if not assembly.scene.lines:
         yield from _of_one(assembly)
         return
-    found = {name: [*_of_one(line)] for name, line in assembly.by_line.items()}
+    found = {name: [_placed(each, name) for each in _of_one(line)] for name, line in assembly.by_line.items()}
     for warning in dict.fromkeys(each for of_line in found.values() for each in of_line):
         names = [name for name, of_line in found.items() if warning in of_line]
         yield f"{', '.join(names)}: {warning}"
+    yield from _body_loads_that_end(assembly.scene)
+
+
+def _placed(warning: str, line: str) -> str:
+    """A warning of one of several lines, that begins with the path that its key has in the whole scene."""
+    path, colon, words = warning.partition(":")
+    return dotted(path_of_line(tuple(path.split(".")), line)) + colon + words
 
 
 def _of_one(assembly: Assembly) -> Iterator[str]:
@@ -89,21 +98,42 @@ def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:
 
 
 def _loads_that_end(scene: Scene) -> Iterator[str]:
-    """Loads of stages without inertia that the next stage does not have, and so takes away."""
-    for n, (stage, after) in enumerate(pairwise(scene.stages)):
+    for n, load, after in _left_out(scene.stages, [stage.loads for stage in scene.stages]):
+        yield _ends(f"stages.{n}.loads", load, after, "the riser")
+
+
+def _body_loads_that_end(scene: Scene) -> Iterator[str]:
+    for name in scene.bodies:
+        given = [stage.bodies.get(name, OfBody()).loads for stage in scene.stages]
+        for n, load, after in _left_out(scene.stages, given):
+            yield _ends(f"stages.{n}.bodies.{name}.loads", load, after, f"body {name}")
+
+
+def _left_out(
+    stages: Sequence[Stage], given: Sequence[Sequence[VaryingLoad]]
+) -> Iterator[tuple[int, tuple[int, VaryingLoad], Stage]]:
+    """Loads, given by stage, of stages without inertia that the next stage does not have, and so takes away: the number
+    of the stage, the load with its own, and the next stage.
+    """
+    for n, (stage, after) in enumerate(pairwise(stages)):
         if isinstance(stage, DynamicStage):
             continue
-        acting_after = [_acting(other) for other in after.loads]
-        for m, load in enumerate(stage.loads):
+        acting_after = [_acting(other) for other in given[n + 1]]
+        for m, load in enumerate(given[n]):
             if not load.keep and not _has_ended(load, stage) and _acting(load) not in acting_after:
-                back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
-                yield (
-                    f"stages.{n}.loads.{m}: {_reported(load)} ends with its stage; {after.name} is without it, and the "
-                    f"riser {back}: give it keep: true if it stays"
-                )
+                yield n, (m, load), after
 
 
-def _has_ended(load: Load, stage: Stage) -> bool:
+def _ends(path: str, numbered: tuple[int, VaryingLoad], after: Stage, what: str) -> str:
+    m, load = numbered
+    back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
+    return (
+        f"{path}.{m}: {_reported(load)} ends with its stage; {after.name} is without it, and {what} {back}: give it "
+        "keep: true if it stays"
+    )
+
+
+def _has_ended(load: VaryingLoad, stage: Stage) -> bool:
     """Whether a load's own history brings it to nothing by the end of its stage."""
     if load.history is None:
         return False
@@ -111,12 +141,13 @@ def _has_ended(load: Load, stage: Stage) -> bool:
     return float(np.interp(stage.end, times, factors)) == 0.0
 
 
-def _acting(load: Load) -> tuple[object, ...]:
+def _acting(load: VaryingLoad) -> dict[str, object]:
     """What a load is, whatever its size in time."""
-    return load.at, load.force, load.moment, load.distributed
+    return load.model_dump(exclude={"history", "keep"})
 
 
-def _reported(load: Load) -> str:
-    given = {"force": (load.force, "N"), "moment": (load.moment, "N.m"), "distributed": (load.distributed, "N/m")}
-    parts = [f"{key} {[float(f'{x:.4g}') for x in v]} {unit}" for key, (v, unit) in given.items() if v is not None]
-    return " and ".join(parts) + (f" at {load.at}" if load.at is not None else "")
+def _reported(load: VaryingLoad) -> str:
+    units = {"force": "N", "moment": "N.m", "distributed": "N/m"}
+    given = {key: getattr(load, key, None) for key in units}
+    parts = [f"{key} {[float(f'{x:.4g}') for x in v]} {units[key]}" for key, v in given.items() if v is not None]
+    return " and ".join(parts) + (f" at {load.at}" if isinstance(load, Load) and load.at is not None else "")

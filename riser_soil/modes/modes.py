@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 DIRECTIONS = ("in plane", "out of plane", "axial", "twist")
 BETWEEN = "at no node"  # moves: the direction of a mode that elements are too long for
+OF_BODY = "of a body"  # moves: the direction of a mode in which no line does
 NEAR_ZERO = 1e-6  # of g over the riser's length: a mode whose square is not larger is one that nothing holds
 MOST_ASYMMETRY = 0.01  # by which the part of the tangent that is not symmetric may change a frequency
 GRAVITY = 9.81  # m/s2
@@ -73,8 +74,9 @@ class Modes(NamedTuple):
     frequency (n,) [Hz]. lines: their shapes by name, "" of the only one, and of bodies; all for a largest displacement
     of 1 of an axis, of a pipe's surface as it twists, or of a body. share (n, 4): of the squared displacement along the
     lines, by DIRECTIONS: across the pipe in the vertical plane from start to end, across it out of this plane, along
-    it, and of the pipe's surface as it twists; nan, and no shape, where the nodes turn but stay in place, in half waves
-    as short as elements. asymmetry: see `Eigenpairs`. stage: name of the static stage.
+    it, and of the pipe's surface as it twists; nan where lines stay in place as bodies move; nan, and no shape, where
+    the nodes turn but stay in place, in half waves as short as elements. asymmetry: see `Eigenpairs`. stage: name of
+    the static stage.
     """
 
     frequency: Array
@@ -92,7 +94,11 @@ class Modes(NamedTuple):
     @property
     def direction(self) -> list[str]:
         """Words for the largest share."""
-        return [DIRECTIONS[share.argmax()] if np.isfinite(share).all() else BETWEEN for share in self.share]
+        bodies = self.bodies.values()
+        moves = [any(own.shape[n].any() or own.rotation[n].any() for own in bodies) for n in range(len(self.share))]
+        each = zip(self.share, moves, strict=True)
+        still = {True: OF_BODY, False: BETWEEN}
+        return [DIRECTIONS[share.argmax()] if np.isfinite(share).all() else still[body] for share, body in each]
 
     @property
     def line(self) -> LineShapes:
@@ -102,11 +108,21 @@ class Modes(NamedTuple):
 
     @property
     def moving_most(self) -> list[str]:
-        """Name of the line or body that has the largest displacement of its axis."""
+        """Name of the line or body that has the largest displacement of its axis; of the body that turns most where
+        none has any.
+        """
         each = {name: own.shape for name, own in self.lines.items()}
         each |= {name: own.shape[:, None] for name, own in self.bodies.items()}
         largest = np.array([np.linalg.norm(shape, axis=2).max(axis=1) for shape in each.values()])
-        return [[*each][n] for n in largest.argmax(axis=0)]
+        names, turned = [[*each][n] for n in largest.argmax(axis=0)], self._turned
+        turning = turned.any(axis=0) & (largest.max(axis=0) < UNSEEN)
+        return [[*self.bodies][turned[:, n].argmax()] if turning[n] else name for n, name in enumerate(names)]
+
+    @property
+    def _turned(self) -> Array:
+        """Sizes of what bodies turn (nb, n) [rad/m]."""
+        found = [np.linalg.norm(own.rotation, axis=1) for own in self.bodies.values()]
+        return np.array(found).reshape(-1, len(self.frequency))
 
 
 def modes_of(scene: Scene, count: int = 10, stage: str | None = None) -> Modes:
@@ -151,7 +167,8 @@ def _seen(rest: RiserAtRest, squares: Array, found: Eigenpairs) -> Modes:
     scale = _scale(np.hstack([*axes, *(arm[:, None] for arm in arms)]), np.hstack(surfaces), UNSEEN * least)
     lines = {name: own.scaled(scale) for name, own in of_lines.items()}
     bodies = {name: own.scaled(scale) for name, own in of_bodies.items()}
-    share = _shares(np.sum([_squared(line, state, lines[name]) for name, line in each.items()], axis=0))
+    seen = UNSEEN**2 * sum(line.arc[-1] for line in each.values())
+    share = _shares(np.sum([_squared(line, state, lines[name]) for name, line in each.items()], axis=0), seen)
     return Modes(np.sqrt(squares) / (2.0 * np.pi), share, found.asymmetry, rest.stage.name, lines, bodies)
 
 
@@ -222,9 +239,10 @@ def _squared(line: Line, state: State, own: LineShapes) -> Array:
     return np.column_stack([of_axis, (_radius(line) * own.twist) ** 2 @ length])
 
 
-def _shares(parts: Array) -> Array:
+def _shares(parts: Array, least: float) -> Array:
+    """Of the sum over parts (n, 4); nan where it is not more than the least."""
     total = parts.sum(axis=1)[:, None]
-    return np.divide(parts, total, out=np.full_like(parts, np.nan), where=total > 0.0)
+    return np.divide(parts, total, out=np.full_like(parts, np.nan), where=total > least)
 
 
 class RiserAtRest(NamedTuple):

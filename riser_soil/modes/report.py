@@ -34,7 +34,7 @@ def table(modes: Modes, asked: int) -> list[str]:
     ]
     rows = zip(modes.frequency, modes.period, modes.direction, modes.share, modes.moving_most, strict=True)
     for n, (f, T, direction, share, name) in enumerate(rows, 1):
-        reported = " ".join(f"{100.0 * part:10.1f} %" for part in share)
+        reported = " ".join(f"{100.0 * part:10.1f} %" if np.isfinite(part) else f"{'-':>12}" for part in share)
         lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {reported}{f'  {name}' if several else ''}")
     if len(modes.frequency) < asked:
         lines.append(f"no more than {len(modes.frequency)} were found: the riser has so few unknowns with mass")

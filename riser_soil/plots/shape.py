@@ -113,10 +113,15 @@ def _zone(axes: Axes, stage: StageRecords, position: Array, ahead: Array) -> Non
     seen = (arc >= places.min() - side) & (arc <= places.max() + side)
     low, high = float(z[:, seen].min()), float(z[:, seen].max())
     margin = 0.08 * (high - low)
-    axes.set_xlim(float(x[:, seen].min()), float(x[:, seen].max()))
-    axes.set_ylim(low - margin, high + margin)
+    axes.set_xlim(*_apart(float(x[:, seen].min()), float(x[:, seen].max()), side))
+    axes.set_ylim(*_apart(low - margin, high + margin, side))
     where = "touchdown zone" if not np.isnan(touchdown).all() else "lowest point"
     axes.set(title=f"{where}, heights drawn larger", xlabel=_AHEAD, ylabel=_UP)
+
+
+def _apart(low: float, high: float, side: float) -> tuple[float, float]:
+    """Limits of an axis, to either side of what is in one place, as a single node is."""
+    return (low, high) if high - low > 1e-9 * side else (low - side, high + side)
 
 
 def seabed_under(run: Run, points: Array) -> Array | None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from riser_soil.accuracy.key_results import key_results
 from riser_soil.core import outputs
+from riser_soil.core.arrays import Array
 from riser_soil.core.output import Figure, OutputQuantity, Row
 from riser_soil.plots.scales import shown
 from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
@@ -20,6 +24,12 @@ _OVER_THE_STAGE = (
 _AXES, _ALL = ("x", "y", "z"), ", x, y, z"
 _NOTE = "Times are those of the run, arc lengths count from the riser's start. "
 _LEFT_OUT = "Components that stay 0 are left out. "
+_SPOKEN = {"bodies": "body", "joints": "joint", "clearance": "clearance"}
+_OF_HUNG = {  # of bodies, joints and clearances
+    "bodies": {"position": Row("position", "m"), "rotation": Row("rotation", "°", math.degrees(1.0))},
+    "joints": {"force": Row("force", "kN", 1e-3), "moment": Row("moment", "kN m", 1e-3)},
+    "clearance": {"distance": Row("least distance", "m")},
+}
 _ROUND_OFF = 1e-9  # of the largest component, or of the largest bending moment
 
 
@@ -31,6 +41,48 @@ def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> Repo
 def ends_table(stage: Mapping[str, Any]) -> ReportTable:
     """Positions of the ends, forces and moments of their supports, by component."""
     return _table(stage, key_result=False, bars={})
+
+
+def hung_table(summary: Mapping[str, Any]) -> ReportTable:
+    """Where bodies are in each stage, what acts in joints, and how near lines come to each other."""
+    rows = [
+        [stage["name"], *row]
+        for stage in summary["stages"]
+        for group, named in _OF_HUNG.items()
+        for name, found_here in stage.get(group, {}).items()
+        for row in _hung_rows(stage["kind"], f"{_SPOKEN[group]} {name}", named, found_here)
+    ]
+    head = ("stage", "of", "quantity", "unit", "at the end", "min", "at t [s]", "max", "at t [s]")
+    note = (
+        "Vectors are (x, y, z), their min and max those of each component. Forces are those of the first point on "
+        "the second; moments that are zero are left out. Of static stages the end is told."
+    )
+    return compact(ReportTable(head, rows, note))
+
+
+def _hung_rows(kind: str, of: str, named: Mapping[str, Row], known: Mapping[str, Any]) -> Iterator[list[str]]:
+    for key, row in named.items():
+        if key not in known:
+            continue
+        of_stage = {name: np.array(value, dtype=float) for name, value in known[key].items()}
+        largest = np.fmax.reduce([np.abs(of_stage[name]).max() for name in ("final", "min", "max")])
+        if key == "moment" and largest <= _ROUND_OFF:
+            continue
+        least = _ROUND_OFF * np.fmax(1.0, largest)
+        final, low, high = (_components(of_stage[name], row.scale, least) for name in ("final", "min", "max"))
+        sides = [low, _instant(of_stage["t_min"]), high, _instant(of_stage["t_max"])]
+        yield [of, row.words, row.unit, final, *(sides if kind != "static" else [NOTHING] * len(sides))]
+
+
+def _components(value: Array, scale: float, least: float) -> str:
+    """A number, or a vector's components, with 0 for round-off."""
+    words = [number(scale * float(x) if not abs(x) <= least else 0.0) for x in np.atleast_1d(value)]
+    return f"({', '.join(words)})" if value.ndim else words[0]
+
+
+def _instant(t: Array) -> str:
+    """That of a number; a vector's components have one each."""
+    return NOTHING if t.ndim else number(float(t), 4)
 
 
 def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], float | None]:

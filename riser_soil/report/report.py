@@ -17,7 +17,7 @@ from riser_soil.plots import picture
 from riser_soil.plots.album import GROUPS, embedded, embedded_png, pictures
 from riser_soil.plots.side_by_side import sheets
 from riser_soil.report import health, scene_words
-from riser_soil.report.extremes import READ_IN, ends_table, extremes_table, key_results_table
+from riser_soil.report.extremes import READ_IN, ends_table, extremes_table, hung_table, key_results_table
 from riser_soil.report.tables import NOTHING, ReportTable, number
 from riser_soil.results import Run
 from riser_soil.results import folder as run_folder
@@ -78,18 +78,21 @@ def write_report(folders: Sequence[Path], file: Path, stage: str | None = None) 
 
     Raises ResultsError where a folder holds no run, or nothing was recorded; the file is then left as it was.
     """
-    given = zip(_labels(folders), (Run(folder) for folder in folders), strict=True)
+    given = [*zip(_labels(folders), map(Run, folders), strict=True)]
+    hung = {label: hung_table(run.summary) for label, run in given}
     runs = {" ".join([label, name]).strip(): line for label, run in given for name, line in run.of_lines.items()}
     with written_whole(file) as part:
-        part.write_text(_page(runs, stage), encoding="utf-8")
+        part.write_text(_page(runs, hung, stage), encoding="utf-8")
     return file
 
 
-def _page(runs: Mapping[str, Run], stage: str | None) -> str:
+def _page(runs: Mapping[str, Run], hung: Mapping[str, ReportTable], stage: str | None) -> str:
+    """hung: of bodies, joints and clearances, by the labels of whole runs."""
     parts = [_run_part(label, f"run{n}", run, stage) for n, (label, run) in enumerate(runs.items())]
     page: str = _template().render(
         title=" | ".join(dict.fromkeys(part.summary["title"] for part in parts)),
         runs=parts,
+        hung={label: content for label, content in hung.items() if content},
         compared=_comparison(runs, stage) if len(runs) > 1 else None,
         made=f"riser-soil {__version__}, {date.today().isoformat()}",
     )

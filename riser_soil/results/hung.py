@@ -102,7 +102,7 @@ class _Pair:
     """A pair of lines, and the elements of each that count."""
 
     def __init__(self, assembly: Assembly, given: Clearance) -> None:
-        self.path = f"clearance/{given.between[0]}_{given.between[1]}"
+        self.path = f"clearance/{given.key}"
         self._lines = [assembly.lines[name].line for name in given.between]
         self._counts = [_counting(assembly, name, given.beyond) for name in given.between]
 

@@ -127,15 +127,21 @@ class StageIndicators:
             self.impact.follow(t, step.health.time_step, self.contact_period, step.ledger)
 
     def as_dict(self, dynamic: bool) -> dict[str, Any]:
+        own, shared = self.of_figures(dynamic), self.of_steps(dynamic)
+        return own | shared | ({"time_step": shared["time_step"] | own["time_step"]} if dynamic else {})
+
+    def of_figures(self, dynamic: bool) -> dict[str, Any]:
+        """Those that one of several lines has of its own."""
         reported: dict[str, Any] = {"bending": self.bending} if self.bending else {}
         if dynamic:
-            reported |= {"time_step": self._time_step(), "impact": self._impact()}
+            errors = zip(JUDGED, self.resolution.of_least, self.resolution.of_most, strict=True)
+            reported["time_step"] = {name: {"min": float(a), "max": float(b)} for name, a, b in errors}
         return reported
 
-    def _time_step(self) -> dict[str, Any]:
-        errors = zip(JUDGED, self.resolution.of_least, self.resolution.of_most, strict=True)
+    def of_steps(self, dynamic: bool) -> dict[str, Any]:
+        """Those of the whole step, which all lines share."""
         local = {"value": self.step.local_error, "time": self.step.time}
-        return {"local_error": local, **{name: {"min": float(a), "max": float(b)} for name, a, b in errors}}
+        return {"time_step": {"local_error": local}, "impact": self._impact()} if dynamic else {}
 
     def _impact(self) -> dict[str, float]:
         steps = self.contact_period / self.step.dt if self.step.dt else math.nan

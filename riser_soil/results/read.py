@@ -90,13 +90,17 @@ class Run:
         """Each line's, by name; of a run of one riser itself, by ""."""
         return {"": self} if self._group or not self.lines else {name: self.of_line(name) for name in self.lines}
 
+    def require_one_line(self, wanted: str) -> None:
+        """ResultsError where this is the whole run of several lines, which has not what is wanted: its lines have."""
+        if self.lines and not self._group:
+            each = ", ".join(str(self.folder / line) for line in self.lines)
+            raise ResultsError(f"{self.folder}: {wanted} is not of the run but of its lines: take one of {each}")
+
     def __getitem__(self, name: str) -> Array:
         with self._open(run_folder.SERIES) as file:
             path = self._path_of(file, name)
             if path is None:
-                if self.lines and not self._group:
-                    each = ", ".join(str(self.folder / line) for line in self.lines)
-                    raise ResultsError(f"{self.folder}: {name} is not of the run but of its lines: take one of {each}")
+                self.require_one_line(name)
                 known = ", ".join(sorted(file[self._group or "/"]))
                 raise ResultsError(f"{self.place}: results.nc has no {name}; it has {known}")
             stored = file[path]
@@ -137,8 +141,7 @@ class Run:
         found, line = self._whole_summary, self._group[:-1]
         if not line:
             return found
-        stages = [stage | stage["lines"][line] for stage in found["stages"]]
-        own = {"stages": [{key: value for key, value in stage.items() if key not in OF_ALL} for stage in stages]}
+        own: dict[str, Any] = {"stages": [_stage_of_line(stage, line) for stage in found["stages"]]}
         if bars := found.get("error_bars"):
             own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["of"] == line]}
         if hung := found.get("hang_off"):
@@ -227,6 +230,16 @@ class Run:
             return reading(path)
         except OSError as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
+
+
+def _stage_of_line(stage: dict[str, Any], line: str) -> dict[str, Any]:
+    """A stage of the summary with a line's figures in it; indicators of the steps are those of all lines."""
+    own, shared = stage["lines"][line], stage.get("indicators", {})
+    found = {key: value for key, value in (stage | own).items() if key not in OF_ALL}
+    indicators = shared | own.get("indicators", {})
+    if "time_step" in shared:
+        indicators["time_step"] = shared["time_step"] | indicators["time_step"]
+    return found | {"indicators": indicators}
 
 
 def load(path: Path, group: str = "") -> xr.Dataset:

@@ -185,7 +185,8 @@ class StageTally:
         plain = {k: v for k, v in vars(self).items() if k not in _NOT_PLAIN}
         extremes = self.extremes.nested() if self.steps and not self.lines else None
         reported = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
-        reported["indicators"] = self.indicators.as_dict(self.kind == "dynamic")
+        indicators = self.indicators.of_steps if self.lines else self.indicators.as_dict
+        reported["indicators"] = indicators(self.kind == "dynamic")
         if self.lines:
             reported["lines"] = {name: own._of_line(self.steps > 0) for name, own in self.lines.items()}
             reported |= self.hung
@@ -199,7 +200,8 @@ class StageTally:
         """One of several."""
         self._finish()
         extremes = self.extremes.nested() if stepped else None
-        return {"final": self.final, "extremes": extremes, "warnings": self._own_warnings} | self._soil
+        reported = {"final": self.final, "extremes": extremes, "warnings": self._own_warnings}
+        return reported | {"indicators": self.indicators.of_figures(self.kind == "dynamic")} | self._soil
 
     @property
     def _own_warnings(self) -> list[str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import ENDS, acts_on, arc_of, by_line, first_place
@@ -11,7 +12,16 @@ from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, MidpointScheme, OfBody, StaticStage
 
-_RESERVED = ("riser", "soil", "bodies", "joints", "results")
+_FILES = ("soil", "results")  # other files of a run
+# At the root of results.nc, beside what steps have, and of modes.nc.
+_IN_RESULTS = (
+    *("time", "stage", "step", "step_time", "step_stage", "component", "section", "offset"),
+    *("bodies", "joints", "clearance"),
+    *(output.name for output in OF_STEP),
+)
+_IN_MODES = ("mode", "direction", "frequency", "period", "share")
+_RESERVED = frozenset((*_FILES, *_IN_RESULTS, *_IN_MODES))
+_OF_LEDGER = ("dissipated_", "work_")  # of parts
 _OF_STAGE = ("move", "motion", "loads")
 _LATER = "leave it out, or take a scene of one line"
 
@@ -45,12 +55,16 @@ def _without_lines(scene: Scene) -> Iterator[Problem]:
 def _moved(problems: list[Problem], name: str) -> Iterator[Problem]:
     """With the paths that the keys of a line have in the scene."""
     for problem in problems:
-        path = problem.path
-        if path[:1] == ("riser",):
-            path = ("lines", name, *path[1:])
-        elif path[:1] == ("stages",) and len(path) > 2 and path[2] in _OF_STAGE:
-            path = (*path[:2], "lines", name, *path[2:])
-        yield Problem(path, problem.allowed, problem.remedy)
+        yield Problem(path_of_line(problem.path, name), problem.allowed, problem.remedy)
+
+
+def path_of_line(path: Path, name: str) -> Path:
+    """A path in a line's own scene, as it is in the whole one."""
+    if path[:1] == ("riser",):
+        return ("lines", name, *path[1:])
+    if path[:1] == ("stages",) and len(path) > 2 and path[2] in _OF_STAGE:
+        return (*path[:2], "lines", name, *path[2:])
+    return path
 
 
 def _names(scene: Scene) -> Iterator[Problem]:
@@ -61,7 +75,7 @@ def _names(scene: Scene) -> Iterator[Problem]:
     for name in scene.lines:
         if name in scene.bodies:
             yield Problem(("bodies", name), "a line has the same name", "rename one of the two")
-        if name in _RESERVED[1:]:
+        if name in _RESERVED or name.startswith(_OF_LEDGER):
             yield Problem(("lines", name), "is the name of another file or group of the results", "rename it")
 
 
@@ -147,6 +161,10 @@ def _clearances(scene: Scene) -> Iterator[Problem]:
                 yield Problem((*path, m), allowed, f"name one of them{hint(name, scene.lines)}")
         if pair.between[0] == pair.between[1]:
             yield Problem(path, "a line has no clearance from itself", "name two lines")
+        before = [other.key for other in scene.output.clearance[:n]]
+        if pair.key in before:
+            allowed = f"is {pair.key} in the results, as output.clearance.{before.index(pair.key)} is"
+            yield Problem(path, allowed, "leave one out, turn the two names round, or rename a line")
 
 
 def _soil(scene: Scene) -> Iterator[Problem]:

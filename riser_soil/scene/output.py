@@ -55,6 +55,11 @@ class Clearance(BaseModel):
         default=0.0, description="arc length from the joints of a line within which it does not count [m]"
     )
 
+    @property
+    def key(self) -> str:
+        """Its name in the results."""
+        return "_".join(self.between)
+
 
 class Output(BaseModel):
     """Intervals and fields of the result files."""

@@ -26,8 +26,10 @@ from riser_soil.assembly.stage import times_to_hit
 from riser_soil.cases.case_table import case_values
 from riser_soil.checks.check import describe
 from riser_soil.checks.overload import overload
+from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import ResultsError, SceneError
-from riser_soil.report.extremes import key_results_table
+from riser_soil.fatigue.stress_history import stress_history
+from riser_soil.report.extremes import hung_table, key_results_table
 from riser_soil.report.report import write_report
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.read import Run
@@ -48,14 +50,16 @@ from tests.support.line_scenes import (
     RIGID,
     WET,
     G,
+    as_line,
     lazy_s,
     lazy_s_by_catenaries,
     mooring,
     shaken,
     spans,
+    with_line_named,
 )
-from tests.support.riser_scenes import dynamic, static
-from tests.support.said import line_with, telling
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.said import line_with, lines_with, telling
 from tests.support.vtk_reading import read_by_vtk
 
 ELEMENTS, TIME_STEP = (setting for setting in SETTINGS if setting.name in ("elements", "time_step"))
@@ -368,8 +372,22 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert {"east top tension", "north largest bending moment"} <= named
     page = write_report([tmp_path], tmp_path / "report.html").read_text()
     assert all(f"{tmp_path.name} {name}" in page for name in NAMES)
+    assert page.count("<td>body buoy</td>") == page.count("<td>clearance east_north</td>") == 2
+    rest, moved = (row for row in hung_table(found.summary).rows if row[1] == "clearance east_north")
+    first, *distances = found["clearance/east_north/distance"]
+    assert float(rest[4]) == pytest.approx(first, rel=1e-4)
+    assert [float(moved[n]) for n in (4, 5, 7)] == pytest.approx(
+        [distances[-1], min(distances), max(distances)], rel=1e-4
+    )
+    with pytest.raises(ResultsError, match=telling("stress", "not of the run", f"{tmp_path / 'east'}")):
+        stress_history(found)
     with pytest.raises(ResultsError, match=telling("no line west", "east, north, south")):
         found.of_line("west")
+    with h5py.File(tmp_path / "results.nc") as file:
+        assert {"time", "work", "clearance", "work_supports"} < {*file}
+        for name in {*file} - {*NAMES}:
+            with pytest.raises(SceneError, match=telling(f"lines.{name}", "rename")):
+                scene_from_mapping(with_line_named(name))
     summary = json.loads((tmp_path / "summary.json").read_text())["stages"][1]
     place = found["bodies/buoy/position"]
     assert summary["bodies"]["buoy"]["position"]["final"] == pytest.approx(place[-1])
@@ -377,6 +395,35 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     x, other = (found.of_line(name)["position"][-1] for name in ("east", "north"))
     nearest = np.linalg.norm(x[:17, None] - other[None, :17], axis=2).min()
     assert found["clearance/east_north/distance"][-1] == pytest.approx(nearest - CHAIN["outer_diameter"], rel=0.02)
+
+
+def test_indicators_of_a_line_are_those_of_a_riser(tmp_path: Path) -> None:
+    """In its own entry, with what the whole step has at its stage."""
+    pipe = {"EA": 1.0e8, "EI": 1.0e3, "GJ": 1.0e3, "mass": 20.0, "outer_diameter": 0.1, "submerged_weight": 100.0}
+    moved = dynamic(1.0, 0.1, motion={"end": {"harmonic": {"amplitude": [0.0, 0.0, 0.5], "period": 2.0}}})
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(20.0, 0.0, 10.0)}
+    more = ends | {"dimension": 3, "gravity": G, "riser": {"initial": "catenary"}}
+    scene = riser_scene(static(), moved, pipe=pipe, length=25.0, elements=10, **more)
+    alone, several = (ran(each, tmp_path / name) for name, each in (("riser", scene), ("lines", as_line(scene))))
+    expected = [stage["indicators"] for stage in alone.summary["stages"]]
+    assert [*expected[0]] == ["bending"]
+    assert [*expected[1]] == ["bending", "time_step", "impact"]
+    found = [stage["indicators"] for stage in several.of_line("only").summary["stages"]]
+    for one, other in zip(expected, found, strict=True):
+        assert flat(other) == pytest.approx(flat(one), rel=1e-6, nan_ok=True)
+    assert flat(expected[1])["time_step.end.effective_tension.max"] > 0.0
+    shared = several.summary["stages"][1]["indicators"]
+    assert {"local_error", "lost"} < {key.split(".")[1] for key in flat(shared)}
+    assert not any("effective_tension" in key for key in flat(shared))
+
+
+def flat(nested: dict[str, Any], path: str = "") -> dict[str, float]:
+    """Values by path; nan for null."""
+    found: dict[str, float] = {}
+    for key, value in nested.items():
+        number = np.nan if value is None else value
+        found |= flat(value, f"{path}{key}.") if isinstance(value, dict) else {path + key: number}
+    return found
 
 
 def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
@@ -449,6 +496,21 @@ def test_check_names_each_line(tmp_path: Path) -> None:
     for name in NAMES:
         line_with(said, "in place of 60", f"lines.{name}.segments:")
     assert re.search(r"estimated time: .* \d+ steps", said)
+
+
+def test_a_load_that_ends_with_its_stage_is_told_of() -> None:
+    """On a line and on a body, each by its path; not one that stays."""
+    force = {"force": [0.0, 200.0, 0.0]}
+    on_line: list[dict[str, Any]] = [{"at": 65.0, **force}]
+    on_body: list[dict[str, Any]] = [{**force}]
+    acts = {"lines": {"east": {"loads": on_line}}, "bodies": {"buoy": {"loads": on_body}}}
+    scene = mooring(shaken()) | {"stages": [static("rest", **acts), shaken()]}
+    said = [*physical_warnings(build(scene_from_mapping(scene), MPI.COMM_SELF))]
+    line_with(said, "stages.0.lines.east.loads.0", "[0.0, 200.0, 0.0] N", "at 65.0", "shaken", "keep: true")
+    line_with(said, "stages.0.bodies.buoy.loads.0", "[0.0, 200.0, 0.0] N", "shaken", "keep: true")
+    for load in (*on_line, *on_body):
+        load["keep"] = True
+    assert not lines_with(physical_warnings(build(scene_from_mapping(scene), MPI.COMM_SELF)), "keep: true")
 
 
 def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
@@ -535,6 +597,10 @@ def stage(**more: Any) -> dict[str, Any]:
     return changed(stages=[static("rest", **more)])
 
 
+def clearances(*pairs: tuple[str, str]) -> dict[str, Any]:
+    return changed(output={"clearance": [{"between": [*pair], "beyond": 5.0 * n} for n, pair in enumerate(pairs)]})
+
+
 TO_BUOY, EAST, NORTH = {"body": "buoy"}, {"line": "east", "at": "end"}, {"line": "north", "at": "end"}
 MOVED = {"move": {"end": [0.0, 0.0, 0.0]}}
 WITHOUT_LINES = {key: value for key, value in mooring().items() if key != "lines"}
@@ -552,6 +618,7 @@ REFUSED = [
     (joint(EAST, NORTH), "nothing says where the joint is at first"),
     (joint(TO_BUOY, TO_BUOY), "both points are of the same line or body"),
     (changed(output={"clearance": [{"between": ["east", "west"]}]}), "output.clearance.0.between.1: value .west."),
+    (clearances(("east", "north"), ("east", "north")), "output.clearance.1.between: .*is east_north .*clearance.0 is"),
     (stage(**MOVED), "stages.0.move: value .*: does not say of which line it is"),
     (stage(bodies={"boy": {}}), "stages.0.bodies.boy: .*must be one of bodies .buoy.; name one of them"),
     (stage(bodies={"buoy": {"loads": [{"keep": True}]}}), "stages.0.bodies.buoy.loads.0.force: .*the load is missing"),
@@ -565,6 +632,27 @@ REFUSED = [
         "lines.east.segments.0.line_type: value .chian.: must be a key of line_types",
     ),
 ]
+
+
+def test_pairs_of_one_name_in_the_results_are_refused() -> None:
+    """Joined by _ two pairs of other names are one; the other way round, a pair is another."""
+    scene = clearances(("east", "north"), ("north", "east"))
+    assert len(scene_from_mapping(scene).output.clearance) == 2
+    for kind in ("lines", "joints"):
+        given = scene[kind]
+        given |= {key.replace("north", "west_north"): deepcopy(each) for key, each in given.items() if "north" in key}
+        given |= {key.replace("east", "east_west"): deepcopy(each) for key, each in given.items() if "east" in key}
+    for key in ("west_north", "east_west"):
+        scene["joints"][f"{key}_top"]["between"][0]["line"] = key
+    scene["output"]["clearance"] = [{"between": ["east", "west_north"]}, {"between": ["east_west", "north"]}]
+    with pytest.raises(SceneError, match=telling("output.clearance.1.between", "east_west_north", "rename")):
+        scene_from_mapping(scene)
+
+
+@pytest.mark.parametrize("name", ["time", "newton_iterations", "work_supports", "clearance", "results", "frequency"])
+def test_names_that_results_have_otherwise_are_refused(name: str) -> None:
+    with pytest.raises(SceneError, match=telling(f"lines.{name}", "results", "rename")):
+        scene_from_mapping(with_line_named(name))
 
 
 @pytest.mark.parametrize(("scene", "message"), REFUSED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -50,6 +51,12 @@ def mooring(
         at_body = {"body": "buoy", "offset": [arm * c, arm * s, -arm]}
         scene["joints"][f"{name}_top"] = {"kind": "pinned", "between": [{"line": name, "at": "end"}, at_body]}
     return scene | more
+
+
+def with_line_named(name: str) -> dict[str, Any]:
+    """The mooring whose line `east` has another name."""
+    found: dict[str, Any] = json.loads(json.dumps(mooring()).replace('"east"', json.dumps(name)))
+    return found
 
 
 def shaken(duration: float = 1.0, time_step: float = 0.05) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import xarray
@@ -20,9 +21,10 @@ from riser_soil.__main__ import app
 from riser_soil.errors import SceneError, SolveError
 from riser_soil.modes.eigenpairs import FEW, lowest
 from riser_soil.modes.modes import Modes, modes_of
+from riser_soil.modes.report import table
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping, touchdown
-from tests.support.line_scenes import NAMES, POINT, RIGID, mooring
+from tests.support.line_scenes import NAMES, POINT, RIGID, mooring, with_line_named
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with, telling
 
@@ -368,6 +370,9 @@ def test_a_rigid_buoy_on_a_light_tether() -> None:
         M += np.diag([rope["mass"] * LENGTH**3 / 3.0, J + RIGID["added_inertia"][about]])
         expected += np.sqrt(eigh(K, M, eigvals_only=True)).tolist()
     assert modes.frequency == pytest.approx(np.sort(expected) / (2.0 * np.pi), rel=1e-3, abs=1e-4)
+    assert (modes.direction[0], modes.moving_most[0]) == ("of a body", "buoy")
+    assert [line.split().count("-") for line in table(modes, 5)[2:]] == [4, 0, 0, 0, 0]
+    assert line_with(table(modes, 5), "of a body").endswith("  buoy")
     turn = modes.bodies["buoy"].rotation
     assert np.abs(turn[0]).argmax() == 2
     assert np.abs(turn[3:, :2]).max() > 0.3
@@ -388,4 +393,8 @@ def test_modes_of_several_lines_have_groups_and_a_picture(tmp_path: Path) -> Non
     assert np.max(shapes, axis=0) == pytest.approx(np.ones(4), abs=0.3)
     with xarray.open_dataset(folder / "modes.nc", engine="h5netcdf") as stored:
         assert stored["frequency"].shape == (4,)
+    with h5py.File(folder / "modes.nc") as file:
+        for name in {*file} - {*NAMES}:
+            with pytest.raises(SceneError, match=telling(f"lines.{name}", "rename")):
+                scene_from_mapping(with_line_named(name))
     assert (folder / "modes.png").read_bytes().startswith(b"\x89PNG")

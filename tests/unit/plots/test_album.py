@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,15 @@ from riser_soil.plots.curves import envelope, sheet
 from riser_soil.plots.histories import energy
 from riser_soil.plots.ranges import draw_range, mean_in_time, names
 from riser_soil.plots.scales import axis_words, drawn_radius, metres
-from riser_soil.plots.shape import filmed_records, seabed_under
+from riser_soil.plots.shape import filmed_records, seabed_under, snapshots
 from riser_soil.plots.side_by_side import sheets
 from riser_soil.results import Run
 from riser_soil.results.stage_records import stage_records
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run as run_scene
 from tests.support.on_ranks import ROOT
 from tests.support.recorded_run import record
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.said import line_with
 
 SCENE = (ROOT / "demos/first_scene.yaml").read_text(encoding="utf-8")
@@ -135,6 +139,20 @@ def test_the_seabed_is_drawn_where_it_is(run: Run) -> None:
     figure = next(each for each in pictures(stage_records(run)) if each.name == "shape").draw()
     seabed = [line for line in figure.axes[1].lines if line.get_label() == "seabed"]
     assert seabed[0].get_ydata() == pytest.approx(0.0)
+
+
+def test_a_single_node_near_the_lowest_point_has_room_around_it(tmp_path: Path) -> None:
+    """As where elements are long: its place is in the middle of the picture, drawn without a complaint."""
+    ends = {"start": prescribed(0.0, 0.0, 10.0), "end": prescribed(30.0, 0.0, 10.0)}
+    pipe = {"EA": 1.0e8, "EI": 1.0, "mass": 20.0, "submerged_weight": 100.0}
+    more = ends | {"riser": {"initial": "catenary"}, "gravity": 9.81}
+    scene = riser_scene(static(), pipe=pipe, length=40.0, elements=4, **more)
+    run_scene(scene_from_mapping(scene), tmp_path / "run")
+    hung = Run(tmp_path / "run")
+    with warnings.catch_warnings(action="error"):
+        axes = snapshots(stage_records(hung)).axes[1]
+    for (low, high), value in zip((axes.get_xlim(), axes.get_ylim()), hung["position"][-1, 2, [0, 2]], strict=True):
+        assert low < value - 1.0 < value + 1.0 < high
 
 
 def test_a_film_of_a_riser_alone(run: Run, tmp_path: Path) -> None:

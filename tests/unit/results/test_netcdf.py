@@ -7,12 +7,17 @@ from pathlib import Path
 import h5netcdf
 import h5py
 import numpy as np
+import pytest
 import xarray as xr
 
 from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
 from riser_soil.results import Run
 from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile, Variable, lay_out
+from riser_soil.scene.reader import scene_from_mapping
+from tests.support.line_scenes import with_line_named
 from tests.support.recorded_run import Catenary, record
+from tests.support.said import telling
 
 ARC = np.linspace(0.0, 100.0, 11)
 
@@ -59,6 +64,16 @@ def test_every_variable_has_unit_and_long_name(tmp_path: Path) -> None:
         assert all(file[name].attrs["units"] == "J" for name in energies)
         for name in ("start_force", "end_moment", "effective_tension", "moment_vector", "energy_residual"):
             assert file[name].attrs["sign_convention"], name
+
+
+def test_no_line_has_the_name_of_what_is_at_the_root(tmp_path: Path) -> None:
+    SeriesFile(tmp_path / "results.nc", {"east": ARC}, "t", "0", sections=2, offsets=(-1.0, 1.0))
+    with h5py.File(tmp_path / "results.nc") as file:
+        names = {*file} - {"east"}
+    assert {"time", "component", "section", "offset", "step_stage"} < names
+    for name in names:
+        with pytest.raises(SceneError, match=telling(f"lines.{name}", "rename")):
+            scene_from_mapping(with_line_named(name))
 
 
 def test_the_file_on_disk_is_whole_after_each_flush(tmp_path: Path) -> None:
