@@ -105,7 +105,7 @@ SHORT = {
 #: To compute, or to compile.
 LONG = (
     *("waves", "vortices", "slugs", "plastic clay in space", "touchdown in sections", "kept factors"),
-    *("laid and lifted on clay", "sinks into tetrahedra"),
+    *("laid and lifted on clay", "sinks into tetrahedra", "midpoint rule in space"),
 )
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 

@@ -45,6 +45,7 @@ class Rested:
         self.settled = watcher.settlings
 
 
+@pytest.mark.verify
 def test_a_pipe_settles_to_where_one_that_is_pushed_bears_its_weight() -> None:
     """Loads at the same embedment: 2.70 beside 2.74, on cells whose stairs are 3 % of it."""
     rested, pushed = Rested(2.7), sink(sinking(CELLS, 0.1, 40))
