@@ -33,7 +33,7 @@ def bounds(run: Run) -> Iterator[Answer]:
         if isinstance(stage, DynamicStage):
             yield from _energy(run.summary["stages"][n])
             continue
-        for name in views.keys() - tied:
+        for name in (each for each in views if each not in tied):
             yield from _balance(views[name], views[name].stages[n], lines[name].summary["stages"][n], name)
 
 
