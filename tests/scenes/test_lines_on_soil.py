@@ -132,6 +132,7 @@ def test_two_ranks_find_the_same_on_soil(model: str, tmp_path: Path) -> None:
         np.testing.assert_allclose(other[name], one[name], rtol=0.0, atol=2e-6 * np.abs(one[name]).max())
 
 
+@pytest.mark.verify
 def test_two_ranks_find_the_same(tmp_path: Path) -> None:
     one, other = (ran_on(mooring(shaken(0.2), elements=8), tmp_path / str(ranks), ranks) for ranks in (1, 2))
     assert other.summary["ranks"] == 2

@@ -73,7 +73,8 @@ def test_failed_step_is_reported_with_its_place_and_keeps_all_before(ranks: int,
     np.testing.assert_allclose(run.soil_times, run.time)
 
 
-@ALONE
+@pytest.mark.verify
+@pytest.mark.parametrize("ranks", [1, 2])
 def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path) -> None:
     """717 N/m lie on clay that bears some 46 N/m at its surface: no answer is right."""
     scene = lying_pipe(su=30.0)

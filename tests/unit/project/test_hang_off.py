@@ -113,7 +113,7 @@ def on_a_weight(**asked: Any) -> Mapping:
     """Two lines from supports to a weight between them, each of which asks for an angle by its length."""
     lines: Mapping = {}
     for name, x in (("west", -50.0), ("east", 50.0)):
-        segments = [{"line_type": "pipe", "length": 60.0, "elements": 20}]
+        segments = [{"line_type": "pipe", "length": 60.0, "elements": 10}]
         lines[name] = {"segments": segments, "start": prescribed(x, 0.0, 0.0), "end": "free"}
         lines[name]["start"]["hang_off"] = {"angle": asked[name], "by": "length"}
     return {
@@ -140,7 +140,7 @@ def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
     run(found.scene, tmp_path / "run")
     for line, angle in (("west", 45.0), ("east", 40.0)):
         end = Run(tmp_path / "run" / line).summary["stages"][0]["final"]["start"]
-        assert end["effective_tension"] == pytest.approx(H / np.sin(np.radians(angle)), rel=1e-3)
+        assert end["effective_tension"] == pytest.approx(H / np.sin(np.radians(angle)), rel=3e-3), "by the elements"
         assert end["angle_deg"] == pytest.approx(angle - 90.0, abs=0.002)
 
 
