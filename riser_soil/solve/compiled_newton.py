@@ -127,13 +127,13 @@ class CompiledNewton(StepSolver):
 
     def _begun(self, step: Step) -> State:
         """Where the step is balanced: the first guess, and rates of no increments but those that are prescribed."""
-        still = step.scheme.trial(step.before, step.t, step.dt, self._nothing.copy())
-        self.system.prescribe(still)
-        begun = step.scheme.balanced_at(step.before, still, step.dt)
-        fixed = self.system.prescribed_dofs
-        guess = step.guess / step.scheme.moves
-        guess[fixed] = begun.u[fixed]
-        return replace(begun, u=guess)
+        scheme, still = step.scheme, step.scheme.trial(step.before, step.t, step.dt, self._nothing)
+        begun = State(step.t, step.guess.copy(), still.v, still.a)
+        self.system.prescribe(begun)
+        if scheme.moves == 1.0:
+            return begun
+        alone = replace(begun, u=np.where(self.system.prescribed, begun.u, 0.0))
+        return replace(scheme.balanced_at(step.before, alone, step.dt), u=begun.u / scheme.moves)
 
     def _iterate(self, step: Step, begun: State) -> tuple[str, list[float]]:
         """Why the loop does not get to balance, "" where it does; norms of the residual on the way."""
@@ -156,18 +156,20 @@ class CompiledNewton(StepSolver):
         smooth, gradual = self.system.smooth, self.system.gradual and self._border.gradual
         answers = smooth or self.at_equilibrium or bool(step.guess[~self.system.prescribed].any())
         limits, moves = limits_of(self.settings, smooth, gradual, answers), step.scheme.moves
+        if moves == 1.0:
+            return limits
         # Newton's own norm is that of the balance by the increments of the whole step, see `balance_of`.
         return limits._replace(tolerance=limits.tolerance / moves, floor=limits.floor / moves)
 
     def _tangle(self, step: Step, begun: State) -> str:
         """Why what the loop has found is none of a line's states; "" where it is one."""
-        lines = [(packed, packed.line) for packed in self._lines if isinstance(packed.line, Line)]
-        if step.scheme.moves == 1.0:
-            reasons = (line.folding(*packed.folding) for packed, line in lines)
-        else:
-            end = self._state(step, begun)
-            reasons = (line.inadmissible(end, step.before) for _, line in lines)
-        return next(filter(None, reasons), "")
+        end = None if step.scheme.moves == 1.0 else self._state(step, begun)
+        for packed in self._lines:
+            if isinstance(line := packed.line, Line):
+                reason = line.folding(*packed.folding) if end is None else line.inadmissible(end, step.before)
+                if reason:
+                    return reason
+        return ""
 
     def _by_newton(self, step: Step, at_equilibrium: bool) -> Solution:
         """By Newton's method over the parts."""
