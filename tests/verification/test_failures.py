@@ -17,7 +17,6 @@ from tests.support.coupled_scenes import LAY, Mapping, heave, lying_pipe, touchd
 from tests.support.on_ranks import HANGS, Job, mpirun
 from tests.support.vtk_reading import read_by_vtk
 
-RANKS = pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.verify), 2])  # one is what others test
 ALONE = pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])
 FAILED, REFUSED = 3, 2
 FILES = {"scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.vtkhdf", "soil.xdmf", "soil.vtkhdf"}
@@ -52,7 +51,7 @@ PLACE = re.compile(
 )
 
 
-@RANKS
+@ALONE
 def test_failed_step_is_reported_with_its_place_and_keeps_all_before(ranks: int, tmp_path: Path) -> None:
     done = command(tmp_path, ranks, struck())
     assert done.returncode == FAILED
@@ -100,7 +99,8 @@ def test_soil_loaded_below_its_capacity_is_none(tmp_path: Path) -> None:
     assert Run(tmp_path / "out").finished
 
 
-@RANKS
+@pytest.mark.verify
+@pytest.mark.parametrize("ranks", [1, 2])
 def test_killed_run_leaves_what_it_has_accepted(ranks: int, tmp_path: Path) -> None:
     (tmp_path / "scene.yaml").write_text(json.dumps(touchdown(LAY, heave(1000.0))), encoding="utf-8")
     launch = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []

@@ -215,7 +215,8 @@ def resident_memory(scene: Mapping, folder: Path) -> Array:
     return np.array(json.loads((folder / "out" / "memory.json").read_text(encoding="utf-8")))
 
 
-@pytest.mark.parametrize("name", [pytest.param("coupled", marks=pytest.mark.verify), "riser"])
+@pytest.mark.verify
+@pytest.mark.parametrize("name", ["coupled", "riser"])
 def test_memory_stays_flat_over_500_steps(name: str, tmp_path: Path) -> None:
     """Resident memory grows by less than 4 MB from step 100 to step 600; the states of 500 coupled steps kept would
     be 7 MB. Results are recorded every tenth step: those of every step would wait in memory for their turn on disk. So

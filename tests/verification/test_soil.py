@@ -106,13 +106,14 @@ def assert_quadratic(norms: list[float]) -> None:
     assert c < max(1e-10, b * (b / a) ** 1.5)
 
 
+@pytest.mark.verify
 @pytest.mark.parametrize(
     ("ranks", "kind", "size"),
     [
         pytest.param(2, "hex", 0.4, id="hex"),
-        pytest.param(2, "tet", 0.4, id="tet", marks=pytest.mark.verify),
-        pytest.param(2, "layers", 0.4, id="layers", marks=pytest.mark.verify),
-        pytest.param(3, "layers", 9.0, id="two cells", marks=pytest.mark.verify),
+        pytest.param(2, "tet", 0.4, id="tet"),
+        pytest.param(2, "layers", 0.4, id="layers"),
+        pytest.param(3, "layers", 9.0, id="two cells"),
     ],
 )
 def test_any_number_of_ranks_agrees(ranks: int, kind: str, size: float) -> None:
