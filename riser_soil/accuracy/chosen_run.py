@@ -5,7 +5,6 @@ What isn't needed isn't imported.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -49,10 +48,10 @@ def _run(scene: Scene, folder: Path, force: bool, error_bars: bool, restart: boo
 def _solved_before(folder: Path) -> dict[str, Any]:
     """What the summary of a run that goes on tells of its hang-offs."""
     from riser_soil.results.folder import SUMMARY
+    from riser_soil.results.read import Run
 
-    file = folder / SUMMARY
-    known = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    return {key: known[key] for key in ("hang_off",) if key in known}
+    known = Run(folder).summary if Run.is_there(folder) and (folder / SUMMARY).is_file() else {}
+    return {"hang_off": known["hang_off"]} if "hang_off" in known else {}
 
 
 @contextmanager
