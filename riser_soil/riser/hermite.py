@@ -177,19 +177,11 @@ def write_all_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None
         write_rows(P[e], shift, out[e], D, R)
 
 
-def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array) -> None:
-    """Add scale P^T M D to out (ne, n, n), D being the derivative of q'' by the dofs; M (ne, 4, 4) as in `weigh`.
-
-    D: `shift` for positions, `columns` (ne, 2, d, r) for tangents.
-    """
-    D, R, rows = fixed(P.shape[2]), fixed(P.shape[3]), np.empty((len(P), P.shape[2], out.shape[2]))
-    write_all_rows(columns, shift, rows, D, R)
-    add_mass_to(out, scale, P, rows, M, D, R)
-
-
 @njit
 def add_mass_to(out: Array, scale: float, P: Array, rows: Array, M: Array, D: Size, R: Size) -> None:
-    """What `add_mass` does, for compiled code; rows: see `write_rows`."""
+    """Add scale P^T M D to out (ne, n, n), D being the derivative of q'' by the dofs, given by its rows, see
+    `write_rows`; M (ne, 4, 4) as in `weigh`.
+    """
     S = np.empty((4, len(D), 2 * (len(D) + len(R))))  # M D of one element
     for e in range(P.shape[0]):
         write_blocks(S, M[e], scale, rows[e], D, R)
