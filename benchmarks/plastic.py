@@ -72,8 +72,8 @@ def _walked(overrides: tuple[str, ...]) -> Walk:
     """The first steps of the demo's dynamic stage."""
     stage = last_stage(SCENE, overrides, Timer.new())
     assert isinstance(stage.newton, Newton)
-    assert isinstance(stage.newton.loop, SnesLoop)
-    kept, began = stage.newton.loop.linear, time.process_time()
+    assert isinstance(stage.newton.by_parts.loop, SnesLoop)
+    kept, began = stage.newton.by_parts.loop.linear, time.process_time()
     stage.walk(STEPS)
     seconds = (time.process_time() - began) / stage.iterations
     made = (kept.factorisations, kept.iterations) if isinstance(kept, KeptFactors) else (stage.iterations, 0)

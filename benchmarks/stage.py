@@ -17,7 +17,7 @@ from riser_soil.core.system import System, Timer
 from riser_soil.results.observer import Observer
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.step_solver import solver_of
+from riser_soil.solve.newton import solver_of
 from riser_soil.solve.time_stepper import TimeStepper
 from riser_soil.stages import LayingCounter, lay, run_stage, settings_of, steps_of
 

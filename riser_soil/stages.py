@@ -28,11 +28,10 @@ from riser_soil.interruption import asked_to_end, end_together, uninterrupted
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
-from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton import Newton, solver_of
 from riser_soil.solve.settling import Pressed, SinkingError, settle
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step, StepSolver
+from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.step_control import AutoSteps, PathSteps, StepControl, from_last_to_first
-from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
@@ -204,7 +203,7 @@ class StageRun:
 
 
 def _begin_run(
-    assembly: Assembly, stage: Stage, system: System, newton: StepSolver, begin: State | Saved, observer: StageObserver
+    assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: StageObserver
 ) -> StageRun:
     if isinstance(begin, State):
         guess = assembly.first_guess(stage)

@@ -13,8 +13,9 @@ from riser_soil.assembly.sea import water_of
 from riser_soil.assembly.stage import loads_of_body
 from riser_soil.bodies.body import BodyProperties, MovingBody, radius_of
 from riser_soil.bodies.drag import BodyDrag
+from riser_soil.bodies.inertia import BodyInertia, MidpointBodyInertia
 from riser_soil.bodies.joints import STIFF, JointOf, Joints, Side
-from riser_soil.bodies.loads import BodyInertia, BodyWeight, Release
+from riser_soil.bodies.loads import BodyWeight, Release
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.scene.bodies import Body as BodyScene
@@ -22,7 +23,7 @@ from riser_soil.scene.bodies import PointBody, SolidBody
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import arc_of
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.scene.stages import DynamicStage, MidpointScheme, Stage
 from riser_soil.sea.flows import Sea
 
 TURNED = 1e-9  # rad: what needs no stage to turn
@@ -71,10 +72,11 @@ class Hung:
     def parts_in(self, scene: Scene, stage: Stage) -> list[Part]:
         """The same of a stage of the scene."""
         self._hold(False)
-        parts, dynamic = self._lasting, isinstance(stage, DynamicStage)
+        parts = self._lasting
         for name, body in self.bodies.items():
-            if dynamic:
-                parts.append(BodyInertia(body, self.given[name].mass_matrix()))
+            if isinstance(stage, DynamicStage):
+                inertia = MidpointBodyInertia if isinstance(stage.scheme, MidpointScheme) else BodyInertia
+                parts.append(inertia(body, self.given[name].mass_matrix()))
             if drag := _drag(scene, stage, body, self.given[name]):
                 parts.append(drag)
             parts += loads_of_body(scene, body, stage)

@@ -12,16 +12,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.bodies.body import BodyProperties, MovingBody, wet
-from riser_soil.bodies.posture import (
+from riser_soil.bodies.body import (
     NONE,
+    BodyProperties,
     Changes,
+    MovingBody,
     Posture,
     add_changes,
     add_in_body_axes,
     by_axes,
     posture,
     scaled_rows,
+    wet,
 )
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Calls, call_each, calls

@@ -1,14 +1,4 @@
-"""Inertia of a body with added mass, weight and buoyancy, and what holds it as it is let go.
-
-The origin of the body's axes is at x, its frame is R, its spin H dTheta, v and W its rates. In body axes the origin has
-the velocity b = R^T v, and with the mass matrix M (6, 6) of b and W, added mass included, the momenta are
-(P, L) = M (b, W). Kirchhoff's equations give the force and moment
-
-    f = P' + W x P,    m = L' + W x L + b x P,    b' = R^T a - W x b,
-
-so that no energy is made, however different the added masses are (Lamb, Hydrodynamics, 1932, art. 124). Conjugate to
-the dofs are R f and T_L(Theta) m. The added mass meets the body's own velocity, and is that of all of it.
-"""
+"""Weight and buoyancy of a body, and what holds it as it is let go."""
 
 from __future__ import annotations
 
@@ -17,16 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.bodies.body import BodyProperties, MovingBody, wet, wet_height
-from riser_soil.bodies.posture import (
+from riser_soil.bodies.body import (
     NONE,
-    Changes,
+    BodyProperties,
+    MovingBody,
     Posture,
     add_blocks,
-    add_changes,
-    add_in_body_axes,
     add_to_dofs,
     posture,
+    wet,
+    wet_height,
 )
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
@@ -37,11 +27,8 @@ from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.rotations import moment_stiffness
 from riser_soil.riser.vectors import (
-    Mat,
     Vec,
-    add,
     cross,
-    dot,
     isotropic,
     matadd,
     matmul,
@@ -58,97 +45,6 @@ from riser_soil.riser.vectors import (
 )
 
 STIFFER, LEAST = 10.0, 1e-6  # times the moment, of what holds a body as it is let go; its least force [N]
-
-
-class InertiaData(NamedTuple):
-    """M (6, 6), of `BodyProperties`."""
-
-    M: Array
-
-
-@njit
-def _momenta(part: InertiaData, b: Vec, W: Vec) -> tuple[Vec, Vec]:
-    """M times the rates of translation and rotation, or their accelerations."""
-    M = part.M
-    linear = add(matvec(matrix(M[:3, :3]), b), matvec(matrix(M[:3, 3:]), W))
-    return linear, add(matvec(matrix(M[3:, :3]), b), matvec(matrix(M[3:, 3:]), W))
-
-
-@njit
-def _momenta_by(part: InertiaData, b: Mat, W: Mat) -> tuple[Mat, Mat]:
-    """The same of their derivatives."""
-    M = part.M
-    linear = matadd(matmul(matrix(M[:3, :3]), b), matmul(matrix(M[:3, 3:]), W))
-    return linear, matadd(matmul(matrix(M[3:, :3]), b), matmul(matrix(M[3:, 3:]), W))
-
-
-@njit
-def _inertial(part: InertiaData, at: Posture) -> tuple[Vec, Vec, Vec, Vec, Vec]:
-    """b, P, L, and the force and moment in body axes."""
-    b = vecmat(at.v, at.R)
-    P, L = _momenta(part, b, at.W)
-    force, moment = _momenta(part, sub(vecmat(at.a, at.R), cross(at.W, b)), at.A)
-    return b, P, L, add(force, cross(at.W, P)), add(moment, add(cross(at.W, L), cross(b, P)))
-
-
-@add_forces.of(InertiaData)
-def _add_inertia(part: InertiaData, at: SpatialConfiguration, out: LineForces) -> None:
-    here = posture(at)
-    _, _, _, force, moment = _inertial(part, here)
-    add_in_body_axes(here, force, moment, out.inertia[0])
-
-
-@add_tangent.of(InertiaData)
-def _add_tangent_of_inertia(
-    part: InertiaData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
-) -> None:
-    here, shift_v, shift_a = posture(at), maps.shift_v, maps.shift_a
-    b, P, L, force, moment = _inertial(part, here)
-    inverse, spin, drift = transpose(here.R), skew(here.W), skew(b)
-    b_by_place, b_by_turn = matscale(shift_v, inverse), matmul(drift, here.T)
-    rate_by_place = matadd(matscale(shift_a, inverse), matscale(-1.0, matmul(spin, b_by_place)))
-    rate_by_turn = matmul(skew(vecmat(here.a, here.R)), here.T)
-    rate_by_turn = matadd(rate_by_turn, matadd(matscale(shift_v, drift), matscale(-1.0, matmul(spin, b_by_turn))))
-    P_by_place, L_by_place = _momenta_by(part, b_by_place, NONE)
-    P_by_turn, L_by_turn = _momenta_by(part, b_by_turn, isotropic(shift_v))
-    force_by_place, moment_by_place = _momenta_by(part, rate_by_place, NONE)
-    force_by_turn, moment_by_turn = _momenta_by(part, rate_by_turn, isotropic(shift_a))
-    by_spin_P, by_spin_L, turned = matscale(-shift_v, skew(P)), matscale(-shift_v, skew(L)), matscale(-1.0, skew(P))
-    by = Changes(
-        matadd(force_by_place, matmul(spin, P_by_place)),
-        matadd(force_by_turn, matadd(matmul(spin, P_by_turn), by_spin_P)),
-        matadd(
-            matadd(moment_by_place, matmul(spin, L_by_place)),
-            matadd(matmul(drift, P_by_place), matmul(turned, b_by_place)),
-        ),
-        matadd(
-            matadd(moment_by_turn, matadd(matmul(spin, L_by_turn), by_spin_L)),
-            matadd(matmul(drift, P_by_turn), matmul(turned, b_by_turn)),
-        ),
-    )
-    add_changes(K[0], weights.inertia, here, vector(at.Theta[0]), force, moment, by)
-
-
-@add_energy.of(InertiaData)
-def _add_kinetic(part: InertiaData, at: SpatialConfiguration, energy: Array) -> None:
-    here = posture(at)
-    b = vecmat(here.v, here.R)
-    P, L = _momenta(part, b, here.W)
-    energy[0] += 0.5 * (dot(b, P) + dot(here.W, L))
-
-
-class BodyInertia(CompiledPart):
-    """Mass, inertia and added mass (group I), see the module's text. M: of `BodyProperties`."""
-
-    name = "body inertia"
-    traits = Traits("I", symmetric=False)
-
-    def __init__(self, body: MovingBody, M: Array) -> None:
-        super().__init__(body)
-        self.M = M
-
-    def make_kernel_data(self) -> InertiaData:
-        return InertiaData(self.M)
 
 
 class WeightData(NamedTuple):

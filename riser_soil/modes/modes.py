@@ -320,7 +320,7 @@ def _with_mass(assembly: Assembly) -> list[Part]:
     """Mass of lines and bodies and added mass of their water, which stands still and has a level surface."""
     hung, parts = assembly.hung, [part for own in assembly.by_line.values() for part in _of_line(own)]
     if hung is not None and hung.bodies:
-        from riser_soil.bodies.loads import BodyInertia
+        from riser_soil.bodies.inertia import BodyInertia
 
         parts += [BodyInertia(body, hung.given[name].mass_matrix()) for name, body in hung.bodies.items()]
     return parts

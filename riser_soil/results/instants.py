@@ -68,7 +68,7 @@ class InstantReader:
         """
         contacts, state = self._assembly.contacts, stepper.now
         inside = look_inside(self._assembly, stepper)
-        found = tuple(stepper.newton.contact_results(contact, state) for contact in contacts)
+        found = tuple(stepper.newton.accepted.contact_results(contact, state) for contact in contacts)
         if self._sections is not None and (lay_sections or not self._sections.laid):
             of_one = self._inside(inside[None])
             arc, _, _ = self._touchdown(of_one, self._found([own[None] for own in found]))

@@ -19,8 +19,8 @@ def look_inside(assembly: Assembly, stepper: TimeStepper) -> Array:
     """Section forces at the accepted state, see `SectionForces.within`, and what the supports exert on the ends; on the
     rank that holds the riser.
     """
-    line, state, newton = assembly.line, stepper.now, stepper.newton
-    inside, nodal = newton.section_forces(line, assembly.elements, state), newton.nodal_residual(line, state)
+    line, state, accepted = assembly.line, stepper.now, stepper.newton.accepted
+    inside, nodal = accepted.section_forces(line, assembly.elements, state), accepted.nodal_residual(line, state)
     if nodal is not None:
         add_at_ends(line, state, nodal, SectionForces.within(inside, line.nodes))
     return inside
@@ -69,7 +69,7 @@ def snapshot_of(
 def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
     """Of the elements (ne, 2 ndof), less what follows from strain rates."""
     line, state = assembly.line, stepper.now
-    residual = stepper.newton.element_residual(line, state)
+    residual = stepper.newton.accepted.element_residual(line, state)
     viscous = viscous_residual(line, acting_on(line, stepper.system.model.parts), state)
     return residual if viscous is None else residual - viscous
 

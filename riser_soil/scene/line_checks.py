@@ -10,7 +10,7 @@ from riser_soil.scene.motions import Vessel, VesselHistory
 from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, MidpointScheme, OfBody, StaticStage
+from riser_soil.scene.stages import OfBody, StaticStage
 
 _FILES = ("soil", "results")  # other files of a run
 # At the root of results.nc, beside what steps have, and of modes.nc.
@@ -232,8 +232,3 @@ def _not_yet(scene: Scene) -> Iterator[Problem]:
     over_a_grid, water = scene.seabed is not None and scene.seabed.grid is not None, scene.water
     if over_a_grid and water is not None and water.waves is not None and water.depth is None:
         yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")
-    rigid = any(body.turns for body in scene.bodies.values())
-    for n, stage in enumerate(scene.stages):
-        if rigid and isinstance(stage, DynamicStage) and isinstance(stage.scheme, MidpointScheme):
-            text = "the midpoint rule is not there yet for rigid bodies"
-            yield Problem(("stages", n, "scheme"), text, "take another scheme, or points")

@@ -1,8 +1,8 @@
 """Newton's method for a time step of lines and bodies, as one compiled loop.
 
-The same equations, weights and tests as in `newton`, which solves whatever has parts without kernels. What it calls are
-kernels bound to their arguments (`core.bound`): those here, which every riser has, and those of its parts, see
-`part_kernels`. So it is compiled once for all risers.
+The same equations, weights and tests as in `step_iteration`, which solves whatever has parts without kernels. What it
+calls are kernels bound to their arguments (`core.bound`): those here, which every riser has, and those of its parts,
+see `part_kernels`. So it is compiled once for all risers.
 """
 
 from __future__ import annotations

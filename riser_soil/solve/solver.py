@@ -1,4 +1,4 @@
-"""A step for Newton's method, its trials and solution; the method's settings, how it fails, its solvers' base class."""
+"""A step for Newton's method, its trials and solution; the method's settings, how it fails; what solutions tell."""
 
 from __future__ import annotations
 
@@ -118,20 +118,11 @@ class Solution:
         return len(self.norms) - 1
 
 
-class StepSolver:
-    """Solver of a system's steps. Create once a stage.
+class Accepted:
+    """What is told of steps that are solved and of accepted states, by the parts of a system; collective."""
 
-    iterations: of all its steps, those that failed included. at_equilibrium: whether the next step starts from that of
-    its own loads, so that a residual within round-off needs no iteration.
-    """
-
-    def __init__(self, system: System, settings: NewtonSettings) -> None:
-        self.system, self.settings = system, settings
-        self.iterations, self.at_equilibrium = 0, False
-
-    def solve(self, step: Step) -> Solution:
-        """Solve a step or raise NotConvergedError; collective."""
-        raise NotImplementedError
+    def __init__(self, system: System) -> None:
+        self.system = system
 
     def commit(self, state: State) -> None:
         """Accept the state of the step solved last."""
@@ -139,7 +130,7 @@ class StepSolver:
 
     def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, from the accepted state `before`, and what each part turned
-        over in it, those of one name together; collective.
+        over in it, those of one name together.
         """
         return self.system.energy(solution.state), self.system.work(before, solution.state)
 
@@ -149,7 +140,7 @@ class StepSolver:
         return RiserMass(self.system)
 
     def bulk_forces(self, state: State) -> Forces:
-        """Forces of groups I and F at an accepted state, those of group E zero; collective."""
+        """Forces of groups I and F at an accepted state, those of group E zero."""
         return self.system.forces(state, "IF")
 
     def element_residual(self, line: Line, state: State) -> Array:
@@ -170,15 +161,6 @@ class StepSolver:
     def nodal_residual(self, line: Line, state: State) -> Array | None:
         """Of what acts on a line's nodes (nn, ndof) without holding them, if anything, at an accepted state."""
         return nodal_residual(line, acting_on(line, self.system.model.parts), state)
-
-    def require_stable(self, solution: Solution) -> None:
-        """Time steps need not be stable equilibria."""
-
-    def renew(self) -> None:
-        """Take a matrix of the pattern that the parts have now, if any can change."""
-
-    def destroy(self) -> None:
-        """Give back what the ranks hold together; collective."""
 
 
 class StepTrials:

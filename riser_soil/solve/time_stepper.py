@@ -27,9 +27,9 @@ from riser_soil.solve.local_error import (
     LocalError,
     committed_error,
 )
-from riser_soil.solve.solver import NotConvergedError, Solution, Step, StepSolver
+from riser_soil.solve.newton import Newton, balance_held
+from riser_soil.solve.solver import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
-from riser_soil.solve.step_solver import balance_held
 from riser_soil.solve.time_scheme import CommittedStep, Scheme
 
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
@@ -83,14 +83,14 @@ class TimeStepper:
     def __init__(
         self,
         system: System,
-        newton: StepSolver,
+        newton: Newton,
         scheme: Scheme,
         before: State | Saved,
         largest_gain: float = LARGEST,
         first_guess: Array | None = None,
     ) -> None:
         self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
-        self._mass = newton.mass if scheme.dynamic else None
+        self._mass = newton.accepted.mass if scheme.dynamic else None
         self._error: LocalError | None = None
         self.local_error = 0.0
         parts = system.model.parts
@@ -207,7 +207,7 @@ class TimeStepper:
 
     def _account(self, solution: Solution, control: Control, cuts: int) -> AcceptedStep:
         """Energy balance of the step: stored, dissipated and external."""
-        energy, turned = self.newton.energy_exchanged(self.before, solution)
+        energy, turned = self.newton.accepted.energy_exchanged(self.before, solution)
         start = self._forces if self._history is None else self._history
         supports, against, ahead = self.system.work_in_step(
             self._forces, start.force, solution.forces, solution.state.u, self.scheme.start_share
@@ -249,7 +249,7 @@ class TimeStepper:
     def commit(self, step: AcceptedStep, control: Control) -> None:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
-        self.newton.commit(state)
+        self.newton.accepted.commit(state)
         start, states_before = self._start(step.dt), (self.before, self.now)
         self.before, self.now = self._rates_after(step)
         if self.scheme.dynamic:
@@ -310,7 +310,7 @@ class TimeStepper:
     def _forces_after(self, step: AcceptedStep) -> Forces:
         """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
         if not self.system.smooth:
-            return self.newton.bulk_forces(self.before)
+            return self.newton.accepted.bulk_forces(self.before)
         forces, u = step.solution.forces, step.solution.state.u
         turned = [line for line in self.system.model.lines if line.turns_axes]
         if not turned:
@@ -321,7 +321,7 @@ class TimeStepper:
         """The accepted state with its forces and energy, and what the next step is foreseen and judged by."""
         owners: dict[str, Stateful | None] = {"predictor": self._past, "mass": self._mass, "error": self._error}
         owners["gain"] = self._gain
-        owners["newton"] = self.newton if isinstance(self.newton, Stateful) else None
+        owners["newton"] = self.newton
         kept = {"before": self.before, "forces": self._forces, "history": self._history, "energy": self.energy}
         if self.now is not self.before:
             kept["now"] = self.now
@@ -343,8 +343,7 @@ class TimeStepper:
         self._past.restore(within(saved, "predictor"))
         if self._mass is not None:
             self._mass.restore(within(saved, "mass"))
-        if isinstance(self.newton, Stateful):
-            self.newton.restore(within(saved, "newton"))
+        self.newton.restore(within(saved, "newton"))
         if error := within(saved, "error"):
             self._error = self._new_error()
             self._error.restore(error)

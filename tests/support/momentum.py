@@ -1,11 +1,12 @@
-"""Momentum of lines and point bodies in motion, as their time scheme knows the rates."""
+"""Momentum of lines and bodies in motion, as their time scheme knows the rates."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.bodies.loads import BodyInertia
+from riser_soil.bodies.body import MovingBody
+from riser_soil.bodies.inertia import BodyInertia
 from riser_soil.core.arrays import Array
 from riser_soil.riser.hermite import weigh
 from riser_soil.riser.inertia import Inertia, RotaryInertia
@@ -20,10 +21,16 @@ def momentum(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
     found = [_of_line(line, stepper) for line in assembly.by_line.values()]
     for body in {} if assembly.hung is None else assembly.hung.bodies.values():
         (part,) = (p for p in stepper.system.model.parts if isinstance(p, BodyInertia) and p.line is body)
-        impulse = part.M[:3, :3] @ body.nodal(stepper.now.v)[0, :3]
-        found.append((impulse, np.cross(body.x[0], impulse)))
+        found.append(of_body(body, part.M, body.nodal(stepper.now.v)[0]))
     linear, angular = (np.sum(each, axis=0) for each in zip(*found, strict=True))
     return linear, angular
+
+
+def of_body(body: MovingBody, M: Array, v: Array) -> tuple[Array, Array]:
+    """Of a body with the mass matrix M (6, 6) and rates v (6,)."""
+    R = body.frames.R[0]
+    linear, angular = (M @ np.concatenate([R.T @ v[:3], v[3:]])).reshape(2, 3) @ R.T
+    return linear, angular + np.cross(body.x[0], linear)
 
 
 def _of_line(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:

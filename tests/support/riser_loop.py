@@ -22,12 +22,11 @@ from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
-from riser_soil.solve.compiled_newton import CompiledNewton, compiled_newton
-from riser_soil.solve.newton import Newton
+from riser_soil.solve.compiled_loop import compiled_loop
 from riser_soil.solve.newton_progress import CONVERGED, StopLimits
 from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
 from riser_soil.solve.riser_mass import RiserMass
-from riser_soil.solve.solver import NewtonSettings
+from riser_soil.solve.solver import Accepted
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
@@ -139,9 +138,9 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
 def require_mass(at: Sample, parts: list[Any]) -> None:
     """Inverse of the mass, kinetic energy and bulk forces at an accepted state are those of the parts' methods."""
     system, accepted = System(MPI.COMM_SELF, Model([at.line], parts), Timer.new()), at.state(3, size=0.0)
-    newton = compiled_newton(system, NewtonSettings(1e-9, 20, 1e-6))
-    assert newton is not None
-    found, expected = newton.mass, RiserMass(system)
+    loop = compiled_loop(system, most=20)
+    assert loop is not None
+    found, expected = loop.mass, RiserMass(system)
     force = at.state(4).v
     for _ in range(2):  # the second time projectors are known
         accelerations = expected.accelerations(accepted.t, force)
@@ -149,14 +148,14 @@ def require_mass(at: Sample, parts: list[Any]) -> None:
         np.testing.assert_allclose(found.accelerations(accepted.t, force), accelerations, rtol=0.0, atol=1e-10 * scale)
     assert found.kinetic_energy(accepted) == pytest.approx(expected.kinetic_energy(accepted), rel=1e-12)
     forces = system.forces(accepted, "IF")
-    for name, group in vars(newton.bulk_forces(accepted)).items():
+    for name, group in vars(loop.bulk_forces(accepted)).items():
         scale = np.abs(forces.force).max()
         np.testing.assert_allclose(group, getattr(forces, name), rtol=0.0, atol=1e-12 * scale)
     other = at.state(5, size=0.0, t=0.7)
     for instant in (accepted, other, State(other.t, other.u, 2.0 * other.v, other.a)):  # what was placed last, or not
         assert found.kinetic_energy(instant) == pytest.approx(expected.kinetic_energy(instant), rel=1e-12)
     for instant in (accepted, other):
-        require_element_residual(newton, at.line, parts, instant)
+        require_element_residual(loop, at.line, parts, instant)
     system.destroy()
 
 
@@ -178,23 +177,23 @@ def require_tangles(dimension: int) -> None:
     assert len(set(reported)) == {2: 4, 3: 5}[dimension]
 
 
-def require_element_residual(newton: CompiledNewton, line: Line, parts: list[Any], accepted: State) -> None:
+def require_element_residual(told: Accepted, line: Line, parts: list[Any], accepted: State) -> None:
     """What acts within the elements is what the parts' methods tell."""
     expected = element_residual(line, parts, accepted)
-    found, scale = newton.element_residual(line, accepted), np.abs(expected).max()
+    found, scale = told.element_residual(line, accepted), np.abs(expected).max()
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * scale)
 
 
 def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     """Section forces at the state solved for last are those by the parts' methods, at that state and by SNES."""
-    line, elements, newton = compiled.assembly.line, compiled.assembly.elements, compiled.newton
-    assert isinstance(newton, CompiledNewton)
+    line, elements, told = compiled.assembly.line, compiled.assembly.elements, compiled.newton.compiled
+    assert told is not None
     state, other = compiled.stepper.now, snes.stepper.now
-    reported = SectionForces.within(newton.section_forces(line, elements, state), line.nodes)
+    reported = SectionForces.within(told.section_forces(line, elements, state), line.nodes)
     parts = acting_on(line, compiled.system.model.parts)
     acting = element_residual(line, parts, state), viscous_residual(line, parts, state)
     own = section_forces(line, elements, state, *acting)
-    vector = snes.newton.section_forces(snes.assembly.line, snes.assembly.elements, other)
+    vector = snes.newton.accepted.section_forces(snes.assembly.line, snes.assembly.elements, other)
     by_snes = SectionForces.within(vector, line.nodes)
     for name, values in reported._asdict().items():
         scale = np.abs(reported.moment if name == "end_moment" else values).max()  # pinned ends have none
@@ -207,7 +206,7 @@ def require_contact_results(stage: TimedStage) -> None:
     for contact in stage.assembly.contacts:
         assert isinstance(contact, SeabedContact)
         sizes = stage.assembly.line.nodes, contact.along.arc.size
-        found = ContactResults.within(stage.newton.contact_results(contact, stage.stepper.now), *sizes)
+        found = ContactResults.within(stage.newton.accepted.contact_results(contact, stage.stepper.now), *sizes)
         expected = ContactResults.within(contact.results(stage.stepper.now), *sizes)
         assert expected.force.any()
         for name, values in expected._asdict().items():
@@ -226,14 +225,14 @@ def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
 def require_steps_of_snes(case: str) -> None:
     """Iterations, states and energy turned over of a scene's steps by the loop are those by SNES."""
     compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
-    assert isinstance(compiled.newton, CompiledNewton)
-    assert isinstance(snes.newton, Newton)
+    assert compiled.newton.compiled is not None
+    assert snes.newton.compiled is None
     require_iterations(compiled, snes)
     place, expected_place = (stage.assembly.line.positions3(stage.stepper.before) for stage in (compiled, snes))
     np.testing.assert_allclose(place, expected_place, rtol=0.0, atol=1e-9)
     found, expected = compiled.stepper, snes.stepper
     parts = acting_on(compiled.assembly.line, found.system.model.parts)
-    require_element_residual(compiled.newton, compiled.assembly.line, parts, found.now)
+    require_element_residual(compiled.newton.accepted, compiled.assembly.line, parts, found.now)
     require_section_forces(compiled, snes)
     require_contact_results(compiled)
     np.testing.assert_allclose(found.before.v, expected.before.v, rtol=0.0, atol=1e-7)

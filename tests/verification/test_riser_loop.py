@@ -52,7 +52,7 @@ def test_a_bar_that_has_turned_many_times_comes_to_rest_without_a_cut_step(monke
     """By SNES: `tests/unit/solve/test_round_off.py`."""
     assembly, watched = built(turned_bar(20) | {"solver": {"newton": "compiled"}}), list[AcceptedStep]()
     turn, rest = assembly.scene.stages
-    monkeypatch.setattr("riser_soil.solve.step_solver.Newton", None)
+    monkeypatch.setattr("riser_soil.solve.newton.StepIteration", None)
     take(assembly, rest, take(assembly, turn), watch=lambda _, step: watched.append(step))
     assert len(watched) == 100
     assert assembly.line.x[-1] == pytest.approx([1.0, 0.0], abs=1e-9)

@@ -16,7 +16,7 @@ from scipy.sparse import csr_matrix
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 from riser_soil.results import Run
-from riser_soil.solve import section_solver, step_solver
+from riser_soil.solve import newton, section_solver
 from riser_soil.solve.section_solver import SectionFactors, SectionSolver
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
@@ -96,14 +96,14 @@ def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: py
 
 def test_what_balances_a_new_mesh_leaves_no_matrix_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     """However seldom Python looks for circles of references: each would hold the matrix of all of the soil."""
-    made, usual = list[ReferenceType[System]](), step_solver.System
+    made, usual = list[ReferenceType[System]](), newton.System
 
     def remembered(*given: Any) -> System:
         system = usual(*given)
         made.append(ref(system))
         return system
 
-    monkeypatch.setattr(step_solver, "System", remembered)
+    monkeypatch.setattr(newton, "System", remembered)
     gc.disable()
     try:
         scene = on_sections("auto", tolerance=1e-7)

@@ -138,7 +138,7 @@ def test_a_circle_is_found() -> None:
 
 
 def test_imports_for_type_checkers_and_inside_functions_count() -> None:
-    assert "riser_soil.solve.step_solver" in imports()["riser_soil.stages"]
+    assert "riser_soil.solve.newton" in imports()["riser_soil.stages"]
     source = "if TYPE_CHECKING:\n    from riser_soil import a\ndef f():\n    from riser_soil.b import c"
     assert list(imported_names(source, "riser_soil")) == ["riser_soil.a", "riser_soil.b.c"]
 

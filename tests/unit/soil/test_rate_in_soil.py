@@ -18,8 +18,8 @@ from riser_soil.soil.rate import Rate
 from riser_soil.soil.remoulding import Remoulding
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
+from riser_soil.solve.newton import balance_held
 from riser_soil.solve.solver import NewtonSettings
-from riser_soil.solve.step_solver import balance_held
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built, take

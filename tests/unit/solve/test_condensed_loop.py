@@ -13,11 +13,12 @@ from riser_soil.contact.surface_loop import Watched, _leaves
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.compiled_newton import CompiledNewton, compiled_newton
-from riser_soil.solve.newton import Newton
+from riser_soil.solve.compiled_loop import CompiledLoop, compiled_loop
+from riser_soil.solve.newton import solver_of
+from riser_soil.solve.newton_progress import StopLimits
+from riser_soil.solve.packed_line import PackedSystem
 from riser_soil.solve.soil_border import SoilBorder
-from riser_soil.solve.solver import NewtonSettings, Solution, Step
-from riser_soil.solve.step_solver import solver_of
+from riser_soil.solve.solver import NewtonSettings, Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
@@ -87,10 +88,10 @@ def assert_same(found: list[dict[str, Array]], wanted: list[dict[str, Array]]) -
 
 
 def forbid(patch: pytest.MonkeyPatch) -> None:
-    def refuse(solver: CompiledNewton, step: Step, near: bool) -> Solution:
+    def refuse(loop: CompiledLoop, before: State) -> bool:
         raise AssertionError("a step was left to Newton's method over the parts")
 
-    patch.setattr(CompiledNewton, "_by_newton", refuse)
+    patch.setattr(CompiledLoop, "leaves", refuse)
 
 
 @pytest.mark.parametrize("case", MARKED)
@@ -101,13 +102,13 @@ def test_the_loop_finds_what_newton_finds(case: str, monkeypatch: pytest.MonkeyP
 
 def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each second one, so that both go on from what the other has left."""
-    usual, asked = CompiledNewton._iterate, []
+    usual, asked = CompiledLoop._iterate, []
 
-    def iterate(solver: CompiledNewton, step: Step, still: State) -> tuple[str, list[float]]:
+    def iterate(loop: CompiledLoop, step: Step, still: State, limits: StopLimits) -> tuple[str, list[float]]:
         asked.append(step.t)
-        return usual(solver, step, still) if len(asked) % 2 else ("left to Newton", [])
+        return usual(loop, step, still, limits) if len(asked) % 2 else ("left to Newton", [])
 
-    monkeypatch.setattr(CompiledNewton, "_iterate", iterate)
+    monkeypatch.setattr(CompiledLoop, "_iterate", iterate)
     assert_same(taken("in a plane", "compiled"), by_snes("in a plane"))
     assert len(asked) == 8
 
@@ -132,39 +133,39 @@ def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
-    left, usual = list[float](), CompiledNewton._by_newton
+    left, usual = list[float](), CompiledLoop.leaves
 
-    def count(solver: CompiledNewton, step: Step, near: bool) -> Solution:
-        left.append(step.t)
-        return usual(solver, step, near)
+    def count(loop: CompiledLoop, before: State) -> bool:
+        left.append(before.t)
+        return usual(loop, before)
 
-    monkeypatch.setattr(CompiledNewton, "_by_newton", count)
+    monkeypatch.setattr(CompiledLoop, "leaves", count)
     monkeypatch.setattr("riser_soil.solve.soil_border.SHARE", 1e-4)
     found = taken("in a plane", "compiled")
     assert len(left) > 0
     assert_same(found, by_snes("in a plane"))
 
 
-def at_first_step(case: str) -> tuple[CompiledNewton, System]:
-    """The loop's solver where the dynamic stage begins, in balance under the present soil."""
+def at_first_step(case: str) -> tuple[PackedSystem, System]:
+    """The loop where the dynamic stage begins, in balance under the present soil."""
     assembly = built(scene(case, "compiled"))
     lay, move = assembly.scene.stages
     before = run_stage(assembly, lay, State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     system = System(assembly.comm, assembly.begin(move), Timer.new())
     found = solver_of(system, SCHEME, SETTINGS)
-    assert isinstance(found, CompiledNewton)
+    assert found.compiled is not None
     guess = np.zeros(assembly.size)
     found.solve(Step(SCHEME, before, 0.01, 0.01, None, guess))
-    return found, system
+    return found.compiled.packed, system
 
 
 @pytest.mark.parametrize("case", MARKED)
 def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     """Of riser and border, and it is another one without contact's share."""
-    newton, system = at_first_step(case)
-    (line,), beside = newton.packed.lines, newton.packed.border
+    riser, system = at_first_step(case)
+    (line,), beside = riser.lines, riser.border
     assert isinstance(beside, SoilBorder)
-    riser, border = newton.packed, beside._border.value
+    border = beside._border.value
     step, dofs, n = line.step, line.dofs, line.line.size
     x0 = np.concatenate([step.u.ravel(), border.u])
 
@@ -191,7 +192,6 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
         got = matrix @ direction
         for rows in (np.flatnonzero(free[:n]), np.arange(n, len(x0))):
             assert np.linalg.norm((got - wanted)[rows]) < 1e-6 * np.linalg.norm(wanted[rows])
-    newton.destroy()
     system.destroy()
 
 
@@ -208,9 +208,9 @@ def test_what_has_no_kernels_is_left_to_newton(changed: Mapping, why: str) -> No
     mapping["contact"] = ({"method": "surface"} | changed) if "method" not in changed else changed
     assembly = built(mapping)
     system = System(assembly.comm, assembly.begin(assembly.scene.stages[1]), Timer.new())
-    assert compiled_newton(system, SETTINGS) is None, why
+    assert compiled_loop(system, SETTINGS.max_iterations) is None, why
     found = solver_of(system, SCHEME, SETTINGS)
-    assert isinstance(found, Newton)
+    assert found.compiled is None
     found.destroy()
     system.destroy()
 

@@ -1,7 +1,7 @@
-"""Newton's method for time steps of lines and bodies, compiled: `riser_loop` behind the interface of `Newton`.
+"""Newton's method for time steps of lines and bodies, compiled: `riser_loop` over packed lines.
 
 A step that it can't solve where something stands beside the lines, as where contact with soil opens so that steps want
-shortening, is solved by `Newton`.
+shortening, is left to Newton's method over the parts.
 """
 
 from __future__ import annotations
@@ -25,18 +25,9 @@ from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.accepted_lines import CompiledMass, LineResults
-from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_progress import CONVERGED, NAMES, OUTGROWN, StopLimits, largest_at
 from riser_soil.solve.packed_line import KernelParts, LoopBorder, MakeBorder, PackedLine, PackedSystem
-from riser_soil.solve.solver import (
-    NewtonSettings,
-    NotConvergedError,
-    Solution,
-    Step,
-    StepSolver,
-    limits_of,
-    reported,
-)
+from riser_soil.solve.solver import Accepted, NewtonSettings, Solution, Step, limits_of, reported
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -44,9 +35,9 @@ if TYPE_CHECKING:
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is given up
 
 
-def compiled_newton(system: System, settings: NewtonSettings) -> CompiledNewton | None:
+def compiled_loop(system: System, most: int) -> CompiledLoop | None:
     """The compiled loop over lines and bodies, joined or not, or over a line on condensed soil; None where one of their
-    parts has no kernels.
+    parts has no kernels. most: iterations of a step.
     """
     fields = [field for field in system.model.lines if isinstance(field, MovingNodes)]
     parts = [_with_kernels(acting_on(field, system.model.parts)) for field in fields]
@@ -59,7 +50,7 @@ def compiled_newton(system: System, settings: NewtonSettings) -> CompiledNewton 
         PackedLine(field, own, system.prescribed[field.part], system.levers[field.part], weights)
         for field, own in zip(fields, parts, strict=True)
     ]
-    return CompiledNewton(system, settings, PackedSystem(lines, make(lines), weights, settings.max_iterations))
+    return CompiledLoop(system, PackedSystem(lines, make(lines), weights, most))
 
 
 def _with_kernels(parts: Sequence[LinePart]) -> KernelParts:
@@ -81,11 +72,15 @@ def _border_of(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     return joint_border(beside)
 
 
-class CompiledNewton(StepSolver):
-    """Solver of time steps of lines and bodies. Create once a stage, by `compiled_newton`; see `Newton`."""
+class CompiledLoop(Accepted):
+    """Solver of time steps of lines and bodies, which tells of them, too. Create once a stage, by `compiled_loop`.
 
-    def __init__(self, system: System, settings: NewtonSettings, packed: PackedSystem) -> None:
-        super().__init__(system, settings)
+    iterations: of all its steps, those that failed included.
+    """
+
+    def __init__(self, system: System, packed: PackedSystem) -> None:
+        super().__init__(system)
+        self.iterations = 0
         self.packed, self._lines, self._border = packed, packed.lines, packed.border
         self._solved: State | None = None  # by the compiled loop
         self._nothing = np.zeros(system.numbering.size)
@@ -97,20 +92,15 @@ class CompiledNewton(StepSolver):
                 line: LineResults(packed, line, system.smooth) for packed, line in found if isinstance(line, Line)
             }
 
-    @cached_property
-    def _newton(self) -> Newton:
-        """For steps that can't be solved here."""
-        return Newton(self.system, self.settings)
-
-    def solve(self, step: Step) -> Solution:
-        """Solve a step or raise NotConvergedError."""
+    def solve(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> Solution | str:
+        """Solve a step; why that can't be done where it can't. at_equilibrium: see `Newton`."""
         since = time.perf_counter()
         begun = self._begun(step)
         for line in self._lines:
             line.parts.update(step.before.t, begun.t)
         for results in self._results.values():
             results.forget()
-        failure, norms = self._iterate(step, begun)
+        failure, norms = self._iterate(step, begun, self._limits(step, settings, at_equilibrium))
         solution = None if failure else Solution(self._state(step, begun), self._forces(), norms)
         # What the loop leaves behind is the step's end, but of a scheme that balances forces elsewhere.
         self._solved = solution.state if solution is not None and step.scheme.moves == 1.0 else None
@@ -118,12 +108,11 @@ class CompiledNewton(StepSolver):
             for results in self._results.values():
                 results.solved(self._solved)
         self.system.clock.add("compiled loop", since)
-        near, self.at_equilibrium = self.at_equilibrium, False
-        if solution is not None:
-            return solution
-        if self._border.leave_to_newton(step.before):
-            return self._by_newton(step, near)
-        raise NotConvergedError(failure)
+        return failure if solution is None else solution
+
+    def leaves(self, before: State) -> bool:
+        """Whether a step from an accepted state that could not be solved may be solved over the parts."""
+        return self._border.leave_to_newton(before)
 
     def _begun(self, step: Step) -> State:
         """Where the step is balanced: the first guess, and rates of no increments but those that are prescribed."""
@@ -135,9 +124,9 @@ class CompiledNewton(StepSolver):
         alone = replace(begun, u=np.where(self.system.prescribed, begun.u, 0.0))
         return replace(scheme.balanced_at(step.before, alone, step.dt), u=begun.u / scheme.moves)
 
-    def _iterate(self, step: Step, begun: State) -> tuple[str, list[float]]:
+    def _iterate(self, step: Step, begun: State, limits: StopLimits) -> tuple[str, list[float]]:
         """Why the loop does not get to balance, "" where it does; norms of the residual on the way."""
-        scheme, past, limits = step.scheme, step.scheme.past(step.start), self._limits(step)
+        scheme, past = step.scheme, step.scheme.past(step.start)
         for _ in range(MOST_STARTS):
             self._border.begin(step.before, begun.t, begun.u)
             self.packed.begin(begun, past, scheme.weights(step.dt), limits)
@@ -151,11 +140,11 @@ class CompiledNewton(StepSolver):
             self._border.widen()
         return self._reason(outcome, norms), norms
 
-    def _limits(self, step: Step) -> StopLimits:
+    def _limits(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
         smooth, gradual = self.system.smooth, self.system.gradual and self._border.gradual
-        answers = smooth or self.at_equilibrium or bool(step.guess[~self.system.prescribed].any())
-        limits, moves = limits_of(self.settings, smooth, gradual, answers), step.scheme.moves
+        answers = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
+        limits, moves = limits_of(settings, smooth, gradual, answers), step.scheme.moves
         if moves == 1.0:
             return limits
         # Newton's own norm is that of the balance by the increments of the whole step, see `balance_of`.
@@ -170,16 +159,6 @@ class CompiledNewton(StepSolver):
                 if reason:
                     return reason
         return ""
-
-    def _by_newton(self, step: Step, at_equilibrium: bool) -> Solution:
-        """By Newton's method over the parts."""
-        newton = self._newton
-        newton.renew()
-        newton.at_equilibrium, before = at_equilibrium, newton.iterations
-        try:
-            return newton.solve(step)
-        finally:
-            self.iterations += newton.iterations - before
 
     def _state(self, step: Step, begun: State) -> State:
         """The state found at the step's end."""
@@ -264,14 +243,6 @@ class CompiledNewton(StepSolver):
 
     def restore(self, saved: Saved) -> None:
         self._border.restore(saved)
-
-    def renew(self) -> None:
-        if "_newton" in self.__dict__:
-            self._newton.renew()
-
-    def destroy(self) -> None:
-        if "_newton" in self.__dict__:
-            self._newton.destroy()
 
     def _reason(self, outcome: int, norms: list[float]) -> str:
         return reported(NAMES[outcome], norms, self._place())

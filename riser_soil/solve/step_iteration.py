@@ -1,0 +1,332 @@
+"""Newton's method for a step over the parts of a system: residual, tangent and tests, for the loops of `chain`."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import any_of
+from riser_soil.core.part import Forces, State, Weights
+from riser_soil.core.roles import Adaptive, Limited, Yielding, with_role
+from riser_soil.core.saved_state import Saved, under, within
+from riser_soil.core.system import System
+from riser_soil.solve.chain import (
+    CONVERGED,
+    DIVERGED,
+    ITERATING,
+    LOOSE,
+    OUTGROWN,
+    TOO_MANY,
+    ChainLoop,
+    Loop,
+)
+from riser_soil.solve.newton_progress import (
+    NAMES,
+    ElasticShare,
+    ResidualNorm,
+    above_round_off,
+    diverges,
+    leaves_tangent,
+    stalled,
+    step_length,
+    verdict,
+)
+from riser_soil.solve.solver import (
+    NewtonSettings,
+    NotConvergedError,
+    Solution,
+    Step,
+    StepTrials,
+    limits_of,
+    reported,
+)
+from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
+
+TIGHT = 1e-10  # least share of the residual that a linear system solved by iterations may leave, LOOSE the largest
+BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
+PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
+STATIC = Weights.of_statics()
+PATIENCE, LONGEST = 10, 4  # iterations in which a static residual halves that goes on; times as many at most
+
+
+class StepIteration:
+    """Newton's method over the parts. Create once a stage; the symbolic factorisation is reused throughout.
+
+    iterations: of all its steps, those that failed included.
+    """
+
+    def __init__(self, system: System, settings: NewtonSettings) -> None:
+        self.system, self.settings, self.iterations = system, settings, 0
+        self._trials: StepTrials | None = None
+        self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
+        self._limited: list[Limited] = with_role(system.model.parts, Limited)
+        self._elastic = ElasticShare(with_role(system.model.parts, Yielding))
+        self.loop = self._new_loop()
+        self._pivots = PivotCounter(system)
+        self._make_vectors()
+
+    def _new_loop(self) -> Loop:
+        if self.system.is_chain and not self.settings.snes:
+            return ChainLoop(self.system, self)
+        from riser_soil.solve.snes import SnesLoop
+
+        return SnesLoop(self.system, self.settings, self)
+
+    def _make_vectors(self) -> None:
+        numbering = self.system.numbering
+        self._x, self._f, self._norm = numbering.zeros(), numbering.zeros(), ResidualNorm(self.system)
+
+    def solve(self, step: Step, at_equilibrium: bool) -> Solution:
+        """Solve a step or raise NotConvergedError; at_equilibrium: see `Newton`. Collective."""
+        self._begin(step, at_equilibrium)
+        if self.settings.linear_start and self._step.weights.inertia == 0.0 and not self._continues():
+            self._start_linearly()
+        if failure := self._iterate():
+            raise NotConvergedError(failure)
+        state = self._step.of(self._x)
+        self._step.require_admissible(self._limited)
+        return Solution(state, self._step.forces, self._norms)
+
+    @property
+    def _step(self) -> StepTrials:
+        """The step that is being solved."""
+        assert self._trials is not None
+        return self._trials
+
+    def _continues(self) -> bool:
+        """Whether a static step goes on as those before: its guess leaves less out of balance than its loads put there.
+
+        A motion that is prescribed puts nothing there but through the stretch of the elements beside it.
+        """
+        guess, add = self._step.step.guess, self.system.numbering.add_to_global
+        tried = self._step.with_prescribed(guess), np.zeros_like(guess)
+        going_on, still = (self._norm_of(add(self._step.residual_of(u)[1])) for u in tried)
+        return going_on < still
+
+    def _start_linearly(self) -> None:
+        """First iteration of a static step, by the tangent where it starts: the linear response to its loads and
+        prescribed motion, or the guess with the response to what that lacks.
+
+        An end that is moved alone stretches the element beside it by far, and its false tension spoils what follows.
+        """
+        guess = self._step.step.guess
+        still = np.zeros_like(guess)
+        _, probed = self._step.residual_of(PROBE * self._step.with_prescribed(still))
+        start, residual = self._step.residual_of(still)
+        self._assemble(start)
+        while self._outgrown():
+            self._renew(start)
+            self._assemble(start)
+        self._first = 1
+        self._norms.append(self._respond_to(residual + (probed - residual) / PROBE, still))
+        if any_of(self.system.comm, bool(guess.any())):
+            self._prefer_guess(self._step.with_prescribed(guess))
+
+    def _prefer_guess(self, guess: Array) -> None:
+        """Take the guess, with the tangent's response, where it is nearer to balance than the linear response alone: in
+        what flows on as before, it knows which points yield.
+        """
+        linear = self._x
+        left = self._norm_of(self.residual(linear))
+        norm = self._respond_to(self._step.residual_of(guess)[1], guess)
+        if self._norm_of(self.residual(self._x)) < left:
+            self._norms[-1] = norm
+        else:
+            self._x = linear
+
+    def _respond_to(self, residual: Array, at: Array) -> float:
+        """Take the tangent's response to a residual at increments; the residual's norm [N]."""
+        norm = self._norm_of(self.system.numbering.add_to_global(residual))
+        while failure := self._timed_respond(self.system.numbering.to_global(at)):
+            if not self.loop.again:
+                raise NotConvergedError(self._reason(failure))
+        return norm
+
+    def _norm_of(self, f: Array) -> float:
+        """Norm of a residual (owned,) [N], which is looked at from now on; collective."""
+        self._f = f
+        return self._norm.of(f)
+
+    def _timed_respond(self, at: Array) -> str:
+        """Take the response of the tangent to the residual at unknowns: "", or why there is none."""
+        began, counted = time.perf_counter(), self.system.clock.total
+        failure, response = self.loop.respond(self._f)
+        self._x = at - response
+        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
+        return failure
+
+    def _iterate(self) -> str:
+        """Iterate, from wherever the pattern was outgrown with a wider one, from wherever factors found too little
+        room with more, and on where a static residual still falls; "" where that converges, else why not.
+        """
+        while True:
+            ending = self._run()
+            if ending == OUTGROWN:
+                self._renew(self._step.balanced)
+            elif ending == TOO_MANY and self._still_falls():
+                self._most += self.settings.max_iterations
+            elif not self.loop.again:
+                self.iterations += self._taken
+                self._elastic.reset()
+                return "" if ending == CONVERGED else self._reason(ending)
+            self._norms.pop()
+
+    def _run(self) -> str:
+        """Iterate until that converges, the pattern is outgrown or it fails: how it ends."""
+        began, counted = time.perf_counter(), self.system.clock.total
+        ending = self.loop.iterate(self._x, self._most - self._taken)
+        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
+        return ending
+
+    def _still_falls(self) -> bool:
+        """Whether a static step nears its end, if slowly, as where stiff ground opens and closes point after point."""
+        before, lately = self._norms[:-PATIENCE], self._norms[-PATIENCE:]
+        limit = LONGEST * self.settings.max_iterations
+        return self._step.weights.inertia == 0.0 and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
+
+    @property
+    def _taken(self) -> int:
+        """Iterations of the step so far; a residual that is not finite at its start is none."""
+        return max(len(self._norms) - 1, 0)
+
+    def unstable_modes(self, state: State, forces: Forces | None = None, doubtful: bool = False) -> int:
+        """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Without factors
+        there are none, and nothing is judged. Collective.
+        """
+        if not self.loop.factorises:
+            return 0
+        scale = self._norm.in_play(self.system.forces(state) if forces is None else forces)
+        negative = unstable_modes(self._pivots, state, STATIC, scale, doubtful)
+        while self._outgrown():
+            self._renew(state)
+            negative = unstable_modes(self._pivots, state, STATIC, scale, doubtful)
+        return negative
+
+    def _renew(self, state: State) -> None:
+        """Take a matrix that has places for all that the tangent holds at a state."""
+        for part in self._adaptive:
+            if part.outgrown:
+                part.rebuild(state)
+        self.renew()
+
+    def renew(self) -> None:
+        """Take a matrix of the pattern that the parts have now, and of the dofs that they act on, if any can change."""
+        if not self._adaptive:
+            return
+        self.loop.release()
+        self.system.renew_pattern()
+        self._make_vectors()
+        if self._trials is not None and (x := self._trials.renumbered()) is not None:
+            self._x = x
+        self.loop.renew()
+
+    def _begin(self, step: Step, at_equilibrium: bool) -> None:
+        self._trials, self._norms, self._first = StepTrials(self.system, step), list[float](), 0
+        self._most = self.settings.max_iterations
+        self._x = self.system.numbering.to_global(step.guess)
+        guessed = any_of(self.system.comm, bool(self._x.any()))
+        near = self.system.smooth and self._step.weights.inertia > 0.0
+        answers = at_equilibrium or guessed  # one like round-off has an answer, too
+        self._limits = limits_of(self.settings, near, False, answers)
+
+    def residual(self, x: Array) -> Array:
+        """Residual of the unknowns, both (owned,); collective."""
+        return self._step.residual(x)
+
+    def shortened(self, x: Array, y: Array) -> Array:
+        """The step -y from x, whose residual is known, to the length that the line search finds: a part of y."""
+        if not self.settings.line_search:
+            return y
+
+        def along(f: Array) -> float:
+            return -self.system.sum([float(f @ y)])[0]
+
+        self._elastic.length = step_length(along(self._f), lambda part: along(self.residual(x - part * y)))
+        return self._elastic.length * y
+
+    def _assemble(self, state: State) -> None:
+        self.system.assemble(state, self._step.weights)
+        if self._step.weights.inertia == 0.0:
+            prescribe_free_turns(self.system, state, self.settings.tolerance * self._norm.in_play(self._step.forces))
+
+    def _outgrown(self) -> bool:
+        """Whether something in the tangent assembled last had no place in the pattern; collective."""
+        if not self._adaptive:
+            return False
+        return any_of(self.system.comm, any(part.outgrown for part in self._adaptive))
+
+    def _reusable(self) -> bool:
+        """Whether the tangent of the previous iteration can be reused."""
+        if len(self._norms) < 2:
+            return False
+        before, norm = self._norms[-2:]
+        return bool(leaves_tangent(norm, before, norm, self._limits.reuse))
+
+    def judge(self, x: Array, f: Array) -> str:
+        """Whether unknowns with the residual f are to be iterated further, and if so with which tangent: how it ends,
+        else ITERATING. What was judged last is what was found. Collective.
+        """
+        self._x, self._f = x, f
+        ending = self._judged()
+        return OUTGROWN if ending == CONVERGED and self._outgrown() else ending
+
+    def _judged(self) -> str:
+        norm, limits = self._norm.of(self._f), self._limits
+        self._norms.append(norm)
+        ending = NAMES[verdict(norm, self._norm.in_play(self._step.forces), self._taken, limits)]
+        if ending != ITERATING:
+            return ending
+        if self._taken >= limits.least and stalled(np.array(self._norms)) and self._at_round_off():
+            return CONVERGED
+        if diverges(norm, self._norms[self._first], self._taken, limits):
+            return DIVERGED
+        return self._next_tangent()
+
+    def _at_round_off(self) -> bool:
+        """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
+        self._step.of(self._x)
+        magnitudes = self.system.magnitudes(self._step.balanced, self._step.weights)
+        sizes = self.system.numbering.sizes_to_global(magnitudes)
+        return not any_of(self.system.comm, bool(above_round_off(self._f, sizes)))
+
+    def _next_tangent(self) -> str:
+        """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
+        if self._taken >= self._most or self._reusable():
+            return ITERATING
+        self._step.of(self._x)
+        if self._taken > max(self._first, 1):
+            self._elastic.adapt(*self._norms[:-3:-1])
+        self._assemble(self._step.balanced)
+        return OUTGROWN if self._outgrown() else ITERATING
+
+    def linear_tolerance(self) -> float:
+        """Share of the residual that the next linear system may leave.
+
+        A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2,
+        from memory); what is left stays below that, or below Newton's tolerance.
+        """
+        norm, before = self._norms[-1], self._norms[-2] if self._taken > self._first else 0.0
+        if not 0.0 < norm < before:
+            return LOOSE
+        enough = self.settings.tolerance * self._norm.in_play(self._step.forces) / norm
+        return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSE)
+
+    def negligible(self) -> float:
+        """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
+        return BELOW * self.settings.tolerance * self._norm.in_play(self._step.forces)
+
+    def _reason(self, why: str) -> str:
+        """Why the step did not converge, with where it is out of balance."""
+        return reported(why, self._norms, self._norm.largest(self._f))
+
+    def state(self) -> Saved:
+        """What is kept of linear systems."""
+        return under("linear", self.loop.state())
+
+    def restore(self, saved: Saved) -> None:
+        self.loop.restore(within(saved, "linear"))
+
+    def destroy(self) -> None:
+        self.loop.destroy()
