@@ -17,7 +17,7 @@ from riser_soil.accuracy.key_results import key_results
 from riser_soil.core import compiled
 from riser_soil.scene.reader import scene_from_mapping
 
-CERTAIN = 0.1  # of the bar, or of the true error where that is larger: what the reference may be off
+CERTAIN = 0.25  # of the true error: what the reference may be off where a ratio is told
 UNKNOWN = math.nan, math.inf  # reference that could not be computed
 
 
@@ -39,13 +39,14 @@ class Judged:
         """Whether the reference tells on which side of its bar the error is."""
         return self.bar.bar is not None and abs(self.error - self.bar.bar) >= self.uncertainty
 
-    @property
-    def ratio(self) -> float | None:
-        """Bar over error; None for errors that the reference does not tell, or below the smallest bar."""
-        if self.bar.bar is None or self.error <= SMALLEST * self.bar.key_result.scale:
+    def ratio(self, certain: float) -> float | None:
+        """Bar over error; None for errors that the reference tells less well, or below the smallest bar.
+
+        The bar itself has no say in it: if wide ones counted more often, their median would be theirs.
+        """
+        if self.bar.bar is None or not self.error > SMALLEST * self.bar.key_result.scale:
             return None
-        certain = self.uncertainty <= CERTAIN * max(self.error, self.bar.bar)
-        return self.bar.bar / self.error if certain else None
+        return self.bar.bar / self.error if self.uncertainty <= certain * self.error else None
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def share_inside(judged: Iterable[Judged]) -> float:
     return sum(found) / len(found)
 
 
-def ratios(judged: Iterable[Judged], above: float = SMALLEST) -> list[float]:
-    """Bars over errors, of those above a share of their quantity's scale."""
-    larger = (each for each in judged if each.error > above * each.bar.key_result.scale)
-    return [each.ratio for each in larger if each.ratio is not None]
+def ratios(judged: Iterable[Judged], certain: float = CERTAIN) -> list[float]:
+    """Bars over errors that references tell to a share of them, of those above the smallest bar."""
+    found = (each.ratio(certain) for each in judged)
+    return [ratio for ratio in found if ratio is not None]

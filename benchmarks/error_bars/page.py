@@ -21,6 +21,7 @@ from benchmarks.error_bars.calibration import (
 )
 from benchmarks.error_bars.random_risers import CALIBRATION, GROUNDS, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import SCENES
+from benchmarks.error_bars.soil_page import OF_ALL_ERRORS
 from benchmarks.error_bars.soil_page import ON_SOIL as SOIL_BLOCK
 from demos.page import csv_table, filled, table
 from riser_soil import __version__
@@ -97,9 +98,10 @@ sample.
 
 References ([references.py](../benchmarks/error_bars/references.py)) have 16 or 64 times the elements of static
 scenes, and 16 times those of moving ones with a tenth of the step; a quarter as many show how uncertain they are.
-Quantities are left out whose reference is too uncertain to tell on which side of its bar the error lies. The median
-leaves out those whose reference is not certain to {certain:.0%} of bar or error, the larger of them, and errors below
-{smallest:g} of the scale.
+Quantities are left out whose reference is too uncertain to tell on which side of its bar the error lies. The median of
+bar over true error leaves out errors that the reference does not tell to {certain:.0%} of themselves, and those below
+{smallest:g} of the scale. The bar has no say in what is left out: if wide bars counted more often, the median would
+be theirs. Beside it stands that of all errors, however uncertain.
 
 <!-- {out_block} -->
 {out_figures}
@@ -203,6 +205,7 @@ def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
         ["scenes, key results judged", f"{len(scenes)}, {len(reported)}"],
         ["true error inside its bar", f"{share_inside(judged):.1%}"],
         [f"bar over true error, median, of the {len(ratio)} errors above {SMALLEST:g}", f"{median(ratio):.2f}"],
+        [OF_ALL_ERRORS, f"{median(ratios(judged, math.inf)):.2f}"],
         ["not computed", _failed(scenes, of)],
         ["left out, as the reference does not decide", str(len(judged) - len(reported))],
         ["bars not given, as a coarser run failed", str(sum(len(scene.not_known) for scene in scenes))],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from statistics import median
 
@@ -18,6 +19,7 @@ from riser_soil.checks.settlement import foretold
 from riser_soil.scene.reader import scene_from_mapping
 
 ON_SOIL = "error bars on soil"  # block of the page
+OF_ALL_ERRORS = "the same of all errors, however uncertain"
 WITHIN = 1.5  # factor that a settlement foretold is to keep to
 
 
@@ -38,6 +40,7 @@ NAMES = (
     "scenes, key results judged",
     "true error inside its bar",
     "bar over true error, median",
+    OF_ALL_ERRORS,
     "settlements inside",
     "their median",
     "left out, as the reference does not decide",
@@ -56,6 +59,7 @@ def _cells(scenes: list[JudgedScene]) -> list[str]:
     return [
         f"{len(scenes)}, {len(decided(judged))}",
         *_figures(judged),
+        f"{median(ratios(judged, math.inf)):.2f}",
         *_figures(settled),
         str(len(judged) - len(decided(judged))),
         f"{extra / taken:.0%}",

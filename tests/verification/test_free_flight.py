@@ -67,7 +67,8 @@ def hinged(dt: float, duration: float, body: Mapping) -> Mapping:
     kind = "clamped" if body["kind"] == "rigid" else "pinned"
     carries = {"kind": kind, "between": [{"line": "second", "at": "end"}, {"body": "mass"}]}
     stage["lines"] = {"first": {"loads": [load | {"at": "start"} for load in stage.pop("loads")]}}
-    return scene | {"lines": lines, "bodies": {"mass": body | {"position": places["second"][1]}}, "joints": {"hinge": hinge, "carries": carries}}
+    bodies = {"mass": body | {"position": places["second"][1]}}
+    return scene | {"lines": lines, "bodies": bodies, "joints": {"hinge": hinge, "carries": carries}}
 
 
 class Flight:
