@@ -4,7 +4,7 @@ Between two nodes a straight line misses a curve by h^2 |f''|/8. The lengths h a
 run, the largest moment by at most a share of it, and the least tension by the same share of its scale. Where a moment
 is far below the largest, or a tension far above the least, it may be missed by more, as no key result is there.
 A tension T bends elements into shapes that a cubic can't follow, which leaves T h^4 k''/384 in the moments (see
-`riser.resolution`): that keeps to the share, too.
+`results.bending_misfit`): that keeps to the share, too.
 """
 
 from __future__ import annotations

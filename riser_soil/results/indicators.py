@@ -7,7 +7,7 @@ Each is an estimate of size, calibrated in `tests/verification/test_indicators.p
   nothing where supports or weight press slowly into the ground (`energy_ledger`). A share s of the energy of an
   impact, lost while the riser is brought to rest and thrown back, lowers the force of it by some 1 - (1 - s)^(1/4), as
   half of the loss comes before the peak and the force goes with the root of the energy;
-- bending: the largest misfit of the elements, `riser.resolution`.
+- bending: the largest misfit of the elements, `results.bending_misfit`.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot
-from riser_soil.riser.resolution import misfit
+from riser_soil.results.bending_misfit import misfit
 from riser_soil.riser.section_forces import at_most
 from riser_soil.scene.stages import Stage
 
@@ -34,7 +34,7 @@ OVERLOADED = 1.25
 # Stress at the block's bottom or sides, over the riser's weight on its diameter, from which the block is too small to
 # stand for the ground: 0.1 at eight diameters from the pipe, 0.4 at three. (The largest in it hangs on the cells.)
 NEAR_STRESS = 0.15
-# Shares of the largest moment by which turn and end moments of an element may differ, see riser/resolution.py.
+# Shares of the largest moment by which turn and end moments of an element may differ, see results/bending_misfit.py.
 # Of 48 catenaries, hanging, clamped and on the seabed, those whose largest moment is off by less than 2 % stay below.
 SMOOTH_MISFIT, STEEP_MISFIT = 0.1, 0.2
 # The same as a turn of the element [rad] that is too small to mind: it strains a pipe's outside by 1e-3 D/L.

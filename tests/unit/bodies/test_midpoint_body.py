@@ -14,7 +14,7 @@ from riser_soil.solve.time_scheme import Midpoint
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import error, slope
 from tests.support.momentum import of_body
-from tests.unit.bodies.test_bodies import body, properties
+from tests.support.sample_body import body, properties
 
 RULE = Midpoint()
 FORCES = Weights(1.0, 0.0, 0.0, 0.0)

@@ -11,8 +11,8 @@ import pytest
 
 from riser_soil.core.part import State
 from riser_soil.results import plausibility as module
+from riser_soil.results.bending_misfit import BendingMisfit
 from riser_soil.results.plausibility import LargestValue, Plausibility
-from riser_soil.riser.resolution import BendingMisfit
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown

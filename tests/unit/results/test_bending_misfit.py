@@ -9,8 +9,8 @@ import pytest
 
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
+from riser_soil.results.bending_misfit import BendingMisfit, misfit
 from riser_soil.results.observer import elastic_residual
-from riser_soil.riser.resolution import BendingMisfit, misfit
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
