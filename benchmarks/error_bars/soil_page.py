@@ -19,7 +19,7 @@ from riser_soil.checks.settlement import foretold
 from riser_soil.scene.reader import scene_from_mapping
 
 ON_SOIL = "error bars on soil"  # block of the page
-OF_ALL_ERRORS = "the same of all errors, however uncertain"
+OF_ALL_ERRORS = "of all errors"
 WITHIN = 1.5  # factor that a settlement foretold is to keep to
 
 
