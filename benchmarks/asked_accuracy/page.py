@@ -54,7 +54,7 @@ reached, here and below, as the runs report it: [asked_accuracy_not_reached.csv]
 ## Scenes that have chosen no factor
 
 {count_of_others} more scenes are drawn at random, always the same: the calibration's kinds in other spans, depths,
-pipes, motions and seabeds. None of them has chosen a factor of the error bars or of the search.
+pipes, motions and seabeds.
 
 {figures_of_others}
 

@@ -99,8 +99,8 @@ sample.
 References ([references.py](../benchmarks/error_bars/references.py)) have 16 or 64 times the elements of static
 scenes, and 16 times those of moving ones with a tenth of the step; a quarter as many show how uncertain they are.
 Quantities are left out whose reference is too uncertain to tell on which side of its bar the error lies. The median of
-bar over true error leaves out errors that the reference does not tell to {certain:.0%}, and those below {smallest:g} of the
-scale, but none for its bar: wide bars would count more often. Beside it stands that of all errors.
+bar over true error leaves out errors that the reference does not tell to {certain:.0%}, and those below
+{smallest:g} of the scale, but none for its bar: wide bars would count more often. Beside it stands that of all.
 
 <!-- {out_block} -->
 {out_figures}
