@@ -20,17 +20,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.part import Traits
+from riser_soil.core.rows import Term, add_pulled_back, as_tuple, times, write_weighed
+from riser_soil.riser import stations
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.hermite import Size
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.sea.morison_kernels import StillWaterData, still_water
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.sea import morison_law as law
 from riser_soil.sea.moving_water_kernels import MovingWaterData, moving_water
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import FlowAtStations, update
+
+PAIR = fixed(2)
+NG = len(stations.THREE_POINTS.points)
+ELEMENTS = 8  # at once, so that numbers of their stations fill whole vectors
+BATCH = ELEMENTS * NG  # stations at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +84,255 @@ def pushed_masses(mass: Array, displaced: Array) -> Array:
     across and along the pipe.
     """
     return np.asarray(mass + displaced[:, None])
+
+
+class StationWorkspace(NamedTuple):
+    """Workspace for the derivatives (NG, d, d) of the force at the stations of an element."""
+
+    by_v: Array
+    by_a: Array
+    by_slope: Array
+
+
+def station_workspace(d: int) -> StationWorkspace:
+    """Workspace for a line of d dimensions."""
+    return StationWorkspace(*(np.empty((NG, d, d)) for _ in StationWorkspace._fields))
+
+
+class StillWaterData(NamedTuple):
+    """Stations and their shares (ne, NG) of arc length [m], coefficients of drag and mass (ne, 2) as in `WaterLoads`,
+    and workspace for the stations of one element, NG, and for it.
+    """
+
+    at: stations.Stations
+    share: Array
+    drag: Array
+    mass: Array
+    workspace: StationWorkspace
+    element: Array
+
+
+def still_water(pipe: Pipe, drag: Array, mass: Array) -> StillWaterData:
+    """Drag and added mass along a pipe in water that stands still, and covers all."""
+    d, n = pipe.line.dimension, 2 * pipe.line.ndof
+    return StillWaterData(
+        pipe.at, pipe.share, drag, mass, station_workspace(d), stations.element_workspace(n, fixed(d))
+    )
+
+
+class Batch(NamedTuple):
+    """What the water's resistance depends on at LANES stations, a column each: velocity, acceleration and unit tangent
+    (d, LANES), the stretch |x'| (LANES,), and coefficients of drag and mass (2, LANES).
+    """
+
+    v: Array
+    a: Array
+    tau: Array
+    stretch: Array
+    drag: Array
+    mass: Array
+
+
+class StepBatch(NamedTuple):
+    """The same where a step starts and where it ends; places there (d, LANES)."""
+
+    first: Batch
+    last: Batch
+    began: Array
+    ended: Array
+
+
+@njit
+def _batch(rows: Array, D: Size) -> Batch:
+    """The first 3 d + 5 rows of a workspace. It is to be allocated where loops over its batch are: the compiler then
+    knows its size, and that what they write lies apart from what they read, as it must to do them on vectors.
+    """
+    d = len(D)
+    after = 3 * d + 1
+    coefficients = rows[after : after + 2], rows[after + 2 : after + 4]
+    return Batch(rows[:d], rows[d : 2 * d], rows[2 * d : 3 * d], rows[3 * d], *coefficients)
+
+
+@njit
+def _see(part: StillWaterData, at: Configuration, first: int, after: int, seen: Batch) -> None:
+    """Write what there is at the stations of elements first to after, but for accelerations."""
+    D = at.D
+    for e in range(first, after):
+        for g in range(NG):
+            k, p = (e - first) * NG + g, e * NG + g
+            v = stations.value_at(part.at.N, p, at.rate, e, D)
+            tau, seen.stretch[k] = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
+            for i in range(len(D)):
+                seen.v[i, k], seen.tau[i, k] = v[i], tau[i]
+            for i in range(2):
+                seen.drag[i, k], seen.mass[i, k] = part.drag[e, i], part.mass[e, i]
+
+
+@njit
+def _see_values(part: StillWaterData, q: Array, first: int, after: int, out: Array, D: Size) -> None:
+    """Write the values of q, q' or q'' (ne, 4, d) at those stations to columns of out (d, LANES)."""
+    for e in range(first, after):
+        for g in range(NG):
+            value = stations.value_at(part.at.N, e * NG + g, q, e, D)
+            for i in range(len(D)):
+                out[i, (e - first) * NG + g] = value[i]
+
+
+@add_forces.of(StillWaterData)
+def _still_forces(part: StillWaterData, at: Configuration, out: LineForces) -> None:
+    ne, D, weighted = part.drag.shape[0], at.D, part.at.weighted
+    d = len(D)
+    seen, inertia, force = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((d, BATCH)), np.zeros((d, BATCH))
+    for first in range(0, ne, ELEMENTS):
+        after = min(first + ELEMENTS, ne)
+        _see(part, at, first, after, seen)
+        _see_values(part, at.acceleration, first, after, seen.a, D)
+        for k in range(BATCH):
+            _write_forces(seen, inertia, force, k, D)
+        for e in range(first, after):
+            for g in range(NG):
+                k, p = (e - first) * NG + g, e * NG + g
+                stations.add_integrand_at(weighted, p, as_tuple(inertia[:, k], D), out.inertia_q, e, D)
+                stations.add_integrand_at(weighted, p, as_tuple(force[:, k], D), out.force_q, e, D)
+
+
+@njit
+def _write_forces(seen: Batch, inertia: Array, force: Array, k: int, D: Size) -> None:
+    """Write the resistance at one station, by groups."""
+    tau = as_tuple(seen.tau[:, k], D)
+    law.write_added(as_tuple(seen.a[:, k], D), tau, as_tuple(seen.mass[:, k], PAIR), inertia[:, k], D)
+    law.write_drag(as_tuple(seen.v[:, k], D), tau, as_tuple(seen.drag[:, k], PAIR), force[:, k], D)
+
+
+@add_tangent.of(StillWaterData)
+def _still_tangent(part: StillWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    if weights.force == 0.0:
+        _add_mass(part, at, maps, weights.inertia, K)
+    else:
+        _add_whole_tangent(part, at, maps, weights, K)
+
+
+@njit
+def _add_mass(part: StillWaterData, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
+    """The tangent at rest but for drag: the mass alone."""
+    D, workspace, N, moved = at.D, part.workspace, part.at.N, maps.acceleration_rows
+    for e in range(part.mass.shape[0]):
+        for g in range(NG):
+            tau, stretch = stations.unit_tangent_at(part.at.dN, e * NG + g, at.chord, at.tangent, e, D)
+            at_rest = times(0.0, tau)
+            law.write_added_derivatives(
+                at_rest, tau, stretch, part.mass[e], weight, workspace.by_a[g], workspace.by_slope[g], D
+            )
+        weighted, by = part.at.weighted[e], workspace.by_a
+        first = weighted[0], ((N[e, 0], by[0], moved[e]),)
+        second = weighted[1], ((N[e, 1], by[1], moved[e]),)
+        third = weighted[2], ((N[e, 2], by[2], moved[e]),)
+        write_weighed(part.element, (first, second, third), D, at.R)
+        add_pulled_back(K[e], at.P[e], part.element, D, at.R)
+
+
+@njit
+def _add_whole_tangent(
+    part: StillWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    ne, D, d, workspace = part.drag.shape[0], at.D, len(at.D), part.workspace
+    seen, by = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
+    for first in range(0, ne, ELEMENTS):
+        after = min(first + ELEMENTS, ne)
+        _see(part, at, first, after, seen)
+        _see_values(part, at.acceleration, first, after, seen.a, D)
+        for k in range(BATCH):
+            _write_derivatives(seen, by, k, weights, D)
+        for e in range(first, after):
+            for g in range(NG):
+                _take(by, (e - first) * NG + g, g, workspace, D)
+            each = _terms(part, maps, e, 0), _terms(part, maps, e, 1), _terms(part, maps, e, 2)
+            write_weighed(part.element, each, D, at.R)
+            add_pulled_back(K[e], at.P[e], part.element, D, at.R)
+
+
+@njit
+def _terms(part: StillWaterData, maps: Maps, e: int, g: int) -> tuple[Array, tuple[Term, Term, Term]]:
+    """Weights of a station and what its force follows from, see `add_weighed`."""
+    N, workspace = part.at.N[e, g], part.workspace
+    slope = part.at.dN[e, g], workspace.by_slope[g], maps.place_rows[e]
+    moved = (N, workspace.by_v[g], maps.rate_rows[e]), (N, workspace.by_a[g], maps.acceleration_rows[e])
+    return part.at.weighted[e, g], (slope, *moved)
+
+
+@njit
+def _write_derivatives(seen: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
+    """Write the weighted derivatives by velocity, acceleration and slope at one station."""
+    tau, stretch, by_slope = as_tuple(seen.tau[:, k], D), seen.stretch[k], by[2, :, :, k]
+    v, drag = as_tuple(seen.v[:, k], D), as_tuple(seen.drag[:, k], PAIR)
+    law.write_drag_derivatives(v, tau, stretch, drag, weights.force, by[0, :, :, k], by_slope, D)
+    a, mass = as_tuple(seen.a[:, k], D), as_tuple(seen.mass[:, k], PAIR)
+    law.write_added_derivatives(a, tau, stretch, mass, weights.inertia, by[1, :, :, k], by_slope, D)
+
+
+@njit
+def _take(by: Array, k: int, g: int, workspace: StationWorkspace, D: Size) -> None:
+    """Read the derivatives at one station of many."""
+    for i in range(len(D)):
+        for j in range(len(D)):
+            of_v, of_a, of_slope = by[0, i, j, k], by[1, i, j, k], by[2, i, j, k]
+            workspace.by_v[g, i, j], workspace.by_a[g, i, j], workspace.by_slope[g, i, j] = of_v, of_a, of_slope
+
+
+@add_energy.of(StillWaterData)
+def _still_energy(part: StillWaterData, at: Configuration, energy: Array) -> None:
+    f, D = np.empty(len(at.D)), at.D
+    for e in range(part.mass.shape[0]):
+        for g in range(NG):
+            p = e * NG + g
+            v = stations.value_at(part.at.N, p, at.rate, e, D)
+            tau, _ = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
+            law.write_added(v, tau, part.mass[e], f, D)
+            for i in range(len(D)):
+                energy[0] += 0.5 * part.share[e, g] * v[i] * f[i]
+
+
+@add_work.of(StillWaterData)
+def _still_work(part: StillWaterData, first: Configuration, last: Configuration, work: Array) -> None:
+    """Drag dissipates; a change of the added mass as it turns is external, see `Morison`."""
+    ne, D = part.drag.shape[0], last.D
+    d = len(D)
+    rows, workspace, done = np.zeros((8 * d + 10, BATCH)), np.zeros((3, d, BATCH)), np.zeros((2, BATCH))
+    seen = StepBatch(_batch(rows, D), _batch(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
+    for start in range(0, ne, ELEMENTS):
+        after = min(start + ELEMENTS, ne)
+        _see(part, first, start, after, seen.first)
+        _see(part, last, start, after, seen.last)
+        _see_values(part, first.q, start, after, seen.began, D)
+        _see_values(part, last.q, start, after, seen.ended, D)
+        for k in range(BATCH):
+            _write_work(seen, workspace, done, k, D)
+        for e in range(start, after):
+            for g in range(NG):
+                k, share = (e - start) * NG + g, part.share[e, g]
+                work[0] += share * done[0, k]
+                work[1] += share * done[1, k]
+                work[2] += share * done[1, k]
+
+
+@njit
+def _write_work(seen: StepBatch, workspace: Array, done: Array, k: int, D: Size) -> None:
+    """Write the work per length of the mean drag at one station, and half the change of the added mass along the mean
+    velocity.
+    """
+    before, after, mean, lost, changed = workspace[0, :, k], workspace[1, :, k], workspace[2, :, k], 0.0, 0.0
+    drag, mass = as_tuple(seen.last.drag[:, k], PAIR), as_tuple(seen.last.mass[:, k], PAIR)
+    tau, turned = as_tuple(seen.first.tau[:, k], D), as_tuple(seen.last.tau[:, k], D)
+    law.write_drag(as_tuple(seen.first.v[:, k], D), tau, drag, before, D)
+    law.write_drag(as_tuple(seen.last.v[:, k], D), turned, drag, after, D)
+    for i in range(len(D)):
+        lost += 0.5 * (before[i] + after[i]) * (seen.ended[i, k] - seen.began[i, k])
+        mean[i] = 0.5 * (seen.first.v[i, k] + seen.last.v[i, k])
+    law.write_added(mean, tau, mass, before, D)
+    law.write_added(mean, turned, mass, after, D)
+    for i in range(len(D)):
+        changed += 0.5 * mean[i] * (after[i] - before[i])
+    done[0, k], done[1, k] = lost, changed
 
 
 class Morison(CompiledPart):
