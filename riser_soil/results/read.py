@@ -36,7 +36,8 @@ class SoilFrame:
     cells: IntArray  # (nc, 4, 8 or 10), VTK's node order
     fields: dict[str, Array]  # displacement (nv, 3) m; von_mises_stress Pa, equivalent_plastic_strain (nc,)
 
-OF_ALL = ("lines", "bodies", "joints", "clearance")  # keys of a stage of several lines
+HUNG = ("bodies", "joints", "clearance")  # groups beside those of several lines
+OF_ALL = ("lines", *HUNG)  # keys of a stage of several lines
 
 
 class Run:
@@ -129,6 +130,16 @@ class Run:
         with self._open(run_folder.SERIES) as file:
             own = [*file[self._group]] if self._group else []
             return frozenset([*own, *(name for name in file if isinstance(file[name], h5py.Dataset))])
+
+    @cached_property
+    def hung(self) -> dict[str, tuple[str, bool]]:
+        """Units of what is known of bodies, joints and clearances, and whether it is a vector, by its path."""
+        found = dict[str, tuple[str, bool]]()
+        with self._open(run_folder.SERIES) as file:
+            for path in (f"{kind}/{name}" for kind in HUNG for name in file.get(kind, ())):
+                of_one = ((key, each) for key, each in file[path].items() if isinstance(each, h5py.Dataset))
+                found |= {f"{path}/{key}": (str(each.attrs["units"]), each.ndim > 1) for key, each in of_one}
+        return found
 
     def _path_of(self, file: h5py.File, name: str) -> str | None:
         """Where a variable is: the line's own, else the run's; None where there is none."""

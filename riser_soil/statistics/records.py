@@ -51,18 +51,16 @@ def records_of(
 ) -> Records:
     """An output of a dynamic stage, by default the last, linear between nodes and between records.
 
-    name: a variable of results.nc; of a vector `end_force.x` or `end_force.size`. arcs: places along the riser [m],
-    None for all nodes. since: s of the stage that are left out, as the transient. Raises ResultsError.
+    name: a variable of results.nc, such as `end_force` or `joints/hinge/force`; of a vector `end_force.x` or
+    `end_force.size`. arcs: places along the riser [m], None for all nodes. since: s of the stage that are left out, as
+    the transient. Raises ResultsError.
     """
     variable, _, component = name.partition(".")
-    table = {output.name: output for output in outputs.of_instant() if output.where in ("nodes", "model")}
-    if variable not in table:
-        raise ResultsError(f"--of {name}: is none of the outputs in time; they are {', '.join(table)}")
-    output = table[variable]
+    output = _output(runs, variable)
     if output.vector != (component in (*COMPONENTS, SIZE)) or (not output.vector and component):
         remedy = f"write {variable}.x, .y, .z or .size" if output.vector else f"write {variable}"
         raise ResultsError(f"--of {name}: {variable} is {'a vector' if output.vector else 'a number'}; {remedy}")
-    places = _places(runs, arcs) if output.where == "nodes" else np.array([np.nan])
+    places = _places(runs, arcs) if output.along else np.array([np.nan])
     sampled = [_sampled(run, variable, component, places, stage, since) for run in runs]
     step = max(float(np.median(np.diff(each.time))) for each in sampled)
     evened = [_even(each, step) for each in sampled]
@@ -73,6 +71,31 @@ def records_of(
                 f"{FEWEST}; take runs of like output.interval together"
             )
     return Records(name, output.units, step, float(sampled[0].time[0]), places, evened)
+
+
+class _Output(NamedTuple):
+    """units; whether it is a vector, and whether it is known along the riser."""
+
+    units: str
+    vector: bool
+    along: bool
+
+
+def _output(runs: Sequence[Run], name: str) -> _Output:
+    """Of a riser or line; of bodies, joints and clearances, whose names have a slash, as all runs have it."""
+    known = {
+        output.name: _Output(output.units, output.vector, output.where == "nodes")
+        for output in outputs.of_instant()
+        if output.where in ("nodes", "model")
+    }
+    for run in runs if "/" in name else ():
+        known |= {path: _Output(units, vector, False) for path, (units, vector) in run.hung.items()}
+        if name not in known:
+            there = ", ".join(run.hung) or "no body, joint or clearance"
+            raise ResultsError(f"--of {name}: is not in {run.place}, which has {there}")
+    if name not in known:
+        raise ResultsError(f"--of {name}: is none of the outputs in time; they are {', '.join(known)}")
+    return known[name]
 
 
 def _places(runs: Sequence[Run], arcs: Sequence[float] | None) -> Array:

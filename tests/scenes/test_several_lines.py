@@ -36,6 +36,7 @@ from riser_soil.results.read import Run
 from riser_soil.scene.lines import by_line, spinning
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
+from riser_soil.statistics.records import records_of
 from riser_soil.whole_run import run
 from tests.support.left_run import leave_after
 from tests.support.line_scenes import (
@@ -395,6 +396,29 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     x, other = (found.of_line(name)["position"][-1] for name in ("east", "north"))
     nearest = np.linalg.norm(x[:17, None] - other[None, :17], axis=2).min()
     assert found["clearance/east_north/distance"][-1] == pytest.approx(nearest - CHAIN["outer_diameter"], rel=0.02)
+
+
+def test_statistics_of_bodies_joints_and_clearances(tmp_path: Path) -> None:
+    output = {"clearance": [{"between": ["east", "north"], "beyond": 20.0}]}
+    found = ran(mooring(shaken(1.2), output=output), tmp_path)
+    moving = found["stage"] == 1
+    held = np.linalg.norm(found["joints/east_top/force"], axis=1)
+    assert np.ptp(held[moving]) > 0.0
+    for name, values in {
+        "bodies/buoy/position.z": found["bodies/buoy/position"][:, 2],
+        "joints/east_top/force.size": held,
+        "clearance/east_north/distance": found["clearance/east_north/distance"],
+    }.items():
+        records = records_of([found], name, None)
+        assert np.isnan(records.arc).all()
+        at = found.time[moving][0] + records.step * np.arange(len(records.values[0]))
+        expected = np.interp(at, found.time[moving], values[moving])
+        np.testing.assert_allclose(records.values[0][:, 0], expected, rtol=1e-9, err_msg=name)
+    assert records_of([found], "joints/east_top/moment.x", None).units == "N m"
+    with pytest.raises(ResultsError, match=telling("--of bodies/arch/position", "joints/east_top/force")):
+        records_of([found], "bodies/arch/position.x", None)
+    with pytest.raises(ResultsError, match=telling("vector", "joints/east_top/force.x")):
+        records_of([found], "joints/east_top/force", None)
 
 
 def test_indicators_of_a_line_are_those_of_a_riser(tmp_path: Path) -> None:
