@@ -40,6 +40,7 @@ def test_the_scene_follows_the_demo_s_path(tmp_path: Path) -> None:
     assert stage.duration == len(path.w) - 1
 
 
+@pytest.mark.verify
 def test_page_shows_capacities_as_computed() -> None:
     shown, name = rows(block(PAGE, "capacity")), "cells of D/16"
     found = rows(capacity_page({name: coarse()}))

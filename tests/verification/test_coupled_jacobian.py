@@ -146,7 +146,7 @@ def test_every_law_is_known_here() -> None:
     assert OF_LAWS.keys() == LAWS.keys()
 
 
-LONG = "linear-elastic", "von-mises"  # which others have within them
+LONG = "linear-elastic", "von-mises", "kinematic-hardening"  # which others have within them
 
 
 @pytest.mark.parametrize("law", [pytest.param(law, marks=[pytest.mark.verify] * (law in LONG)) for law in OF_LAWS])

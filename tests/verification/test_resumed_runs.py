@@ -105,7 +105,8 @@ SHORT = {
 #: To compute, or to compile.
 LONG = (
     *("waves", "vortices", "slugs", "plastic clay in space", "touchdown in sections", "kept factors"),
-    *("laid and lifted on clay", "sinks into tetrahedra", "midpoint rule in space"),
+    *("laid and lifted on clay", "sinks into tetrahedra", "midpoint rule", "midpoint rule in space"),
+    "friction on hysteretic clay",
 )
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 

@@ -55,6 +55,7 @@ def test_a_film_shows_every_frame_of_the_stage(folder: Path) -> None:
     assert not [*folder.glob(".*part*")]
 
 
+@pytest.mark.verify
 def test_the_field_and_the_magnification_count(folder: Path) -> None:
     plain = frames(film(folder, folder / "a.gif", period=0.2))
     stressed = frames(film(folder, folder / "b.gif", period=0.2, field="strength_used"))
