@@ -3,7 +3,7 @@
 A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
 bars are left is foretold from the trial before, and measured by comparison runs of the run where that is doubtful
 (`needed.doubtful`). Where they miss the accuracy, a finer run follows, unless the runs that are left would, too, or it
-would take too long.
+would take too long. A run that fails is replaced by one that goes half the way to its setting.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measu
 from riser_soil.accuracy.settings import settings_of, settings_reported
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
-from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
+from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError, SolveError
 from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
@@ -28,6 +28,7 @@ from riser_soil.whole_run import run
 
 RUNS = 4  # at most that are to reach the accuracy
 LONGEST = 1800.0  # s, of a run that follows another: soil's price grows by the cube of its fineness
+HALF_WAY = 0.5  # as a power of all factors
 CLOSER = 0.7  # of what the run before aimed at, as its bars fell by less than their orders
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"
 
@@ -61,11 +62,11 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
     for number in range(RUNS):
         _tell(last, accuracy, comm)
         try:
-            factors, scene = _finer_scene(last, CLOSER**number * accuracy)
+            factors = needed(last.bars, CLOSER**number * accuracy)
             foretold = comm.bcast(last.seconds * times_as_long(factors))
             if foretold > LONGEST:
                 return last, f"; a finer run would take some {in_words(foretold)}, more than {in_words(LONGEST)}"
-            last = _finer_run(scene, last, factors, accuracy, folder, force or number > 0, comm)
+            last = _next_run(last, factors, accuracy, folder, force or number > 0, comm)
         except (SceneError, MeshError) as err:
             if number == 0:
                 raise
@@ -78,18 +79,27 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
     return last, ""
 
 
-def _finer_scene(last: TriedSetting, aim: float) -> tuple[Factors, Scene]:
-    """The scene in the setting that the bars of the last ask for, and how many times as fine that is, by source."""
-    factors = needed(last.bars, aim)
-    names = {source: name for name, source in SOURCES.items()}
-    return factors, finer(last.scene, {names[source]: factor for source, factor in factors.items()})
+def _next_run(
+    last: TriedSetting, factors: Factors, accuracy: float, folder: Path, force: bool, comm: Any
+) -> TriedSetting:
+    """That which is so many times as fine by source; where it fails, one half the way to it."""
+    try:
+        return _finer_run(last, factors, accuracy, folder, force, comm)
+    except SolveError as err:
+        if comm.rank == 0:
+            reason = str(err).partition("\n")[0]
+            print(f"a finer run fails: {reason}; one follows that goes half the way to its setting")
+    nearer = {source: factor**HALF_WAY for source, factor in factors.items()}
+    return _finer_run(last, nearer, accuracy, folder, True, comm)
 
 
 def _finer_run(
-    scene: Scene, last: TriedSetting, factors: Factors, accuracy: float, folder: Path, force: bool, comm: Any
+    last: TriedSetting, factors: Factors, accuracy: float, folder: Path, force: bool, comm: Any
 ) -> TriedSetting:
-    peaks = RunPeaks()
-    since = time.perf_counter()
+    """The scene of the last, so many times as fine by source."""
+    names = {source: name for name, source in SOURCES.items()}
+    scene = finer(last.scene, {names[source]: factor for source, factor in factors.items()})
+    peaks, since = RunPeaks(), time.perf_counter()
     run(scene, folder, force, peaks)
     taken = time.perf_counter() - since
     values = values_of_run(folder, peaks) if comm.rank == 0 else None

@@ -16,6 +16,7 @@ from benchmarks.error_bars.scenes import SCENES
 from riser_soil.accuracy import target_run
 from riser_soil.accuracy.key_results import key_results
 from riser_soil.accuracy.search import first_setting, trial
+from riser_soil.accuracy.settings import SETTINGS
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.commands.app import app
 from riser_soil.errors import AccuracyError, Interruption, SceneError, SolveError
@@ -187,6 +188,27 @@ def test_a_run_too_large_to_follow_leaves_the_one_before(tmp_path: Path, monkeyp
     with pytest.raises(AccuracyError, match=telling("not reached:", "can't be run:", "4 TB of memory")):
         run_to_accuracy(scene_from_mapping(asking(name, "20 %")), tmp_path / "run")
     assert summary(tmp_path / "run")["accuracy"]["reached"] is False
+
+
+def test_a_run_that_fails_is_followed_by_one_half_the_way_to_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tried = list[Scene]()
+
+    def limited(scene: Scene, *given: Any) -> None:
+        tried.append(scene)
+        if len(tried) == 1:
+            raise SolveError("no convergence")
+        run(scene, *given)
+
+    monkeypatch.setattr(target_run, "run", limited)
+    name = "beam under tension, sudden load"
+    run_to_accuracy(scene_from_mapping(asking(name)), tmp_path / "run")
+    assert worst(tmp_path / "run", name) <= 0.01
+    line_with(capsys.readouterr().out, "fails", "no convergence", "half the way")
+    (steps,) = (setting for setting in SETTINGS if setting.name == "time_step")
+    failed, nearer, *_ = (steps.fineness(scene) for scene in tried)
+    assert nearer < failed
 
 
 def test_a_run_that_would_take_too_long_to_follow_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
