@@ -127,10 +127,6 @@ class Assembly:
         return self.only.soil_contact
 
     @property
-    def soil_friction(self) -> SoilFriction | None:
-        return self.only.soil_friction
-
-    @property
     def seabed(self) -> SeabedContact | None:
         return self.only.seabed
 

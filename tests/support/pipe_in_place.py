@@ -108,7 +108,7 @@ def touching(E: float) -> float:
 def resistance(scene: Mapping) -> Array:
     """V/(D su) at the end of each step."""
     assembly = built(scene)
-    pressing = [part for part in (assembly.soil_contact, assembly.soil_friction) if part is not None]
+    pressing = [part for part in (assembly.soil_contact, assembly.only.soil_friction) if part is not None]
     found: list[float] = []
 
     def watch(system: System, step: AcceptedStep) -> None:

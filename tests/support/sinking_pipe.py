@@ -82,7 +82,7 @@ class Sunk:
 def sink(scene: Mapping, followed: int = 0) -> Sunk:
     """Take the scene's stages up to the one of that number, of which it tells; embedments are those of the first."""
     assembly, rows = built(scene), list[tuple[float, ...]]()
-    contact, friction, soil = assembly.soil_contact, assembly.soil_friction, assembly.soil
+    contact, friction, soil = assembly.soil_contact, assembly.only.soil_friction, assembly.soil
     assert contact is not None
     assert soil is not None
     bearing = float(soil.grid.high[0] - soil.grid.low[0]) * SU * D

@@ -88,10 +88,11 @@ def test_friction_is_mobilised_by_a_thirtieth_of_the_diameter() -> None:
     assembly = with_contact(friction={"axial": 0.3, "lateral": 0.6})
     weight = assembly.scales.weight
     assert assembly.friction is not None
-    assert assembly.soil_friction is not None
+    friction = assembly.only.soil_friction
+    assert friction is not None
     np.testing.assert_allclose(assembly.friction._stiffness, 0.6 * weight / (D / 30.0))
     width = contact_width(assembly.scales, E)
-    assert assembly.soil_friction._stiffness == pytest.approx(0.6 * weight / width / (D / 30.0))
+    assert friction._stiffness == pytest.approx(0.6 * weight / width / (D / 30.0))
 
 
 def test_the_riser_bounces_on_the_stiffest_of_its_grounds() -> None:
