@@ -49,6 +49,7 @@ def test_page_shows_capacities_as_computed() -> None:
     assert numbers[0] == pytest.approx(numbers[1], rel=0.01, abs=0.01)
 
 
+@pytest.mark.verify
 def test_resistance_is_that_of_a_smooth_pipe_with_heave() -> None:
     """Merifield, White & Randolph's, for clay that does not harden; this one's strength is far from used at first."""
     ratio, V = coarse()

@@ -110,7 +110,7 @@ def test_midpoint_rule_keeps_momentum_to_round_off(dimension: int) -> None:
     assert flight.energy_range < (1e-2 if dimension == 2 else 5e-4)
 
 
-@pytest.mark.parametrize("body", [POINT, RIGID])
+@pytest.mark.parametrize("body", [pytest.param(POINT, marks=pytest.mark.verify), RIGID])
 def test_lines_and_a_body_that_are_joined_keep_momentum_to_round_off(body: Mapping) -> None:
     """Joints act in the middle of the step, too, one side against the other at one place."""
     flight = Flight(3, 0.05, scene=hinged(0.05, 8.0, body))

@@ -188,6 +188,7 @@ def assert_beside(run: Run, largest: Any, at_nodes: Array) -> None:
     assert top <= largest["value"] < 1.01 * top
 
 
+@pytest.mark.verify
 def test_resolved_scene_computes_the_same_again(tmp_path: Path) -> None:
     """Bit by bit: nothing that matters is missing from scene.yaml or depends on chance."""
     given: Mapping = touchdown(LAY, heave(0.5), su=400.0, dimension=3)

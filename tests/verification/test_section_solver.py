@@ -94,6 +94,7 @@ def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: py
     assert next(calls) > 200
 
 
+@pytest.mark.verify
 def test_what_balances_a_new_mesh_leaves_no_matrix_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     """However seldom Python looks for circles of references: each would hold the matrix of all of the soil."""
     made, usual = list[ReferenceType[System]](), newton.System

@@ -55,6 +55,7 @@ def text(name: str) -> str:
     return (ROOT / name).read_text(encoding="utf-8")
 
 
+@pytest.mark.verify
 def test_wheel_and_source_distribution(tmp_path: Path) -> None:
     command = [sys.executable, str(ROOT / "scripts/dist.py"), str(tmp_path / "dist")]
     done = subprocess.run(command, capture_output=True, text=True)
