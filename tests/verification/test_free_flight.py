@@ -120,6 +120,16 @@ def test_lines_and_a_body_that_are_joined_keep_momentum_to_round_off(body: Mappi
     assert flight.energy_range < 1e-3
 
 
+def test_snes_finds_the_flight_of_a_rigid_body_that_the_compiled_loop_finds() -> None:
+    scene = dict(hinged(0.05, 0.5, RIGID))
+    compiled, snes = (
+        Flight(3, 0.05, scene=scene | {"solver": {"tolerance": 1e-11, "newton": newton}})
+        for newton in ("compiled", "snes")
+    )
+    np.testing.assert_allclose(compiled.tips, snes.tips, rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(compiled.angular, snes.angular, rtol=0.0, atol=1e-8)
+
+
 def test_energy_errs_in_second_order() -> None:
     ranges = np.array([Flight(3, dt).energy_range for dt in (0.05, 0.025, 0.0125)])
     assert np.all(np.log2(ranges[:-1] / ranges[1:]) > 1.9)

@@ -13,6 +13,7 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene, Solver
 from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
+from tests.support.line_scenes import RIGID, mooring, shaken
 from tests.support.sinking_pipe import sinking, sinking_into_tetrahedra
 
 ROOT = Path(__file__).parents[2]
@@ -77,6 +78,10 @@ def sinks_into_tetrahedra() -> Scene:
     return scene_from_mapping(sinking_into_tetrahedra(4, 0.1, 12, contact=friction))
 
 
+def moored_rigid_body() -> Scene:
+    return scene_from_mapping(mooring(shaken(0.5) | {"scheme": {"midpoint": {}}}, body=RIGID))
+
+
 SHORT = {
     "first scene": (lambda: shortened("demos/first_scene.yaml", 1.0), (5,)),
     "catenary": (lambda: shortened("demos/catenary/scene.yaml", 1.0), (1, 6)),
@@ -94,6 +99,7 @@ SHORT = {
     "sinks into tetrahedra": (sinks_into_tetrahedra, (5, 9)),
     "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
+    "midpoint rule of a rigid body": (moored_rigid_body, (5, 9)),
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
     "automatic steps on a seabed": (lambda: shortened("demos/first_scene.yaml", 1.0, "stages.1.time_step=auto"), (12,)),
     "vortices": (lambda: shortened("tests/scenes/catenary.yaml", 1.0, *IN_SPACE, *VORTICES), (4,)),
@@ -106,7 +112,7 @@ SHORT = {
 LONG = (
     *("waves", "vortices", "slugs", "plastic clay in space", "touchdown in sections", "kept factors"),
     *("laid and lifted on clay", "sinks into tetrahedra", "midpoint rule", "midpoint rule in space"),
-    "friction on hysteretic clay",
+    *("friction on hysteretic clay", "midpoint rule of a rigid body"),
 )
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 
