@@ -6,7 +6,6 @@ import contextlib
 import io
 import json
 import math
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Any
 
 from benchmarks.error_bars.references import Reference
 from riser_soil.accuracy.key_results import key_results
-from riser_soil.core import compiled
+from riser_soil.core.compiled import seconds_of_work
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SUMMARY
 from riser_soil.scene.scene import Scene
@@ -77,7 +76,7 @@ def run_errors(scene: Scene, folder: Path, reference: Reference) -> tuple[TrueEr
 
 def taken(action: Callable[[], Any]) -> float:
     """Processor time [s] without compilation of kernels; what the action prints is left out."""
-    began, compiling = time.process_time(), compiled.seconds_compiling()
+    since = seconds_of_work()
     with contextlib.redirect_stdout(io.StringIO()):
         action()
-    return time.process_time() - began - (compiled.seconds_compiling() - compiling)
+    return seconds_of_work() - since

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -14,7 +13,7 @@ from benchmarks.error_bars.scenes import Mapping
 from riser_soil.accuracy.chain import bars_of, comparison_runs, peaks_of, run_values
 from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar
 from riser_soil.accuracy.key_results import key_results
-from riser_soil.core import compiled
+from riser_soil.core.compiled import seconds_of_work
 from riser_soil.scene.reader import scene_from_mapping
 
 CERTAIN = 0.25  # of the true error: what the reference may be off where a ratio is told
@@ -61,24 +60,19 @@ class JudgedScene:
 
 def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
     """Compute a scene with its comparison runs, and compare it with its reference."""
-    scene, began = scene_from_mapping(mapping), _processor_time()
+    scene, began = scene_from_mapping(mapping), seconds_of_work()
     peaks = peaks_of(scene, MPI.COMM_WORLD)
-    done = _processor_time()
+    done = seconds_of_work()
     chain = comparison_runs(scene, MPI.COMM_WORLD)
     run = run_values(key_results(peaks.reported("sampled")), peaks)
     found = bars_of(scene, run, chain)
-    seconds = done - began, _processor_time() - done
+    seconds = done - began, seconds_of_work() - done
     judged = [_judged(name, bar, *reference.get(bar.key_result.key, UNKNOWN)) for bar in found if bar.bar is not None]
     return JudgedScene(name, judged, [bar for bar in found if bar.bar is None], seconds)
 
 
 def _judged(name: str, bar: ErrorBar, true: float, uncertainty: float) -> Judged:
     return Judged(name, bar, abs(bar.key_result.value - true), uncertainty)
-
-
-def _processor_time() -> float:
-    """Without the compilation of kernels [s]."""
-    return time.process_time() - compiled.seconds_compiling()
 
 
 def decided(judged: Iterable[Judged]) -> list[Judged]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from riser_soil.accuracy.chain import bars_of, comparison_runs, run_values
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.key_results import key_results
 from riser_soil.assembly.packages import communicator_of
+from riser_soil.core import compiled
 from riser_soil.errors import Interruption
 from riser_soil.interruption import handling_signals
 from riser_soil.results.folder import SUMMARY
@@ -29,13 +29,13 @@ LEFT = "while its error bars were computed; {} has the whole run, without them"
 def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, restart: bool = False) -> None:
     """As `run`, then tell the error bars; collective. What goes wrong with a comparison run leaves the run as it is."""
     folder, comm, peaks = Path(folder), communicator_of(scene), RunPeaks()
-    began = time.perf_counter()
+    began = compiled.seconds_of_work()
     run(scene, folder, force, peaks, restart)
-    taken = time.perf_counter() - began
+    taken = compiled.seconds_of_work() - began
     bars = _bars(scene, folder, peaks, comm)
     if comm.rank == 0:
-        extra = time.perf_counter() - began - taken
-        seconds = {"run": taken, "companions": extra}
+        extra = compiled.seconds_of_work() - began - taken
+        seconds = {"run": taken, "comparison_runs": extra}
         write_bars(folder, bars, seconds)
         print_bars(bars, extra / taken)
 

@@ -26,7 +26,7 @@ from riser_soil.accuracy.error_bars import (
 )
 from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
-from riser_soil.accuracy.settings import settings_of, varied
+from riser_soil.accuracy.settings import is_firm, settings_of, varied
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
 from riser_soil.core.snapshot import Instants, SoilSnapshot, instants_at
@@ -71,11 +71,13 @@ def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None
     """Those of a scene, run one after the other; collective, their values on rank 0. varying: those of error bars by
     default.
 
+    On soil a penalty that is firm enough is not varied: see `is_firm`.
+
     In the place of a finer one that fails comes one that is as much coarser. Where that fails, too, there is nothing to
     compare the next ones with: they are not run.
     """
     chain: list[ComparisonRun] = []
-    known = {setting.name for setting in settings_of(scene)}
+    known = {setting.name for setting in settings_of(scene)} - ({"penalty"} if is_firm(scene) else set())
     if scene.soil is not None and "soil_mesh" not in known:
         chain.append(ComparisonRun("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
     now = _recording_all(scene)

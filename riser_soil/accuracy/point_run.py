@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import time
 from pathlib import Path
 
 from riser_soil.accuracy.study_points import COST
@@ -22,14 +21,13 @@ from riser_soil.whole_run import run
 def main(file: Path, folder: Path) -> int:
     """Run the scene and leave its cost beside its results; the exit status is that of `riser-soil run`."""
     scene = read_scene(file)
-    since, before = time.process_time(), compiled.seconds_compiling()
+    since = compiled.seconds_of_work()
     status, reason = 0, ""
     try:
         run(scene, folder, force=True)
     except (RiserSoilError, Interruption) as err:
         status, reason = err.exit_status, str(err)
-    seconds = time.process_time() - since - (compiled.seconds_compiling() - before)
-    cost = {"status": status, "reason": reason, "cpu": seconds}
+    cost = {"status": status, "reason": reason, "cpu": compiled.seconds_of_work() - since}
     (folder / COST).write_text(json.dumps(cost), encoding="utf-8")
     return status
 

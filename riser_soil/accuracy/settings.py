@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from riser_soil.assembly.scales import Scales
 
 LOCAL_ORDER = 3  # of the local error of automatic steps in their size
+FIRM = 50.0  # times the automatic penalty on soil: some 2e-4 of a settlement is left to it, 1e-2 to the automatic one
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,9 +181,10 @@ def _finer_soil(scene: Scene, factor: float) -> Scene:
 
 
 def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
-    contact = scene.contact
+    """On soil at most a firm one, if it is not firmer: stiffer ones are no more accurate."""
+    contact, before = scene.contact, _penalty(scene)
     assert contact is not None
-    stiffness = _penalty(scene) * factor
+    stiffness = max(before, min(before * factor, _firm(scene))) if factor > 1.0 else before * factor
     made = {"stiffness": stiffness} | _corner(scene, stiffness)
     return scene.model_copy(update={"contact": contact.model_copy(update=made)})
 
@@ -212,6 +214,19 @@ def _penalty(scene: Scene) -> float:
     contact = _with_stiffness(scene).contact
     assert contact is not None
     return float(contact.stiffness)
+
+
+def is_firm(scene: Scene) -> bool:
+    """Whether the penalty of contact with soil is so stiff that a stiffer one tells nothing."""
+    return scene.soil is not None and _penalty(scene) > 0.5 * _firm(scene)
+
+
+def _firm(scene: Scene) -> float:
+    if scene.soil is None:
+        return math.inf
+    assert scene.contact is not None
+    contact = scene.contact.model_copy(update={"stiffness": "auto"})
+    return FIRM * _penalty(scene.model_copy(update={"contact": contact}))
 
 
 def _across(scene: Scene) -> float:

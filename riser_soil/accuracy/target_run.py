@@ -8,7 +8,6 @@ would take too long. A run that fails is replaced by one that goes half the way 
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measu
 from riser_soil.accuracy.settings import settings_of, settings_reported
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
+from riser_soil.core import compiled
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError, SolveError
 from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
@@ -27,7 +27,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
 
 RUNS = 4  # at most that are to reach the accuracy
-LONGEST = 1800.0  # s, of a run that follows another: soil's price grows by the cube of its fineness
+LONGEST = 1800.0  # s of the processor, of a run that follows another: soil's price grows by the cube of its fineness
 HALF_WAY = 0.5  # as a power of all factors
 CLOSER = 0.7  # of what the run before aimed at, as its bars fell by less than their orders
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"
@@ -37,13 +37,13 @@ def run_to_accuracy(scene: Scene, folder: Path | str, force: bool = False) -> No
     """As `run`, with a setting that reaches `scene.accuracy`; collective. AccuracyError where none was found: the
     finest run is in the folder then, with its error bars.
     """
-    folder, comm, began = Path(folder), communicator_of(scene), time.perf_counter()
+    folder, comm, began = Path(folder), communicator_of(scene), compiled.seconds_of_work()
     accuracy = scene.accuracy
     assert accuracy is not None
     refuse_together(folder, force, comm)
     last, limit = _run_until(accuracy, _sought(scene, accuracy, comm), folder, force, comm)
     if comm.rank == 0:
-        _report(last, accuracy, folder, time.perf_counter() - began)
+        _report(last, accuracy, folder, compiled.seconds_of_work() - began)
     if largest(last.bars)[0] > accuracy:
         raise AccuracyError(_missed(last, accuracy, folder, limit))
 
@@ -99,9 +99,9 @@ def _finer_run(
     """The scene of the last, so many times as fine by source."""
     names = {source: name for name, source in SOURCES.items()}
     scene = finer(last.scene, {names[source]: factor for source, factor in factors.items()})
-    peaks, since = RunPeaks(), time.perf_counter()
+    peaks, since = RunPeaks(), compiled.seconds_of_work()
     run(scene, folder, force, peaks)
-    taken = time.perf_counter() - since
+    taken = compiled.seconds_of_work() - since
     values = values_of_run(folder, peaks) if comm.rank == 0 else None
     bars = comm.bcast(_foretold(last, values, factors, accuracy))
     if bars is None:

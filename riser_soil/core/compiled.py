@@ -246,6 +246,6 @@ for _kind in ("numba:compile", "numba:run_pass"):
     event.register(_kind, _announcer)
 
 
-def seconds_compiling() -> float:
-    """Processor time [s] that compiling kernels has taken in this process so far."""
-    return _announcer.seconds
+def seconds_of_work() -> float:
+    """Processor time [s] of this process so far, compilation of kernels left out."""
+    return time.process_time() - _announcer.seconds

@@ -13,12 +13,14 @@ gradients elsewhere).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import basix
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import MeshError
+from riser_soil.soil import kernels
 
 FOLDS = 0.1  # skewness of a cell
 
@@ -49,22 +51,24 @@ class Family:
         """Whether its cells are in plane strain."""
         return len(self.axes) == 2
 
+    @cached_property
     def quadrature(self) -> tuple[Array, Array]:
         """Points (nq, 3) and weights (nq,) on the reference cell; in a plane (nq, 2)."""
         points, weights = basix.make_quadrature(self.cell, self.quadrature_degree)
         return np.asarray(points), np.asarray(weights)
 
-    def values(self, points: Array) -> Array:
-        """Shape functions (nq, nn)."""
-        return np.asarray(tabulate(self.cell, self.degree, points)[0, :, :, 0])
+    @cached_property
+    def values(self) -> Array:
+        """Shape functions (nq, nn) at the quadrature's points."""
+        return np.asarray(tabulate(self.cell, self.degree, self.quadrature[0])[0, :, :, 0])
 
-    def gradients(self, points: Array) -> Array:
-        """Derivatives of the shape functions on the reference cell (nq, nn, 3); in a plane (nq, nn, 2)."""
-        return _reference_gradients(self.cell, self.degree, points)
-
-
-def _reference_gradients(cell: basix.CellType, degree: int, points: Array) -> Array:
-    return np.ascontiguousarray(np.moveaxis(tabulate(cell, degree, points)[1:, :, :, 0], 0, 2))
+    @cached_property
+    def derivatives(self) -> Array:
+        """Those of the shape functions on the reference cell (nq, nn, 3) at the quadrature's points; in a plane
+        (nq, nn, 2).
+        """
+        table = tabulate(self.cell, self.degree, self.quadrature[0])[1:, :, :, 0]
+        return np.ascontiguousarray(np.moveaxis(table, 0, 2))
 
 
 def tabulate(cell: basix.CellType, degree: int, points: Array) -> Array:
@@ -117,42 +121,35 @@ class Gradients:
     """Shape-function gradients in the nc cells of this rank.
 
     full (nc, nq, nn, 3) [1/m]: dN/dx. volume (nc, 1 or nq, nn, 3) [1/m]: gradients that give the volume
-    change. weights (nc, nq) [m3]: quadrature weight times the map's determinant. points (nc, nq, 3) [m].
+    change. weights (nc, nq) [m3]: quadrature weight times the map's determinant.
     """
 
     full: Array
     volume: Array
     weights: Array
-    points: Array
 
 
 def cell_gradients(family: Family, points: Array, cells: IntArray) -> Gradients:
     """Gradients of the cells (nc, nn) of nodes at points (n, 3); MeshError if a cell is inverted or flat."""
-    at, axes = points[cells], list(family.axes)
-    where, weights = family.quadrature()
-    derivatives = family.gradients(where)
-    jacobian = _jacobian(derivatives, at[..., axes])
-    determinant = np.linalg.det(jacobian)
-    _check_shape(determinant, at[..., axes])
+    at, axes, derivatives = points[cells], np.array(family.axes), family.derivatives
+    determinant = np.empty((len(cells), len(derivatives)))
     full = np.zeros((*determinant.shape, cells.shape[1], 3))
-    full[..., axes] = np.einsum("qnj,cqji->cqni", derivatives, np.linalg.inv(jacobian), optimize=True)
-    dx = np.abs(determinant) * weights * family.thickness
-    volume = np.einsum("cq,cqni->cni", dx, full)[:, None] / dx.sum(axis=1)[:, None, None, None]
-    positions = np.einsum("qn,cni->cqi", family.values(where), at, optimize=True)
-    return Gradients(full, volume if family.mean_dilatation else full, dx, positions)
+    kernels.write_gradients(at, axes, derivatives, determinant, full)
+    _check_shape(determinant, at[..., axes])
+    weights = np.abs(determinant) * family.quadrature[1] * family.thickness
+    if not family.mean_dilatation:
+        return Gradients(full, full, weights)
+    volume = np.empty((len(cells), 1, *full.shape[2:]))
+    kernels.write_mean(full, weights, volume[:, 0])
+    return Gradients(full, volume, weights)
 
 
 def skewness(family: Family, points: Array, cells: IntArray) -> Array:
     """Least over mean determinant of the map in each cell (nc,), at quadrature points: 1 in bricks, 0 when it folds."""
-    at = points[cells][..., list(family.axes)]
-    determinant = np.linalg.det(_jacobian(family.gradients(family.quadrature()[0]), at))
+    determinant = np.empty((len(cells), len(family.derivatives)))
+    kernels.write_determinants(points[cells], np.array(family.axes), family.derivatives, determinant)
     determinant *= np.sign(determinant[:, :1])
     return np.asarray(determinant.min(axis=1) / np.abs(determinant).mean(axis=1))
-
-
-def _jacobian(derivatives: Array, at: Array) -> Array:
-    """Of the maps (nc, nq, d, d) of cells with their nodes at (nc, nn, d)."""
-    return np.asarray(np.einsum("cni,qnj->cqij", at, derivatives, optimize=True))
 
 
 def _check_shape(determinant: Array, at: Array) -> None:

@@ -17,6 +17,86 @@ _SHEAR = 1.0 / np.sqrt(2.0)
 
 
 @njit
+def write_gradients(at: Array, axes: IntArray, derivatives: Array, determinant: Array, full: Array) -> None:
+    """Write gradients (nc, nq, nn, 3) of the shape functions in cells with their nodes at (nc, nn, 3), which extend
+    along d axes, from their derivatives (nq, nn, d) on the reference cell; and the maps' determinants (nc, nq).
+    """
+    nc, nq, nn, _ = full.shape
+    d = axes.size
+    J, adjugate = np.empty((d, d)), np.empty((d, d))
+    for c in range(nc):
+        for q in range(nq):
+            _write_jacobian(at[c], axes, derivatives[q], J)
+            determinant[c, q] = _determinant(J)
+            _write_adjugate(J, adjugate)
+            for a in range(nn):
+                for i in range(d):
+                    total = 0.0
+                    for j in range(d):
+                        total += derivatives[q, a, j] * adjugate[j, i]
+                    full[c, q, a, axes[i]] = total / determinant[c, q]
+
+
+@njit
+def write_determinants(at: Array, axes: IntArray, derivatives: Array, out: Array) -> None:
+    """Write the determinants (nc, nq) of the maps alone, see `write_gradients`."""
+    J = np.empty((axes.size, axes.size))
+    for c in range(out.shape[0]):
+        for q in range(out.shape[1]):
+            _write_jacobian(at[c], axes, derivatives[q], J)
+            out[c, q] = _determinant(J)
+
+
+@njit
+def _write_jacobian(at: Array, axes: IntArray, derivatives: Array, J: Array) -> None:
+    for i in range(axes.size):
+        for j in range(axes.size):
+            J[i, j] = 0.0
+            for a in range(at.shape[0]):
+                J[i, j] += at[a, axes[i]] * derivatives[a, j]
+
+
+@njit
+def _determinant(J: Array) -> float:
+    if len(J) == 2:
+        return J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0]
+    return (
+        J[0, 0] * (J[1, 1] * J[2, 2] - J[1, 2] * J[2, 1])
+        + J[0, 1] * (J[1, 2] * J[2, 0] - J[1, 0] * J[2, 2])
+        + J[0, 2] * (J[1, 0] * J[2, 1] - J[1, 1] * J[2, 0])
+    )
+
+
+@njit
+def _write_adjugate(J: Array, out: Array) -> None:
+    """Write the determinant times the inverse."""
+    if len(J) == 2:
+        out[0, 0], out[0, 1], out[1, 0], out[1, 1] = J[1, 1], -J[0, 1], -J[1, 0], J[0, 0]
+        return
+    for i in range(3):
+        b, c = (i + 1) % 3, (i + 2) % 3
+        for j in range(3):
+            m, n = (j + 1) % 3, (j + 2) % 3
+            out[j, i] = J[b, m] * J[c, n] - J[b, n] * J[c, m]
+
+
+@njit
+def write_mean(values: Array, weights: Array, out: Array) -> None:
+    """Write the means (nc, nn, 3) of values (nc, nq, nn, 3) at points of weights (nc, nq)."""
+    nc, nq, nn, d = values.shape
+    for c in range(nc):
+        total = 0.0
+        for q in range(nq):
+            total += weights[c, q]
+        for a in range(nn):
+            for i in range(d):
+                mean = 0.0
+                for q in range(nq):
+                    mean += weights[c, q] * values[c, q, a, i]
+                out[c, a, i] = mean / total
+
+
+@njit
 def strain(full: Array, volume: Array, cells: IntArray, u: Array, out: Array) -> None:
     """Strain (nc, nq, 6) of the nodal displacements u (3n,), written to out."""
     nc, nq, nn, _ = full.shape

@@ -32,9 +32,9 @@ as a difference between two ways goes with the slope dα/dγ = G H/(G + H), H = 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
@@ -42,19 +42,18 @@ from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import Share
 from riser_soil.soil.clay import UndrainedClay
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
-from riser_soil.soil.rate import Gain, Rate, gain_of
+from riser_soil.soil.rate import Rate, gain_of
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from riser_soil.core.arrays import Array, IntArray
-    from riser_soil.soil import mandel
+    from riser_soil.core.arrays import Array
+    from riser_soil.soil import cyclic_return, mandel
 else:
     np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
+    cyclic_return = LazyModule("riser_soil.soil.cyclic_return")
 
 BACKSTRESS = tuple(f"backstress_{component}" for component in ("xx", "yy", "zz", "xy", "xz", "yz"))
-MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that Δp may be
-ROUND_OFF = 4e-15  # of |η| in the equation for Δp: a change that makes no more is none
 
 
 class KinematicHardening(UndrainedClay):
@@ -78,19 +77,6 @@ class KinematicHardening(UndrainedClay):
         bulk, shear, limit = self._constants(depth)
         hardening = 9.0 * bulk * shear / (3.0 * bulk + shear)  # Young's modulus
         return CyclicClay(bulk, shear, limit, self.elastic_share * limit, hardening, initial, self.rate)
-
-
-class _Step(NamedTuple):
-    """Of points that yield: direction n and η (m, 6), Δp, θ, -dθ/dΔp, and by how much the left side of the equation for
-    Δp less its right side falls with Δp (m,).
-    """
-
-    n: Array
-    eta: Array
-    slip: Array
-    theta: Array
-    recall: Array
-    falls: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,46 +108,30 @@ class CyclicClay:
     @cached_property
     def _first_backstress(self) -> Array:
         """As if the clay had been loaded to its initial stress: the elastic range lies around it."""
-        return self._bounded(mandel.deviator(self.initial))
-
-    def _bounded(self, s: Array) -> Array:
-        """Deviators (n, 6), those beyond the backstress's bound brought back to it: it may have fallen."""
-        bound = self.limit - self.elastic_limit
-        return (bound / np.maximum(np.sqrt(1.5 * mandel.product(s, s)), bound))[:, None] * s
+        first = mandel.deviator(self.initial)
+        cyclic_return.bring_within(self.limit - self.elastic_limit, first)
+        return first
 
     @cached_property
     def _elastic(self) -> Array:
         """Moduli (n, 6, 6) [Pa] where nothing yields."""
         return mandel.stiffness(self.bulk, self.shear)
 
-    @cached_property
-    def _recall(self) -> Array:
-        """γ (n,) [-]."""
-        return self.hardening / (self.limit - self.elastic_limit)
-
     def update(
         self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
     ) -> StressUpdate:
-        gain = gain_of(self.rate, dt)
-        now = replace(self, limit=strength * self.limit, elastic_limit=strength * self.elastic_limit)
-        stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
-        backstress = history[:, 7:].copy() if gain.gains else now._bounded(history[:, 7:])
-        slip = np.zeros(len(stress))
-        tangent = self._elastic.copy()
-        relative = mandel.deviator(stress) - backstress
-        at = np.flatnonzero(np.sqrt(1.5 * mandel.product(relative, relative)) > now.elastic_limit)
-        if at.size and gain.flows:
-            step = now._yielding(mandel.deviator(stress[at]), backstress[at], at, gain)
-            tangent[at] = now._tangent(step, backstress[at], at)
-            moved = step.slip[:, None] * step.n
-            stress[at] -= np.sqrt(6.0) * self.shear[at, None] * moved
-            hardened = backstress[at] + np.sqrt(2.0 / 3.0) * self.hardening[at, None] * moved
-            backstress[at] = step.theta[:, None] * hardened
-            slip[at] = step.slip
-        after = np.column_stack((stress, history[:, 6] + slip, backstress))
-        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
-        stored = 0.5 * mandel.product(stress - self.initial, elastic) + self._locked_in(backstress)
-        return StressUpdate(stress, tangent, after, stored - self._locked_in_first, elastic)
+        gain, n = gain_of(self.rate, dt), len(history)
+        limit, elastic_limit = strength * self.limit, strength * self.elastic_limit
+        after = history.copy()
+        if not gain.gains:  # the strength, and with it the bound, may have fallen
+            backstress = history[:, 7:].copy()
+            cyclic_return.bring_within(limit - elastic_limit, backstress)
+            after[:, 7:] = backstress
+        found = StressUpdate(np.empty((n, 6)), self._elastic.copy(), after, np.empty(n), np.empty((n, 6)))
+        clay = cyclic_return.Clay(self.bulk, self.shear, limit, elastic_limit, self.hardening, self.initial)
+        cyclic_return.answer(clay, gain, np.ascontiguousarray(strain_increment), found)
+        found.stored[:] += self._locked_in(after[:, 7:]) - self._locked_in_first
+        return found
 
     @cached_property
     def _locked_in_first(self) -> Array:
@@ -170,53 +140,6 @@ class CyclicClay:
     def _locked_in(self, backstress: Array) -> Array:
         """Energy of the backstress (n,) [J/m3]."""
         return 0.75 / self.hardening * mandel.product(backstress, backstress)
-
-    def _yielding(self, trial: Array, backstress: Array, at: IntArray, gain: Gain) -> _Step:
-        """Δp by Newton's method, kept where the root is known to lie."""
-        C, recall, stiff = self.hardening[at], self._recall[at], np.sqrt(6.0) * self.shear[at]
-        root, first = np.sqrt(2.0 / 3.0), self.elastic_limit[at]
-
-        def excess(slip: Array) -> tuple[Array, _Step]:
-            factor, slope = gain.factor(slip)
-            y = slip / factor
-            theta = 1.0 / (1.0 + recall * y)
-            eta = trial - theta[:, None] * backstress
-            size = mandel.size(eta)
-            n = eta / size[:, None]
-            recalls = recall * theta**2 * (1.0 - y * slope) / factor
-            hardens = C * theta**2 * (1.0 + recall * y**2 * slope) + first * slope
-            falls = stiff + root * hardens - recalls * mandel.product(n, backstress)
-            found = size - root * (factor * first + C * theta * slip) - stiff * slip
-            return found, _Step(n, eta, slip, theta, recalls, falls)
-
-        low: Array = np.zeros(len(at))
-        found, step = excess(low)
-        high: Array = found / stiff
-        if gain.gains:  # α may be beyond its bound
-            high += mandel.size(backstress) / stiff
-            found, step = excess(np.clip(gain.slip(first + found / root, first, step.falls / root), low, high))
-        least = np.maximum(CONVERGED * high, ROUND_OFF / stiff * mandel.size(step.eta))
-        for _ in range(MOST_ITERATIONS):
-            better = step.slip + found / step.falls
-            better = np.where((better < low) | (better > high), 0.5 * (low + high), better)
-            done = np.abs(better - step.slip) <= least
-            found, step = excess(better)
-            low, high = np.where(found > 0.0, better, low), np.where(found < 0.0, better, high)
-            if done.all():
-                break
-        return step
-
-    def _tangent(self, step: _Step, backstress: Array, at: IntArray) -> Array:
-        """Consistent: dΔp = 2G n:dε/h; the direction turns with the strain and with what the backstress recalls, by
-        b = 2G P dε + recall α dΔp across n, over |η|.
-        """
-        G, n = self.shear[at], step.n
-        share = np.sqrt(6.0) * G * step.slip / mandel.size(step.eta)
-        across = backstress - mandel.product(n, backstress)[:, None] * n
-        turns = n + (step.slip / mandel.size(step.eta) * step.recall)[:, None] * across
-        along = (np.sqrt(6.0) * G / step.falls)[:, None] * turns - share[:, None] * n
-        flow = along[:, :, None] * ((2.0 * G)[:, None] * n)[:, None, :]
-        return mandel.stiffness(self.bulk[at], G * (1.0 - share)) - flow
 
     def overstress(self, stress: Array) -> Array:
         return mandel.von_mises(stress) / self.limit

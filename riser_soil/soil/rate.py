@@ -81,14 +81,6 @@ class Gain(NamedTuple):
     def gains(self) -> bool:
         return self.slow < math.inf
 
-    def factor(self, slip: Array) -> tuple[Array, Array]:
-        """Strength over that of slow shear at a Δp (n,) of a step that flows, and its derivative."""
-        fast = slip > self.slow
-        factor, slope = np.ones_like(slip), np.zeros_like(slip)
-        factor[fast] += self.by_e * np.log(slip[fast] / self.slow)
-        slope[fast] = self.by_e / slip[fast]
-        return factor, slope
-
     def slip(self, q: Array, limit: Array, stiff: Array) -> Array:
         """Δp of elastic trials q beyond a limit of slow shear L, with stiff = 3G [Pa]; all of one shape."""
         slip = (q - limit) / stiff

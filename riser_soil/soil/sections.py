@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.soil.families import FOLDS, QUAD4, skewness
@@ -211,4 +211,9 @@ def _pass(at: Array, first: tuple[Array, Array], second: tuple[Array, Array], ac
             load[~inner] -= weight[~inner][:, None] * shifted[i][j][~inner]
     size = shape[0] * shape[1]
     matrix = csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(cols))), shape=(size, size))
-    return np.asarray(splu(matrix.tocsc()).solve(load.reshape(size, 3))).reshape(*shape, 3)
+    return np.asarray(_factorised(matrix).solve(load.reshape(size, 3))).reshape(*shape, 3)
+
+
+def _factorised(matrix: csr_matrix) -> SuperLU:
+    """Its pattern is symmetric, its diagonal large: an order for that takes half the time."""
+    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1, options={"SymmetricMode": True})

@@ -78,19 +78,14 @@ class SoilCells:
 
     def weight(self, unit_weight: Array, size: int) -> Array:
         """Nodal forces (size,) [N] of a unit weight (n,) [N/m3], downwards."""
-        down = -np.einsum("cq,cq,qa->ca", unit_weight.reshape(self.shape), self.gradients.weights, self._values)
+        down = -np.einsum("cq,cq,qa->ca", unit_weight.reshape(self.shape), self.gradients.weights, self._family.values)
         out = np.zeros(size)
         out[2::3] = np.bincount(self.nodes.ravel(), down.ravel(), minlength=size // 3)
         return out
 
-    @property
-    def _values(self) -> Array:
-        """Shape functions at the quadrature points (nq, nn)."""
-        return self._family.values(self._family.quadrature()[0])
-
     def at_points(self, nodal: Array) -> Array:
         """Values (n, ...) of those (nodes, ...) at nodes."""
-        found = np.einsum("qa,ca...->cq...", self._values, nodal[self.nodes])
+        found = np.einsum("qa,ca...->cq...", self._family.values, nodal[self.nodes])
         return np.asarray(found.reshape(-1, *nodal.shape[1:]))
 
     def slopes(self, nodal: Array) -> Array:

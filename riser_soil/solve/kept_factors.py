@@ -23,7 +23,7 @@ from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.saved_state import Saved
 from riser_soil.solve.linear_solver import LinearSystems, PythonContext, use_mumps
 
-FEWEST = 10  # iterations that a solve may take in any case
+FEWEST = 10  # iterations that a solve may take in any case, where new factors want some, too
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
 SOLVED = PETSc.KSP.ConvergedReason.CONVERGED_RTOL
 TOO_LONG = PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT
@@ -87,7 +87,7 @@ class KeptFactors(PythonContext, LinearSystems):
     @property
     def _most(self) -> int:
         """Iterations beyond which it would have been cheaper to factorise."""
-        return max(FEWEST, int(self.worth))
+        return max(1 if self._symmetric else FEWEST, int(self.worth))
 
     def _factorise(self, matrix: PETSc.Mat) -> None:
         """A matrix whose pattern was factorised before reuses the symbolic factorisation."""

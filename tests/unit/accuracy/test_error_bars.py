@@ -34,7 +34,7 @@ from riser_soil.accuracy.error_bars import (
     orders,
 )
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
-from riser_soil.accuracy.settings import SETTINGS, resolved, settings_reported
+from riser_soil.accuracy.settings import SETTINGS, resolved, settings_reported, varied
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
@@ -344,6 +344,15 @@ def test_cells_of_a_few_slices_are_coarsened_twice(looked_at: list[Scene]) -> No
     coarse = [f"soil cells of {0.025 / share:.4g} m across the riser" for share in (0.6, 0.36, 0.36)]
     assert [settings_reported(each, [SOIL_MESH]) for each in looked_at] == coarse
     assert PENALTY.fineness(looked_at[2]) == pytest.approx(4.0 * PENALTY.fineness(looked_at[1]))
+
+
+def test_a_firm_penalty_on_soil_is_not_varied(looked_at: list[Scene]) -> None:
+    """Two runs would differ by what cells and load steps make, not by the penalty."""
+    given = varied(scene_from_mapping(SCENES["pipe pressed on clay"]), PENALTY, 100.0)
+    alone = [chain.Variation("mesh", {"elements": 2.0}), chain.Variation("penalty", {"penalty": 4.0})]
+    assert [each.source for each in chain.comparison_runs(given, None, alone)] == ["mesh"]
+    softer = varied(given, PENALTY, 0.1)
+    assert [each.source for each in chain.comparison_runs(softer, None, alone)] == ["mesh", "penalty"]
 
 
 @pytest.fixture

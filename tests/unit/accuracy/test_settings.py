@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from riser_soil.accuracy.settings import SETTINGS, Setting, resolved, settings_of, varied
+from riser_soil.accuracy.settings import SETTINGS, Setting, is_firm, resolved, settings_of, varied
 from riser_soil.assembly import sized
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import scales_of
@@ -137,6 +137,24 @@ def test_automatic_sizes_and_penalties_are_turned_as_the_numbers_that_they_stand
     stiff = varied(given, PENALTY, 10.0)
     assert PENALTY.fineness(stiff) == pytest.approx(10.0 * PENALTY.fineness(given))
     assert "stiffness: auto" not in dump_scene(stiff)
+
+
+def test_a_penalty_on_soil_gets_no_stiffer_than_a_firm_one() -> None:
+    """Fifty times the automatic one: some 2e-4 of a pipe's settlement is left to it. A firmer one that is given stays,
+    and a rigid floor has no such limit.
+    """
+    given = scene(LAY, contact={"method": "surface"})
+    automatic = PENALTY.fineness(given)
+    assert PENALTY.fineness(varied(given, PENALTY, 40.0)) == pytest.approx(40.0 * automatic)
+    firm = varied(given, PENALTY, 1000.0)
+    assert PENALTY.fineness(firm) == pytest.approx(50.0 * automatic)
+    assert (is_firm(given), is_firm(varied(given, PENALTY, 20.0)), is_firm(firm)) == (False, False, True)
+    firmer = scene(LAY, contact={"method": "surface", "stiffness": 60.0 * automatic})
+    assert PENALTY.fineness(varied(firmer, PENALTY, 2.0)) == pytest.approx(60.0 * automatic)
+    assert PENALTY.fineness(varied(firmer, PENALTY, 0.5)) == pytest.approx(30.0 * automatic)
+    floor = scene(LAY, without=("soil",), seabed={"kind": "rigid"})
+    assert PENALTY.fineness(varied(floor, PENALTY, 1000.0)) == pytest.approx(1000.0 * PENALTY.fineness(floor))
+    assert not is_firm(varied(floor, PENALTY, 1000.0))
 
 
 def test_more_elements_than_a_riser_may_have_are_refused() -> None:

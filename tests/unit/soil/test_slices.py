@@ -10,6 +10,8 @@ from mpi4py import MPI
 
 from riser_soil.core.part import State
 from riser_soil.errors import MeshError
+from riser_soil.soil import kernels
+from riser_soil.soil.families import cell_gradients
 from riser_soil.soil.grading import BlockSpec
 from riser_soil.soil.slices import slice_grid
 from riser_soil.soil.soil import Soil
@@ -43,6 +45,21 @@ def test_slices_fill_the_block(along: int) -> None:
     corners = mesh.points[mesh.cells]
     assert np.ptp(corners, axis=1).prod(axis=1).sum() == pytest.approx(4.0, rel=1e-12)
     assert len(soil.output_fields().displacement) == len(mesh.points)
+
+
+@ALONG
+def test_linear_displacement_strains_askew_cells_alike(along: int) -> None:
+    """Nodes are moved at random within their slices."""
+    grid, across = slice_grid(MPI.COMM_SELF, spec(along)), 1 - along
+    points, u = grid.nodes.points.copy(), np.zeros((len(grid.nodes.points), 3))
+    points[:, [across, 2]] += 0.06 * np.random.default_rng(3).uniform(-1.0, 1.0, (len(points), 2))
+    u[:, across] = 1e-3 * points[:, across] - 4e-4 * points[:, 2]
+    u[:, 2] = 7e-4 * points[:, across] + 2e-3 * points[:, 2]
+    g = cell_gradients(grid.family, points, grid.nodes.cells)
+    strain, exact = np.empty((*g.weights.shape, 6)), np.zeros(6)
+    kernels.strain(g.full, g.volume, grid.nodes.cells, u.ravel(), strain)
+    exact[[across, 2, 4 + across]] = 1e-3, 2e-3, 3e-4 / np.sqrt(2.0)
+    np.testing.assert_allclose(strain, np.broadcast_to(exact, strain.shape), atol=1e-15)
 
 
 @ALONG

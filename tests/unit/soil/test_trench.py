@@ -107,7 +107,7 @@ def test_a_dug_block_is_in_equilibrium_from_the_start() -> None:
     soil = soil_on(dug(IN_PLAIN))
     force = Bench(soil, soil.field.prescribed).force(np.zeros(soil.field.size))
     assert np.abs(force).max() == 0.0
-    depth = 1.0 - soil.cells.gradients.points[..., 2].ravel()
+    depth = 1.0 - soil.cells.at_points(soil.points)[:, 2]
     np.testing.assert_allclose(soil._initial[:, 2], -6.0e3 * depth, atol=6.0e3 * 1e-12)  # of depths from 1 m
 
 

@@ -87,13 +87,13 @@ def residual(A: Array, x: Array) -> float:
     return float(np.linalg.norm(A @ x - B) / np.linalg.norm(B))
 
 
-def test_a_change_at_three_nodes_takes_a_few_iterations_and_no_factorisation(symmetric: Solver) -> None:
-    """(K + U) K^-1 differs from one by a matrix of rank three: four iterations are enough."""
+def test_a_change_at_a_node_takes_two_iterations_and_no_factorisation(symmetric: Solver) -> None:
+    """(K + U) K^-1 differs from one by a matrix of rank one."""
     symmetric.solution(K, B)
-    changed = stiffened(50.0, 3)
+    changed = stiffened(50.0, 1)
     assert residual(changed, symmetric.solution(changed, B)) <= TOLERANCE
     assert symmetric.kept.factorisations == 1
-    assert symmetric.kept.iterations <= 1 + 4
+    assert symmetric.kept.iterations == 1 + 2
 
 
 def test_factors_that_do_not_do_are_made_anew_at_once(symmetric: Solver) -> None:
@@ -103,7 +103,7 @@ def test_factors_that_do_not_do_are_made_anew_at_once(symmetric: Solver) -> None
     changed = np.sqrt(np.outer(scale, scale)) * K
     assert residual(changed, symmetric.solution(changed, B)) <= TOLERANCE
     assert symmetric.kept.factorisations == 2
-    assert symmetric.kept.iterations == 1 + max(10, int(symmetric.kept.worth)) + 1
+    assert symmetric.kept.iterations == 1 + int(symmetric.kept.worth) + 1
 
 
 def test_factors_are_made_anew_once_a_solve_costs_more_than_the_mean(symmetric: Solver) -> None:

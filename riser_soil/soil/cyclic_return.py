@@ -1,0 +1,193 @@
+"""Return mapping of clay with nonlinear kinematic hardening, point by point.
+
+Its formulae stand in `kinematic_hardening`, the components of strain and stress in `mandel`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.soil.law import StressUpdate
+from riser_soil.soil.mandel import DEVIATOR, add_elastic_strain, add_elastic_stress
+from riser_soil.soil.rate import Gain
+
+MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that Δp may be
+ROUND_OFF = 4e-15  # of |η| in the equation for Δp: a change that makes no more is none
+ROOT = math.sqrt(2.0 / 3.0)
+
+
+class Clay(NamedTuple):
+    """Of n points: elastic moduli, largest equivalent stress, that at first yield and C, each (n,), and initial stress
+    (n, 6) [Pa].
+    """
+
+    bulk: Array
+    shear: Array
+    limit: Array
+    elastic_limit: Array
+    hardening: Array
+    initial: Array
+
+
+class _Point(NamedTuple):
+    """Of a point that yields: q0, C and 2G [Pa], γ [-], and the step's gain by its rate."""
+
+    first: float
+    hardening: float
+    twice: float
+    recall: float
+    gain: Gain
+
+
+class _Trial(NamedTuple):
+    """At Δp: what the left side of the equation for it has more than the right one, by how much that falls with Δp, and
+    |η| [Pa]; θ, -dθ/dΔp.
+    """
+
+    slip: float
+    excess: float
+    falls: float
+    size: float
+    theta: float
+    recalls: float
+
+
+@njit
+def bring_within(bound: Array, s: Array) -> None:
+    """Shorten deviators (n, 6) whose equivalent stress is beyond a bound (n,) [Pa]."""
+    for i in range(len(s)):
+        q = math.sqrt(1.5 * _product(s[i], s[i]))
+        if q > bound[i]:
+            for k in range(6):
+                s[i, k] *= bound[i] / q
+
+
+@njit
+def answer(clay: Clay, gain: Gain, increment: Array, out: StressUpdate) -> None:
+    """Bring histories (n, 13), with backstress within its bound, from before strain increments (n, 6) to after them,
+    and elastic moduli to consistent ones; write the stress, the elastic strain and the energy that it stores.
+    """
+    change, s, n = np.empty(6), np.empty(6), np.empty(6)
+    for i in range(len(increment)):
+        history = out.history[i]
+        stress = history[:6]
+        add_elastic_stress(clay.bulk[i], clay.shear[i], increment[i], stress)
+        if gain.slow > 0.0:
+            history[6] += _bring_back(clay, i, gain, stress, history[7:], s, n, out.tangent[i])
+        for k in range(6):
+            out.stress[i, k], out.elastic[i, k] = stress[k], 0.0
+            change[k] = stress[k] - clay.initial[i, k]
+        add_elastic_strain(clay.bulk[i], clay.shear[i], change, out.elastic[i])
+        out.stored[i] = 0.5 * _product(change, out.elastic[i])
+
+
+@njit
+def _bring_back(
+    clay: Clay, i: int, gain: Gain, stress: Array, alpha: Array, s: Array, n: Array, tangent: Array
+) -> float:
+    """Bring an elastic trial of the stress beyond the yield surface back to it; Δp. s, n (6,): workspace."""
+    mean = (stress[0] + stress[1] + stress[2]) / 3.0
+    for k in range(6):
+        s[k] = stress[k] - (mean if k < 3 else 0.0)
+        n[k] = s[k] - alpha[k]
+    first, C, twice = clay.elastic_limit[i], clay.hardening[i], 2.0 * clay.shear[i]
+    if not math.sqrt(1.5 * _product(n, n)) > first:
+        return 0.0
+    point = _Point(first, C, twice, C / (clay.limit[i] - first), gain)
+    found = _slip(point, s, alpha, n)
+    _subtract_flow(point, found, alpha, n, tangent)
+    for k in range(6):
+        stress[k] -= math.sqrt(1.5) * twice * found.slip * n[k]
+        alpha[k] = found.theta * (alpha[k] + ROOT * C * found.slip * n[k])
+    return found.slip
+
+
+@njit
+def _slip(point: _Point, s: Array, alpha: Array, n: Array) -> _Trial:
+    """Δp by Newton's method, kept where the root is known to lie, for a trial s and backstress α; n: its direction."""
+    stiff = math.sqrt(1.5) * point.twice
+    low, found = 0.0, _at(0.0, point, s, alpha, n)
+    high = found.excess / stiff
+    if point.gain.slow < math.inf:  # α may be beyond its bound
+        high += math.sqrt(_product(alpha, alpha)) / stiff
+        found = _at(min(_guess(point, found), high), point, s, alpha, n)
+    least = max(CONVERGED * high, ROUND_OFF / stiff * found.size)
+    for _ in range(MOST_ITERATIONS):
+        better = found.slip + found.excess / found.falls
+        if better < low or better > high:
+            better = 0.5 * (low + high)
+        done = abs(better - found.slip) <= least
+        found = _at(better, point, s, alpha, n)
+        if found.excess > 0.0:
+            low = better
+        elif found.excess < 0.0:
+            high = better
+        if done:
+            break
+    return found
+
+
+@njit
+def _at(slip: float, point: _Point, s: Array, alpha: Array, n: Array) -> _Trial:
+    factor, slope = _strength(point.gain, slip)
+    y = slip / factor
+    theta = 1.0 / (1.0 + point.recall * y)
+    for k in range(6):
+        n[k] = s[k] - theta * alpha[k]
+    size = math.sqrt(_product(n, n))
+    for k in range(6):
+        n[k] /= size
+    stiff = math.sqrt(1.5) * point.twice
+    recalls = point.recall * theta**2 * (1.0 - y * slope) / factor
+    hardens = point.hardening * theta**2 * (1.0 + point.recall * y**2 * slope) + point.first * slope
+    falls = stiff + ROOT * hardens - recalls * _product(n, alpha)
+    excess = size - ROOT * (factor * point.first + point.hardening * theta * slip) - stiff * slip
+    return _Trial(slip, excess, falls, size, theta, recalls)
+
+
+@njit
+def _strength(gain: Gain, slip: float) -> tuple[float, float]:
+    """Strength over that of slow shear at a Δp, and its derivative."""
+    if slip > gain.slow:
+        return 1.0 + gain.by_e * math.log(slip / gain.slow), gain.by_e / slip
+    return 1.0, 0.0
+
+
+@njit
+def _guess(point: _Point, at_none: _Trial) -> float:
+    """Δp of a fast step as if nothing but the rate hardened, roughly; at_none: where Δp is 0."""
+    gain, slip = point.gain, max(at_none.excess, 0.0) / at_none.falls
+    if slip <= gain.slow:
+        return slip
+    scale = gain.by_e * point.first * ROOT / at_none.falls
+    x = slip / scale + math.log(gain.slow / scale)
+    if x < 1.0:
+        return scale * (math.exp(x) if x < -2.0 else math.exp(2.0 / 3.0 * (x - 1.0)))
+    return scale * (x - math.log(x))
+
+
+@njit
+def _subtract_flow(point: _Point, found: _Trial, alpha: Array, n: Array, tangent: Array) -> None:
+    """From elastic moduli, to the consistent ones: dΔp = 2G n:dε/h; the direction turns with the strain and with what
+    the backstress recalls, by b = 2G P dε + recall α dΔp across n, over |η|.
+    """
+    along, stiff = _product(n, alpha), math.sqrt(1.5) * point.twice
+    share = stiff * found.slip / found.size
+    for i in range(6):
+        turns = n[i] + found.slip / found.size * found.recalls * (alpha[i] - along * n[i])
+        flow = point.twice * (stiff / found.falls * turns - share * n[i])
+        for j in range(6):
+            tangent[i, j] -= share * point.twice * DEVIATOR[i, j] + flow * n[j]
+
+
+@njit
+def _product(a: Array, b: Array) -> float:
+    total = 0.0
+    for k in range(6):
+        total += a[k] * b[k]
+    return total
