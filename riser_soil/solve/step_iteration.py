@@ -165,7 +165,7 @@ class StepIteration:
             ending = self._run()
             if ending == OUTGROWN:
                 self._renew(self._step.balanced)
-            elif ending == TOO_MANY and self._still_falls():
+            elif ending == TOO_MANY and not self._elastic.in_vain and self._still_falls():
                 self._most += self.settings.max_iterations
             elif not self.loop.again:
                 self.iterations += self._taken
@@ -298,6 +298,8 @@ class StepIteration:
         self._step.of(self._x)
         if self._taken > max(self._first, 1):
             self._elastic.adapt(*self._norms[:-3:-1])
+        if self._elastic.in_vain:
+            return TOO_MANY
         self._assemble(self._step.balanced)
         return OUTGROWN if self._outgrown() else ITERATING
 

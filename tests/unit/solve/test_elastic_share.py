@@ -37,6 +37,22 @@ def test_a_short_part_of_a_step_counts_as_well() -> None:
     assert part.given == [FIRST, 0.0]
 
 
+def test_what_crawls_under_the_elastic_tangent_is_in_vain() -> None:
+    """Four times in a row; one that falls, or that the elastic tangent does not have alone, begins anew."""
+    share = ElasticShare([Flowing()])
+    for _ in range(3):
+        share.adapt(0.95, 1.0)
+    for n in range(6):
+        share.adapt(n + 2.0, n + 1.0)  # up to all of it
+    told = []
+    for norm in (0.95, 0.95, 0.95, 1.5, 0.95, 0.91, 0.95, 0.99):
+        share.adapt(norm, 1.0)
+        told.append(share.in_vain)
+    assert told == 7 * [False] + [True]
+    share.reset()
+    assert not share.in_vain
+
+
 def test_it_is_never_more_than_the_elastic_tangent() -> None:
     part = Flowing()
     share = ElasticShare([part])
