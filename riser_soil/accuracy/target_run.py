@@ -62,8 +62,7 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
     for number in range(RUNS):
         _tell(last, accuracy, comm)
         try:
-            factors = needed(last.bars, CLOSER**number * accuracy)
-            foretold = comm.bcast(last.seconds * times_as_long(factors))
+            factors, foretold = comm.bcast(_next_factors(last, accuracy, number))
             if foretold > LONGEST:
                 return last, f"; a finer run would take some {in_words(foretold)}, more than {in_words(LONGEST)}"
             last = _next_run(last, factors, accuracy, folder, force or number > 0, comm)
@@ -77,6 +76,18 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
             taken = in_words(times * last.seconds)
             return last, f"; to reach it would take at least {times:.0f} times as long, {taken}"
     return last, ""
+
+
+def _next_factors(last: TriedSetting, accuracy: float, number: int) -> tuple[Factors, float]:
+    """How many times as fine the run of a number is, by source, and what it takes [s]: as much closer to what is asked
+    as there is time for.
+    """
+    for closer in range(number, -1, -1):
+        factors = needed(last.bars, CLOSER**closer * accuracy)
+        foretold = last.seconds * times_as_long(factors)
+        if foretold <= LONGEST:
+            break
+    return factors, foretold
 
 
 def _next_run(

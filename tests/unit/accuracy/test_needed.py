@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any, cast
 
 import pytest
 
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues, alone
 from riser_soil.accuracy.key_results import KeyResult
 from riser_soil.accuracy.needed import doubtful, expected, largest, needed, times_as_long, too_dear
+from riser_soil.accuracy.search import TriedSetting
+from riser_soil.accuracy.target_run import _next_factors
 
 VALUE = 1000.0
 ORDERS = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}  # in which shares fall
@@ -171,3 +175,17 @@ def test_a_quantity_that_the_run_before_lacks_is_not_known() -> None:
     (found,) = expected([], values(1000.0), values(1000.0), {})
     assert found.bar is None
     assert "run before" in found.reason
+
+
+def test_the_next_run_aims_as_close_as_there_is_time_for() -> None:
+    """Half an hour, which eight times a run of 300 s are not, as cells half as large would be; the bar of 7 % falls to
+    that which is asked for by cells of 4/7 of the size.
+    """
+    given = TriedSetting(cast("Any", None), None, [bar(soil=0.07)], 300.0)
+    close, quick = (_next_factors(replace(given, seconds=seconds), 0.05, 3) for seconds in (1.0, 300.0))
+    assert dict(close[0]) == {"soil": 2.0}
+    assert close[1] == pytest.approx(8.0)
+    assert quick[0]["soil"] == pytest.approx(0.07 / (MARGIN * 0.05 - SMALLEST), rel=1e-6)
+    assert quick[1] == pytest.approx(300.0 * quick[0]["soil"] ** COST["soil"])
+    assert quick[1] < 1800.0
+    assert _next_factors(replace(given, seconds=600.0), 0.05, 3)[1] > 1800.0
