@@ -21,7 +21,7 @@ from riser_soil.core.part import Part
 from riser_soil.scene.bodies import Body as BodyScene
 from riser_soil.scene.bodies import PointBody, SolidBody
 from riser_soil.scene.joints import Joint, JointPoint
-from riser_soil.scene.lines import arc_of
+from riser_soil.scene.lines import arc_of, axis_across
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, MidpointScheme, Stage
 from riser_soil.sea.flows import Sea
@@ -138,7 +138,10 @@ def _body(scene: Scene, name: str, given: BodyProperties, active: bool) -> Movin
     arms = [float(np.linalg.norm(point.offset)) for point in points]
     gyration = float(np.sqrt(given.inertia.max() / given.mass))
     lever = max([*arms, gyration, radius_of(given.volume)]) or 1.0
-    return MovingBody(name, np.array(scene.bodies[name].position), scene.bodies[name].turns, lever, active)
+    body = MovingBody(name, np.array(scene.bodies[name].position), scene.bodies[name].turns, lever, active)
+    if (across := axis_across(scene)) is not None:
+        body.keep_in_plane(across)
+    return body
 
 
 def _weight(scene: Scene, body: MovingBody, given: BodyProperties) -> BodyWeight:

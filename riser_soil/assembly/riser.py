@@ -153,6 +153,8 @@ def line_of(
         active=active,
         name=name,
     )
+    if scene.line.across is not None:
+        line.keep_in_plane(scene.line.across)
     return line, catenary
 
 

@@ -66,7 +66,7 @@ def why_all(scene: Scene, soil: SoilScene) -> str:
         return "it is no block of hexahedra"
     if soil.is_linear:
         return "it is linear, and may be condensed"
-    if resolved_dimension(scene) == 3:
+    if resolved_dimension(scene) == 3 and scene.line.across is None:
         return "the riser moves in three dimensions"
     if abs(plane.direction[across]) > NONE:
         return "the riser runs across x and y"

@@ -93,8 +93,8 @@ class SoilSizes:
         along = np.abs(np.asarray(vertical_plane(self.scene).direction)[:2])
         beyond = BENDINGS * self.bending_length + BEYOND * self.scales.diameter
         around = beyond * along + self.half_width * along[::-1]
-        low, high = _rounded(points.min(axis=0) - around), _rounded(points.max(axis=0) + around)
-        depth = float(_rounded(np.array(self.half_width)))
+        low, high = _rounded(np.stack([points.min(axis=0) - around, points.max(axis=0) + around]))
+        depth = float(_rounded(np.array([self.half_width]))[0])
         return Block(x=(float(low[0]), float(high[0])), y=(float(low[1]), float(high[1])), depth=depth)
 
     def mesh(self, block: Block) -> GeneratedMesh:
@@ -146,8 +146,8 @@ def _check_strength(law: SoilLaw, block: Block) -> None:
 
 
 def _rounded(values: Array) -> Array:
-    """To three figures of the largest."""
-    unit = 10.0 ** (np.floor(np.log10(np.abs(values).max() or 1.0)) - 2.0)
+    """To three figures of the largest, of several rows in that in which it is smallest: all alike."""
+    unit = 10.0 ** (np.floor(np.log10(np.abs(values).max(axis=-1).min() or 1.0)) - 2.0)
     return np.asarray(np.round(values / unit) * unit)
 
 

@@ -22,7 +22,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import SpatialConfiguration
-from riser_soil.riser.moving_nodes import MovingNodes
+from riser_soil.riser.moving_nodes import MovingNodes, out_of_plane
 from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
 from riser_soil.riser.vectors import (
     Mat,
@@ -58,6 +58,7 @@ class MovingBody(MovingNodes):
         frames = SpatialFrames(np.eye(3)[None], np.zeros((0, 2, 3, 3)))
         super().__init__(name, np.array(position, dtype=float)[None], frames, np.zeros(1), np.eye(3), active)
         self.turns, self.lever = turns, lever
+        self._out: list[int] = []
         self.hold(False)
 
     def place(self, point: Array) -> Array:
@@ -77,6 +78,12 @@ class MovingBody(MovingNodes):
         """Whether it is kept from moving; until the next call."""
         self.prescribed = np.full(self.size, held)
         self.prescribed[3:] |= not self.turns
+        self.prescribed[self._out] = True
+
+    def keep_in_plane(self, across: int) -> None:
+        """Keep it in its plane across x (0) or y (1)."""
+        self._out = out_of_plane(across, self.frames.R[0])
+        self.hold(False)
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):

@@ -19,8 +19,9 @@ from riser_soil.riser import line_kernels
 from riser_soil.riser.directors import initial_frames
 from riser_soil.riser.line_ends import End, LineEnds, free_turns, unit_lengths
 from riser_soil.riser.line_kernels import write_folded
-from riser_soil.riser.moving_nodes import MovingNodes
+from riser_soil.riser.moving_nodes import MovingNodes, out_of_plane
 from riser_soil.riser.shapes import Layout
+from riser_soil.riser.spatial_directors import SpatialFrames
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -33,7 +34,8 @@ class Line(MovingNodes):
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
     Where no end prescribes the rotation of a line in space, `prescribe_spin` keeps the start from spinning about the
     pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
-    active: whether this rank evaluates and owns the riser.
+    active: whether this rank evaluates and owns the riser. touching_axes: basis (3, d) and origin (3,) that contact
+    with soil has, without the direction across a plane in which it is kept.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class Line(MovingNodes):
         frames, x = initial_frames(layout.rotation, layout.T0, self.basis), (layout.position - self.origin) @ self.basis
         super().__init__(name, x, frames, layout.arc, self.basis, active)
         self._ends = LineEnds(start, end, self.arc.size, self.frames, self.origin, self.basis, self.turning_axes)
+        self.touching_axes = self.basis, self.origin
         self.prescribe_spin(prescribe_spin)
 
     def _axes(self, first: Array) -> tuple[Array, Array]:
@@ -80,6 +83,13 @@ class Line(MovingNodes):
     def prescribe_spin(self, spin: bool) -> None:
         """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
         self._ends.prescribe_spin(spin)
+
+    def keep_in_plane(self, across: int) -> None:
+        """Keep a line in space, which lies in a plane across x (0) or y (1), in it."""
+        assert isinstance(self.frames, SpatialFrames)
+        self._ends.keep(out_of_plane(across, self.frames.R[0]))
+        self.touching_axes = self.basis.copy(), self.origin.copy()
+        self.touching_axes[0][across], self.touching_axes[1][across] = 0.0, self.x[0, across]
 
     @property
     def prescribed(self) -> BoolArray:

@@ -76,6 +76,12 @@ class LineEnds:
         unturned = frames.turn(np.zeros((nodes, frames.dofs)))
         self._supports = self._bases = {node: unturned.at(node).copy() for node, _ in self._ends}
         self._moved: dict[int, tuple[Motion, float, Array, Array]] = {}
+        self._out: list[int] = []  # dofs of all nodes that are prescribed not to move
+        self.prescribe_spin(False)
+
+    def keep(self, dofs: list[int]) -> None:
+        """Prescribe that some dofs of all nodes do not move."""
+        self._out = dofs
         self.prescribe_spin(False)
 
     def prescribe_spin(self, spin: bool) -> None:
@@ -85,6 +91,7 @@ class LineEnds:
             prescribed[node, : end.held(d)] = True
             prescribed[node, d:] = end.rotation_fixed
         prescribed[0, d] |= spin and d == 3
+        prescribed[:, self._out] = True
         self.prescribed: BoolArray = prescribed.ravel()
         self._dofs: IntArray = np.flatnonzero(self.prescribed)
 

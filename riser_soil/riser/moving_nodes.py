@@ -184,6 +184,14 @@ class MovingNodes:
         self.frames.restore(within(saved, "frames"))
 
 
+def out_of_plane(across: int, R: Array) -> list[int]:
+    """Dofs of a node in space that leave a plane across x (0) or y (1): that translation, and turns about its body axes
+    R (3, 3) but for the one across.
+    """
+    stays = int(np.abs(R[across]).argmax())
+    return [across, *(3 + axis for axis in range(3) if axis != stays)]
+
+
 @njit
 def after_increments(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
     """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof)."""

@@ -1,13 +1,15 @@
 """Consistency checks of scenes with several lines: each line by itself, names, joints, and what is not there yet."""
 
+import math
 from collections.abc import Iterator
 
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
-from riser_soil.scene.lines import ENDS, acts_on, arc_of, by_line, first_place
+from riser_soil.scene.lines import ENDS, acts_on, arc_of, axis_across, by_line, first_place
 from riser_soil.scene.motions import Vessel, VesselHistory
 from riser_soil.scene.output import SettlementSections
+from riser_soil.scene.plane import VerticalPlane, leaving_the_plane, positions
 from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import OfBody, StaticStage
@@ -23,14 +25,15 @@ _IN_MODES = ("mode", "direction", "frequency", "period", "share")
 _RESERVED = frozenset((*_FILES, *_IN_RESULTS, *_IN_MODES))
 _OF_LEDGER = ("dissipated_", "work_")  # of parts
 _OF_STAGE = ("move", "motion", "loads")
-_LATER = "leave it out, or take a scene of one line"
+_ORIGIN = (0.0, 0.0, 0.0)
+_ALONG = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0))  # a plane, by the axis across it
 
 
 def all_conflicts(scene: Scene) -> list[Problem]:
     """All conflicts of a scene, whether it has one line or several."""
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
-    checks = (_names, _joints, _stages, _clearances, _soil, _seabed, _for_nothing, _hang_offs, _not_yet)
+    checks = (_names, _joints, _stages, _clearances, _soil, _seabed, _for_nothing, _hang_offs, _plane, _water)
     own = [problem for check in checks for problem in check(scene)]
     if own:
         return own
@@ -225,10 +228,51 @@ def _jointed(scene: Scene, name: str, end: str) -> bool:
     return getattr(scene.lines[name], end) == "free" and any((p.line, p.at) == (name, end) for p in points)
 
 
-def _not_yet(scene: Scene) -> Iterator[Problem]:
-    """What one line has and several have not."""
-    if scene.dimension == 2:
-        yield Problem(("dimension",), "is not there yet for several lines", _LATER)
+def _plane(scene: Scene) -> Iterator[Problem]:
+    """What leaves the plane along x or y that all keep to."""
+    if (across := axis_across(scene)) is None:
+        return
+    views = by_line(scene)
+    places = sorted((place for view in views.values() for _, place in positions(view)), key=lambda x: x[across])
+    middle = places[(len(places) - 1) // 2] if places else _ORIGIN
+    plane = VerticalPlane(middle, _ALONG[across], max(view.line.length for view in views.values()))
+    found = [path_of_line(path, name) for name, view in views.items() for path in leaving_the_plane(view, plane)]
+    found += [path for path, leaves in (*_of_hung(scene, plane), *_of_ground(scene, plane)) if leaves]
+    allowed = f"leaves the lines' plane along {'yx'[across]}, but dimension is 2"
+    for path in dict.fromkeys(found):
+        yield Problem(path, allowed, "set dimension: 3 or auto, or correct the value")
+
+
+def _of_hung(scene: Scene, plane: VerticalPlane) -> Iterator[tuple[Path, bool]]:
+    """Places and loads of bodies and joints, and whether they leave a plane."""
+    for name, body in scene.bodies.items():
+        yield ("bodies", name, "position"), not plane.holds_point(body.position)
+        for key in ("centre_of_gravity", "centre_of_buoyancy"):
+            yield ("bodies", name, key), not plane.holds_vector(getattr(body, key, _ORIGIN))
+    for name, joint in scene.joints.items():
+        yield ("joints", name, "position"), joint.position is not None and not plane.holds_point(joint.position)
+        for n, point in enumerate(joint.between):
+            yield ("joints", name, "between", n, "offset"), not plane.holds_vector(point.offset)
+    for n, stage in enumerate(scene.stages):
+        for name, acts in stage.bodies.items():
+            for m, load in enumerate(acts.loads):
+                path: Path = ("stages", n, "bodies", name, "loads", m)
+                yield (*path, "force"), load.force is not None and not plane.holds_vector(load.force)
+                yield (*path, "moment"), load.moment is not None and not plane.holds_axis(load.moment)
+
+
+def _of_ground(scene: Scene, plane: VerticalPlane) -> Iterator[tuple[Path, bool]]:
+    """Ground that slopes across a plane, or may do so."""
+    seabed = scene.seabed
+    if seabed is not None:
+        yield ("seabed", "grid"), seabed.grid is not None
+        if seabed.direction_deg is not None:
+            angle = math.radians(seabed.direction_deg)
+            way = (math.cos(angle), math.sin(angle), 0.0)
+            yield ("seabed", "direction_deg"), not plane.holds_vector(way)
+
+
+def _water(scene: Scene) -> Iterator[Problem]:
     over_a_grid, water = scene.seabed is not None and scene.seabed.grid is not None, scene.water
     if over_a_grid and water is not None and water.waves is not None and water.depth is None:
         yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
@@ -70,10 +70,26 @@ def _of_line(scene: Scene, name: str) -> Scene:
     cut = {"segments": tuple(_cut(line, arcs))}
     stages = tuple(_stage(stage, acts_on(stage, name), line) for stage in scene.stages)
     several: dict[str, Any] = {"lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "stages": stages}
-    own = several | {"riser": line.model_copy(update=ends | cut).tied(bool(arcs) and _leads_to_hold(scene, name))}
+    tied = bool(arcs) and _leads_to_hold(scene, name)
+    own = several | {"riser": line.model_copy(update=ends | cut).of_several(tied, axis_across(scene))}
     if scene.soil is not None and scene.soil.line == name:
         return scene.model_copy(update=own | {"soil": scene.soil.model_copy(update={"line": None})})
     return scene.model_copy(update=own | _without_soil(scene))
+
+
+def axis_across(scene: Scene) -> int | None:
+    """The axis, x (0) or y (1), across the vertical plane of several lines whose scene says dimension: 2; else None."""
+    if scene.dimension != 2 or not scene.lines:
+        return None
+    ends = (_end(scene, name, key) for name in scene.lines for key in ENDS)
+    places = [end.position for end in ends if isinstance(end, Support)]
+    x, y = (_span(place[axis] for place in places) for axis in (0, 1))
+    return 0 if y > x else 1
+
+
+def _span(values: Iterable[float]) -> float:
+    found = [*values]
+    return max(found, default=0.0) - min(found, default=0.0)
 
 
 def on_soil(scene: Scene) -> Scene | None:

@@ -71,9 +71,11 @@ def resolved_dimension(scene: Scene) -> Literal[2, 3]:
     return 3 if over_a_grid or any(leaving_the_plane(scene)) else 2
 
 
-def leaving_the_plane(scene: Scene) -> Iterator[Path]:
-    """Paths of the values that lead out of the vertical plane; vortices do wherever the water flows."""
-    plane = vertical_plane(scene)
+def leaving_the_plane(scene: Scene, plane: VerticalPlane | None = None) -> Iterator[Path]:
+    """Paths of the values that lead out of a vertical plane, by default the riser's; vortices do wherever the water
+    flows.
+    """
+    plane = plane or vertical_plane(scene)
     yield from (path for path, point in positions(scene) if not plane.holds_point(point))
     yield from (path for path, vector in _vectors(scene) if not plane.holds_vector(vector))
     yield from (path for path, axis in _axes(scene) if not plane.holds_axis(axis))
@@ -104,10 +106,10 @@ def _direction(points: tuple[Vector, ...]) -> Vector:
 
 
 def positions(scene: Scene) -> Iterator[tuple[Path, Vector]]:
-    """Positions of the riser in the scene."""
+    """Positions of the riser in the scene, but for those of joints."""
     riser = scene.line
     for key, end in {"start": riser.start, "end": riser.end}.items():
-        if isinstance(end, Support):
+        if isinstance(end, Support) and not end.jointed:
             yield ("riser", key, "position"), end.position
     for key, shape in {"unstressed": riser.unstressed, "initial": riser.initial}.items():
         if isinstance(shape, PointsShape):

@@ -268,12 +268,18 @@ class Riser(BaseModel):
         "catenary when both ends have a position and gravity acts, else unstressed",
     )
     _tied: bool = PrivateAttr(default=False)
+    _across: int | None = PrivateAttr(default=None)
 
-    def tied(self, is_tied: bool) -> Self:
-        """The line of several, and whether joints hold it between its ends."""
+    def of_several(self, tied: bool, across: int | None) -> Self:
+        """As one of several lines. tied: whether joints hold it between its ends; across: see there."""
         line = self.model_copy()
-        line._tied = is_tied
+        line._tied, line._across = tied, across
         return line
+
+    @property
+    def across(self) -> int | None:
+        """The axis, x (0) or y (1), across the vertical plane that it keeps to as one of several lines, if any."""
+        return self._across
 
     @property
     def is_tied(self) -> bool:

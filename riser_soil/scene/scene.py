@@ -91,7 +91,7 @@ class Scene(BaseModel):
     dimension: Literal["auto", 2, 3] = Field(
         default="auto",
         description="dimension of the riser's motion: 2 (in one vertical plane), 3, or auto: "
-        "2 whenever nothing leaves the vertical plane",
+        "2 whenever nothing leaves the vertical plane; several lines move in 3, or keep to a plane along x or y by 2",
     )
     water: Water | None = Field(default=None, description="the water; none by default")
     line_types: dict[str, LineType] = Field(min_length=1, description="the kinds of pipe by name")

@@ -192,6 +192,38 @@ def in_two(scene: dict[str, Any]) -> dict[str, Any]:
     return cut
 
 
+@pytest.mark.parametrize("along", [0, 1])
+def test_lines_that_keep_to_a_plane_are_those_of_space(along: int, tmp_path: Path) -> None:
+    """Where nothing leaves it; so are two lines in a plane one riser in it, but for what the joint gives."""
+    riser = one_riser()
+    riser["stages"][1]["motion"]["end"]["harmonic"]["amplitude"] = [0.2, 0.0, 0.2]
+    two, alone = in_two(riser), riser | {"dimension": 2}
+    if along == 1:
+        two, alone = turned(two), turned(alone)
+    space, plane, one = (ran(each, tmp_path / str(n)) for n, each in enumerate((two, two | {"dimension": 2}, alone)))
+    assert plane.summary["dofs"]["riser"] < 0.6 * space.summary["dofs"]["riser"]
+    for name in ("low", "high"):
+        known, found = space.of_line(name), plane.of_line(name)
+        np.testing.assert_allclose(found["position"], known["position"], atol=1e-7)
+        assert not found["position"][..., 1 - along].any()
+        np.testing.assert_allclose(found["effective_tension"], known["effective_tension"], rtol=1e-7)
+    high = plane.of_line("high")["effective_tension"][:, -1]
+    assert high == pytest.approx(one["effective_tension"][:, -1], rel=1e-3)
+
+
+def turned(scene: dict[str, Any]) -> dict[str, Any]:
+    """The same along y."""
+    return {key: turned(each) if isinstance(each, dict) else _turned(each) for key, each in scene.items()}
+
+
+def _turned(value: Any) -> Any:
+    if not isinstance(value, list):
+        return value
+    if len(value) == 3 and all(isinstance(each, float) for each in value):
+        return [value[1], value[0], value[2]]
+    return [turned(each) if isinstance(each, dict) else each for each in value]
+
+
 def test_two_lines_clamped_together_are_one(tmp_path: Path) -> None:
     """But for what the joint gives, a hundredth of an element. They begin as catenaries with a kink."""
     whole = ran(one_riser(), tmp_path / "whole")
@@ -630,7 +662,7 @@ MOVED = {"move": {"end": [0.0, 0.0, 0.0]}}
 WITHOUT_LINES = {key: value for key, value in mooring().items() if key != "lines"}
 MISSPELT = {"line_type": "chian", "length": 9.0, "elements": 2}
 REFUSED = [
-    (changed(dimension=2), "dimension: value 2: is not there yet for several lines"),
+    (changed(dimension=2), "lines.east.start.position: .*leaves the lines' plane along y, but dimension is 2"),
     (changed(accuracy="1 %"), "accuracy: .*chooses what lines.east.segments.0.elements gives"),
     (changed(riser=mooring()["lines"]["east"]), "riser and lines are both given"),
     (WITHOUT_LINES, "the riser is missing"),

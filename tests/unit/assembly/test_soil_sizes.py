@@ -52,6 +52,19 @@ def chosen(scene: Scene) -> tuple[Block, GeneratedMesh, CellSizes]:
     return soil.block, soil.mesh, soil.mesh.size_at_riser
 
 
+@pytest.mark.parametrize("shift", [0.0, -110.0, 95.0])
+def test_the_block_reaches_as_far_on_both_sides(shift: float) -> None:
+    """Also where its ends have other numbers of figures: half of the soil is enough."""
+    scene = touchdown(LAY)
+    for end in ("start", "end"):
+        scene["riser"][end]["position"][0] += shift
+    scene["soil"] |= {"block": "auto", "mesh": "auto"}
+    scene["contact"] = {"method": "surface"}
+    block, _, _ = chosen(scene_from_mapping(scene))
+    assert block.y[0] == -block.y[1]
+    assert block.x[0] < block.x[1]
+
+
 def test_a_light_pipe_touches_as_hertz_says_a_heavy_one_as_clay_bears() -> None:
     light, heavy = Scales(20.0, 0.3, 1.0), Scales(3000.0, 0.3, 1.0)
     assert touching_width(light, SOFT) == contact_width(light, 1.2e6) == touching_width(light, CLAY)
