@@ -70,12 +70,12 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
             if number == 0:
                 raise
             return last, f"; a finer one can't be run: {err}"
-        if largest(last.bars)[0] <= accuracy:
+        if largest(last.bars)[0] <= accuracy or number == RUNS - 1:
             break
         if times := too_dear(last.bars, accuracy, RUNS - 1 - number):
             taken = in_words(times * last.seconds)
             return last, f"; to reach it would take at least {times:.0f} times as long, {taken}"
-    return last, ""
+    return last, f"; after {RUNS} runs"
 
 
 def _next_factors(last: TriedSetting, accuracy: float, number: int) -> tuple[Factors, float]:

@@ -12,26 +12,12 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.soil.law import StressUpdate
-from riser_soil.soil.mandel import DEVIATOR, add_elastic_strain, add_elastic_stress
+from riser_soil.soil.mandel import DEVIATOR
 from riser_soil.soil.rate import Gain
 
 MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that Δp may be
 ROUND_OFF = 4e-15  # of |η| in the equation for Δp: a change that makes no more is none
 ROOT = math.sqrt(2.0 / 3.0)
-
-
-class Clay(NamedTuple):
-    """Of n points: elastic moduli, largest equivalent stress, that at first yield and C, each (n,), and initial stress
-    (n, 6) [Pa].
-    """
-
-    bulk: Array
-    shear: Array
-    limit: Array
-    elastic_limit: Array
-    hardening: Array
-    initial: Array
 
 
 class _Point(NamedTuple):
@@ -68,43 +54,38 @@ def bring_within(bound: Array, s: Array) -> None:
 
 
 @njit
-def answer(clay: Clay, gain: Gain, increment: Array, out: StressUpdate) -> None:
-    """Bring histories (n, 13), with backstress within its bound, from before strain increments (n, 6) to after them,
-    and elastic moduli to consistent ones; write the stress, the elastic strain and the energy that it stores.
+def bring_back(
+    limits: tuple[Array, Array],
+    hardening: Array,
+    shear: Array,
+    gain: Gain,
+    stress: Array,
+    backstress: Array,
+    tangent: Array,
+    slip: Array,
+) -> None:
+    """Bring elastic trials of the stress (n, 6) beyond the yield surface back to it, with their backstress (n, 6) and
+    their elastic moduli (n, 6, 6), which become the consistent ones. Δp is written to slip (n,).
+
+    limits: largest equivalent stress, and that at first yield (n,), with C (n,) and G (n,) [Pa].
     """
-    change, s, n = np.empty(6), np.empty(6), np.empty(6)
-    for i in range(len(increment)):
-        history = out.history[i]
-        stress = history[:6]
-        add_elastic_stress(clay.bulk[i], clay.shear[i], increment[i], stress)
-        if gain.slow > 0.0:
-            history[6] += _bring_back(clay, i, gain, stress, history[7:], s, n, out.tangent[i])
+    s, n = np.empty(6), np.empty(6)
+    for i in range(len(stress)):
+        alpha, first, C, twice = backstress[i], limits[1][i], hardening[i], 2.0 * shear[i]
+        mean = (stress[i, 0] + stress[i, 1] + stress[i, 2]) / 3.0
         for k in range(6):
-            out.stress[i, k], out.elastic[i, k] = stress[k], 0.0
-            change[k] = stress[k] - clay.initial[i, k]
-        add_elastic_strain(clay.bulk[i], clay.shear[i], change, out.elastic[i])
-        out.stored[i] = 0.5 * _product(change, out.elastic[i])
-
-
-@njit
-def _bring_back(
-    clay: Clay, i: int, gain: Gain, stress: Array, alpha: Array, s: Array, n: Array, tangent: Array
-) -> float:
-    """Bring an elastic trial of the stress beyond the yield surface back to it; Δp. s, n (6,): workspace."""
-    mean = (stress[0] + stress[1] + stress[2]) / 3.0
-    for k in range(6):
-        s[k] = stress[k] - (mean if k < 3 else 0.0)
-        n[k] = s[k] - alpha[k]
-    first, C, twice = clay.elastic_limit[i], clay.hardening[i], 2.0 * clay.shear[i]
-    if not math.sqrt(1.5 * _product(n, n)) > first:
-        return 0.0
-    point = _Point(first, C, twice, C / (clay.limit[i] - first), gain)
-    found = _slip(point, s, alpha, n)
-    _subtract_flow(point, found, alpha, n, tangent)
-    for k in range(6):
-        stress[k] -= math.sqrt(1.5) * twice * found.slip * n[k]
-        alpha[k] = found.theta * (alpha[k] + ROOT * C * found.slip * n[k])
-    return found.slip
+            s[k] = stress[i, k] - (mean if k < 3 else 0.0)
+            n[k] = s[k] - alpha[k]
+        slip[i] = 0.0
+        if gain.slow == 0.0 or not math.sqrt(1.5 * _product(n, n)) > first:
+            continue
+        point = _Point(first, C, twice, C / (limits[0][i] - first), gain)
+        found = _slip(point, s, alpha, n)
+        slip[i] = found.slip
+        _subtract_flow(point, found, alpha, n, tangent[i])
+        for k in range(6):
+            stress[i, k] -= math.sqrt(1.5) * twice * found.slip * n[k]
+            alpha[k] = found.theta * (alpha[k] + ROOT * C * found.slip * n[k])
 
 
 @njit

@@ -120,18 +120,16 @@ class CyclicClay:
     def update(
         self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
     ) -> StressUpdate:
-        gain, n = gain_of(self.rate, dt), len(history)
-        limit, elastic_limit = strength * self.limit, strength * self.elastic_limit
-        after = history.copy()
+        gain, limits = gain_of(self.rate, dt), (strength * self.limit, strength * self.elastic_limit)
+        stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
+        backstress, slip, tangent = history[:, 7:].copy(), np.empty(len(history)), self._elastic.copy()
         if not gain.gains:  # the strength, and with it the bound, may have fallen
-            backstress = history[:, 7:].copy()
-            cyclic_return.bring_within(limit - elastic_limit, backstress)
-            after[:, 7:] = backstress
-        found = StressUpdate(np.empty((n, 6)), self._elastic.copy(), after, np.empty(n), np.empty((n, 6)))
-        clay = cyclic_return.Clay(self.bulk, self.shear, limit, elastic_limit, self.hardening, self.initial)
-        cyclic_return.answer(clay, gain, np.ascontiguousarray(strain_increment), found)
-        found.stored[:] += self._locked_in(after[:, 7:]) - self._locked_in_first
-        return found
+            cyclic_return.bring_within(limits[0] - limits[1], backstress)
+        cyclic_return.bring_back(limits, self.hardening, self.shear, gain, stress, backstress, tangent, slip)
+        after = np.column_stack((stress, history[:, 6] + slip, backstress))
+        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
+        stored = 0.5 * mandel.product(stress - self.initial, elastic) + self._locked_in(backstress)
+        return StressUpdate(stress, tangent, after, stored - self._locked_in_first, elastic)
 
     @cached_property
     def _locked_in_first(self) -> Array:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import njit
 
 UNIT: Array = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 DEVIATOR: Array = np.eye(6) - np.outer(UNIT, UNIT) / 3.0  # projector on the deviatoric part
@@ -51,42 +50,12 @@ def stiffness(bulk: Array, shear: Array) -> Array:
 
 def elastic_stress(bulk: Array, shear: Array, strain: Array) -> Array:
     """Stress (n, 6) [Pa] of an elastic strain (n, 6)."""
-    out = np.zeros(strain.shape)
-    _add_stresses(bulk, shear, np.ascontiguousarray(strain), out)
-    return out
+    return plus_mean((2.0 * shear)[:, None] * deviator(strain), 3.0 * bulk * mean(strain))
 
 
 def elastic_strain(bulk: Array, shear: Array, stress: Array) -> Array:
     """Elastic strain (n, 6) of a stress (n, 6) [Pa]."""
-    out = np.zeros(stress.shape)
-    _add_strains(bulk, shear, np.ascontiguousarray(stress), out)
-    return out
-
-
-@njit
-def _add_stresses(bulk: Array, shear: Array, strain: Array, out: Array) -> None:
-    for i in range(len(out)):
-        add_elastic_stress(bulk[i], shear[i], strain[i], out[i])
-
-
-@njit
-def _add_strains(bulk: Array, shear: Array, stress: Array, out: Array) -> None:
-    for i in range(len(out)):
-        add_elastic_strain(bulk[i], shear[i], stress[i], out[i])
-
-
-@njit
-def add_elastic_stress(bulk: float, shear: float, strain: Array, out: Array) -> None:
-    """Add the stress (6,) of an elastic strain (6,): 3K of its mean and 2G of its deviator."""
-    mean = (strain[0] + strain[1] + strain[2]) / 3.0
-    for k in range(6):
-        out[k] += 3.0 * bulk * mean + 2.0 * shear * (strain[k] - mean) if k < 3 else 2.0 * shear * strain[k]
-
-
-@njit
-def add_elastic_strain(bulk: float, shear: float, stress: Array, out: Array) -> None:
-    """Add the elastic strain (6,) of a stress (6,): by the inverse moduli."""
-    add_elastic_stress(1.0 / (9.0 * bulk), 1.0 / (4.0 * shear), stress, out)
+    return plus_mean(deviator(stress) / (2.0 * shear)[:, None], mean(stress) / (3.0 * bulk))
 
 
 def product(a: Array, b: Array) -> Array:

@@ -86,7 +86,8 @@ def test_newton_takes_no_more_iterations(law: str) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_most_iterations_have_no_factorisation_of_their_own(law: str) -> None:
+def test_factors_outlive_iterations(law: str) -> None:
+    """Also in so small a block, where a factorisation is worth a solve of a symmetric tangent."""
     kept = taken(law, "kept")
-    assert 0 < kept.factorisations <= 0.6 * sum(kept.iterations)
+    assert 0 < kept.factorisations <= 0.75 * sum(kept.iterations)
     assert taken(law, "direct").factorisations == 0
