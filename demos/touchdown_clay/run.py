@@ -73,7 +73,7 @@ def bars(done: Run) -> str:
         value, bar = (f"{scale * each[key]:.{digits}f}" for key in ("value", "bar"))
         rows.append([f"{stage}: {name} [{unit}]", f"{value} ± {bar}"])
     seconds = done.summary["error_bars"]["seconds"]
-    rows.append(["time of the other runs, over that of the run", f"{seconds['companions'] / seconds['run']:.2f}"])
+    rows.append(["time of the other runs, over that of the run", f"{seconds['comparison_runs'] / seconds['run']:.2f}"])
     return table(["key result", "with its error bar"], rows)
 
 
