@@ -181,7 +181,7 @@ def _finer_soil(scene: Scene, factor: float) -> Scene:
 
 
 def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
-    """On soil at most a firm one, if it is not firmer: stiffer ones are no more accurate."""
+    """On soil alone at most a firm one, if it is not firmer: stiffer ones are no more accurate."""
     contact, before = scene.contact, _penalty(scene)
     assert contact is not None
     stiffness = max(before, min(before * factor, _firm(scene))) if factor > 1.0 else before * factor
@@ -218,11 +218,12 @@ def _penalty(scene: Scene) -> float:
 
 def is_firm(scene: Scene) -> bool:
     """Whether the penalty of contact with soil is so stiff that a stiffer one tells nothing."""
-    return scene.soil is not None and _penalty(scene) > 0.5 * _firm(scene)
+    return _has_penalty(scene) and _penalty(scene) > 0.5 * _firm(scene)
 
 
 def _firm(scene: Scene) -> float:
-    if scene.soil is None:
+    """Where a rigid seabed has the same penalty there is no limit: beside a held end its error falls slowly."""
+    if scene.soil is None or isinstance(scene.seabed, RigidSeabed):
         return math.inf
     assert scene.contact is not None
     contact = scene.contact.model_copy(update={"stiffness": "auto"})

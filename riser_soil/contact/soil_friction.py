@@ -92,7 +92,7 @@ class SoilFriction(LinePart):
     def _evaluate(self, found: SurfaceState) -> Sliding:
         pressed = found.pressed
         now = pressed.axis, pressed.surface
-        moved = slide(pressed.points, self._start(found.trial.state), now, pressed.basis)
+        moved = slide(pressed.points, self._start(found.trial.state), now, self.line.basis)
         before = self._memory.at(pressed.points.number)[:, :AREA]
         elastic = before - self._stiffness * moved.moved
         t, _, _ = self._return(_along(moved.along, elastic), pressed)

@@ -80,8 +80,7 @@ class SurfaceContact(SoilContact):
         reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, pressure, surface)
-        self._radius, self._pressure = radius, pressure
-        self._basis, self._origin = (np.ascontiguousarray(axes) for axes in line.touching_axes)
+        self._radius, self._pressure, self._basis = radius, pressure, np.ascontiguousarray(line.basis)
         if not self.active:
             return
         half = 0.5 * self._soil.facet_size
@@ -117,7 +116,7 @@ class SurfaceContact(SoilContact):
             return None
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
         surface = self.surface(self._soil.settled)
-        return TouchData(axis, surface, self._basis, self._origin, self.law.kernel_data, float(self.law.start))
+        return TouchData(axis, surface, self._basis, self.line.origin, self.law.kernel_data, float(self.law.start))
 
     def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
         """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
@@ -139,7 +138,7 @@ class SurfaceContact(SoilContact):
     def axis(self, trial: Trial) -> Axis:
         """The riser's axis at a trial."""
         q = np.empty((self.line.length.size, 4, 3))
-        write_axis(self._origin, self._basis, trial.q, q)
+        write_axis(self.line.origin, self._basis, trial.q, q)
         return Axis(q, self.line.length, self._radius)
 
     @property

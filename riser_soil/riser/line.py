@@ -34,8 +34,7 @@ class Line(MovingNodes):
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
     Where no end prescribes the rotation of a line in space, `prescribe_spin` keeps the start from spinning about the
     pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
-    active: whether this rank evaluates and owns the riser. touching_axes: basis (3, d) and origin (3,) that contact
-    with soil has, without the direction across a plane in which it is kept.
+    active: whether this rank evaluates and owns the riser.
     """
 
     def __init__(
@@ -60,7 +59,6 @@ class Line(MovingNodes):
         frames, x = initial_frames(layout.rotation, layout.T0, self.basis), (layout.position - self.origin) @ self.basis
         super().__init__(name, x, frames, layout.arc, self.basis, active)
         self._ends = LineEnds(start, end, self.arc.size, self.frames, self.origin, self.basis, self.turning_axes)
-        self.touching_axes = self.basis, self.origin
         self.prescribe_spin(prescribe_spin)
 
     def _axes(self, first: Array) -> tuple[Array, Array]:
@@ -88,8 +86,6 @@ class Line(MovingNodes):
         """Keep a line in space, which lies in a plane across x (0) or y (1), in it."""
         assert isinstance(self.frames, SpatialFrames)
         self._ends.keep(out_of_plane(across, self.frames.R[0]))
-        self.touching_axes = self.basis.copy(), self.origin.copy()
-        self.touching_axes[0][across], self.touching_axes[1][across] = 0.0, self.x[0, across]
 
     @property
     def prescribed(self) -> BoolArray:

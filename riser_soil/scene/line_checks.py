@@ -273,6 +273,7 @@ def _of_ground(scene: Scene, plane: VerticalPlane) -> Iterator[tuple[Path, bool]
 
 
 def _water(scene: Scene) -> Iterator[Problem]:
+    """What one line has and several have not."""
     over_a_grid, water = scene.seabed is not None and scene.seabed.grid is not None, scene.water
     if over_a_grid and water is not None and water.waves is not None and water.depth is None:
         yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")

@@ -64,11 +64,6 @@ def product(a: Array, b: Array) -> Array:
     return result
 
 
-def size(a: Array) -> Array:
-    """|a| (n,) of tensors (n, 6)."""
-    return np.sqrt(product(a, a))
-
-
 def von_mises(stress: Array) -> Array:
     """Equivalent stress q = √(3/2 s:s) [Pa] (...,); |σ| in uniaxial tension, √3|τ| in simple shear."""
     s = deviator(stress)

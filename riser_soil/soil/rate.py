@@ -74,10 +74,6 @@ class Gain(NamedTuple):
     slow: float
 
     @property
-    def flows(self) -> bool:
-        return self.slow > 0.0
-
-    @property
     def gains(self) -> bool:
         return self.slow < math.inf
 

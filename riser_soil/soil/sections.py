@@ -24,6 +24,7 @@ from riser_soil.soil.families import FOLDS, QUAD4, skewness
 SAME = 1e-6  # of the block's size: coordinates nearer to each other are those of one plane of the grid
 MOST_RAISED = 0.5  # of the ways that surface nodes have gone, for the soil below
 MOST_PASSES, SETTLED = 30, 1e-6  # of Winslow's equations; movement of a pass over the smallest cell
+CELLS = tuple(replace(QUAD4, axes=(across, 2)) for across in (0, 1))  # of a section across x, y
 
 
 class Pressing(NamedTuple):
@@ -90,7 +91,7 @@ class Sections:
     def skewness(self, at: Array) -> float:
         """Least of a section's cells with nodes at (nc, nl, 3), see `families.skewness`."""
         cells = grid_cells(*at.shape[:2])
-        return float(skewness(replace(QUAD4, axes=(self.across, 2)), at.reshape(-1, 3), cells).min())
+        return float(skewness(CELLS[self.across], at.reshape(-1, 3), cells).min())
 
 
 def sections_of(points: Array, along: int) -> Sections | None:

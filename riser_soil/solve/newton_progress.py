@@ -82,6 +82,8 @@ class ElasticShare:
 
     def adapt(self, norm: float, before: float) -> None:
         """For the tangent after an iteration, by the norms of the residual then and before."""
+        if not self._parts:
+            return
         self.crawled = self.crawled + 1 if self._share == 1.0 and CRAWLS * before < norm <= before else 0
         if self.length < SHORT or norm > before:
             self._give(min(1.0, max(MORE * self._share, FIRST_SHARE)))

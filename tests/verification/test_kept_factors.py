@@ -87,7 +87,7 @@ def test_newton_takes_no_more_iterations(law: str) -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_factors_outlive_iterations(law: str) -> None:
-    """Also in so small a block, where a factorisation is worth a solve of a symmetric tangent."""
-    kept = taken(law, "kept")
-    assert 0 < kept.factorisations <= 0.75 * sum(kept.iterations)
+    """Less often where the tangent is symmetric: in so small a block a factorisation is worth one solve."""
+    kept, most = taken(law, "kept"), 0.75 if law == "perfectly plastic" else 0.6
+    assert 0 < kept.factorisations <= most * sum(kept.iterations)
     assert taken(law, "direct").factorisations == 0

@@ -155,6 +155,9 @@ def test_a_penalty_on_soil_gets_no_stiffer_than_a_firm_one() -> None:
     floor = scene(LAY, without=("soil",), seabed={"kind": "rigid"})
     assert PENALTY.fineness(varied(floor, PENALTY, 1000.0)) == pytest.approx(1000.0 * PENALTY.fineness(floor))
     assert not is_firm(varied(floor, PENALTY, 1000.0))
+    both = scene(LAY, seabed={"kind": "rigid"}, contact={"method": "surface"})
+    assert PENALTY.fineness(varied(both, PENALTY, 1000.0)) == pytest.approx(1000.0 * PENALTY.fineness(both))
+    assert not is_firm(varied(both, PENALTY, 1000.0))
 
 
 def test_more_elements_than_a_riser_may_have_are_refused() -> None:

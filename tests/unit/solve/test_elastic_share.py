@@ -53,6 +53,15 @@ def test_what_crawls_under_the_elastic_tangent_is_in_vain() -> None:
     assert not share.in_vain
 
 
+def test_without_a_part_that_yields_nothing_is_in_vain() -> None:
+    share = ElasticShare([])
+    for n in range(10):
+        share.adapt(n + 2.0, n + 1.0)
+    for _ in range(10):
+        share.adapt(0.95, 1.0)
+    assert not share.in_vain
+
+
 def test_it_is_never_more_than_the_elastic_tangent() -> None:
     part = Flowing()
     share = ElasticShare([part])
