@@ -269,9 +269,10 @@ def by_curvature(forms: Array, C: Array, force: Array, slope: Array) -> Array:
 @njit
 def add_products(out: Array, pair: IntArray, left: Array, right: Array) -> None:
     """Add the sums of left (n, k, nz) times right (n, k, nz), by row and column, to those (m, nz, nz) of the pairs."""
-    for i in range(len(pair)):
-        for k in range(left.shape[1]):
-            for r in range(left.shape[2]):
-                row, factor, columns = out[pair[i], r], left[i, k, r], right[i, k]
-                for c in range(len(row)):
-                    row[c] += factor * columns[c]
+    n, k, nz = left.shape
+    first = 0
+    for i in range(1, n + 1):
+        if i == n or pair[i] != pair[first]:  # a run of points of one pair
+            rows, columns = left[first:i].reshape((i - first) * k, nz), right[first:i].reshape((i - first) * k, nz)
+            out[pair[first]] += np.dot(rows.T, columns)
+            first = i

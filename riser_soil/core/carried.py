@@ -6,10 +6,13 @@ never beyond what those around hold: so a field moves by the way, however short,
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 
 AROUND = 13  # points around a place that are looked at
 WITHIN = 1.0 - 1e-6  # of the distance to the farthest: others as far do not count, so that nothing hangs on round-off
@@ -21,28 +24,48 @@ def carried(places: Array, held: Array, asked: Array) -> Array:
     """Rows (n, k) at places (n, 3) of the field that holds rows (m, k) at others (m, 3)."""
     apart, near = cKDTree(places).query(asked, k=min(AROUND, len(places)))
     out = held[near[:, 0]]
-    moved = np.flatnonzero(apart[:, 0] > SAME * apart[:, -1])
-    apart, near, base = apart[moved], near[moved], out[moved]
-    shares, counts = _shares(places, asked[moved], apart, near), apart[:, 1:] < WITHIN * apart[:, -1:]
-    found, low, high = base.copy(), base.copy(), base.copy()
-    for number, share, counted in zip(near[:, 1:].T, shares.T, counts.T, strict=True):
-        beside = np.where(counted[:, None], held[number], base)
-        found += share[:, None] * (beside - base)
-        np.minimum(low, beside, out=low)
-        np.maximum(high, beside, out=high)
-    out[moved] = np.clip(found, low, high)
+    _carry(places, held, asked, apart, near, out)
     return out
 
 
-def _shares(places: Array, asked: Array, apart: Array, near: IntArray) -> Array:
-    """Shares (n, k - 1) of the changes from the nearest point to the others, for the way from there: a linear fit,
-    weighed by how far they lie ahead and how near.
+@njit
+def _carry(places: Array, held: Array, asked: Array, apart: Array, near: IntArray, out: Array) -> None:
+    """Carry rows (n, k), those of the points nearest, near[:, 0], on to the places."""
+    shares = np.empty(near.shape[1])
+    for i in range(len(out)):
+        farthest = apart[i, -1]
+        if not apart[i, 0] > SAME * farthest:
+            continue
+        _write_shares(places, asked[i], apart[i], near[i], shares)
+        for c in range(out.shape[1]):
+            low = high = base = out[i, c]
+            found = base
+            for k in range(1, shares.size):
+                if apart[i, k] < WITHIN * farthest:
+                    beside = held[near[i, k], c]
+                    found += shares[k] * (beside - base)
+                    low, high = min(low, beside), max(high, beside)
+            out[i, c] = min(max(found, low), high)
+
+
+@njit
+def _write_shares(places: Array, asked: Array, apart: Array, near: IntArray, shares: Array) -> None:
+    """Write shares (k,) of the changes from the nearest point, the first, to the others, for the way from there: a
+    linear fit, weighed by how far they lie ahead and how near.
     """
-    base = places[near[:, 0]]
-    way, aside = asked - base, places[near[:, 1:]] - base[:, None]
-    ahead = np.einsum("nki,ni->nk", aside, way) / np.linalg.norm(aside, axis=2)
-    weight = (np.maximum(ahead, 0.0) * (apart[:, -1:] / apart[:, 1:] - 1.0)) ** 2 / np.sum(way**2, axis=1)[:, None]
-    matrix = np.einsum("nk,nki,nkj->nij", weight, aside, aside)
-    eased = EASED * np.trace(matrix, axis1=1, axis2=2) + SAME * apart[:, -1] ** 2
-    solved = np.linalg.solve(matrix + eased[:, None, None] * np.eye(3), way[:, :, None])[:, :, 0]
-    return np.asarray(weight * np.einsum("nki,ni->nk", aside, solved))
+    farthest, base = apart[-1], places[near[0]]
+    way, matrix = asked - base, np.zeros((3, 3))
+    square = np.dot(way, way)
+    for k in range(1, shares.size):
+        aside = places[near[k]] - base
+        ahead = np.dot(aside, way) / math.sqrt(np.dot(aside, aside))
+        shares[k] = (max(ahead, 0.0) * (farthest / apart[k] - 1.0)) ** 2 / square
+        for i in range(3):
+            for j in range(3):
+                matrix[i, j] += shares[k] * aside[i] * aside[j]
+    eased = EASED * np.trace(matrix) + SAME * farthest**2
+    for i in range(3):
+        matrix[i, i] += eased
+    solved = np.linalg.solve(matrix, way)
+    for k in range(1, shares.size):
+        shares[k] *= np.dot(places[near[k]] - base, solved)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 
 
@@ -65,6 +65,36 @@ def csr_pattern(keys: IntArray, first: int, count: int, n: int) -> tuple[IntArra
 
 
 @njit
+def union(a: IntArray, b: IntArray) -> IntArray:
+    """Numbers in one of two arrays or both, each array sorted and without doubles, as is what comes of them."""
+    out = np.empty(a.size + b.size, np.int64)
+    i = j = count = 0
+    while i < a.size or j < b.size:
+        first, second = i < a.size, j < b.size
+        if first and second:
+            first, second = a[i] <= b[j], b[j] <= a[i]
+        out[count] = a[i] if first else b[j]
+        i, j, count = i + first, j + second, count + 1
+    return out[:count].copy()
+
+
+@njit
+def write_places(keys: IntArray, own: IntArray, numbers: IntArray, out: IntArray) -> None:
+    """Write the places (n,) that entries have among all keys, which hold all their own: numbers among these, -1 less it
+    where an entry is minus what is there. Both sorted. Where there are as many as these, the entry is absent; it gets
+    the place behind the last.
+    """
+    at, i = np.empty(own.size + 1, out.dtype), 0
+    for k in range(own.size):
+        while keys[i] != own[k]:
+            i += 1
+        at[k] = i
+    at[own.size] = keys.size
+    for k in range(numbers.size):
+        out[k] = at[numbers[k]] if numbers[k] >= 0 else -1 - at[-1 - numbers[k]]
+
+
+@njit
 def add_at(data: Array, places: IntArray, values: Array) -> None:
     """Add values to those at places, which may be the same; at -1 - place they are taken off."""
     for k in range(places.size):
@@ -72,6 +102,15 @@ def add_at(data: Array, places: IntArray, values: Array) -> None:
             data[places[k]] += values[k]
         else:
             data[-1 - places[k]] -= values[k]
+
+
+@njit
+def add_filled_at(data: Array, places: IntArray, values: Array, filled: BoolArray) -> None:
+    """The same for blocks that are filled (m,), of as many values each, one block after the other."""
+    size = values.size // max(filled.size, 1)
+    for block in np.flatnonzero(filled):
+        first, last = block * size, (block + 1) * size
+        add_at(data, places[first:last], values[first:last])
 
 
 @njit

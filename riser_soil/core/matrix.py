@@ -6,14 +6,14 @@ first and sends what belongs to others in one exchange (`shared_matrix`).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator, Mapping
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.csr_matrix import CsrMatrix, add_at, add_magnitudes
+from riser_soil.core.csr_matrix import CsrMatrix, add_at, add_filled_at, add_magnitudes, union, write_places
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import MatrixBlock
 
@@ -39,7 +39,7 @@ class Matrix:
         for key, block in blocks.items():
             patterns[key] = _pattern(numbering, block, patterns.get(key))
         diagonal = np.arange(n if numbering.comm.size == 1 else 0) * (n + 1)
-        keys = np.unique(np.concatenate([diagonal, *(patterns[key].keys for key in blocks)]))
+        keys = reduce(union, (patterns[key].keys for key in blocks), diagonal)
         self._data, self.changes = np.zeros(len(keys) + 1), 0
         self._places = {key: patterns[key].places(keys) for key in blocks}
         self.stored = _store(numbering, keys, symmetric, self._data[:-1])
@@ -68,10 +68,8 @@ class Matrix:
             filled = self._blocks[key].filled
             if filled is None:
                 add_at(self._data, self._places[key], values.reshape(-1))
-                continue
-            each = self._places[key].reshape(len(values), math.prod(values.shape[1:]))
-            for block in np.flatnonzero(filled):
-                add_at(self._data, each[block], values[block].reshape(-1))
+            else:
+                add_filled_at(self._data, self._places[key], values.reshape(-1), filled)
         self.stored.put(self._data[:-1])
         self.changes += 1
 
@@ -120,8 +118,9 @@ class BlockPattern:
         """Position of every entry of the blocks among the system's entries, -1 less it where it is minus that; absent
         ones go to a slot behind the last.
         """
-        at = np.append(np.searchsorted(keys, self.keys), len(keys)).astype(np.int32)
-        return np.where(self._numbers < 0, -1 - at[-1 - self._numbers], at[self._numbers])
+        out = np.empty_like(self._numbers)
+        write_places(keys, self.keys, self._numbers, out)
+        return out
 
 
 Patterns = dict[str, BlockPattern]

@@ -1,4 +1,4 @@
-"""Return mapping of clay with nonlinear kinematic hardening, point by point.
+"""Clay with nonlinear kinematic hardening: elastic trial, return mapping and energy, point by point.
 
 Its formulae stand in `kinematic_hardening`, the components of strain and stress in `mandel`.
 """
@@ -12,12 +12,28 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.soil.mandel import DEVIATOR
+from riser_soil.soil.law import StressUpdate
+from riser_soil.soil.mandel import DEVIATOR, VOLUME, modulus, stretched
 from riser_soil.soil.rate import Gain
 
 MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that Δp may be
 ROUND_OFF = 4e-15  # of |η| in the equation for Δp: a change that makes no more is none
 ROOT = math.sqrt(2.0 / 3.0)
+
+_stretched, _modulus = njit(stretched), njit(modulus)
+
+
+class Clay(NamedTuple):
+    """Elastic moduli, largest equivalent stress and that at first yield, hardening modulus C, each (n,), and initial
+    stress (n, 6) [Pa].
+    """
+
+    bulk: Array
+    shear: Array
+    limit: Array
+    first: Array
+    hardening: Array
+    initial: Array
 
 
 class _Point(NamedTuple):
@@ -47,45 +63,86 @@ class _Trial(NamedTuple):
 def bring_within(bound: Array, s: Array) -> None:
     """Shorten deviators (n, 6) whose equivalent stress is beyond a bound (n,) [Pa]."""
     for i in range(len(s)):
-        q = math.sqrt(1.5 * _product(s[i], s[i]))
-        if q > bound[i]:
-            for k in range(6):
-                s[i, k] *= bound[i] / q
+        _shorten(bound[i], s[i])
 
 
 @njit
-def bring_back(
-    limits: tuple[Array, Array],
-    hardening: Array,
-    shear: Array,
-    gain: Gain,
-    stress: Array,
-    backstress: Array,
-    tangent: Array,
-    slip: Array,
-) -> None:
-    """Bring elastic trials of the stress (n, 6) beyond the yield surface back to it, with their backstress (n, 6) and
-    their elastic moduli (n, 6, 6), which become the consistent ones. Δp is written to slip (n,).
+def _shorten(bound: float, s: Array) -> None:
+    q = math.sqrt(1.5 * _product(s, s))
+    if q > bound:
+        for k in range(6):
+            s[k] *= bound / q
 
-    limits: largest equivalent stress, and that at first yield (n,), with C (n,) and G (n,) [Pa].
+
+@njit
+def write_locked_in(hardening: Array, backstress: Array, out: Array) -> None:
+    """Write the energy (n,) [J/m3] of backstresses (n, 6)."""
+    for i in range(len(out)):
+        out[i] = _locked_in(hardening[i], backstress[i])
+
+
+@njit
+def _locked_in(hardening: float, alpha: Array) -> float:
+    return 0.75 / hardening * _product(alpha, alpha)
+
+
+@njit
+def update(clay: Clay, gain: Gain, strain: Array, history: Array, out: StressUpdate) -> None:
+    """Write the answer to strain increments (n, 6) from a history (n, 13), see `CyclicClay`; what the backstress has
+    stored is all of it. Views of rows are costly, so that each point has workspace.
     """
-    s, n = np.empty(6), np.empty(6)
-    for i in range(len(stress)):
-        alpha, first, C, twice = backstress[i], limits[1][i], hardening[i], 2.0 * shear[i]
-        mean = (stress[i, 0] + stress[i, 1] + stress[i, 2]) / 3.0
+    stress, alpha, s, n = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
+    for i in range(len(strain)):
+        bulk, shear = clay.bulk[i], clay.shear[i]
+        first, hardening, bound = clay.first[i], clay.hardening[i], clay.limit[i] - clay.first[i]
+        trial = _stretched(3.0 * bulk, 2.0 * shear, _components(strain, i))
         for k in range(6):
-            s[k] = stress[i, k] - (mean if k < 3 else 0.0)
-            n[k] = s[k] - alpha[k]
-        slip[i] = 0.0
-        if gain.slow == 0.0 or not math.sqrt(1.5 * _product(n, n)) > first:
-            continue
-        point = _Point(first, C, twice, C / (limits[0][i] - first), gain)
-        found = _slip(point, s, alpha, n)
-        slip[i] = found.slip
-        _subtract_flow(point, found, alpha, n, tangent[i])
+            stress[k], alpha[k] = history[i, k] + trial[k], history[i, 7 + k]
+            for m in range(6):
+                out.tangent[i, k, m] = _modulus(bulk, shear, VOLUME[k, m], DEVIATOR[k, m])
+        if gain.slow == math.inf:  # the strength, and with it the bound, may have fallen
+            _shorten(bound, alpha)
+        slip = 0.0
+        _write_direction(stress, alpha, s, n)
+        if gain.slow > 0.0 and math.sqrt(1.5 * _product(n, n)) > first:
+            point = _Point(first, hardening, 2.0 * shear, hardening / bound, gain)
+            slip = _bring_back(point, stress, alpha, out.tangent[i], s, n)
+        out.history[i, 6] = history[i, 6] + slip
         for k in range(6):
-            stress[i, k] -= math.sqrt(1.5) * twice * found.slip * n[k]
-            alpha[k] = found.theta * (alpha[k] + ROOT * C * found.slip * n[k])
+            out.stress[i, k] = out.history[i, k] = stress[k]
+            out.elastic[i, k], out.history[i, 7 + k] = stress[k] - clay.initial[i, k], alpha[k]
+        elastic = _stretched(1.0 / (3.0 * bulk), 1.0 / (2.0 * shear), _components(out.elastic, i))
+        out.stored[i] = _locked_in(hardening, alpha)
+        for k in range(6):
+            out.stored[i] += 0.5 * out.elastic[i, k] * elastic[k]
+            out.elastic[i, k] = elastic[k]
+
+
+@njit
+def _components(a: Array, i: int) -> tuple[float, float, float, float, float, float]:
+    return a[i, 0], a[i, 1], a[i, 2], a[i, 3], a[i, 4], a[i, 5]
+
+
+@njit
+def _write_direction(stress: Array, alpha: Array, s: Array, n: Array) -> None:
+    """Write a stress' deviator, and that beyond the backstress."""
+    mean = (stress[0] + stress[1] + stress[2]) / 3.0
+    for k in range(6):
+        s[k] = stress[k] - (mean if k < 3 else 0.0)
+        n[k] = s[k] - alpha[k]
+
+
+@njit
+def _bring_back(point: _Point, stress: Array, alpha: Array, tangent: Array, s: Array, n: Array) -> float:
+    """Bring an elastic trial of the stress beyond the yield surface back to it, with its backstress and its elastic
+    moduli, which become the consistent ones: Δp. s, n: see `_write_direction`.
+    """
+    found = _slip(point, s, alpha, n)
+    _subtract_flow(point, found, alpha, n, tangent)
+    for k in range(6):
+        stress[k] -= math.sqrt(1.5) * point.twice * found.slip * n[k]
+        alpha[k] = found.theta * (alpha[k] + ROOT * point.hardening * found.slip * n[k])
+    return found.slip
 
 
 @njit

@@ -68,9 +68,9 @@ class SoilField:
         return f"soil node at ({x:g}, {y:g}, {z:g}) m, {'xyz'[direction]} displacement"
 
 
-def components(nodes: IntArray) -> IntArray:
-    """Numbers of the three components of each node: (..., n) to (..., 3n)."""
-    return (3 * nodes[..., None] + np.arange(3)).reshape(*nodes.shape[:-1], 3 * nodes.shape[-1])
+def components(nodes: IntArray, axes: tuple[int, ...] = (0, 1, 2)) -> IntArray:
+    """Numbers of each node's components along some axes: (..., n) to (..., d n)."""
+    return (3 * nodes[..., None] + np.array(axes)).reshape(*nodes.shape[:-1], len(axes) * nodes.shape[-1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -163,14 +163,15 @@ def add_internal_force(
 
 
 @njit
-def renew_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, known: Array, out: Array) -> None:
-    """Cell matrices ∫ B̄ᵀ C B̄ [N/m] of the moduli C (nc, nq, 6, 6) [Pa], written to out (nc, 3nn, 3nn) where it does
-    not hold them yet: known: the moduli that it is of, which become those.
+def renew_stiffness(
+    full: Array, volume: Array, weights: Array, axes: IntArray, moduli: Array, known: Array, out: Array
+) -> None:
+    """Cell matrices ∫ B̄ᵀ C B̄ [N/m] of the moduli C (nc, nq, 6, 6) [Pa], written to out (nc, d nn, d nn) where it does
+    not hold them yet, of displacements along d axes. known: the moduli that it is of, which become those.
     """
     nc, nq, nn, _ = full.shape
-    step = 0 if volume.shape[1] == 1 else 1
-    B = np.zeros((6, 3 * nn))
-    CB = np.zeros((6, 3 * nn))
+    step, size = 0 if volume.shape[1] == 1 else 1, axes.size * nn
+    B, CB = np.zeros((6, size)), np.zeros((6, size))
     for c in range(nc):
         if _same(moduli[c], known[c]):
             continue
@@ -178,14 +179,14 @@ def renew_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, k
         K = out[c]
         K[:] = 0.0
         for q in range(nq):
-            _operator(full[c, q], volume[c, q * step], B)
+            _operator(full[c, q], volume[c, q * step], axes, B)
             _product(weights[c, q], moduli[c, q], B, CB)
-            for i in range(3 * nn):
+            for i in range(size):
                 row = K[i]
                 for k in range(6):
                     factor = B[k, i]
                     if factor != 0.0:
-                        for j in range(3 * nn):
+                        for j in range(size):
                             row[j] += factor * CB[k, j]
 
 
@@ -198,18 +199,16 @@ def _same(a: Array, b: Array) -> bool:
 
 
 @njit
-def _operator(full: Array, volume: Array, B: Array) -> None:
-    """B̄ (6, 3nn) of one quadrature point."""
+def _operator(full: Array, volume: Array, axes: IntArray, B: Array) -> None:
+    """B̄ (6, d nn) of one quadrature point, for displacements along d axes; what is zero in it is left so."""
     for a in range(full.shape[0]):
-        for i in range(3):
-            column = 3 * a + i
+        for k in range(axes.size):
+            i, column = axes[k], axes.size * a + k
             extra = (volume[a, i] - full[a, i]) / 3.0
-            B[0, column] = B[1, column] = B[2, column] = extra
-            B[i, column] += full[a, i]
-        gx, gy, gz = _SHEAR * full[a, 0], _SHEAR * full[a, 1], _SHEAR * full[a, 2]
-        B[3, 3 * a], B[3, 3 * a + 1] = gy, gx
-        B[4, 3 * a], B[4, 3 * a + 2] = gz, gx
-        B[5, 3 * a + 1], B[5, 3 * a + 2] = gz, gy
+            for j in range(3):
+                B[j, column] = extra + (full[a, i] if j == i else 0.0)
+                if j != i:
+                    B[2 + i + j, column] = _SHEAR * full[a, j]
 
 
 @njit

@@ -112,32 +112,22 @@ class CyclicClay:
         cyclic_return.bring_within(self.limit - self.elastic_limit, first)
         return first
 
-    @cached_property
-    def _elastic(self) -> Array:
-        """Moduli (n, 6, 6) [Pa] where nothing yields."""
-        return mandel.stiffness(self.bulk, self.shear)
-
     def update(
         self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
     ) -> StressUpdate:
         gain, limits = gain_of(self.rate, dt), (strength * self.limit, strength * self.elastic_limit)
-        stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
-        backstress, slip, tangent = history[:, 7:].copy(), np.empty(len(history)), self._elastic.copy()
-        if not gain.gains:  # the strength, and with it the bound, may have fallen
-            cyclic_return.bring_within(limits[0] - limits[1], backstress)
-        cyclic_return.bring_back(limits, self.hardening, self.shear, gain, stress, backstress, tangent, slip)
-        after = np.column_stack((stress, history[:, 6] + slip, backstress))
-        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
-        stored = 0.5 * mandel.product(stress - self.initial, elastic) + self._locked_in(backstress)
-        return StressUpdate(stress, tangent, after, stored - self._locked_in_first, elastic)
+        clay = cyclic_return.Clay(self.bulk, self.shear, *limits, self.hardening, self.initial)
+        stress, tangent, elastic = (np.empty((len(history), *shape)) for shape in ((6,), (6, 6), (6,)))
+        out = StressUpdate(stress, tangent, np.empty_like(history), np.empty(len(history)), elastic)
+        cyclic_return.update(clay, gain, strain_increment, history, out)
+        return out._replace(stored=out.stored - self._locked_in_first)
 
     @cached_property
     def _locked_in_first(self) -> Array:
-        return self._locked_in(self._first_backstress)
-
-    def _locked_in(self, backstress: Array) -> Array:
-        """Energy of the backstress (n,) [J/m3]."""
-        return 0.75 / self.hardening * mandel.product(backstress, backstress)
+        """Energy of the first backstress (n,) [J/m3]."""
+        out = np.empty_like(self.bulk)
+        cyclic_return.write_locked_in(self.hardening, self._first_backstress, out)
+        return out
 
     def overstress(self, stress: Array) -> Array:
         return mandel.von_mises(stress) / self.limit

@@ -9,9 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.seabed.bearing import Number
 
 UNIT: Array = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-DEVIATOR: Array = np.eye(6) - np.outer(UNIT, UNIT) / 3.0  # projector on the deviatoric part
+VOLUME: Array = np.outer(UNIT, UNIT)
+DEVIATOR: Array = np.eye(6) - VOLUME / 3.0  # projector on the deviatoric part
 
 
 def bulk_modulus(E: Array, nu: float) -> Array:
@@ -42,20 +44,41 @@ def deviator(a: Array) -> Array:
     return plus_mean(a.copy(), -mean(a))
 
 
+def modulus(bulk: Number, shear: Number, volume: Number, deviator: Number) -> Number:
+    """K 1⊗1 + 2G P [Pa] of entries of VOLUME and DEVIATOR; numbers or arrays, as this is compiled, too."""
+    return bulk * volume + 2.0 * shear * deviator
+
+
 def stiffness(bulk: Array, shear: Array) -> Array:
-    """Isotropic elastic moduli K 1⊗1 + 2G P (n, 6, 6) [Pa] of bulk (n,) and shear modulus (n,)."""
-    result: Array = bulk[:, None, None] * np.outer(UNIT, UNIT) + (2.0 * shear)[:, None, None] * DEVIATOR
-    return result
+    """Isotropic elastic moduli (n, 6, 6) [Pa] of bulk (n,) and shear modulus (n,)."""
+    return modulus(bulk[:, None, None], shear[:, None, None], VOLUME, DEVIATOR)
+
+
+def stretched(volume: Number, shape: Number, a: tuple[Number, ...]) -> tuple[Number, ...]:
+    """Six components of a tensor whose mean is multiplied by one factor, its deviator by another; numbers or arrays
+    (n,), as this is compiled, too.
+    """
+    xx, yy, zz, xy, xz, yz = a
+    mean = (xx + yy + zz) / 3.0
+    beside = volume * mean
+    return (
+        shape * (xx - mean) + beside,
+        shape * (yy - mean) + beside,
+        shape * (zz - mean) + beside,
+        shape * xy,
+        shape * xz,
+        shape * yz,
+    )
 
 
 def elastic_stress(bulk: Array, shear: Array, strain: Array) -> Array:
     """Stress (n, 6) [Pa] of an elastic strain (n, 6)."""
-    return plus_mean((2.0 * shear)[:, None] * deviator(strain), 3.0 * bulk * mean(strain))
+    return np.stack(stretched(3.0 * bulk, 2.0 * shear, tuple(strain.T)), axis=1)
 
 
 def elastic_strain(bulk: Array, shear: Array, stress: Array) -> Array:
     """Elastic strain (n, 6) of a stress (n, 6) [Pa]."""
-    return plus_mean(deviator(stress) / (2.0 * shear)[:, None], mean(stress) / (3.0 * bulk))
+    return np.stack(stretched(1.0 / (3.0 * bulk), 1.0 / (2.0 * shear), tuple(stress.T)), axis=1)
 
 
 def product(a: Array, b: Array) -> Array:

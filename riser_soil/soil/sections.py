@@ -9,22 +9,34 @@ equation in a nonuniform triangle mesh, J. Comput. Phys. 1 (1966).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import SuperLU, splu
 
+from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.soil.families import FOLDS, QUAD4, skewness
 
 SAME = 1e-6  # of the block's size: coordinates nearer to each other are those of one plane of the grid
 MOST_RAISED = 0.5  # of the ways that surface nodes have gone, for the soil below
 MOST_PASSES, SETTLED = 30, 1e-6  # of Winslow's equations; movement of a pass over the smallest cell
 CELLS = tuple(replace(QUAD4, axes=(across, 2)) for across in (0, 1))  # of a section across x, y
+
+
+class Differences(NamedTuple):
+    """Weights (n - 2, 3) of first and second derivatives across a section, and of those in depth: of the inner nodes
+    and their neighbours.
+    """
+
+    first_across: Array
+    second_across: Array
+    first_down: Array
+    second_down: Array
 
 
 class Pressing(NamedTuple):
@@ -165,13 +177,14 @@ def _below(line: Array) -> float:
 def smoothed(at: Array, columns: Array, layers: Array, across: int) -> Array:
     """A section's nodes (nc, nl, 3), those of its rim as they are, the inner ones by Winslow's equations from there."""
     at = at.copy()
+    inner, nl = (len(columns) - 2) * (len(layers) - 2), len(layers)
+    band, _ = banded.workspace(inner, nl - 1)
     smallest = min(np.diff(columns).min(), np.diff(layers).min())
-    first, second = _differences(columns), _differences(layers)
-    for _ in range(MOST_PASSES):
-        moved = _pass(at, first, second, across)
-        largest = float(np.abs(moved - at[1:-1, 1:-1]).max(initial=0.0))
-        at[1:-1, 1:-1] = moved
-        if largest < SETTLED * smallest:
+    differences = Differences(*_differences(columns), *_differences(layers))
+    for _ in range(MOST_PASSES if inner else 0):
+        band[:] = 0.0
+        largest = smooth(at, differences, across, band, np.zeros(nl - 1))
+        if not largest >= SETTLED * smallest:
             break
     return at
 
@@ -184,37 +197,40 @@ def _differences(x: Array) -> tuple[Array, Array]:
     return first, second
 
 
-def _pass(at: Array, first: tuple[Array, Array], second: tuple[Array, Array], across: int) -> Array:
-    """Inner nodes (nc - 2, nl - 2, 3) of g22 x_11 - 2 g12 x_12 + g11 x_22 = 0, metrics those of `at` in the section."""
+@njit
+def smooth(at: Array, differences: Differences, across: int, band: Array, width: Array) -> float:
+    """Move a section's inner nodes (nc - 2, nl - 2, 3), column by column, to g22 x_11 - 2 g12 x_12 + g11 x_22 = 0, with
+    metrics as they are before; by how much at most [m]. They are no numbers where that can't be solved. band: workspace
+    of zeros, width: see `banded`.
+    """
     nc, nl, _ = at.shape
-    shape = (nc - 2, nl - 2)
-    (d1, dd1), (d2, dd2) = first, second
-    shifted = [[at[1 + i : nc - 1 + i, 1 + j : nl - 1 + j] for j in (-1, 0, 1)] for i in (-1, 0, 1)]
-    plane = [across, 2]
-    x1 = np.sum([d1[:, i, None, None] * shifted[i][1] for i in range(3)], axis=0)[..., plane]
-    x2 = np.sum([d2[None, :, j, None] * shifted[1][j] for j in range(3)], axis=0)[..., plane]
-    g11, g12, g22 = (np.einsum("abi,abi->ab", a, b) for a, b in ((x1, x1), (x1, x2), (x2, x2)))
-    number = np.full((nc, nl), -1)
-    number[1:-1, 1:-1] = np.arange(shape[0] * shape[1]).reshape(shape)
-    rows, cols, values, load = [], [], [], np.zeros((*shape, 3))
-    for i in range(3):
-        for j in range(3):
-            weight = -2.0 * g12 * d1[:, i, None] * d2[None, :, j]
-            if j == 1:
-                weight = weight + g22 * dd1[:, i, None]
-            if i == 1:
-                weight = weight + g11 * dd2[None, :, j]
-            target = number[i : nc - 2 + i, j : nl - 2 + j]
-            inner = target >= 0
-            rows.append(number[1:-1, 1:-1][inner])
-            cols.append(target[inner])
-            values.append(weight[inner])
-            load[~inner] -= weight[~inner][:, None] * shifted[i][j][~inner]
-    size = shape[0] * shape[1]
-    matrix = csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(cols))), shape=(size, size))
-    return np.asarray(_factorised(matrix).solve(load.reshape(size, 3))).reshape(*shape, 3)
-
-
-def _factorised(matrix: csr_matrix) -> SuperLU:
-    """Its pattern is symmetric, its diagonal large: an order for that takes half the time."""
-    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1, options={"SymmetricMode": True})
+    (d1, dd1, d2, dd2), b, size = differences, width.size, (nc - 2) * (nl - 2)
+    load, pivots = np.zeros((3, size)), np.empty(size, np.int64)
+    for row in range(size):
+        p, q = row // (nl - 2), row % (nl - 2)
+        g11 = g12 = g22 = 0.0
+        for axis in (across, 2):
+            x1 = x2 = 0.0
+            for k in range(3):
+                x1 += d1[p, k] * at[p + k, q + 1, axis]
+                x2 += d2[q, k] * at[p + 1, q + k, axis]
+            g11, g12, g22 = g11 + x1 * x1, g12 + x1 * x2, g22 + x2 * x2
+        for i in range(3):
+            for j in range(3):
+                weight = -2.0 * g12 * d1[p, i] * d2[q, j]
+                weight += g22 * dd1[p, i] if j == 1 else 0.0
+                weight += g11 * dd2[q, j] if i == 1 else 0.0
+                if 0 < p + i < nc - 1 and 0 < q + j < nl - 1:
+                    band[row, b + (i - 1) * (nl - 2) + j - 1] = weight
+                else:
+                    for axis in range(3):
+                        load[axis, row] -= weight * at[p + i, q + j, axis]
+    sound, largest = banded.factorise(band, pivots, width), 0.0
+    for axis in range(3):
+        banded.solve(band, pivots, load[axis], width)
+        for row in range(size):
+            found = load[axis, row] if sound else math.nan
+            p, q = 1 + row // (nl - 2), 1 + row % (nl - 2)
+            largest = max(largest, abs(found - at[p, q, axis]))
+            at[p, q, axis] = found
+    return largest

@@ -85,7 +85,7 @@ class Soil:
         self.law = self._ground.law(depth, self._initial)
 
     def blocks(self) -> dict[str, MatrixBlock]:
-        rows = self.field.offset + components(self.cells.nodes)
+        rows = self.field.offset + components(self.cells.nodes, self.grid.family.axes)
         return {"soil": MatrixBlock(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:

@@ -57,11 +57,15 @@ class SoilCells:
             self.make_anew(strained, at[strained])
 
     def stiffness(self, moduli: Array) -> Array:
-        """Matrices (nc, 3 nn, 3 nn) [N/m] of the cells by the moduli (n, 6, 6) [Pa] at their points."""
-        g = self.gradients
+        """Matrices (nc, d nn, d nn) [N/m] of the cells by the moduli (n, 6, 6) [Pa] at their points, for displacements
+        along the axes along which they extend.
+        """
+        g, axes = self.gradients, np.array(self._family.axes)
         if self._stiffness is None:
-            self._stiffness = _Stiffness.unknown(g)
-        kernels.renew_stiffness(g.full, g.volume, g.weights, moduli.reshape(*self.shape, 6, 6), *self._stiffness)
+            self._stiffness = _Stiffness.unknown(*self.shape, axes.size * self.nodes.shape[1])
+        kernels.renew_stiffness(
+            g.full, g.volume, g.weights, axes, moduli.reshape(*self.shape, 6, 6), *self._stiffness
+        )
         return self._stiffness.matrices
 
     def strain(self, u: Array) -> Array:
@@ -103,12 +107,11 @@ class SoilCells:
 
 
 class _Stiffness(NamedTuple):
-    """Cell matrices (nc, 3nn, 3nn) [N/m] and the moduli (nc, nq, 6, 6) [Pa] that they are of: most keep them."""
+    """Cell matrices (nc, n, n) [N/m] and the moduli (nc, nq, 6, 6) [Pa] that they are of: most keep them."""
 
     moduli: Array
     matrices: Array
 
     @classmethod
-    def unknown(cls, gradients: Gradients) -> _Stiffness:
-        nc, nq, nn, _ = gradients.full.shape
-        return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, 3 * nn, 3 * nn)))
+    def unknown(cls, nc: int, nq: int, n: int) -> _Stiffness:
+        return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, n, n)))

@@ -53,9 +53,8 @@ class SectionFactors:
     matrix. Both are as of the last `take`.
     """
 
-    def __init__(self, csr: Csr, at: slice, before: int) -> None:
+    def __init__(self, at: slice, before: int) -> None:
         self.at, self._before = at, before
-        self._width = int(_bandwidth(*csr[:2], at.start, at.stop, before))
         self._known: Array = np.empty(0)
         self._outside: BoolArray = np.empty(0, dtype=bool)
 
@@ -69,6 +68,7 @@ class SectionFactors:
         number = np.where(outside, -np.cumsum(outside, dtype=np.int64), np.cumsum(~outside, dtype=np.int64) - 1)
         self._inner, self.border = (self.at.start + np.flatnonzero(which) for which in (~outside, outside))
         n, m = len(self._inner), len(self.border)
+        self._width = int(_bandwidth(*place, csr[2], number))
         self._band = np.zeros((n + self._width, 1 + self._width + _filled_up(self._width)))
         self._right, self._below = (np.zeros((n + self._width, _filled_up(m))) for _ in range(2))
         _spread(*place, csr[2], number, self._width, self._band, self._right, self._below)
@@ -115,13 +115,16 @@ def coupled_apart(indptr: IntArray, indices: IntArray, values: Array, first: int
 
 
 @njit
-def _bandwidth(indptr: IntArray, indices: IntArray, first: int, last: int, before: int) -> int:
+def _bandwidth(
+    indptr: IntArray, indices: IntArray, first: int, before: int, values: Array, number: IntArray
+) -> int:
+    """Of the interior's entries that are not zero: contact has places for more. number: as of `_spread`."""
     b = 0
-    for i in range(first, last):
-        for k in range(indptr[i], indptr[i + 1]):
-            j = indices[k] - before
-            if first <= j < last:
-                b = max(b, abs(i - j))
+    for i in range(number.size):
+        for k in range(indptr[first + i], indptr[first + i + 1]):
+            at = indices[k] - before - first
+            if number[i] >= 0 and 0 <= at < number.size and number[at] >= 0 and values[k] != 0.0:
+                b = max(b, abs(number[i] - number[at]))
     return b
 
 
@@ -162,6 +165,8 @@ def _spread(
             if not 0 <= at < number.size:
                 continue
             row, column = number[i], number[at]
+            if values[k] == 0.0:
+                continue
             if row >= 0 and column >= 0:
                 band[row, b + column - row] = values[k]
             elif row >= 0:
@@ -279,7 +284,7 @@ class SectionSolver(PythonContext, LinearSystems):
         mine = slice(first, first + len(csr[0]) - 1)
         if self._section is None:
             self._section = _section_of_rows(self._system, self._soil)
-            self._sections = [SectionFactors(csr, at, first) for at in _runs(self._section[mine])]
+            self._sections = [SectionFactors(at, first) for at in _runs(self._section[mine])]
         coupled = largest_of(comm, coupled_apart(*csr, first, self._section)) > 0
         sound = [section.take(csr, coupled[mine]) for section in self._sections]
         if not all_of(comm, all(sound)):
