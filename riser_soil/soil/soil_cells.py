@@ -62,7 +62,7 @@ class SoilCells:
         """
         g, axes = self.gradients, np.array(self._family.axes)
         if self._stiffness is None:
-            self._stiffness = _Stiffness.unknown(*self.shape, axes.size * self.nodes.shape[1])
+            self._stiffness = _Stiffness.unknown(self.shape, axes.size * self.nodes.shape[1])
         kernels.renew_stiffness(
             g.full, g.volume, g.weights, axes, moduli.reshape(*self.shape, 6, 6), *self._stiffness
         )
@@ -113,5 +113,5 @@ class _Stiffness(NamedTuple):
     matrices: Array
 
     @classmethod
-    def unknown(cls, nc: int, nq: int, n: int) -> _Stiffness:
-        return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, n, n)))
+    def unknown(cls, shape: tuple[int, ...], n: int) -> _Stiffness:
+        return cls(np.full((*shape, 6, 6), np.nan), np.zeros((shape[0], n, n)))

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 from petsc4py import PETSc
@@ -41,58 +41,83 @@ if TYPE_CHECKING:
 
 
 Csr = tuple[IntArray, IntArray, Array]
+Entries = Csr  # rows, columns, values
+Place = tuple[IntArray, IntArray, Array, int, int, int]  # of a section: CSR, rows before the rank's, its first and last
 
 LOST = 1e-12  # of an entry on the diagonal: a pivot below that
 AT_ONCE = fixed(8)  # numbers of a row; rows are filled up with zeros to a multiple of it
 
 
-class SectionFactors:
-    """Of a section, whose rows are those `at` some place among its rank's; before: rows of the ranks before that.
+class Bands(NamedTuple):
+    """Of ns sections of n rows at most, each with b entries beside its diagonal and m rows in its border at most.
 
-    border (m,): those of the rank's rows that are the section's border; schur (m, m): what the interior takes off its
-    matrix. Both are as of the last `take`.
+    first (ns,): each section's first row among its rank's. number (rows,): of the rank's rows, within the section's
+    interior, or -1 less that within its border. counts (ns, 4): rows in all, in the interior, in the border, and of the
+    interior before the first that is coupled with it. renewed (ns,): those that the last tangent has changed.
+    band (ns, n + b, w), right, below (ns, n + b, m), schur (ns, m, m): see `_eliminate`, the last what the interior
+    takes off the border's matrix.
     """
 
-    def __init__(self, at: slice, before: int) -> None:
-        self.at, self._before = at, before
-        self._known: Array = np.empty(0)
-        self._outside: BoolArray = np.empty(0, dtype=bool)
+    first: IntArray
+    number: IntArray
+    counts: IntArray
+    renewed: BoolArray
+    band: Array
+    right: Array
+    below: Array
+    schur: Array
+
+
+class SectionFactors:
+    """Of sections with rows `at` some places among the rank's `rows`; before: rows of the ranks before it."""
+
+    def __init__(self, at: Sequence[slice], rows: int, before: int) -> None:
+        ns, none = len(at), np.empty((len(at), 0, 0))
+        counts = np.zeros((ns, 4), dtype=np.int64)
+        counts[:, 0] = [each.stop - each.start for each in at]
+        first, number = np.array([each.start for each in at], dtype=np.int64), np.zeros(rows, dtype=np.int64)
+        self.bands = Bands(first, number, counts, np.zeros(ns, dtype=bool), none, none, none, none)
+        self._rows, self._before, self._width = int(counts[:, 0].max(initial=0)), before, 0
+        self._known, self._coupled = np.empty(0), np.zeros(rows, dtype=bool)  # of the tangent before
 
     def take(self, csr: Csr, coupled: BoolArray) -> bool:
-        """Factorise the matrix of the values in these rows, where they have changed; whether that can be done.
-        coupled: which of the rank's rows are so with others than their section's.
+        """Factorise matrices of the values in these rows, where they have changed; whether that can be done. coupled:
+        which of the rank's rows are so with others than their section's.
         """
-        place, outside = (*csr[:2], self.at.start, self._before), coupled[self.at]
-        if np.array_equal(outside, self._outside) and _same(*place, csr[2], self._known, outside):
-            return True
-        number = np.where(outside, -np.cumsum(outside, dtype=np.int64), np.cumsum(~outside, dtype=np.int64) - 1)
-        self._inner, self.border = (self.at.start + np.flatnonzero(which) for which in (~outside, outside))
-        n, m = len(self._inner), len(self.border)
-        self._width = int(_bandwidth(*place, csr[2], number))
-        self._band = np.zeros((n + self._width, 1 + self._width + _filled_up(self._width)))
-        self._right, self._below = (np.zeros((n + self._width, _filled_up(m))) for _ in range(2))
-        _spread(*place, csr[2], number, self._width, self._band, self._right, self._below)
-        self._start = _first_coupled(self._right, self._below, n)
-        self._known, self._outside = np.empty(0), outside.copy()
-        if not _eliminate(self._band, self._right, self._below, n, self._width, self._start):
+        known = self._known if self._known.size else np.full_like(csr[2], np.nan)
+        width, border = renumber(*csr, self._before, known, self._coupled, coupled, self.bands)
+        if width > self._width or border > self.bands.right.shape[2]:
+            self._make_room(width, border)
+        self._known, self._coupled = np.empty(0), coupled.copy()
+        if not factorise_sections(*csr, self._before, self._width, self.bands):
             return False
-        self.schur = self._below[self._start : n, :m].T @ self._right[self._start : n, :m]
-        self._known = csr[2][csr[0][self.at.start] : csr[0][self.at.stop]].copy()
+        self._known = csr[2].copy()
         return True
 
+    def _make_room(self, width: int, border: int) -> None:
+        """For so many entries beside the diagonal and rows in a border, or as many as there was room for."""
+        ns, m = len(self.bands.counts), max(_filled_up(border), self.bands.right.shape[2])
+        self._width = b = max(width, self._width)
+        band, right, below = (np.zeros((ns, self._rows + b, size)) for size in (1 + b + _filled_up(b), m, m))
+        self.bands = self.bands._replace(band=band, right=right, below=below, schur=np.zeros((ns, m, m)))
+        self.bands.renewed[:] = True
+
+    def taken(self, number: IntArray) -> list[Entries]:
+        """What the interiors take off the borders' matrix, by the numbers (rows,) of the rank's rows there."""
+        found, (first, inside, counts) = [], self.bands[:3]
+        for s in np.flatnonzero(counts[:, 2]):
+            rows = slice(first[s], first[s] + counts[s, 0])
+            border, m = number[rows][inside[rows] < 0], counts[s, 2]
+            found.append((np.repeat(border, m), np.tile(border, m), -self.bands.schur[s, :m, :m].ravel()))
+        return found
+
     def eliminate(self, x: Array) -> None:
-        """Take a load (owned,) of the rank's rows on, the interior's share off its border."""
-        inner = x[self._inner]
-        _forward(self._band, inner, self._width)
-        x[self._inner] = inner
-        x[self.border] -= inner[self._start :] @ self._below[self._start : len(inner), : len(self.border)]
+        """Take a load (owned,) of the rank's rows on, the interiors' share off their borders."""
+        take_on(self.bands, self._width, x)
 
     def insert(self, x: Array) -> None:
-        """Solve for the interior, as the border is solved for."""
-        inner = x[self._inner]
-        inner[self._start :] -= self._right[self._start : len(inner), : len(self.border)] @ x[self.border]
-        _backward(self._band, inner, self._width)
-        x[self._inner] = inner
+        """Solve for the interiors, as the borders are solved for."""
+        insert(self.bands, self._width, x)
 
 
 def _filled_up(count: int) -> int:
@@ -115,58 +140,91 @@ def coupled_apart(indptr: IntArray, indices: IntArray, values: Array, first: int
 
 
 @njit
-def _bandwidth(
-    indptr: IntArray, indices: IntArray, first: int, before: int, values: Array, number: IntArray
-) -> int:
-    """Of the interior's entries that are not zero: contact has places for more. number: as of `_spread`."""
-    b = 0
-    for i in range(number.size):
-        for k in range(indptr[first + i], indptr[first + i + 1]):
-            at = indices[k] - before - first
-            if number[i] >= 0 and 0 <= at < number.size and number[at] >= 0 and values[k] != 0.0:
-                b = max(b, abs(number[i] - number[at]))
-    return b
+def renumber(
+    indptr: IntArray,
+    indices: IntArray,
+    values: Array,
+    before: int,
+    known: Array,
+    outside: BoolArray,
+    coupled: BoolArray,
+    bands: Bands,
+) -> tuple[int, int]:
+    """Find which sections have changed, and number their rows; the most entries beside the diagonal and rows in a
+    border of these. known, outside: values and coupled rows of the tangent before.
+    """
+    width, border = 0, 0
+    for s in range(bands.first.size):
+        first, last = bands.first[s], bands.first[s] + bands.counts[s, 0]
+        place = indptr, indices, values, before, first, last
+        bands.renewed[s] = not _same(place, known, outside, coupled)
+        if bands.renewed[s]:
+            inner = outer = 0
+            for i in range(first, last):
+                bands.number[i] = -1 - outer if coupled[i] else inner
+                inner, outer = inner + (not coupled[i]), outer + coupled[i]
+            bands.counts[s, 1], bands.counts[s, 2] = inner, outer
+            width, border = max(width, _bandwidth(place, bands.number)), max(border, outer)
+    return width, border
 
 
 @njit
-def _same(
-    indptr: IntArray, indices: IntArray, first: int, before: int, values: Array, known: Array, outside: BoolArray
-) -> bool:
+def _same(place: Place, known: Array, outside: BoolArray, coupled: BoolArray) -> bool:
     """Whether the interior's entries, and those between it and the border, are the ones that are known."""
-    if known.size == 0:
-        return False
-    start = indptr[first]
-    for i in range(outside.size):
-        for k in range(indptr[first + i], indptr[first + i + 1]):
-            if values[k] != known[k - start]:
-                j = indices[k] - before - first
-                if 0 <= j < outside.size and not (outside[i] and outside[j]):
-                    return False
+    indptr, indices, values, before, first, last = place
+    for i in range(first, last):
+        if outside[i] != coupled[i]:
+            return False
+        for k in range(indptr[i], indptr[i + 1]):
+            j = indices[k] - before
+            if values[k] != known[k] and first <= j < last and not (coupled[i] and coupled[j]):
+                return False
     return True
 
 
 @njit
-def _spread(
-    indptr: IntArray,
-    indices: IntArray,
-    first: int,
-    before: int,
-    values: Array,
-    number: IntArray,
-    b: int,
-    band: Array,
-    right: Array,
-    below: Array,
-) -> None:
-    """Write the values of CSR rows to their parts. number: of each row in the interior, in the border -1 less it."""
-    for i in range(number.size):
-        for k in range(indptr[first + i], indptr[first + i + 1]):
-            at = indices[k] - before - first
-            if not 0 <= at < number.size:
+def _bandwidth(place: Place, number: IntArray) -> int:
+    """Of the interior's entries that are not zero: contact has places for more."""
+    (indptr, indices, values, before, first, last), b = place, 0
+    for i in range(first, last):
+        for k in range(indptr[i], indptr[i + 1]):
+            j = indices[k] - before
+            if values[k] != 0.0 and first <= j < last and number[i] >= 0 and number[j] >= 0:
+                b = max(b, abs(number[i] - number[j]))
+    return b
+
+
+@njit
+def factorise_sections(
+    indptr: IntArray, indices: IntArray, values: Array, before: int, b: int, bands: Bands
+) -> bool:
+    """Factorise the sections that are to be renewed; whether all can be."""
+    for s in np.flatnonzero(bands.renewed):
+        first, n = bands.first[s], bands.counts[s, 1]
+        place = indptr, indices, values, before, first, first + bands.counts[s, 0]
+        band, right, below = bands.band[s], bands.right[s], bands.below[s]
+        band[...], right[...], below[...] = 0.0, 0.0, 0.0
+        _spread(place, bands.number, b, band, right, below)
+        bands.counts[s, 3] = start = _first_coupled(right, below, n)
+        if not _eliminate(band, right, below, n, b, start):
+            return False
+        if start < n:
+            bands.schur[s] = np.dot(below[start:n].T, right[start:n])
+        else:
+            bands.schur[s] = 0.0
+    return True
+
+
+@njit
+def _spread(place: Place, number: IntArray, b: int, band: Array, right: Array, below: Array) -> None:
+    """Write a section's entries that are not zero to its parts."""
+    indptr, indices, values, before, first, last = place
+    for i in range(first, last):
+        for k in range(indptr[i], indptr[i + 1]):
+            j = indices[k] - before
+            if values[k] == 0.0 or not first <= j < last:
                 continue
-            row, column = number[i], number[at]
-            if values[k] == 0.0:
-                continue
+            row, column = number[i], number[j]
             if row >= 0 and column >= 0:
                 band[row, b + column - row] = values[k]
             elif row >= 0:
@@ -186,8 +244,9 @@ def _first_coupled(right: Array, below: Array, n: int) -> int:
 
 @njit
 def _eliminate(band: Array, right: Array, below: Array, n: int, b: int, start: int) -> bool:
-    """Factorise in place; whether all pivots are sound. band: entry (i, j) at [i, b + j - i], the rows filled up; the
-    inverse of a pivot takes its place. start: the first row that is coupled with the border.
+    """Factorise a section's interior, n rows, in place; whether all pivots are sound. band: entry (i, j) at
+    [i, b + j - i], the rows filled up; the inverse of a pivot takes its place. right: entries in the border's columns,
+    below: those in its rows, turned over. start: the first row that is coupled with the border.
     """
     step, width, m = len(AT_ONCE), band.shape[1], right.shape[1]
     sound = band[:n, b] * LOST
@@ -217,6 +276,47 @@ def _eliminate(band: Array, right: Array, below: Array, n: int, b: int, start: i
                 for j in range(0, m, step):
                     add_multiple(below, (k + i) * m + j, -factor, below, k * m + j, AT_ONCE)
     return True
+
+
+@njit
+def take_on(bands: Bands, b: int, x: Array) -> None:
+    """Take loads (rows,) on, in the order of elimination: what the interiors bear goes off their borders' loads."""
+    inner = np.empty(bands.band.shape[1])
+    for s in range(bands.first.size):
+        n, band, below = bands.counts[s, 1], bands.band[s], bands.below[s]
+        first, last = bands.first[s], bands.first[s] + bands.counts[s, 0]
+        for i in range(first, last):
+            if bands.number[i] >= 0:
+                inner[bands.number[i]] = x[i]
+        _forward(band, inner[:n], b)
+        for i in range(first, last):
+            row = bands.number[i]
+            if row >= 0:
+                x[i] = inner[row]
+                continue
+            for k in range(bands.counts[s, 3], n):
+                x[i] -= below[k, -1 - row] * inner[k]
+
+
+@njit
+def insert(bands: Bands, b: int, x: Array) -> None:
+    """Solve for the interiors, with what the borders are found to be."""
+    inner = np.empty(bands.band.shape[1])
+    for s in range(bands.first.size):
+        n, band, right = bands.counts[s, 1], bands.band[s], bands.right[s]
+        first, last = bands.first[s], bands.first[s] + bands.counts[s, 0]
+        for i in range(first, last):
+            if bands.number[i] >= 0:
+                inner[bands.number[i]] = x[i]
+        for i in range(first, last):
+            row = bands.number[i]
+            if row < 0:
+                for k in range(bands.counts[s, 3], n):
+                    inner[k] -= right[k, -1 - row] * x[i]
+        _backward(band, inner[:n], b)
+        for i in range(first, last):
+            if bands.number[i] >= 0:
+                x[i] = inner[bands.number[i]]
 
 
 @njit
@@ -252,7 +352,6 @@ def _product(band: Array, k: int, first: int, x: Array, start: int, count: int) 
 
 
 THRESHOLD = 0.1  # of the largest entry of its column, that a pivot on the diagonal may have
-Entries = tuple[IntArray, IntArray, Array]
 
 
 def sections_of(system: System) -> SoilField | None:
@@ -268,7 +367,7 @@ class SectionSolver(PythonContext, LinearSystems):
         self._system, self._soil, self._workspace = system, soil, workspace
         self._by_rows_exchanged = False
         self._section: IntArray | None = None  # of each row of the system, on all ranks or none
-        self._sections: list[SectionFactors] = []
+        self._factors = SectionFactors((), 0, 0)
         self._rest: _Rest | None = None
 
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
@@ -284,27 +383,23 @@ class SectionSolver(PythonContext, LinearSystems):
         mine = slice(first, first + len(csr[0]) - 1)
         if self._section is None:
             self._section = _section_of_rows(self._system, self._soil)
-            self._sections = [SectionFactors(at, first) for at in _runs(self._section[mine])]
+            self._factors = SectionFactors(_runs(self._section[mine]), len(csr[0]) - 1, first)
         coupled = largest_of(comm, coupled_apart(*csr, first, self._section)) > 0
-        sound = [section.take(csr, coupled[mine]) for section in self._sections]
-        if not all_of(comm, all(sound)):
+        if not all_of(comm, self._factors.take(csr, coupled[mine])):
             raise SingularError
         left = coupled | (self._section < 0)
         self._left, number = np.flatnonzero(left[mine]), np.cumsum(left) - 1
         own = _between(csr, self._left, left, number, first)
-        touched = [section for section in self._sections if section.border.size]
-        taken = [_taken_off(number[first + section.border], section.schur) for section in touched]
+        taken = self._factors.taken(number[mine])
         self._rest = _Rest(comm, _joined([own, *taken]), int(np.count_nonzero(left)))
 
     def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
         """Solve."""
         assert self._rest is not None
         x = np.array(load.array_r)
-        for section in self._sections:
-            section.eliminate(x)
+        self._factors.eliminate(x)
         x[self._left] = self._rest.solve(x[self._left])
-        for section in self._sections:
-            section.insert(x)
+        self._factors.insert(x)
         found.array_w[:] = x
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
@@ -320,7 +415,8 @@ class SectionSolver(PythonContext, LinearSystems):
 
     def forget(self) -> None:
         """Drop all factors."""
-        self._section, self._sections, self._rest = None, [], None
+        self._section, self._rest = None, None
+        self._factors = SectionFactors((), 0, 0)
 
 
 class _Rest:
@@ -376,12 +472,6 @@ def _between(csr: Csr, rows: IntArray, left: BoolArray, number: IntArray, first:
     some = csr_matrix((values, indices, indptr), shape=(len(indptr) - 1, len(left)))[rows].tocoo()
     there = left[some.col] & (some.data != 0.0)
     return number[first + rows[some.row[there]]], number[some.col[there]], some.data[there]
-
-
-def _taken_off(border: IntArray, schur: Array) -> Entries:
-    """Minus a dense block of these rows and columns."""
-    m = len(border)
-    return np.repeat(border, m), np.tile(border, m), -schur.ravel()
 
 
 def _joined(parts: Sequence[Entries]) -> Entries:
