@@ -17,41 +17,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.seabed.bearing import Strength
 from riser_soil.seabed.pipe_bearing import strength_at
 
 Pair = tuple[float, float]  # along both directions, or along one and 0
-
-
-def traction(
-    elastic: Array, N: Array, slope: Array, mu: Array, most: Array | float = np.inf, most_slope: Array | float = 0.0
-) -> tuple[Array, Array, Array]:
-    """t (..., r) from t*, N and adhesion `most` (...), and its derivatives by t* (..., r, r) and by the penetration
-    (..., r), by which those of N and `most` are slope and most_slope (...); r is 1 or 2.
-    """
-    r = elastic.shape[-1]
-    found = np.empty((N.size, r)), np.empty((N.size, r, r)), np.empty((N.size, r))
-    pushed = np.stack(np.broadcast_arrays(N, slope, most, most_slope), axis=-1).reshape(-1, 4)
-    _tractions(elastic.reshape(-1, r), pushed, mu, *found)
-    t, by_elastic, by_penetration = found
-    return t.reshape(elastic.shape), by_elastic.reshape(*elastic.shape, r), by_penetration.reshape(elastic.shape)
-
-
-@njit
-def _tractions(elastic: Array, pushed: Array, mu: Array, t: Array, by_elastic: Array, by_penetration: Array) -> None:
-    r = mu.size
-    for i in range(len(pushed)):
-        guess, N, most = (elastic[i, 0], elastic[i, r - 1] if r > 1 else 0.0), pushed[i, :2], pushed[i, 2:]
-        limit, rise = limits(N[0], N[1], (mu[0], mu[r - 1]), (most[0], most[1]))
-        found, by_guess, by_push = return_map(guess, limit, rise)
-        for j in range(r):
-            t[i, j], by_penetration[i, j] = found[j], by_push[j]
-            for k in range(r):
-                by_elastic[i, j, k] = by_guess[j][k]
 
 
 @njit

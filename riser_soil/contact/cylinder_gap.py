@@ -44,21 +44,15 @@ FORMS = 4
 PARALLEL = 1e-12  # sine of the angle below which two directions are one
 
 
+@njit
 def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> tuple[Array, Array]:
     """Linear forms (n, 4, 4 d + 3 nv) of the gap at some points, and the symmetric matrices C (n, 4, 4) with which
     δ²g = forms·C·forms; the first is δg, the last δs.
 
     Columns: q of the element in axes basis (3, d), then the facet's nodes.
     """
-    columns = 4 * basis.shape[1] + 3 * surface.facets.shape[1]
-    forms, C = np.empty((len(near.gap), FORMS, columns)), np.zeros((len(near.gap), FORMS, FORMS))
-    write_gap_forms(axis, surface, near, basis, forms, C)
-    return forms, C
-
-
-@njit
-def write_gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
-    """Write what `gap_forms` returns."""
+    n, columns = len(near.gap), 4 * basis.shape[1] + 3 * surface.facets.shape[1]
+    forms, C = np.empty((n, FORMS, columns)), np.zeros((n, FORMS, FORMS))
     nv = surface.facets.shape[1]
     N, dN, vectors = np.empty(nv), np.empty((nv, 2)), np.empty((FORMS, 2, 3))
     for i in range(len(near.gap)):
@@ -67,6 +61,7 @@ def write_gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array
         frame(axis.q[e], axis.length[e], axis.radius[e], xi, p, vectors, C[i])
         fill_axis(vectors, basis, xi, axis.length[e], forms[i])
         fill_nodes(vectors, N, forms[i, :, 4 * basis.shape[1] :])
+    return forms, C
 
 
 @njit
@@ -158,8 +153,9 @@ def gaps_of(axis: Axis, points: Array) -> tuple[Array, Array]:
 
 
 class Slide(NamedTuple):
-    """Slide e of n points (n, 3) [m] and its derivative by s (n, 3) at fixed q and p; directions (n, 2, 3), axial and
-    lateral, and their derivatives by s (n, 2, 3) [1/m]; de/dz at fixed s (n, 3, nz); d²e/ds dz (n, 3, nz) [1/m].
+    """Of a point over which the pipe slides: the way e (3,) [m] and its derivative by s (3,) at fixed q and p; axial
+    and lateral direction (2, 3), and their derivatives by s (2, 3) [1/m]; de/dz at fixed s (3, nz); d²e/ds dz (3, nz)
+    [1/m]; workspace. z: q of the element in axes basis (3, d), then the facet's nodes.
     """
 
     moved: Array
@@ -168,35 +164,41 @@ class Slide(NamedTuple):
     along_by_s: Array
     by_z: Array
     by_s_z: Array
-
-
-def slide(near: NearPoints, start: tuple[Axis, Surface], end: tuple[Axis, Surface], basis: Array) -> Slide:
-    """Slide of points from the start to the end of a step; z: q of the element in axes basis (3, d), then the facet."""
-    n, nz = len(near.gap), 4 * basis.shape[1] + 3 * end[1].facets.shape[1]
-    found = Slide(
-        np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 2, 3)), np.empty((n, 2, 3)),
-        np.zeros((n, 3, nz)), np.zeros((n, 3, nz)),
-    )  # fmt: skip
-    _slide(near, start[0], start[1], end[0], end[1], basis, found)
-    return found
+    N: Array
+    dN: Array
 
 
 @njit
-def _slide(
-    near: NearPoints, axis0: Axis, ground0: Surface, axis: Axis, ground: Surface, basis: Array, out: Slide
+def slide_workspace(nv: int, d: int) -> Slide:
+    """For a point of facets with so many nodes, beside a pipe in so many dimensions."""
+    by_z, by_s_z = np.zeros((3, 4 * d + 3 * nv)), np.zeros((3, 4 * d + 3 * nv))
+    ways, ahead = (np.empty(3), np.empty(3)), (np.empty((2, 3)), np.empty((2, 3)))
+    return Slide(ways[0], ways[1], ahead[0], ahead[1], by_z, by_s_z, np.empty(nv), np.empty((nv, 2)))
+
+
+@njit
+def write_slide(
+    near: NearPoints, i: int, start: tuple[Array, Array], axis: Axis, ground: Surface, out: Slide
 ) -> None:
-    nv = ground.facets.shape[1]
-    N, dN = np.empty(nv), np.empty((nv, 2))
-    for i in range(len(near.gap)):
-        e, xi, nodes = near.element[i], near.along[i], ground.facets[near.facet[i]]
-        L, q0 = axis.length[e], axis0.q[e]
-        fill_shape(near.xi[i, 0], near.xi[i, 1], N, dN)
-        shape, slope = hermite.shape(xi, L), hermite.slope(xi, L)
-        _move(q0, axis.q[e], shape, slope, out.moved[i], out.moved_by_s[i])
-        _move_ground(ground0.deformed, ground.deformed, nodes, N, out.moved[i])
-        c1, c2, r = combined(q0, slope), combined(q0, hermite.bend(xi, L)), _from_axis(q0, shape, ground0, nodes, N)
-        _directions(c1, c2, r, axis.radius[e], out.along[i], out.along_by_s[i])
-        _columns(shape, slope, N, basis, out.by_z[i], out.by_s_z[i])
+    """Write a point's slide and its directions. start: q (ne, 4, 3) and the soil's points (np, 3) [m] where the step
+    starts.
+    """
+    e, xi, nodes = near.element[i], near.along[i], ground.facets[near.facet[i]]
+    L, q0 = axis.length[e], start[0][e]
+    fill_shape(near.xi[i, 0], near.xi[i, 1], out.N, out.dN)
+    shape, slope = hermite.shape(xi, L), hermite.slope(xi, L)
+    _move(q0, axis.q[e], shape, slope, out.moved, out.moved_by_s)
+    _move_ground(start[1], ground.deformed, nodes, out.N, out.moved)
+    c1, c2, r = combined(q0, slope), combined(q0, hermite.bend(xi, L)), _from_axis(q0, shape, start[1], nodes, out.N)
+    _directions(c1, c2, r, axis.radius[e], out.along, out.along_by_s)
+
+
+@njit
+def write_slide_columns(near: NearPoints, i: int, axis: Axis, basis: Array, out: Slide) -> None:
+    """Write the derivatives by z of a point's slide, which has been written."""
+    L = axis.length[near.element[i]]
+    shape, slope = hermite.shape(near.along[i], L), hermite.slope(near.along[i], L)
+    _columns(shape, slope, out.N, basis, out.by_z, out.by_s_z)
 
 
 @njit
@@ -228,11 +230,11 @@ def _columns(shape: Four, slope: Four, N: Array, basis: Array, by_z: Array, by_s
 
 
 @njit
-def _from_axis(q: Array, shape: Four, ground: Surface, nodes: IntArray, N: Array) -> Vec:
-    """From the axis to a point of a facet [m]."""
+def _from_axis(q: Array, shape: Four, points: Array, nodes: IntArray, N: Array) -> Vec:
+    """From the axis to a point of a facet of points (np, 3) [m]."""
     r = scale(-1.0, combined(q, shape))
     for a in range(len(nodes)):
-        r = add(r, scale(N[a], vector(ground.deformed[nodes[a]])))
+        r = add(r, scale(N[a], vector(points[nodes[a]])))
     return r
 
 

@@ -79,9 +79,15 @@ def resistance_by_position(
     along: Along, k: float, by_elastic: tuple[Pair, Pair], by_penetration: Pair, normal: Vec
 ) -> Mat:
     """Derivative by the position of minus the traction, from its derivatives by t* and by the penetration."""
-    stuck = outer(scale(k, along[0]), vector_of(along, by_elastic[0]))
-    stuck = matadd(stuck, outer(scale(k, along[1]), vector_of(along, by_elastic[1])))
+    stuck = resistance_by_movement(along, k, by_elastic)
     return matadd(stuck, outer(vector_of(along, by_penetration), normal))
+
+
+@njit
+def resistance_by_movement(along: Along, k: float, by_elastic: tuple[Pair, Pair]) -> Mat:
+    """Derivative by the movement in the step of minus the traction."""
+    first = outer(scale(k, along[0]), vector_of(along, by_elastic[0]))
+    return matadd(first, outer(scale(k, along[1]), vector_of(along, by_elastic[1])))
 
 
 @njit

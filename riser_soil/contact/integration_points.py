@@ -10,6 +10,7 @@ middles.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -115,6 +116,24 @@ def area(points: Array, facet: IntArray, dN: Array) -> float:
     return math.sqrt((a2 * b3 - a3 * b2) ** 2 + (a3 * b1 - a1 * b3) ** 2 + (a1 * b2 - a2 * b1) ** 2)
 
 
+class KeptRows(NamedTuple):
+    """Rows (m, k) by the numbers (m,) of points, which rise; `untouched` (k,) of all others."""
+
+    numbers: IntArray
+    rows: Array
+    untouched: Array
+
+
+@njit
+def write_kept(kept: KeptRows, numbers: IntArray, n: int, out: Array) -> None:
+    """Write the rows (n, k) of the first n points (n,)."""
+    for i in range(n):
+        place = np.searchsorted(kept.numbers, numbers[i])
+        known = place < kept.numbers.size and kept.numbers[place] == numbers[i]
+        for k in range(kept.untouched.size):
+            out[i, k] = kept.rows[place, k] if known else kept.untouched[k]
+
+
 class PointMemory:
     """Rows (n, k) by the numbers (n,) of points; `untouched` (k,) where none is kept."""
 
@@ -123,13 +142,15 @@ class PointMemory:
         self.numbers: IntArray = np.empty(0, dtype=np.int64)
         self.rows: Array = np.empty((0, len(untouched)))
 
+    @property
+    def kept(self) -> KeptRows:
+        """For compiled code."""
+        return KeptRows(self.numbers, self.rows, self._untouched)
+
     def at(self, numbers: IntArray) -> Array:
         """Rows (n, k) of points (n,)."""
-        out = np.tile(self._untouched, (len(numbers), 1))
-        if len(self.numbers):
-            place = np.minimum(np.searchsorted(self.numbers, numbers), len(self.numbers) - 1)
-            found = self.numbers[place] == numbers
-            out[found] = self.rows[place[found]]
+        out = np.empty((len(numbers), len(self._untouched)))
+        write_kept(self.kept, numbers, len(numbers), out)
         return out
 
     def keep(self, numbers: IntArray, rows: Array) -> None:

@@ -13,12 +13,12 @@ import numpy as np
 from riser_soil.contact.closest_point import Axis, bow_of, nearest
 from riser_soil.contact.facets import QUAD, fill_shape
 from riser_soil.contact.integration_points import Place, area, between, row_of
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.vectors import Vec, add, norm, scale, sub
 
 ROUND_OFF = 1e-6  # by which a reach is widened, and below which a row lies along an element
-FEW = 1024  # points for which there is room at first
+FEW = 4096  # points for which there is room at first
 
 
 class Surface(NamedTuple):
@@ -45,12 +45,6 @@ class NearPoints(NamedTuple):
     xi: Array
     area: Array
     gap: Array
-
-    def of(self, chosen: BoolArray) -> NearPoints:
-        """Those points that are marked (n,)."""
-        c = chosen
-        whose = self.element[c], self.facet[c], self.number[c]
-        return NearPoints(*whose, self.along[c], self.xi[c], self.area[c], self.gap[c])
 
 
 class PairsByFacet(NamedTuple):

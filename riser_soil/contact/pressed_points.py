@@ -13,14 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.cylinder_gap import FORMS, away_from_axis, gap_forms, write_gap_forms
+from riser_soil.contact.cylinder_gap import away_from_axis, gap_forms
 from riser_soil.contact.facets import fill_shape
-from riser_soil.contact.near_points import NearPoints, Surface, point_on
+from riser_soil.contact.near_points import NearPoints, Surface, first_of, point_on
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import shape as axis_shape
 from riser_soil.riser.vectors import add, dot, scale, sub, vector, write
-from riser_soil.seabed.compiled_law import answer
+from riser_soil.seabed.compiled_law import answer, may_act
 
 HELD, BEYOND = -1, -2  # in place of a dof's row: of those that are supported, and of those that are not reached
 
@@ -54,8 +54,9 @@ class PressedPoints:
     def of(
         cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, before: Array
     ) -> PressedPoints:
-        """By the law's kernel data and its history (n, nh) at the points."""
-        n = len(points.gap)
+        """Of those where it may act, by the law's kernel data and its history (n, nh) at the points."""
+        n = keep_active(law, points, len(points.gap), before)
+        points, before = first_of(points, n), before[:n]
         force, slope, after = np.empty(n), np.empty(n), np.empty_like(before)
         potential = press(law, points, n, before, after, force, slope)
         return cls(axis, surface, basis, points, force, slope, potential, after)
@@ -75,7 +76,8 @@ class PressedPoints:
     @cached_property
     def forms(self) -> Array:
         """Forms (n, k, nz) of the gap, the last of the place on the axis, see `gap_forms`."""
-        return gap_forms(self.axis, self.surface, self.points, self.basis)[0]
+        forms: Array = gap_forms(self.axis, self.surface, self.points, self.basis)[0]
+        return forms
 
     def spread(self, f: Array) -> tuple[Array, Array]:
         """Residuals of forces f (n, 3) on the pipe: conjugate to q (ne, 4, d), and of the surface (np, 3)."""
@@ -113,6 +115,23 @@ def press(law: Any, points: NearPoints, n: int, before: Array, after: Array, for
         force[i], slope[i] = points.area[i] * found, points.area[i] * rise
         energy += points.area[i] * stored
     return energy
+
+
+@njit
+def keep_active(law: Any, points: NearPoints, n: int, before: Array) -> int:
+    """Keep those of the first n points where the law may act, with their histories (n, nh); how many they are."""
+    kept = 0
+    for i in range(n):
+        if may_act(law, -points.gap[i], before[i]):
+            points.element[kept], points.facet[kept], points.number[kept] = (
+                points.element[i],
+                points.facet[i],
+                points.number[i],
+            )
+            points.along[kept], points.area[kept], points.gap[kept] = points.along[i], points.area[i], points.gap[i]
+            points.xi[kept], before[kept] = points.xi[i], before[i]
+            kept += 1
+    return kept
 
 
 @njit
@@ -211,10 +230,8 @@ def pair_tangents(
     P: Array,
 ) -> Array:
     """Derivative (m, nr, nr) of the residual of what presses by the dofs of its pairs, P (ne, 2, d, r) held."""
-    n, nz = len(points.gap), 4 * basis.shape[1] + 3 * surface.facets.shape[1]
-    forms, C = np.empty((n, FORMS, nz)), np.zeros((n, FORMS, FORMS))
-    write_gap_forms(axis, surface, points, basis, forms, C)
-    by_z = np.zeros((pairs.element.size, nz, nz))
+    forms, C = gap_forms(axis, surface, points, basis)
+    by_z = np.zeros((pairs.element.size, forms.shape[2], forms.shape[2]))
     add_products(by_z, pairs.pair, forms, by_curvature(forms, C, force, slope))
     return in_dofs(by_z, pairs.element, P)
 

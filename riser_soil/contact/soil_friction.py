@@ -4,38 +4,59 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.coulomb import traction
-from riser_soil.contact.cylinder_gap import Slide, slide
-from riser_soil.contact.integration_points import PointMemory
-from riser_soil.contact.near_points import NearPoints, Surface
-from riser_soil.contact.pressed_points import PressedPoints, add_products, in_dofs
+from riser_soil.contact.coulomb import limits, return_map
+from riser_soil.contact.cylinder_gap import Slide, gap_forms, slide_workspace, write_slide, write_slide_columns
+from riser_soil.contact.friction import components, read_along, resistance_by_movement, vector_of, write_along
+from riser_soil.contact.integration_points import KeptRows, PointMemory, write_kept
+from riser_soil.contact.near_points import NearPoints, Surface, first_of
+from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
+from riser_soil.contact.surface_loop import POINTS, Border, TopMotion, TouchData, TouchWorkspace, add_pairs
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful, gathered, within
+from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.part_kernels import LineForces
+from riser_soil.riser.vectors import add, scale, sub, vector, write
 
 AREA = 3  # column of the memory, behind the traction
 
 
-@dataclass(frozen=True, eq=False)
-class SlidingState:
-    """Friction at a state: elastic guess (n, 3) and traction (n, 3) on the riser [Pa] of the n points that press."""
+class Rough(NamedTuple):
+    """Coefficients (2,) of friction, axial and lateral, and stiffness of the soil's surface along itself [N/m3]."""
 
-    found: SurfaceState
-    moved: Slide
+    mu: Array
+    stiffness: float
+
+
+class Rubbing(NamedTuple):
+    """Of n points: what is kept of them (n, 4) and adhesion (n,) [Pa]; at a trial way slid (n, 3) [m], directions
+    (n, 2, 3), elastic guess and traction (n, 3) [Pa], and force (n, 3) [N] on the riser.
+    """
+
+    before: Array
+    most: Array
+    moved: Array
+    along: Array
     elastic: Array
     traction: Array
+    on_riser: Array
 
-    @property
-    def on_riser(self) -> Array:
-        """Force on the pipe at each point (n, 3) [N], global axes."""
-        return np.asarray(self.found.pressed.points.area[:, None] * self.traction)
+
+@dataclass(frozen=True, eq=False)
+class SlidingState:
+    """Friction at a state: of the n points that press."""
+
+    found: SurfaceState
+    points: Rubbing
 
 
 SoilAdhesion = Callable[[IntArray, Array], Array]
@@ -43,7 +64,7 @@ SoilAdhesion = Callable[[IntArray, Array], Array]
 (n,) [Pa].
 """
 
-Sliding = tuple[Slide, Array, Array]  # what a trial keeps of a SlidingState: all but what holds the trial
+Start = tuple[Array, Array]  # where a step starts: q (ne, 4, 3) of the pipe's axis, and the soil's points (np, 3) [m]
 
 
 class SoilFriction(LinePart):
@@ -69,14 +90,14 @@ class SoilFriction(LinePart):
     ) -> None:
         super().__init__(contact.line)
         self.contact = contact
-        self._mu, self._stiffness, self._adhesion = np.array([axial, lateral]), stiffness, adhesion
+        self._rough, self._adhesion = Rough(np.array([axial, lateral]), float(stiffness)), adhesion
         self._memory = PointMemory(np.zeros(AREA + 1))
-        self._at_start: tuple[Axis, Surface] | None = None
+        self._at_start: Start | None = None
         self._slid: Array = np.zeros(self.line.nodes)
 
     def stick(self) -> None:
         """From now on nothing slides, as in small vibrations about rest."""
-        self._mu, self._adhesion = np.full(2, np.inf), None
+        self._rough, self._adhesion = self._rough._replace(mu=np.full(2, np.inf)), None
         self.line.forget()
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -84,71 +105,57 @@ class SoilFriction(LinePart):
         return self.contact.blocks()
 
     def evaluate(self, state: State) -> SlidingState:
-        """Tractions of the points that press."""
+        """Tractions of the points that press. What the trial keeps does not hold the trial."""
         found = self.contact.evaluate(state)
-        made: Sliding = found.trial.once((self, "sliding"), lambda _: self._evaluate(found))
-        return SlidingState(found, *made)
+        made: Rubbing = found.trial.once((self, "sliding"), lambda _: self._evaluate(found))
+        return SlidingState(found, made)
 
-    def _evaluate(self, found: SurfaceState) -> Sliding:
-        pressed = found.pressed
-        now = pressed.axis, pressed.surface
-        moved = slide(pressed.points, self._start(found.trial.state), now, self.line.basis)
-        before = self._memory.at(pressed.points.number)[:, :AREA]
-        elastic = before - self._stiffness * moved.moved
-        t, _, _ = self._return(_along(moved.along, elastic), pressed)
-        return moved, elastic, np.einsum("nri,nr->ni", moved.along, t)
-
-    def _return(self, elastic: Array, pressed: PressedPoints) -> tuple[Array, Array, Array]:
-        """Components (n, r) of the traction, their derivatives by those of t* and by the penetration."""
-        pressure, slope = pressed.force / pressed.points.area, pressed.slope / pressed.points.area
-        return traction(elastic, pressure, slope, self._mu, self._most(pressed.points))
+    def _evaluate(self, found: SurfaceState) -> Rubbing:
+        pressed, start = found.pressed, self._start(found.trial.state)
+        out = rubbing_of(len(pressed.force))
+        out.before[...], out.most[...] = self._memory.at(pressed.points.number), self._most(pressed.points)
+        rub(self._rough, pressed.points, len(out.most), pressed.force, start, pressed.axis, pressed.surface, out)
+        return out
 
     def _most(self, points: NearPoints) -> Array | float:
         """Adhesion of points (n,) [Pa]."""
         return np.inf if self._adhesion is None else self._adhesion(points.facet, self.contact.first_heights(points))
 
-    def _start(self, state: State) -> tuple[Axis, Surface]:
-        """The pipe's axis and the soil's surface at the start of the step."""
+    def _start(self, state: State) -> Start:
         if self._at_start is None:
-            rest = State.at_rest(state.t, state.u.size)
-            found = self.contact.evaluate(rest).pressed
-            self._at_start = found.axis, found.surface
+            found = self.contact.evaluate(State.at_rest(state.t, state.u.size)).pressed
+            self._at_start = found.axis.q, found.surface.deformed
         return self._at_start
+
+    def touch_data(self) -> RoughData | None:
+        """For the compiled loop; None where the soil adheres."""
+        if self._adhesion is not None:
+            return None
+        return RoughData(self._rough, self._memory.kept, np.zeros((self.line.length.size, 4, 3)))
+
+    def begun(self, given: RoughData, state: State) -> RoughData:
+        """The same for a step that starts at a state."""
+        given.q[...] = self.contact.axis(self.line.trial(state)).q
+        return given._replace(kept=self._memory.kept)
 
     def element_forces(self, state: State) -> Array:
         """Element residual (ne, 2 ndof)."""
         sliding = self.evaluate(state)
-        return sliding.found.on_elements(sliding.found.pressed.spread(sliding.on_riser)[0])
+        return sliding.found.on_elements(sliding.found.pressed.spread(sliding.points.on_riser)[0])
 
     def residual(self, state: State, forces: Forces) -> None:
         sliding = self.evaluate(state)
-        self.contact.add_residual(sliding.found, sliding.on_riser, forces)
+        self.contact.add_residual(sliding.found, sliding.points.on_riser, forces)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Unweighted: friction stands at the end of the step."""
         sliding = self.evaluate(state)
-        pressed = sliding.found.pressed
-        (pair, element, _), forms = pressed.pairs, pressed.forms
-        nz, area = forms.shape[2], pressed.points.area[:, None, None]
-        by_z = np.zeros((len(element), nz, nz))
-        turning = np.einsum("ni,niz->nz", sliding.traction, sliding.moved.by_s_z)
-        left = np.concatenate([sliding.moved.by_z, turning[:, None]], axis=1)
-        right = np.concatenate([self._traction_by_z(sliding, forms), forms[:, -1:]], axis=1)
-        add_products(by_z, pair, -area * left, right)
-        by_dofs = in_dofs(by_z, element, sliding.found.trial.turn.P)
-        self.contact.add_tangent(values, sliding.found, by_dofs, sliding.on_riser)
-
-    def _traction_by_z(self, sliding: SlidingState, forms: Array) -> Array:
-        """Derivative (n, 3, nz) of the traction."""
-        moved, pressed, k = sliding.moved, sliding.found.pressed, self._stiffness
-        at, by_place = _along(moved.along, sliding.elastic), forms[:, -1]
-        t, by_elastic, by_penetration = self._return(at, pressed)
-        elastic = -k * np.einsum("nri,niz->nrz", moved.along, moved.by_z)
-        turned = _along(moved.along_by_s, sliding.elastic) - k * _along(moved.along, moved.moved_by_s)
-        elastic += turned[:, :, None] * by_place[:, None]
-        components = by_elastic @ elastic - by_penetration[:, :, None] * forms[:, None, 0]
-        out = np.einsum("nri,nrz->niz", moved.along, components)
-        return np.asarray(out + np.einsum("nri,nr->ni", moved.along_by_s, t)[:, :, None] * by_place[:, None])
+        at, P, start = sliding.found.pressed, sliding.found.trial.turn.P, self._start(state)
+        pressed = at.points, at.force, at.slope
+        by_dofs = rub_tangents(
+            self._rough, *pressed, start, at.axis, at.surface, at.basis, at.forms, at.pairs, sliding.points, P
+        )
+        self.contact.add_tangent(values, sliding.found, by_dofs, sliding.points.on_riser)
 
     def anew(self) -> PointMemory:
         """The next step starts from a surface with other nodes: tractions of the points, to go over to them."""
@@ -158,30 +165,35 @@ class SoilFriction(LinePart):
     def energy(self, state: State) -> Energy:
         """Stored in what the surface gives elastically along itself."""
         sliding = self.evaluate(state)
-        return Energy(potential=self._stored(sliding.traction, sliding.found.pressed.points.area))
+        return Energy(potential=self.exchanged(sliding.points, sliding.found.pressed.points.area)[1])
 
-    def _stored(self, traction: Array, area: Array) -> float:
-        return float(0.5 / self._stiffness * np.sum(area * np.sum(traction**2, axis=1)))
+    def exchanged(self, points: Rubbing, area: Array) -> tuple[float, float]:
+        """What friction at points has taken in the step, and what it stores [J]."""
+        taken = -float(np.sum(points.on_riser * points.moved))
+        return taken, float(0.5 / self._rough.stiffness * np.sum(area * np.sum(points.traction**2, axis=1)))
 
     def work(self, before: State, after: State) -> Work:
-        """Energy dissipated by friction: its work less the change of the energy stored; never negative."""
-        sliding, kept = self.evaluate(after), self._memory.rows
-        area = sliding.found.pressed.points.area
-        taken = -float(np.sum(area[:, None] * sliding.traction * sliding.moved.moved))
-        return Work(dissipated=taken - self.energy(after).potential + self._stored(kept[:, :AREA], kept[:, AREA]))
+        sliding = self.evaluate(after)
+        return self.work_of(*self.exchanged(sliding.points, sliding.found.pressed.points.area))
+
+    def work_of(self, taken: float, stored: float) -> Work:
+        """Energy dissipated: what friction has taken less the change of the energy stored [J]; never negative."""
+        kept = self._memory.rows
+        begun = 0.5 / self._rough.stiffness * float(np.sum(kept[:, AREA] * np.sum(kept[:, :AREA] ** 2, axis=1)))
+        return Work(dissipated=taken - stored + begun)
 
     def commit(self, state: State) -> None:
         """Keep the tractions."""
         sliding = self.evaluate(state)
         points = sliding.found.pressed.points
         self._slid = self._slid + self._nodal_slip(sliding)
-        self._memory.keep(points.number, np.column_stack([sliding.traction, points.area]))
+        self._memory.keep(points.number, np.column_stack([sliding.points.traction, points.area]))
         self._at_start = None
 
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
-        pressed = sliding.found.pressed
-        plastic = _along(sliding.moved.along, sliding.traction - sliding.elastic) / self._stiffness
+        pressed, of = sliding.found.pressed, sliding.points
+        plastic = np.einsum("nri,ni->nr", of.along, of.traction - of.elastic) / self._rough.stiffness
         slip, pressing = np.linalg.norm(plastic, axis=1), pressed.points.area * (pressed.force > 0.0)
         slid, share = self.contact.at_nodes(pressed.points, np.stack([pressing * slip, pressing], axis=1)).T
         return np.asarray(slid / np.where(share > 0.0, share, 1.0))
@@ -194,18 +206,18 @@ class SoilFriction(LinePart):
         """Sum of the friction on the riser (3,) [N], global axes."""
         if not self.line.active:
             return np.zeros(3)
-        return self.contact.within_line(self.evaluate(state).on_riser.sum(axis=0))
+        return self.contact.within_line(self.evaluate(state).points.on_riser.sum(axis=0))
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the friction on the soil (3,) [N], global axes."""
-        return np.asarray(-self.evaluate(state).on_riser.sum(axis=0)) if self.line.active else np.zeros(3)
+        return np.asarray(-self.evaluate(state).points.on_riser.sum(axis=0)) if self.line.active else np.zeros(3)
 
     def force_on_soil_per_length(self, state: State) -> Array:
         """The points' friction on the nodes of their facets (nn, 3) [N/m], shared by two nodes of the riser."""
         if not self.line.active:
             return np.zeros((self.line.nodes, 3))
         sliding = self.evaluate(state)
-        return self.contact.soil_per_length(sliding.found.pressed.points, sliding.on_riser)
+        return self.contact.soil_per_length(sliding.found.pressed.points, sliding.points.on_riser)
 
     def state(self) -> Saved:
         return {"slid": self._slid} | gathered({"points": self._memory})
@@ -215,6 +227,142 @@ class SoilFriction(LinePart):
         self._memory.restore(within(saved, "points"))
 
 
-def _along(directions: Array, vectors: Array) -> Array:
-    """Components (n, r) of vectors (n, 3) by directions (n, r, 3)."""
-    return np.asarray(np.einsum("nri,ni->nr", directions, vectors))
+def rubbing_of(n: int) -> Rubbing:
+    """Workspace for so many points, without adhesion."""
+    vectors = [np.empty((n, 3)) for _ in range(4)]
+    moved, elastic, traction, on_riser = vectors
+    return Rubbing(np.empty((n, AREA + 1)), np.full(n, np.inf), moved, np.empty((n, 2, 3)), elastic, traction, on_riser)
+
+
+@njit
+def rub(
+    rough: Rough, near: NearPoints, n: int, force: Array, start: Start, axis: Axis, surface: Surface, out: Rubbing
+) -> None:
+    """Find the tractions of the first n points, pressed by forces (n,) [N]."""
+    k, mu, at = rough.stiffness, (rough.mu[0], rough.mu[1]), slide_workspace(surface.facets.shape[1], 0)
+    for i in range(n):
+        write_slide(near, i, start, axis, surface, at)
+        along, elastic = read_along(at.along.T), sub(vector(out.before[i]), scale(k, vector(at.moved)))
+        limit, _ = limits(force[i] / near.area[i], 0.0, mu, (out.most[i], 0.0))
+        t, _, _ = return_map(components(along, elastic), limit, (0.0, 0.0))
+        traction = vector_of(along, t)
+        write(vector(at.moved), out.moved[i])
+        write_along(along, out.along[i].T)
+        write(elastic, out.elastic[i])
+        write(traction, out.traction[i])
+        write(scale(near.area[i], traction), out.on_riser[i])
+
+
+@njit
+def rub_tangents(
+    rough: Rough,
+    near: NearPoints,
+    force: Array,
+    slope: Array,
+    start: Start,
+    axis: Axis,
+    surface: Surface,
+    basis: Array,
+    forms: Array,
+    pairs: Pairs,
+    rubbing: Rubbing,
+    P: Array,
+) -> Array:
+    """Derivative (m, nr, nr) of the residual of friction by the dofs of its pairs, P (ne, 2, d, r) held. force (n,) [N]
+    and slope (n,) [N/m]: of the pressure; forms: of the gap, see `gap_forms`.
+    """
+    n, _, nz = forms.shape
+    at, by_z = slide_workspace(surface.facets.shape[1], basis.shape[1]), np.zeros((len(pairs.element), nz, nz))
+    left, right = np.empty((n, 4, nz)), np.empty((n, 4, nz))
+    for i in range(n):
+        write_slide(near, i, start, axis, surface, at)
+        write_slide_columns(near, i, axis, basis, at)
+        pushed = force[i] / near.area[i], slope[i] / near.area[i], rubbing.most[i]
+        _write_factors(rough, pushed, rubbing.elastic[i], rubbing.on_riser[i], at, forms[i], left[i], right[i])
+        for c in range(nz):
+            for j in range(3):
+                left[i, j, c] = -near.area[i] * at.by_z[j, c]
+    add_products(by_z, pairs.pair, left, right)
+    return in_dofs(by_z, pairs.element, P)
+
+
+@njit
+def _write_factors(
+    rough: Rough,
+    pushed: tuple[float, float, float],
+    elastic: Array,
+    on_riser: Array,
+    at: Slide,
+    forms: Array,
+    left: Array,
+    right: Array,
+) -> None:
+    """Write the derivative of a point's traction by z (nz,) to right (4, nz), and below it that of its place on the
+    axis; beside which the force, whose point moves along the axis, has the last row of left. pushed: pressure, its
+    slope and adhesion.
+    """
+    k, along, turns = rough.stiffness, read_along(at.along.T), read_along(at.along_by_s.T)
+    limit, rise = limits(pushed[0], pushed[1], (rough.mu[0], rough.mu[1]), (pushed[2], 0.0))
+    t, by_elastic, by_penetration = return_map(components(along, vector(elastic)), limit, rise)
+    by_way, by_gap = resistance_by_movement(along, k, by_elastic), vector_of(along, by_penetration)
+    a, b = components(turns, vector(elastic))
+    c, d = components(along, vector(at.moved_by_s))
+    turned = a - k * c, b - k * d  # t*, with the place on the axis
+    (e, f), (g, h) = by_elastic
+    follows = e * turned[0] + f * turned[1], g * turned[0] + h * turned[1]
+    by_place, force = add(vector_of(along, follows), vector_of(turns, t)), vector(on_riser)
+    for z in range(forms.shape[1]):
+        x, y, up = at.by_z[0, z], at.by_z[1, z], at.by_z[2, z]
+        for j in range(3):
+            elastic_part = by_way[j][0] * x + by_way[j][1] * y + by_way[j][2] * up
+            right[j, z] = by_place[j] * forms[3, z] - by_gap[j] * forms[0, z] - elastic_part
+        right[3, z] = forms[3, z]
+        left[3, z] = -force[0] * at.by_s_z[0, z] - force[1] * at.by_s_z[1, z] - force[2] * at.by_s_z[2, z]
+
+
+class RoughData(NamedTuple):
+    """For the compiled loop: what resists; what is kept of the points, and q (ne, 4, 3) of the axis, where the step
+    starts.
+    """
+
+    rough: Rough
+    kept: KeptRows
+    q: Array
+
+
+@njit
+def add_rubbing(
+    touch: TouchData,
+    given: RoughData,
+    top: TopMotion,
+    out: LineForces,
+    border: Border,
+    workspace: TouchWorkspace,
+    rubbing: Rubbing,
+) -> None:
+    """Add the residual of friction to that of the line and to the border's, with contact found."""
+    near, n = workspace.near, workspace.found[POINTS]
+    write_kept(given.kept, near.number, n, rubbing.before)
+    rub(given.rough, near, n, workspace.force, (given.q, top.accepted), touch.axis, touch.surface, rubbing)
+    forces = touch.axis, touch.surface, touch.basis, near, n, rubbing.on_riser
+    spread(*forces, out.end_q, top.rows, border.residual, workspace.met)
+
+
+@njit
+def add_rubbing_tangent(
+    touch: TouchData,
+    given: RoughData,
+    top: TopMotion,
+    at: Configuration,
+    K: Array,
+    border: Border,
+    workspace: TouchWorkspace,
+    rubbing: Rubbing,
+) -> None:
+    """Add the derivative of the residual of friction, found last, to K (ne, n, n) and to the border's."""
+    n = workspace.found[POINTS]
+    near, pressed = first_of(workspace.near, n), (workspace.force[:n], workspace.slope[:n])
+    pairs, pipe = paired(near, K.shape[0]), (touch.axis, touch.surface)
+    forms, start = gap_forms(*pipe, near, touch.basis)[0], (given.q, top.accepted)
+    by_dofs = rub_tangents(given.rough, near, *pressed, start, *pipe, touch.basis, forms, pairs, rubbing, at.P)
+    add_pairs(by_dofs, pairs, top.rows, touch.surface.facets, K, border)

@@ -103,26 +103,32 @@ class SurfaceContact(SoilContact):
     def _evaluate(self, trial: Trial) -> PressedPoints:
         deformed = self._soil.deformed(trial.state)
         axis, surface = self.axis(trial), self.surface(deformed)
-        reach = self._pressure.reach if len(self._memory.numbers) else self.law.start
-        elements, facets = self._pairs(axis, deformed, CandidateRange(reach, reach))
-        near = near_points(axis, surface, elements, facets, reach)
-        near = near.of(self.law.active(-near.gap, self._memory.at(near.number)))
+        elements, facets = self._pairs(axis, deformed, CandidateRange(self._acts_within, self._acts_within))
+        near = near_points(axis, surface, elements, facets, self._acts_within)
         memory = self._memory.at(near.number)
         return PressedPoints.of(axis, surface, self._basis, near, self.law.kernel_data, memory)
 
-    def touch_data(self) -> TouchData | None:
-        """For the compiled loop, with workspace for axis and surface; None with a history."""
-        if self.law.columns:
-            return None
+    @property
+    def _acts_within(self) -> float:
+        """Gap [m] within which the law may act in a step that starts here."""
+        return float(self._pressure.reach if len(self._memory.numbers) else self.law.start)
+
+    def touch_data(self) -> TouchData:
+        """For the compiled loop, with workspace for axis and surface."""
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
-        surface = self.surface(self._soil.settled)
-        return TouchData(axis, surface, self._basis, self.line.origin, self.law.kernel_data, float(self.law.start))
+        surface, law = self.surface(self._soil.settled), self.law.kernel_data
+        return self.begun(TouchData(axis, surface, self._basis, self.line.origin, law, self._memory.kept, 0.0))
+
+    def begun(self, touch: TouchData) -> TouchData:
+        """The same for a step that starts here."""
+        return touch._replace(kept=self._memory.kept, reach=self._acts_within)
 
     def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
         """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
         and the pairs that may touch within; settled (np, 3): the surface.
         """
-        around = [boxes(axis, self._reach.above, self._reach.around) for axis in axes]
+        reach = self._pressure.reach
+        around = [boxes(axis, self._reach.above + reach, self._reach.around + reach) for axis in axes]
         low, high = np.min([low for low, _ in around], axis=0), np.max([high for _, high in around], axis=0)
         elements, facets = touching_boxes(low, high, settled, self._soil.corners)
         return low, high, by_facet(elements, facets, len(self._soil.facets))

@@ -1,7 +1,7 @@
 """Contact of the pipe's cylinder with the surface of condensed soil in the compiled loop, see `solve.soil_border`.
 
-The formulas are those of `pressed_points`; the law has no history. The soil's reached dofs are the loop's border: what
-it adds there are the facets' shares.
+The formulas are those of `pressed_points`. The soil's reached dofs are the loop's border: what it adds there are the
+facets' shares.
 """
 
 from __future__ import annotations
@@ -11,19 +11,33 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
+from riser_soil.contact.integration_points import KeptRows, write_kept
 from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of
-from riser_soil.contact.pressed_points import pair_tangents, paired, press, spread, work_of, write_axis, write_on_riser
+from riser_soil.contact.pressed_points import (
+    Pairs,
+    keep_active,
+    pair_tangents,
+    paired,
+    press,
+    spread,
+    work_of,
+    write_axis,
+    write_on_riser,
+)
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.part_kernels import LineForces
 
-POINTS, LEFT = range(2)  # in `TouchWorkspace.found`: how many points touch; whether something has left what is watched
+# In `TouchWorkspace.found`: how many points touch; whether something has left what is watched, and whether more points
+# are near than there is room for.
+POINTS, LEFT, FULL = range(3)
 
 
 class TouchData(NamedTuple):
     """The pipe and the surface. axis: workspace for q; surface: with workspace for its present points. basis (3, d),
-    origin (3,): of the line. law: its kernel data, its force begins at a gap of `reach` [m].
+    origin (3,): of the line. law: its kernel data, and what is kept of its points; within a gap of `reach` [m] it may
+    act.
     """
 
     axis: Axis
@@ -31,6 +45,7 @@ class TouchData(NamedTuple):
     basis: Array
     origin: Array
     law: Any
+    kept: KeptRows
     reach: float
 
 
@@ -56,24 +71,27 @@ class TopMotion(NamedTuple):
 
 class Border(NamedTuple):
     """Unknowns beside the line's dofs (n,), which all couple with each other: increments u (nb,), residual (nb,); of
-    the tangent the corner (nb, nb) and what couples it with the line (n, nb), symmetrically, and the line's nodes
-    (nn,) that are.
+    the tangent the corner (nb, nb), and what couples it with the line (n, nb): to the right, in the border's columns,
+    and below, in its rows, turned over; the line's nodes (nn,) that are coupled.
     """
 
     u: Array
     residual: Array
     corner: Array
     right: Array
+    below: Array
     coupled: BoolArray
 
 
 class TouchWorkspace(NamedTuple):
-    """What was found last. near: the points, their force [N] and its derivative by the penetration [N/m] (n,), area
-    included; on_riser (n, 3): force on the pipe [N]; found (2,): see POINTS, LEFT; met (np,): nodes of the top that are
-    not reached, and bear a force; energy (1,): stored [J].
+    """What was found last. near: the points; their histories before and after the step (n, nh), force [N] and its
+    derivative by the penetration [N/m] (n,), area included; on_riser (n, 3): force on the pipe [N]; found (3,): see
+    POINTS; met (np,): nodes of the top that are not reached, and bear a force; energy (1,): stored [J].
     """
 
     near: NearPoints
+    before: Array
+    after: Array
     force: Array
     slope: Array
     on_riser: Array
@@ -106,18 +124,20 @@ def add_touch(
     write_axis(touch.origin, touch.basis, at.q, axis.q)
     n = fill_near(axis, surface, watched.pairs, touch.reach, near)
     workspace.met[:] = False
-    workspace.found[LEFT] = n > len(force) or _leaves(axis, watched)
-    n = workspace.found[POINTS] = min(n, len(force))
-    nothing, given = np.empty((n, 0)), (axis, surface, touch.basis, near, n, workspace.on_riser)
-    workspace.energy[0] = press(touch.law, near, n, nothing, nothing, force, workspace.slope)
+    workspace.found[FULL], workspace.found[LEFT] = n > len(force), _leaves(axis, watched, touch.reach)
+    n = min(n, len(force))
+    write_kept(touch.kept, near.number, n, workspace.before)
+    n = workspace.found[POINTS] = keep_active(touch.law, near, n, workspace.before)
+    given = axis, surface, touch.basis, near, n, workspace.on_riser
+    workspace.energy[0] = press(touch.law, near, n, workspace.before, workspace.after, force, workspace.slope)
     write_on_riser(axis, surface, near, n, force, workspace.on_riser)
     spread(*given, out.end_q, top.rows, border.residual, workspace.met)
 
 
 @njit
-def _leaves(axis: Axis, watched: Watched) -> bool:
-    """Whether an element may touch what is not watched."""
-    low, high = boxes(axis, 0.0, 0.0)
+def _leaves(axis: Axis, watched: Watched, reach: float) -> bool:
+    """Whether an element may touch what is not watched, which it can within a reach [m]."""
+    low, high = boxes(axis, reach, reach)
     for e in range(low.shape[0]):
         if low[e, 2] > watched.level:
             continue
@@ -136,8 +156,14 @@ def add_touch_tangent(
     near, force, slope = first_of(workspace.near, n), workspace.force[:n], workspace.slope[:n]
     pairs = paired(near, K.shape[0])
     by_dofs = pair_tangents(touch.axis, touch.surface, touch.basis, near, force, slope, pairs, at.P)
+    add_pairs(by_dofs, pairs, top.rows, facets, K, border)
+
+
+@njit
+def add_pairs(by_dofs: Array, pairs: Pairs, rows: IntArray, facets: IntArray, K: Array, border: Border) -> None:
+    """Add the blocks (m, nr, nr) of pairs to K (ne, n, n) and to the border's; rows: see `TopMotion`."""
     for k in range(pairs.element.size):
-        _spread(by_dofs[k], pairs.element[k], top.rows, facets[pairs.facet[k]], K, border)
+        _spread(by_dofs[k], pairs.element[k], rows, facets[pairs.facet[k]], K, border)
 
 
 @njit
@@ -154,6 +180,7 @@ def _spread(block: Array, e: int, rows: IntArray, nodes: IntArray, K: Array, bor
             continue
         for i in range(n):
             border.right[e * (n // 2) + i, row] += block[i, n + a]
+            border.below[e * (n // 2) + i, row] += block[n + a, i]
         for b in range(3 * nodes.size):
             column = rows[nodes[b // 3], b % 3]
             if column >= 0:

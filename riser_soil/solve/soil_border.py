@@ -5,10 +5,10 @@ within; which dofs are reached, see `soil.condensed`. Where either doesn't do, t
 
 What the compiled loop over a riser does besides where other unknowns stand beside it, which all couple: its border.
 
-    [B  U ] [x]   [f]
-    [U' D ] [y] = [g]
+    [B  U] [x]   [f]
+    [V  D] [y] = [g]
 
-B is the riser's band, U the coupling, whose rows are zero but at few nodes, and D dense, as in `linear_solver`.
+B is the riser's band, U and V the coupling, zero but at few nodes, and D dense, as in `linear_solver`.
 """
 
 from __future__ import annotations
@@ -22,13 +22,14 @@ import numpy as np
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.near_points import FEW, PairsByFacet, points_workspace
 from riser_soil.contact.pressed_points import BEYOND, HELD
+from riser_soil.contact.soil_friction import Rubbing, SoilFriction, add_rubbing, add_rubbing_tangent, rubbing_of
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.contact.surface_loop import (
+    FULL,
     LEFT,
     POINTS,
     Border,
     TopMotion,
-    TouchData,
     TouchWorkspace,
     Watched,
     add_touch,
@@ -91,7 +92,7 @@ def add_norm_of_border(border: Border, sums: Array) -> None:
 @njit
 def find_outgrown(workspace: TouchWorkspace, progress: NewtonProgress) -> None:
     """Whether something touches what is not watched or not reached."""
-    if workspace.found[LEFT] or workspace.met.any():
+    if workspace.found[LEFT] or workspace.found[FULL] or workspace.met.any():
         progress.ending[0] = OUTGROWN
 
 
@@ -103,6 +104,7 @@ def clear_border(soil: SoilData, border: Border) -> None:
     for n in range(border.coupled.size):
         if border.coupled[n]:
             border.right[n * ndof : (n + 1) * ndof] = 0.0
+            border.below[n * ndof : (n + 1) * ndof] = 0.0
             border.coupled[n] = False
 
 
@@ -123,8 +125,8 @@ def factorise_with_border(
     rows, schur = factors.rows[:count], factors.schur
     schur[...] = border.corner
     if count > 0:
-        right, inner = border.right[rows], banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band)
-        schur -= np.dot(np.ascontiguousarray(right.T), np.dot(inner, right))
+        inner = banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band)
+        schur -= np.dot(np.ascontiguousarray(border.below[rows].T), np.dot(inner, border.right[rows]))
     if not dense.factorise(schur, factors.pivots):
         progress.ending[0] = SINGULAR
 
@@ -138,7 +140,7 @@ def improve_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, facto
     banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
     for k in rows:
         for j in range(answer.size):
-            answer[j] -= border.right[k, j] * inner[k]
+            answer[j] -= border.below[k, j] * inner[k]
     dense.solve(factors.schur, factors.pivots, answer)
     for k in rows:
         residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
@@ -147,19 +149,21 @@ def improve_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, facto
 
 
 def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
-    """That of a line on condensed soil, where contact has no history; None where there are no kernels."""
+    """That of a line on condensed soil; None where there are no kernels."""
     contact = next((part for part in beside if isinstance(part, SurfaceContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
-    if len(system.model.lines) > 1 or len(beside) > 2 or contact is None or soil is None:
+    friction = next((part for part in beside if isinstance(part, SoilFriction)), None)
+    known = sum(part is not None for part in (contact, soil, friction))
+    if len(system.model.lines) > 1 or len(beside) > known or contact is None or soil is None:
         return None
-    touch = contact.touch_data()
-    return None if touch is None else partial(SoilBorder, system, contact, soil, touch)
+    if friction is not None and friction.touch_data() is None:
+        return None
+    return partial(SoilBorder, system, contact, soil, friction)
 
 
 class SoilBorder(LoopBorder):
-    """The soil's reached dofs with their contact; kernels of both, bound to where they read and write.
-
-    touch: the contact's kernel data.
+    """The soil's reached dofs with their contact and its friction, if any; their kernels, bound to where they read and
+    write.
     """
 
     knows_round_off = smooth = gradual = False
@@ -169,17 +173,20 @@ class SoilBorder(LoopBorder):
         system: System,
         contact: SurfaceContact,
         soil: CondensedSoil,
-        touch: TouchData,
+        friction: SoilFriction | None,
         lines: Sequence[PackedLine],
     ) -> None:
         (packed,) = lines
         self._line, self._contact, self._soil, self._top = contact.line, contact, soil, soil.top
-        self._system, self._packed, self.parts = system, packed, (contact, soil)
+        self._system, self._packed, self._friction = system, packed, friction
+        self.parts = (contact, soil) if friction is None else (contact, friction, soil)
         points, ne = len(soil.top.points), self._line.length.size
-        self._touch, self._found = touch, _workspace(FEW, points)
+        self._touch, self._found = contact.touch_data(), _workspace(FEW, points, len(contact.law.columns))
         pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
-        self._workspace, self._data = Packed(self._found), Packed(touch)
+        self._workspace, self._data = Packed(self._found), Packed(self._touch)
+        if friction is not None:
+            self._rough, self._rubbing = Packed(friction.touch_data()), Packed(rubbing_of(FEW))
         self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
         self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
         self._taken: Array = np.zeros(1)
@@ -191,8 +198,8 @@ class SoilBorder(LoopBorder):
     def _empty(self, nb: int) -> tuple[Border, SoilData, Factors]:
         """Workspace for so many dofs."""
         n, nodes = self._line.size, self._line.nodes
-        matrices = np.zeros((nb, nb)), np.zeros((n, nb)), np.zeros(nodes, dtype=np.bool_)
-        border = Border(np.zeros(nb), np.zeros(nb), *matrices)
+        right, below = np.zeros((n, nb)), np.zeros((n, nb))
+        border = Border(np.zeros(nb), np.zeros(nb), np.zeros((nb, nb)), right, below, np.zeros(nodes, dtype=np.bool_))
         factors = Factors(np.zeros((nb, nb)), np.zeros(nb, PIVOT), np.zeros(n, np.int64), np.zeros(1, np.int64))
         return border, SoilData(np.zeros((nb, nb)), np.zeros(nb)), factors
 
@@ -208,7 +215,11 @@ class SoilBorder(LoopBorder):
         moved = Bound(move_top, self._data, self._motion, self._border)
         begun = Bound(begin_border, self._held, self._border)
         given = self._data, self._watched, self._motion, packed.packed_at, packed.packed_forces
-        return [moved, begun, Bound(add_touch, *given, self._border, self._workspace)]
+        touched = Bound(add_touch, *given, self._border, self._workspace)
+        if self._friction is None:
+            return [moved, begun, touched]
+        rough, out = (self._data, self._rough, self._motion), (packed.packed_forces, self._border)
+        return [moved, begun, touched, Bound(add_rubbing, *rough, *out, self._workspace, self._rubbing)]
 
     def norms(self, sums: Packed) -> list[Bound]:
         return [Bound(add_norm_of_border, self._border, sums)]
@@ -218,8 +229,13 @@ class SoilBorder(LoopBorder):
 
     def tangent(self) -> list[Bound]:
         """Kernels that write the border's tangent, and add contact's."""
-        given = self._data, self._motion, self._packed.packed_at, self._packed.K, self._border, self._workspace
-        return [Bound(clear_border, self._held, self._border), Bound(add_touch_tangent, *given)]
+        out = self._packed.packed_at, self._packed.K, self._border, self._workspace
+        cleared = Bound(clear_border, self._held, self._border)
+        touched = Bound(add_touch_tangent, self._data, self._motion, *out)
+        if self._friction is None:
+            return [cleared, touched]
+        rough = self._data, self._rough, self._motion
+        return [cleared, touched, Bound(add_rubbing_tangent, *rough, *out, self._rubbing)]
 
     def factorise(self, progress: Packed) -> list[Bound]:
         packed = self._packed
@@ -241,6 +257,9 @@ class SoilBorder(LoopBorder):
         committed = self._top.committed
         accepted = np.asarray(self._top.points + committed)
         self._touch.surface.deformed[...] = accepted
+        self._data.renew(self._contact.begun(self._touch))
+        if self._friction is not None:
+            self._rough.renew(self._friction.begun(self._rough.value, before))
         if self._reached is not self._top.reached or self._has_moved(accepted):
             self._look([])
         self._motion.value.accepted[...] = accepted
@@ -274,9 +293,11 @@ class SoilBorder(LoopBorder):
         if found.met.any():
             self._soil.meet(np.flatnonzero(found.met))
             self._soil.rebuild(State.at_rest(0.0, self._top.offset + self._top.size))
-        if found.found[POINTS] == len(found.force):
-            self._found = _workspace(2 * len(found.force), len(found.met))
+        if found.found[FULL]:
+            self._found = _workspace(2 * len(found.force), len(found.met), found.after.shape[1])
             self._workspace.renew(self._found)
+            if self._friction is not None:
+                self._rubbing.renew(rubbing_of(len(self._found.force)))
         self._look([self._touch.axis._replace(q=self._touch.axis.q.copy())])
 
     def _look(self, tried: Sequence[Axis]) -> None:
@@ -327,11 +348,21 @@ class SoilBorder(LoopBorder):
 
     def add_account(self, before: State, state: State, work: dict[str, Work]) -> Energy:
         work[self._soil.name] += self._soil.work(before, state)
-        work[self._contact.name] += self._work_of_contact(before, state.t)
-        return Energy(potential=float(self._found.energy[0])) + self._soil.energy(state)
+        work[self._contact.name] += self._work_of_contact(before, state)
+        stored = float(self._found.energy[0])
+        if self._friction is not None:
+            n = int(self._found.found[POINTS])
+            points = Rubbing(*(each[:n] for each in self._rubbing.value))
+            taken, kept = self._friction.exchanged(points, self._found.near.area[:n])
+            work[self._friction.name] += self._friction.work_of(taken, kept)
+            stored += kept
+        return Energy(potential=stored) + self._soil.energy(state)
 
-    def _work_of_contact(self, before: State, t: float) -> Work:
+    def _work_of_contact(self, before: State, after: State) -> Work:
         """See `SurfaceContact.work`: without a history all is the time scheme's."""
+        if self._contact.law.columns:
+            return self._contact.work(before, after)
+        t = after.t
         first, last = self._stored.get(before.t), float(self._found.energy[0])
         if first is None:
             first = self._contact.energy(before).potential
@@ -350,8 +381,9 @@ class SoilBorder(LoopBorder):
         self._stored = dict(zip(as_list(saved["times"]), as_list(saved["stored"]), strict=True))
 
 
-def _workspace(count: int, nodes: int) -> TouchWorkspace:
-    """Workspace for so many points that touch, on a top of so many nodes."""
-    found, met = np.zeros(2, dtype=np.int64), np.zeros(nodes, dtype=np.bool_)
+def _workspace(count: int, nodes: int, columns: int) -> TouchWorkspace:
+    """Workspace for so many points that touch, with histories of so many columns, on a top of so many nodes."""
+    histories = np.zeros((count, columns)), np.zeros((count, columns))
+    found, met = np.zeros(3, dtype=np.int64), np.zeros(nodes, dtype=np.bool_)
     forces = np.zeros(count), np.zeros(count), np.zeros((count, 3))
-    return TouchWorkspace(points_workspace(count), *forces, found, met, np.zeros(1))
+    return TouchWorkspace(points_workspace(count), *histories, *forces, found, met, np.zeros(1))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.contact.coulomb import Adhesion, adhesion_at, traction
+from riser_soil.contact.coulomb import Adhesion, adhesion_at
 from riser_soil.contact.friction import CoulombFriction, directions_at, mobilised_within
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
@@ -22,6 +22,7 @@ from riser_soil.seabed.height_field import Profile
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import DIRECTION, START, sample
+from tests.support.tractions import traction
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 MU = np.array([0.3, 0.7])

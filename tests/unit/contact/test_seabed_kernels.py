@@ -12,7 +12,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba.core.errors import TypingError
 
-from riser_soil.contact.coulomb import traction
 from riser_soil.contact.friction import directions_at, elastic_guess, resistance_by_position, vector_of
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.seabed_contact import SeabedContact
@@ -24,6 +23,7 @@ from riser_soil.seabed.law import NormalLaw
 from tests.support.covered_ground import beyond
 from tests.support.sample_line import START, sample
 from tests.support.soil_loops import after, aubeny_biscontin, randolph_quiggin
+from tests.support.tractions import traction
 
 D, SU = 0.3, 2000.0
 LAWS: dict[str, NormalLaw] = {
