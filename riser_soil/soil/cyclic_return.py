@@ -12,16 +12,14 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
+from riser_soil.soil.kernels import modulus, stretched
 from riser_soil.soil.law import StressUpdate
-from riser_soil.soil.mandel import DEVIATOR, VOLUME, modulus, stretched
+from riser_soil.soil.mandel import DEVIATOR, VOLUME
 from riser_soil.soil.rate import Gain
 
 MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that Δp may be
 ROUND_OFF = 4e-15  # of |η| in the equation for Δp: a change that makes no more is none
 ROOT = math.sqrt(2.0 / 3.0)
-
-_stretched, _modulus = njit(stretched), njit(modulus)
-
 
 class Clay(NamedTuple):
     """Elastic moduli, largest equivalent stress and that at first yield, hardening modulus C, each (n,), and initial
@@ -95,11 +93,11 @@ def update(clay: Clay, gain: Gain, strain: Array, history: Array, out: StressUpd
     for i in range(len(strain)):
         bulk, shear = clay.bulk[i], clay.shear[i]
         first, hardening, bound = clay.first[i], clay.hardening[i], clay.limit[i] - clay.first[i]
-        trial = _stretched(3.0 * bulk, 2.0 * shear, _components(strain, i))
+        trial = stretched(3.0 * bulk, 2.0 * shear, _components(strain, i))
         for k in range(6):
             stress[k], alpha[k] = history[i, k] + trial[k], history[i, 7 + k]
             for m in range(6):
-                out.tangent[i, k, m] = _modulus(bulk, shear, VOLUME[k, m], DEVIATOR[k, m])
+                out.tangent[i, k, m] = modulus(bulk, shear, VOLUME[k, m], DEVIATOR[k, m])
         if gain.slow == math.inf:  # the strength, and with it the bound, may have fallen
             _shorten(bound, alpha)
         slip = 0.0
@@ -111,7 +109,7 @@ def update(clay: Clay, gain: Gain, strain: Array, history: Array, out: StressUpd
         for k in range(6):
             out.stress[i, k] = out.history[i, k] = stress[k]
             out.elastic[i, k], out.history[i, 7 + k] = stress[k] - clay.initial[i, k], alpha[k]
-        elastic = _stretched(1.0 / (3.0 * bulk), 1.0 / (2.0 * shear), _components(out.elastic, i))
+        elastic = stretched(1.0 / (3.0 * bulk), 1.0 / (2.0 * shear), _components(out.elastic, i))
         out.stored[i] = _locked_in(hardening, alpha)
         for k in range(6):
             out.stored[i] += 0.5 * out.elastic[i, k] * elastic[k]

@@ -135,7 +135,7 @@ def cell_gradients(family: Family, points: Array, cells: IntArray) -> Gradients:
     determinant = np.empty((len(cells), len(derivatives)))
     full = np.zeros((*determinant.shape, cells.shape[1], 3))
     kernels.write_gradients(at, axes, derivatives, determinant, full)
-    _check_shape(determinant, at[..., axes])
+    _check_shape(determinant, at, axes)
     weights = np.abs(determinant) * family.quadrature[1] * family.thickness
     if not family.mean_dilatation:
         return Gradients(full, full, weights)
@@ -152,13 +152,14 @@ def skewness(family: Family, points: Array, cells: IntArray) -> Array:
     return np.asarray(determinant.min(axis=1) / np.abs(determinant).mean(axis=1))
 
 
-def _check_shape(determinant: Array, at: Array) -> None:
+def _check_shape(determinant: Array, at: Array, axes: IntArray) -> None:
     """The map's determinant keeps its sign and is not negligible beside the cell's size."""
-    span = np.ptp(at, axis=1).max(axis=1) if len(at) else np.zeros(0)
+    span = np.empty(len(at))
+    kernels.write_spans(at, axes, span)
     signed = determinant * np.sign(determinant[:, :1])
-    bad = np.flatnonzero(signed.min(axis=1, initial=np.inf) <= 1e-9 * span ** at.shape[2])
+    bad = np.flatnonzero(signed.min(axis=1, initial=np.inf) <= 1e-9 * span ** len(axes))
     if len(bad):
-        place = ", ".join(f"{x:.4g}" for x in at[bad[0]].mean(axis=0))
+        place = ", ".join(f"{x:.4g}" for x in at[bad[0]][:, axes].mean(axis=0))
         raise MeshError(
             f"soil mesh: the cell at ({place}) m is inverted or flat ({len(bad)} such cells); mend the mesh"
         )

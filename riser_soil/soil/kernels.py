@@ -12,6 +12,10 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.soil import mandel
+from riser_soil.soil.mandel import DEVIATOR, VOLUME
+
+stretched, modulus = njit(mandel.stretched), njit(mandel.modulus)
 
 _SHEAR = 1.0 / np.sqrt(2.0)
 
@@ -188,6 +192,28 @@ def renew_stiffness(
                     if factor != 0.0:
                         for j in range(size):
                             row[j] += factor * CB[k, j]
+
+
+@njit
+def write_moduli(bulk: Array, shear: Array, consistent: Array, share: float, out: Array) -> None:
+    """Write a law's consistent moduli (n, 6, 6) [Pa] with a share of the elastic ones."""
+    for n in range(out.shape[0]):
+        for i in range(6):
+            for j in range(6):
+                elastic = modulus(bulk[n], shear[n], VOLUME[i, j], DEVIATOR[i, j])
+                out[n, i, j] = consistent[n, i, j] + share * (elastic - consistent[n, i, j])
+
+
+@njit
+def write_spans(at: Array, axes: IntArray, out: Array) -> None:
+    """Write the longest extent (nc,) along some axes of points (nc, nn, 3)."""
+    for c in range(out.size):
+        out[c] = 0.0
+        for i in axes:
+            low = high = at[c, 0, i]
+            for a in range(1, at.shape[1]):
+                low, high = min(low, at[c, a, i]), max(high, at[c, a, i])
+            out[c] = max(out[c], high - low)
 
 
 @njit

@@ -102,12 +102,11 @@ class Soil:
 
     def _moduli(self, consistent: Array) -> Array:
         """The law's (n, 6, 6) [Pa], with the elastic ones' share."""
-        share = self._elastic_share
-        return consistent if share == 0.0 else consistent + share * (self._elastic - consistent)
-
-    @property
-    def _elastic(self) -> Array:
-        return mandel.stiffness(self.law.bulk, self.law.shear)
+        if self._elastic_share == 0.0:
+            return consistent
+        out = np.empty_like(consistent)
+        kernels.write_moduli(self.law.bulk, self.law.shear, consistent, self._elastic_share, out)
+        return out
 
     def energy(self, state: State) -> Energy:
         """Strain energy by the law since the start, and potential of the unbalanced weight.
