@@ -205,6 +205,18 @@ def write_moduli(bulk: Array, shear: Array, consistent: Array, share: float, out
 
 
 @njit
+def write_flowing(at: IntArray, bulk: Array, shear: Array, along: Array, n: Array, out: Array) -> None:
+    """Write moduli (6, 6) [Pa] of the points `at` (k,) that flow to those of all (n, 6, 6); shear, along (k,) and n
+    (k, 6): see `mandel.modulus`.
+    """
+    for k in range(at.size):
+        for i in range(6):
+            for j in range(6):
+                elastic = bulk[at[k]], shear[k], VOLUME[i, j], DEVIATOR[i, j]
+                out[at[k], i, j] = modulus(*elastic, along[k], n[k, i], n[k, j])
+
+
+@njit
 def write_spans(at: Array, axes: IntArray, out: Array) -> None:
     """Write the longest extent (nc,) along some axes of points (nc, nn, 3)."""
     for c in range(out.size):

@@ -44,9 +44,18 @@ def deviator(a: Array) -> Array:
     return plus_mean(a.copy(), -mean(a))
 
 
-def modulus(bulk: Number, shear: Number, volume: Number, deviator: Number) -> Number:
-    """K 1⊗1 + 2G P [Pa] of entries of VOLUME and DEVIATOR; numbers or arrays, as this is compiled, too."""
-    return bulk * volume + 2.0 * shear * deviator
+def modulus(
+    bulk: Number,
+    shear: Number,
+    volume: Number,
+    deviator: Number,
+    along: Number | float = 0.0,
+    n: Number | float = 0.0,
+    m: Number | float = 0.0,
+) -> Number:
+    """K 1⊗1 + 2G P - along n⊗n [Pa] of entries of VOLUME, DEVIATOR and n; numbers or arrays, as this is compiled, too.
+    """
+    return bulk * volume + 2.0 * shear * deviator - along * n * m
 
 
 def stiffness(bulk: Array, shear: Array) -> Array:

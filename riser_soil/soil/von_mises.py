@@ -23,9 +23,12 @@ if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array
-    from riser_soil.soil import mandel
+    from riser_soil.soil import kernels, mandel
 else:
     np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
+    kernels = LazyModule("riser_soil.soil.kernels")
+
+FEW = 100  # points that flow, for which nothing needs to be compiled
 
 
 class VonMises(UndrainedClay):
@@ -82,8 +85,12 @@ class PerfectlyPlastic:
         """K 1⊗1 + 2G (θ (P − n⊗n) + slope n⊗n) where it yields: n = s/|s| of the trial, θ = shrink; else elastic."""
         moduli, at = self._elastic.copy(), np.flatnonzero(shrink < 1.0)
         n, shear = s[at] * (np.sqrt(1.5) / q[at])[:, None], (self.shear * shrink)[at]
-        along = (2.0 * (shear - self.shear[at] * slope[at]))[:, None, None] * n[:, :, None] * n[:, None, :]
-        moduli[at] = mandel.stiffness(self.bulk[at], shear) - along
+        along = 2.0 * (shear - self.shear[at] * slope[at])
+        if len(at) > FEW:
+            kernels.write_flowing(at, self.bulk, shear, along, n, moduli)
+            return moduli
+        K, G, along = (values[:, None, None] for values in (self.bulk[at], shear, along))
+        moduli[at] = mandel.modulus(K, G, mandel.VOLUME, mandel.DEVIATOR, along, n[:, :, None], n[:, None, :])
         return moduli
 
     @cached_property
