@@ -165,3 +165,14 @@ def test_von_mises_stress_of_uniaxial_and_shear_states() -> None:
     shear = np.array([0.0, 0.0, 0.0, np.sqrt(2.0) * 2.0, 0.0, 0.0])
     assert mandel.von_mises(uniaxial) == pytest.approx(3.0)
     assert mandel.von_mises(shear) == pytest.approx(2.0 * np.sqrt(3.0))
+
+
+def test_many_points_that_flow_answer_as_a_few_do() -> None:
+    """Their moduli are compiled."""
+    depth, strain = np.linspace(0.0, 3.0, 300), 0.02 * np.random.default_rng(4).normal(size=(300, 6))
+    whole = clay(depth).update(strain, clay(depth).start())
+    assert (plastic_strain(clay(depth), whole.history) > 0.0).all()
+    for some in (slice(0, 50), slice(200, 280)):
+        law = clay(depth[some])
+        for mine, other in zip(law.update(strain[some], law.start()), whole, strict=True):
+            np.testing.assert_allclose(mine, other[some], rtol=1e-12, atol=1e-9 * np.abs(other).max())
