@@ -53,19 +53,24 @@ def _write_shares(places: Array, asked: Array, apart: Array, near: IntArray, sha
     """Write shares (k,) of the changes from the nearest point, the first, to the others, for the way from there: a
     linear fit, weighed by how far they lie ahead and how near.
     """
-    farthest, base = apart[-1], places[near[0]]
-    way, matrix = asked - base, np.zeros((3, 3))
-    square = np.dot(way, way)
+    farthest, way, matrix = apart[-1], asked - places[near[0]], np.zeros((3, 3))
     for k in range(1, shares.size):
-        aside = places[near[k]] - base
-        ahead = np.dot(aside, way) / math.sqrt(np.dot(aside, aside))
-        shares[k] = (max(ahead, 0.0) * (farthest / apart[k] - 1.0)) ** 2 / square
+        along = square = 0.0
+        for i in range(3):
+            aside = places[near[k], i] - places[near[0], i]
+            along, square = along + aside * way[i], square + aside * aside
+        ahead = max(along, 0.0) / math.sqrt(square)
+        shares[k] = (ahead * (farthest / apart[k] - 1.0)) ** 2 / (way[0] ** 2 + way[1] ** 2 + way[2] ** 2)
         for i in range(3):
             for j in range(3):
-                matrix[i, j] += shares[k] * aside[i] * aside[j]
+                product = (places[near[k], i] - places[near[0], i]) * (places[near[k], j] - places[near[0], j])
+                matrix[i, j] += shares[k] * product
     eased = EASED * np.trace(matrix) + SAME * farthest**2
     for i in range(3):
         matrix[i, i] += eased
     solved = np.linalg.solve(matrix, way)
     for k in range(1, shares.size):
-        shares[k] *= np.dot(places[near[k]] - base, solved)
+        along = 0.0
+        for i in range(3):
+            along += (places[near[k], i] - places[near[0], i]) * solved[i]
+        shares[k] *= along

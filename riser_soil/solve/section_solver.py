@@ -281,42 +281,48 @@ def _eliminate(band: Array, right: Array, below: Array, n: int, b: int, start: i
 @njit
 def take_on(bands: Bands, b: int, x: Array) -> None:
     """Take loads (rows,) on, in the order of elimination: what the interiors bear goes off their borders' loads."""
-    inner = np.empty(bands.band.shape[1])
+    inner, border = np.empty(bands.band.shape[1]), np.empty(bands.right.shape[2])
     for s in range(bands.first.size):
-        n, band, below = bands.counts[s, 1], bands.band[s], bands.below[s]
-        first, last = bands.first[s], bands.first[s] + bands.counts[s, 0]
-        for i in range(first, last):
-            if bands.number[i] >= 0:
-                inner[bands.number[i]] = x[i]
+        n, start, band, below = bands.counts[s, 1], bands.counts[s, 3], bands.band[s], bands.below[s]
+        _gather(bands, s, x, inner, border)
         _forward(band, inner[:n], b)
-        for i in range(first, last):
-            row = bands.number[i]
-            if row >= 0:
-                x[i] = inner[row]
-                continue
-            for k in range(bands.counts[s, 3], n):
-                x[i] -= below[k, -1 - row] * inner[k]
+        for k in range(start, n):
+            for j in range(border.size):
+                border[j] -= below[k, j] * inner[k]
+        _put_back(bands, s, inner, border, x)
 
 
 @njit
 def insert(bands: Bands, b: int, x: Array) -> None:
     """Solve for the interiors, with what the borders are found to be."""
-    inner = np.empty(bands.band.shape[1])
+    inner, border = np.empty(bands.band.shape[1]), np.empty(bands.right.shape[2])
     for s in range(bands.first.size):
-        n, band, right = bands.counts[s, 1], bands.band[s], bands.right[s]
-        first, last = bands.first[s], bands.first[s] + bands.counts[s, 0]
-        for i in range(first, last):
-            if bands.number[i] >= 0:
-                inner[bands.number[i]] = x[i]
-        for i in range(first, last):
-            row = bands.number[i]
-            if row < 0:
-                for k in range(bands.counts[s, 3], n):
-                    inner[k] -= right[k, -1 - row] * x[i]
+        n, start, band, right = bands.counts[s, 1], bands.counts[s, 3], bands.band[s], bands.right[s]
+        _gather(bands, s, x, inner, border)
+        for k in range(start, n):
+            for j in range(border.size):
+                inner[k] -= right[k, j] * border[j]
         _backward(band, inner[:n], b)
-        for i in range(first, last):
-            if bands.number[i] >= 0:
-                x[i] = inner[bands.number[i]]
+        _put_back(bands, s, inner, border, x)
+
+
+@njit
+def _gather(bands: Bands, s: int, x: Array, inner: Array, border: Array) -> None:
+    """Take a section's numbers from those of the rank's rows."""
+    border[:] = 0.0
+    for i in range(bands.first[s], bands.first[s] + bands.counts[s, 0]):
+        row = bands.number[i]
+        if row >= 0:
+            inner[row] = x[i]
+        else:
+            border[-1 - row] = x[i]
+
+
+@njit
+def _put_back(bands: Bands, s: int, inner: Array, border: Array, x: Array) -> None:
+    for i in range(bands.first[s], bands.first[s] + bands.counts[s, 0]):
+        row = bands.number[i]
+        x[i] = inner[row] if row >= 0 else border[-1 - row]
 
 
 @njit
