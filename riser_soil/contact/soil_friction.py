@@ -13,11 +13,12 @@ from riser_soil.contact.coulomb import limits, return_map
 from riser_soil.contact.cylinder_gap import Slide, gap_forms, slide_workspace, write_slide, write_slide_columns
 from riser_soil.contact.friction import components, read_along, resistance_by_movement, vector_of, write_along
 from riser_soil.contact.integration_points import KeptRows, PointMemory, write_kept
-from riser_soil.contact.near_points import NearPoints, Surface, first_of
+from riser_soil.contact.near_points import FEW, NearPoints, Surface, first_of
 from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
 from riser_soil.contact.surface_loop import POINTS, Border, TopMotion, TouchData, TouchWorkspace, add_pairs
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful, gathered, within
@@ -127,10 +128,13 @@ class SoilFriction(LinePart):
             self._at_start = found.axis.q, found.surface.deformed
         return self._at_start
 
-    def touch_data(self) -> RoughData | None:
+    def in_loop(self) -> LoopFriction | None:
         """For the compiled loop; None where the soil adheres."""
-        if self._adhesion is not None:
-            return None
+        return None if self._adhesion is not None else LoopFriction(self)
+
+    @property
+    def touch_data(self) -> RoughData:
+        """For the compiled loop, but for the axis."""
         return RoughData(self._rough, self._memory.kept, np.zeros((self.line.length.size, 4, 3)))
 
     def begun(self, given: RoughData, state: State) -> RoughData:
@@ -366,3 +370,34 @@ def add_rubbing_tangent(
     forms, start = gap_forms(*pipe, near, touch.basis)[0], (given.q, top.accepted)
     by_dofs = rub_tangents(given.rough, near, *pressed, start, *pipe, touch.basis, forms, pairs, rubbing, at.P)
     add_pairs(by_dofs, pairs, top.rows, touch.surface.facets, K, border)
+
+
+class LoopFriction:
+    """Friction in the compiled loop: its kernels, and what they read and write beside contact."""
+
+    def __init__(self, friction: SoilFriction) -> None:
+        self.friction = friction
+        self._rough, self._rubbing = Packed(friction.touch_data), Packed(rubbing_of(FEW))
+
+    def begin(self, before: State, room: int) -> None:
+        """Begin a step from an accepted state, with room for so many points."""
+        self._rough.renew(self.friction.begun(self._rough.value, before))
+        self.make_room(room)
+
+    def make_room(self, count: int) -> None:
+        if count > len(self._rubbing.value.most):
+            self._rubbing.renew(rubbing_of(count))
+
+    def forces(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
+        """The kernel that adds to the residuals, see `add_rubbing`."""
+        return Bound(add_rubbing, touch, self._rough, top, *out, self._rubbing)
+
+    def tangent(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
+        """The kernel that adds to the tangents, see `add_rubbing_tangent`."""
+        return Bound(add_rubbing_tangent, touch, self._rough, top, *out, self._rubbing)
+
+    def account(self, area: Array) -> tuple[float, Work]:
+        """What friction stores [J] at the points that touch, of areas (n,), and its work in the step."""
+        points = Rubbing(*(each[: len(area)] for each in self._rubbing.value))
+        taken, stored = self.friction.exchanged(points, area)
+        return stored, self.friction.work_of(taken, stored)

@@ -15,14 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.near_points import FEW, PairsByFacet, points_workspace
 from riser_soil.contact.pressed_points import BEYOND, HELD
-from riser_soil.contact.soil_friction import Rubbing, SoilFriction, add_rubbing, add_rubbing_tangent, rubbing_of
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.contact.surface_loop import (
     FULL,
@@ -49,6 +48,9 @@ from riser_soil.soil.condensed import CondensedSoil, Reached
 from riser_soil.solve.newton_progress import GOING_ON, OUTGROWN, SINGULAR
 from riser_soil.solve.packed_line import LoopBorder, MakeBorder, PackedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
+
+if TYPE_CHECKING:
+    from riser_soil.contact.soil_friction import LoopFriction
 
 SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
 NONE: IntArray = np.empty(0, dtype=np.int64)
@@ -152,13 +154,16 @@ def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     """That of a line on condensed soil; None where there are no kernels."""
     contact = next((part for part in beside if isinstance(part, SurfaceContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
-    friction = next((part for part in beside if isinstance(part, SoilFriction)), None)
-    known = sum(part is not None for part in (contact, soil, friction))
-    if len(system.model.lines) > 1 or len(beside) > known or contact is None or soil is None:
+    others = [part for part in beside if part is not contact and part is not soil]
+    if len(system.model.lines) > 1 or contact is None or soil is None:
         return None
-    if friction is not None and friction.touch_data() is None:
-        return None
-    return partial(SoilBorder, system, contact, soil, friction)
+    if not others:
+        return partial(SoilBorder, system, contact, soil, None)
+    from riser_soil.contact.soil_friction import SoilFriction
+
+    friction = others[0]
+    rubbing = friction.in_loop() if len(others) == 1 and isinstance(friction, SoilFriction) else None
+    return None if rubbing is None else partial(SoilBorder, system, contact, soil, rubbing)
 
 
 class SoilBorder(LoopBorder):
@@ -173,20 +178,18 @@ class SoilBorder(LoopBorder):
         system: System,
         contact: SurfaceContact,
         soil: CondensedSoil,
-        friction: SoilFriction | None,
+        rubbing: LoopFriction | None,
         lines: Sequence[PackedLine],
     ) -> None:
         (packed,) = lines
         self._line, self._contact, self._soil, self._top = contact.line, contact, soil, soil.top
-        self._system, self._packed, self._friction = system, packed, friction
-        self.parts = (contact, soil) if friction is None else (contact, friction, soil)
+        self._system, self._packed, self._rubbing = system, packed, rubbing
+        self.parts = (contact, soil) if rubbing is None else (contact, rubbing.friction, soil)
         points, ne = len(soil.top.points), self._line.length.size
         self._touch, self._found = contact.touch_data(), _workspace(FEW, points, len(contact.law.columns))
         pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
         self._workspace, self._data = Packed(self._found), Packed(self._touch)
-        if friction is not None:
-            self._rough, self._rubbing = Packed(friction.touch_data()), Packed(rubbing_of(FEW))
         self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
         self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
         self._taken: Array = np.zeros(1)
@@ -216,10 +219,10 @@ class SoilBorder(LoopBorder):
         begun = Bound(begin_border, self._held, self._border)
         given = self._data, self._watched, self._motion, packed.packed_at, packed.packed_forces
         touched = Bound(add_touch, *given, self._border, self._workspace)
-        if self._friction is None:
+        if self._rubbing is None:
             return [moved, begun, touched]
-        rough, out = (self._data, self._rough, self._motion), (packed.packed_forces, self._border)
-        return [moved, begun, touched, Bound(add_rubbing, *rough, *out, self._workspace, self._rubbing)]
+        out = packed.packed_forces, self._border, self._workspace
+        return [moved, begun, touched, self._rubbing.forces(self._data, self._motion, *out)]
 
     def norms(self, sums: Packed) -> list[Bound]:
         return [Bound(add_norm_of_border, self._border, sums)]
@@ -232,10 +235,9 @@ class SoilBorder(LoopBorder):
         out = self._packed.packed_at, self._packed.K, self._border, self._workspace
         cleared = Bound(clear_border, self._held, self._border)
         touched = Bound(add_touch_tangent, self._data, self._motion, *out)
-        if self._friction is None:
+        if self._rubbing is None:
             return [cleared, touched]
-        rough = self._data, self._rough, self._motion
-        return [cleared, touched, Bound(add_rubbing_tangent, *rough, *out, self._rubbing)]
+        return [cleared, touched, self._rubbing.tangent(self._data, self._motion, *out)]
 
     def factorise(self, progress: Packed) -> list[Bound]:
         packed = self._packed
@@ -258,8 +260,8 @@ class SoilBorder(LoopBorder):
         accepted = np.asarray(self._top.points + committed)
         self._touch.surface.deformed[...] = accepted
         self._data.renew(self._contact.begun(self._touch))
-        if self._friction is not None:
-            self._rough.renew(self._friction.begun(self._rough.value, before))
+        if self._rubbing is not None:
+            self._rubbing.begin(before, len(self._found.force))
         if self._reached is not self._top.reached or self._has_moved(accepted):
             self._look([])
         self._motion.value.accepted[...] = accepted
@@ -296,8 +298,8 @@ class SoilBorder(LoopBorder):
         if found.found[FULL]:
             self._found = _workspace(2 * len(found.force), len(found.met), found.after.shape[1])
             self._workspace.renew(self._found)
-            if self._friction is not None:
-                self._rubbing.renew(rubbing_of(len(self._found.force)))
+            if self._rubbing is not None:
+                self._rubbing.make_room(len(self._found.force))
         self._look([self._touch.axis._replace(q=self._touch.axis.q.copy())])
 
     def _look(self, tried: Sequence[Axis]) -> None:
@@ -350,12 +352,10 @@ class SoilBorder(LoopBorder):
         work[self._soil.name] += self._soil.work(before, state)
         work[self._contact.name] += self._work_of_contact(before, state)
         stored = float(self._found.energy[0])
-        if self._friction is not None:
-            n = int(self._found.found[POINTS])
-            points = Rubbing(*(each[:n] for each in self._rubbing.value))
-            taken, kept = self._friction.exchanged(points, self._found.near.area[:n])
-            work[self._friction.name] += self._friction.work_of(taken, kept)
-            stored += kept
+        if self._rubbing is not None:
+            by_friction, turned = self._rubbing.account(self._found.near.area[: self._found.found[POINTS]])
+            work[self._rubbing.friction.name] += turned
+            stored += by_friction
         return Energy(potential=stored) + self._soil.energy(state)
 
     def _work_of_contact(self, before: State, after: State) -> Work:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import riser_soil
@@ -111,6 +112,11 @@ def _message(ending: Ending, pattern: str | None) -> str:
     if ending.finished:
         return matching[0] if matching else ""
     return matching[0] if matching else (lines or ["nothing was told"])[-1]
+
+
+def runs_in(place: Path, names: Iterable[str]) -> list[Run]:
+    """The runs in a folder, finished or not, that have a summary."""
+    return [Run(place / name) for name in names if (place / name / "summary.json").is_file()]
 
 
 def reported(row: StressOutcome) -> str:

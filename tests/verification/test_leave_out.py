@@ -104,13 +104,13 @@ def test_level_ground_asks_for_no_more_than_the_arithmetic(tmp_path: Path) -> No
     assert not SLOW_TO_IMPORT & set(ran("over springs", tmp_path)["modules"])
 
 
-#: Packages of the formulas that a stage in motion calls, by scene; in the compiled loop the seabed is numbers alone.
+#: Packages of the formulas that a stage in motion calls, by scene; a seabed, and a law of contact, is numbers alone.
 AT_WORK = {
     "hanging, heaved": {"riser", "motion"},
     "and damped": {"riser", "motion"},
     "in water": {"riser", "motion", "sea"},
     "on springs": {"riser", "motion", "sea", "contact"},
-    "on elastic soil": {"riser", "motion", "sea", "seabed", "contact", "soil"},
+    "on elastic soil": {"riser", "motion", "sea", "contact", "soil"},
 }
 
 
