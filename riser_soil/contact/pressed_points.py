@@ -74,10 +74,10 @@ class PressedPoints:
         return found
 
     @cached_property
-    def forms(self) -> Array:
-        """Forms (n, k, nz) of the gap, the last of the place on the axis, see `gap_forms`."""
-        forms: Array = gap_forms(self.axis, self.surface, self.points, self.basis)[0]
-        return forms
+    def forms(self) -> tuple[Array, Array]:
+        """Of the gap, see `gap_forms`."""
+        found: tuple[Array, Array] = gap_forms(self.axis, self.surface, self.points, self.basis)
+        return found
 
     def spread(self, f: Array) -> tuple[Array, Array]:
         """Residuals of forces f (n, 3) on the pipe: conjugate to q (ne, 4, d), and of the surface (np, 3)."""
@@ -219,18 +219,10 @@ def paired(points: NearPoints, elements: int) -> Pairs:
 
 
 @njit
-def pair_tangents(
-    axis: Axis,
-    surface: Surface,
-    basis: Array,
-    points: NearPoints,
-    force: Array,
-    slope: Array,
-    pairs: Pairs,
-    P: Array,
-) -> Array:
-    """Derivative (m, nr, nr) of the residual of what presses by the dofs of its pairs, P (ne, 2, d, r) held."""
-    forms, C = gap_forms(axis, surface, points, basis)
+def pair_tangents(forms: Array, C: Array, force: Array, slope: Array, pairs: Pairs, P: Array) -> Array:
+    """Derivative (m, nr, nr) of the residual of what presses by the dofs of its pairs, P (ne, 2, d, r) held. forms, C:
+    of the gap, see `gap_forms`.
+    """
     by_z = np.zeros((pairs.element.size, forms.shape[2], forms.shape[2]))
     add_products(by_z, pairs.pair, forms, by_curvature(forms, C, force, slope))
     return in_dofs(by_z, pairs.element, P)

@@ -13,7 +13,7 @@ from riser_soil.contact.coulomb import limits, return_map
 from riser_soil.contact.cylinder_gap import Slide, gap_forms, slide_workspace, write_slide, write_slide_columns
 from riser_soil.contact.friction import components, read_along, resistance_by_movement, vector_of, write_along
 from riser_soil.contact.integration_points import KeptRows, PointMemory, write_kept
-from riser_soil.contact.near_points import FEW, NearPoints, Surface, first_of
+from riser_soil.contact.near_points import NearPoints, Surface, first_of
 from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
 from riser_soil.contact.surface_loop import POINTS, Border, TopMotion, TouchData, TouchWorkspace, add_pairs
@@ -31,14 +31,14 @@ from riser_soil.riser.vectors import add, scale, sub, vector, write
 AREA = 3  # column of the memory, behind the traction
 
 
-class Rough(NamedTuple):
+class Resistance(NamedTuple):
     """Coefficients (2,) of friction, axial and lateral, and stiffness of the soil's surface along itself [N/m3]."""
 
     mu: Array
     stiffness: float
 
 
-class Rubbing(NamedTuple):
+class SlidingPoints(NamedTuple):
     """Of n points: what is kept of them (n, 4) and adhesion (n,) [Pa]; at a trial way slid (n, 3) [m], directions
     (n, 2, 3), elastic guess and traction (n, 3) [Pa], and force (n, 3) [N] on the riser.
     """
@@ -57,7 +57,7 @@ class SlidingState:
     """Friction at a state: of the n points that press."""
 
     found: SurfaceState
-    points: Rubbing
+    points: SlidingPoints
 
 
 SoilAdhesion = Callable[[IntArray, Array], Array]
@@ -91,14 +91,14 @@ class SoilFriction(LinePart):
     ) -> None:
         super().__init__(contact.line)
         self.contact = contact
-        self._rough, self._adhesion = Rough(np.array([axial, lateral]), float(stiffness)), adhesion
+        self._resistance, self._adhesion = Resistance(np.array([axial, lateral]), float(stiffness)), adhesion
         self._memory = PointMemory(np.zeros(AREA + 1))
         self._at_start: Start | None = None
         self._slid: Array = np.zeros(self.line.nodes)
 
     def stick(self) -> None:
         """From now on nothing slides, as in small vibrations about rest."""
-        self._rough, self._adhesion = self._rough._replace(mu=np.full(2, np.inf)), None
+        self._resistance, self._adhesion = self._resistance._replace(mu=np.full(2, np.inf)), None
         self.line.forget()
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -108,14 +108,15 @@ class SoilFriction(LinePart):
     def evaluate(self, state: State) -> SlidingState:
         """Tractions of the points that press. What the trial keeps does not hold the trial."""
         found = self.contact.evaluate(state)
-        made: Rubbing = found.trial.once((self, "sliding"), lambda _: self._evaluate(found))
+        made: SlidingPoints = found.trial.once((self, "sliding"), lambda _: self._evaluate(found))
         return SlidingState(found, made)
 
-    def _evaluate(self, found: SurfaceState) -> Rubbing:
+    def _evaluate(self, found: SurfaceState) -> SlidingPoints:
         pressed, start = found.pressed, self._start(found.trial.state)
-        out = rubbing_of(len(pressed.force))
+        out = sliding_workspace(len(pressed.force))
         out.before[...], out.most[...] = self._memory.at(pressed.points.number), self._most(pressed.points)
-        rub(self._rough, pressed.points, len(out.most), pressed.force, start, pressed.axis, pressed.surface, out)
+        touching = pressed.points, len(out.most), pressed.force
+        find_tractions(self._resistance, *touching, start, pressed.axis, pressed.surface, out)
         return out
 
     def _most(self, points: NearPoints) -> Array | float:
@@ -130,14 +131,12 @@ class SoilFriction(LinePart):
 
     def in_loop(self) -> LoopFriction | None:
         """For the compiled loop; None where the soil adheres."""
-        return None if self._adhesion is not None else LoopFriction(self)
+        if self._adhesion is not None:
+            return None
+        q = np.zeros((self.line.length.size, 4, 3))
+        return LoopFriction(self, SoilFrictionData(self._resistance, self._memory.kept, q))
 
-    @property
-    def touch_data(self) -> RoughData:
-        """For the compiled loop, but for the axis."""
-        return RoughData(self._rough, self._memory.kept, np.zeros((self.line.length.size, 4, 3)))
-
-    def begun(self, given: RoughData, state: State) -> RoughData:
+    def begun(self, given: SoilFrictionData, state: State) -> SoilFrictionData:
         """The same for a step that starts at a state."""
         given.q[...] = self.contact.axis(self.line.trial(state)).q
         return given._replace(kept=self._memory.kept)
@@ -156,8 +155,8 @@ class SoilFriction(LinePart):
         sliding = self.evaluate(state)
         at, P, start = sliding.found.pressed, sliding.found.trial.turn.P, self._start(state)
         pressed = at.points, at.force, at.slope
-        by_dofs = rub_tangents(
-            self._rough, *pressed, start, at.axis, at.surface, at.basis, at.forms, at.pairs, sliding.points, P
+        by_dofs = friction_tangents(
+            self._resistance, *pressed, start, at.axis, at.surface, at.basis, at.forms[0], at.pairs, sliding.points, P
         )
         self.contact.add_tangent(values, sliding.found, by_dofs, sliding.points.on_riser)
 
@@ -171,10 +170,10 @@ class SoilFriction(LinePart):
         sliding = self.evaluate(state)
         return Energy(potential=self.exchanged(sliding.points, sliding.found.pressed.points.area)[1])
 
-    def exchanged(self, points: Rubbing, area: Array) -> tuple[float, float]:
+    def exchanged(self, points: SlidingPoints, area: Array) -> tuple[float, float]:
         """What friction at points has taken in the step, and what it stores [J]."""
         taken = -float(np.sum(points.on_riser * points.moved))
-        return taken, float(0.5 / self._rough.stiffness * np.sum(area * np.sum(points.traction**2, axis=1)))
+        return taken, float(0.5 / self._resistance.stiffness * np.sum(area * np.sum(points.traction**2, axis=1)))
 
     def work(self, before: State, after: State) -> Work:
         sliding = self.evaluate(after)
@@ -183,7 +182,7 @@ class SoilFriction(LinePart):
     def work_of(self, taken: float, stored: float) -> Work:
         """Energy dissipated: what friction has taken less the change of the energy stored [J]; never negative."""
         kept = self._memory.rows
-        begun = 0.5 / self._rough.stiffness * float(np.sum(kept[:, AREA] * np.sum(kept[:, :AREA] ** 2, axis=1)))
+        begun = 0.5 / self._resistance.stiffness * float(np.sum(kept[:, AREA] * np.sum(kept[:, :AREA] ** 2, axis=1)))
         return Work(dissipated=taken - stored + begun)
 
     def commit(self, state: State) -> None:
@@ -197,7 +196,7 @@ class SoilFriction(LinePart):
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
         pressed, of = sliding.found.pressed, sliding.points
-        plastic = np.einsum("nri,ni->nr", of.along, of.traction - of.elastic) / self._rough.stiffness
+        plastic = np.einsum("nri,ni->nr", of.along, of.traction - of.elastic) / self._resistance.stiffness
         slip, pressing = np.linalg.norm(plastic, axis=1), pressed.points.area * (pressed.force > 0.0)
         slid, share = self.contact.at_nodes(pressed.points, np.stack([pressing * slip, pressing], axis=1)).T
         return np.asarray(slid / np.where(share > 0.0, share, 1.0))
@@ -231,19 +230,26 @@ class SoilFriction(LinePart):
         self._memory.restore(within(saved, "points"))
 
 
-def rubbing_of(n: int) -> Rubbing:
+def sliding_workspace(n: int) -> SlidingPoints:
     """Workspace for so many points, without adhesion."""
-    vectors = [np.empty((n, 3)) for _ in range(4)]
-    moved, elastic, traction, on_riser = vectors
-    return Rubbing(np.empty((n, AREA + 1)), np.full(n, np.inf), moved, np.empty((n, 2, 3)), elastic, traction, on_riser)
+    moved, elastic, traction, on_riser = (np.empty((n, 3)) for _ in range(4))
+    before, most, along = np.empty((n, AREA + 1)), np.full(n, np.inf), np.empty((n, 2, 3))
+    return SlidingPoints(before, most, moved, along, elastic, traction, on_riser)
 
 
 @njit
-def rub(
-    rough: Rough, near: NearPoints, n: int, force: Array, start: Start, axis: Axis, surface: Surface, out: Rubbing
+def find_tractions(
+    resistance: Resistance,
+    near: NearPoints,
+    n: int,
+    force: Array,
+    start: Start,
+    axis: Axis,
+    surface: Surface,
+    out: SlidingPoints,
 ) -> None:
     """Find the tractions of the first n points, pressed by forces (n,) [N]."""
-    k, mu, at = rough.stiffness, (rough.mu[0], rough.mu[1]), slide_workspace(surface.facets.shape[1], 0)
+    k, mu, at = resistance.stiffness, (resistance.mu[0], resistance.mu[1]), slide_workspace(surface.facets.shape[1], 0)
     for i in range(n):
         write_slide(near, i, start, axis, surface, at)
         along, elastic = read_along(at.along.T), sub(vector(out.before[i]), scale(k, vector(at.moved)))
@@ -258,8 +264,8 @@ def rub(
 
 
 @njit
-def rub_tangents(
-    rough: Rough,
+def friction_tangents(
+    resistance: Resistance,
     near: NearPoints,
     force: Array,
     slope: Array,
@@ -269,7 +275,7 @@ def rub_tangents(
     basis: Array,
     forms: Array,
     pairs: Pairs,
-    rubbing: Rubbing,
+    sliding: SlidingPoints,
     P: Array,
 ) -> Array:
     """Derivative (m, nr, nr) of the residual of friction by the dofs of its pairs, P (ne, 2, d, r) held. force (n,) [N]
@@ -281,8 +287,8 @@ def rub_tangents(
     for i in range(n):
         write_slide(near, i, start, axis, surface, at)
         write_slide_columns(near, i, axis, basis, at)
-        pushed = force[i] / near.area[i], slope[i] / near.area[i], rubbing.most[i]
-        _write_factors(rough, pushed, rubbing.elastic[i], rubbing.on_riser[i], at, forms[i], left[i], right[i])
+        pushed = force[i] / near.area[i], slope[i] / near.area[i], sliding.most[i]
+        _write_factors(resistance, pushed, sliding.elastic[i], sliding.on_riser[i], at, forms[i], left[i], right[i])
         for c in range(nz):
             for j in range(3):
                 left[i, j, c] = -near.area[i] * at.by_z[j, c]
@@ -292,7 +298,7 @@ def rub_tangents(
 
 @njit
 def _write_factors(
-    rough: Rough,
+    resistance: Resistance,
     pushed: tuple[float, float, float],
     elastic: Array,
     on_riser: Array,
@@ -305,8 +311,8 @@ def _write_factors(
     axis; beside which the force, whose point moves along the axis, has the last row of left. pushed: pressure, its
     slope and adhesion.
     """
-    k, along, turns = rough.stiffness, read_along(at.along.T), read_along(at.along_by_s.T)
-    limit, rise = limits(pushed[0], pushed[1], (rough.mu[0], rough.mu[1]), (pushed[2], 0.0))
+    k, along, turns = resistance.stiffness, read_along(at.along.T), read_along(at.along_by_s.T)
+    limit, rise = limits(pushed[0], pushed[1], (resistance.mu[0], resistance.mu[1]), (pushed[2], 0.0))
     t, by_elastic, by_penetration = return_map(components(along, vector(elastic)), limit, rise)
     by_way, by_gap = resistance_by_movement(along, k, by_elastic), vector_of(along, by_penetration)
     a, b = components(turns, vector(elastic))
@@ -324,80 +330,81 @@ def _write_factors(
         left[3, z] = -force[0] * at.by_s_z[0, z] - force[1] * at.by_s_z[1, z] - force[2] * at.by_s_z[2, z]
 
 
-class RoughData(NamedTuple):
+class SoilFrictionData(NamedTuple):
     """For the compiled loop: what resists; what is kept of the points, and q (ne, 4, 3) of the axis, where the step
     starts.
     """
 
-    rough: Rough
+    resistance: Resistance
     kept: KeptRows
     q: Array
 
 
 @njit
-def add_rubbing(
+def add_friction(
     touch: TouchData,
-    given: RoughData,
+    given: SoilFrictionData,
     top: TopMotion,
     out: LineForces,
     border: Border,
     workspace: TouchWorkspace,
-    rubbing: Rubbing,
+    sliding: SlidingPoints,
 ) -> None:
     """Add the residual of friction to that of the line and to the border's, with contact found."""
     near, n = workspace.near, workspace.found[POINTS]
-    write_kept(given.kept, near.number, n, rubbing.before)
-    rub(given.rough, near, n, workspace.force, (given.q, top.accepted), touch.axis, touch.surface, rubbing)
-    forces = touch.axis, touch.surface, touch.basis, near, n, rubbing.on_riser
+    write_kept(given.kept, near.number, n, sliding.before)
+    touching, start = (near, n, workspace.force), (given.q, top.accepted)
+    find_tractions(given.resistance, *touching, start, touch.axis, touch.surface, sliding)
+    forces = touch.axis, touch.surface, touch.basis, near, n, sliding.on_riser
     spread(*forces, out.end_q, top.rows, border.residual, workspace.met)
 
 
 @njit
-def add_rubbing_tangent(
+def add_friction_tangent(
     touch: TouchData,
-    given: RoughData,
+    given: SoilFrictionData,
     top: TopMotion,
     at: Configuration,
     K: Array,
     border: Border,
     workspace: TouchWorkspace,
-    rubbing: Rubbing,
+    sliding: SlidingPoints,
 ) -> None:
     """Add the derivative of the residual of friction, found last, to K (ne, n, n) and to the border's."""
     n = workspace.found[POINTS]
     near, pressed = first_of(workspace.near, n), (workspace.force[:n], workspace.slope[:n])
     pairs, pipe = paired(near, K.shape[0]), (touch.axis, touch.surface)
     forms, start = gap_forms(*pipe, near, touch.basis)[0], (given.q, top.accepted)
-    by_dofs = rub_tangents(given.rough, near, *pressed, start, *pipe, touch.basis, forms, pairs, rubbing, at.P)
+    place = start, *pipe, touch.basis
+    by_dofs = friction_tangents(given.resistance, near, *pressed, *place, forms, pairs, sliding, at.P)
     add_pairs(by_dofs, pairs, top.rows, touch.surface.facets, K, border)
 
 
 class LoopFriction:
     """Friction in the compiled loop: its kernels, and what they read and write beside contact."""
 
-    def __init__(self, friction: SoilFriction) -> None:
-        self.friction = friction
-        self._rough, self._rubbing = Packed(friction.touch_data), Packed(rubbing_of(FEW))
+    def __init__(self, friction: SoilFriction, data: SoilFrictionData) -> None:
+        self.part = friction
+        self._data, self._points = Packed(data), Packed(sliding_workspace(0))
 
-    def begin(self, before: State, room: int) -> None:
-        """Begin a step from an accepted state, with room for so many points."""
-        self._rough.renew(self.friction.begun(self._rough.value, before))
-        self.make_room(room)
+    def begin(self, before: State) -> None:
+        """Begin a step from an accepted state."""
+        self._data.renew(self.part.begun(self._data.value, before))
 
     def make_room(self, count: int) -> None:
-        if count > len(self._rubbing.value.most):
-            self._rubbing.renew(rubbing_of(count))
+        """For so many points that touch."""
+        self._points.renew(sliding_workspace(count))
 
     def forces(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
-        """The kernel that adds to the residuals, see `add_rubbing`."""
-        return Bound(add_rubbing, touch, self._rough, top, *out, self._rubbing)
+        """The kernel that adds to the residuals, see `add_friction`."""
+        return Bound(add_friction, touch, self._data, top, *out, self._points)
 
     def tangent(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
-        """The kernel that adds to the tangents, see `add_rubbing_tangent`."""
-        return Bound(add_rubbing_tangent, touch, self._rough, top, *out, self._rubbing)
+        """The kernel that adds to the tangents, see `add_friction_tangent`."""
+        return Bound(add_friction_tangent, touch, self._data, top, *out, self._points)
 
     def account(self, area: Array) -> tuple[float, Work]:
         """What friction stores [J] at the points that touch, of areas (n,), and its work in the step."""
-        points = Rubbing(*(each[: len(area)] for each in self._rubbing.value))
-        taken, stored = self.friction.exchanged(points, area)
-        return stored, self.friction.work_of(taken, stored)
+        points = SlidingPoints(*(each[: len(area)] for each in self._points.value))
+        taken, stored = self.part.exchanged(points, area)
+        return stored, self.part.work_of(taken, stored)

@@ -196,7 +196,7 @@ class SurfaceContact(SoilContact):
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
         found = self.evaluate(state)
         at, P = found.pressed, found.trial.turn.P
-        by_dofs = pair_tangents(at.axis, at.surface, at.basis, at.points, at.force, at.slope, at.pairs, P)
+        by_dofs = pair_tangents(*at.forms, at.force, at.slope, at.pairs, P)
         self.add_tangent(values, found, by_dofs, at.on_riser)
 
     def add_tangent(self, values: dict[str, Array], found: SurfaceState, by_dofs: Array, f: Array) -> None:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
+from riser_soil.contact.cylinder_gap import gap_forms
 from riser_soil.contact.integration_points import KeptRows, write_kept
 from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of
 from riser_soil.contact.pressed_points import (
@@ -155,7 +156,8 @@ def add_touch_tangent(
     n, facets = workspace.found[POINTS], touch.surface.facets
     near, force, slope = first_of(workspace.near, n), workspace.force[:n], workspace.slope[:n]
     pairs = paired(near, K.shape[0])
-    by_dofs = pair_tangents(touch.axis, touch.surface, touch.basis, near, force, slope, pairs, at.P)
+    forms, C = gap_forms(touch.axis, touch.surface, near, touch.basis)
+    by_dofs = pair_tangents(forms, C, force, slope, pairs, at.P)
     add_pairs(by_dofs, pairs, top.rows, facets, K, border)
 
 

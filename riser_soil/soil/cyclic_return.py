@@ -21,6 +21,7 @@ MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that �
 ROUND_OFF = 4e-15  # of |η| in the equation for Δp: a change that makes no more is none
 ROOT = math.sqrt(2.0 / 3.0)
 
+
 class Clay(NamedTuple):
     """Elastic moduli, largest equivalent stress and that at first yield, hardening modulus C, each (n,), and initial
     stress (n, 6) [Pa].

@@ -161,9 +161,9 @@ def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
         return partial(SoilBorder, system, contact, soil, None)
     from riser_soil.contact.soil_friction import SoilFriction
 
-    friction = others[0]
-    rubbing = friction.in_loop() if len(others) == 1 and isinstance(friction, SoilFriction) else None
-    return None if rubbing is None else partial(SoilBorder, system, contact, soil, rubbing)
+    part = others[0]
+    friction = part.in_loop() if len(others) == 1 and isinstance(part, SoilFriction) else None
+    return None if friction is None else partial(SoilBorder, system, contact, soil, friction)
 
 
 class SoilBorder(LoopBorder):
@@ -178,15 +178,17 @@ class SoilBorder(LoopBorder):
         system: System,
         contact: SurfaceContact,
         soil: CondensedSoil,
-        rubbing: LoopFriction | None,
+        friction: LoopFriction | None,
         lines: Sequence[PackedLine],
     ) -> None:
         (packed,) = lines
         self._line, self._contact, self._soil, self._top = contact.line, contact, soil, soil.top
-        self._system, self._packed, self._rubbing = system, packed, rubbing
-        self.parts = (contact, soil) if rubbing is None else (contact, rubbing.friction, soil)
+        self._system, self._packed, self._friction = system, packed, friction
+        self.parts = (contact, soil) if friction is None else (contact, friction.part, soil)
         points, ne = len(soil.top.points), self._line.length.size
         self._touch, self._found = contact.touch_data(), _workspace(FEW, points, len(contact.law.columns))
+        if friction is not None:
+            friction.make_room(len(self._found.force))
         pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
         self._workspace, self._data = Packed(self._found), Packed(self._touch)
@@ -219,10 +221,10 @@ class SoilBorder(LoopBorder):
         begun = Bound(begin_border, self._held, self._border)
         given = self._data, self._watched, self._motion, packed.packed_at, packed.packed_forces
         touched = Bound(add_touch, *given, self._border, self._workspace)
-        if self._rubbing is None:
+        if self._friction is None:
             return [moved, begun, touched]
         out = packed.packed_forces, self._border, self._workspace
-        return [moved, begun, touched, self._rubbing.forces(self._data, self._motion, *out)]
+        return [moved, begun, touched, self._friction.forces(self._data, self._motion, *out)]
 
     def norms(self, sums: Packed) -> list[Bound]:
         return [Bound(add_norm_of_border, self._border, sums)]
@@ -235,9 +237,9 @@ class SoilBorder(LoopBorder):
         out = self._packed.packed_at, self._packed.K, self._border, self._workspace
         cleared = Bound(clear_border, self._held, self._border)
         touched = Bound(add_touch_tangent, self._data, self._motion, *out)
-        if self._rubbing is None:
+        if self._friction is None:
             return [cleared, touched]
-        return [cleared, touched, self._rubbing.tangent(self._data, self._motion, *out)]
+        return [cleared, touched, self._friction.tangent(self._data, self._motion, *out)]
 
     def factorise(self, progress: Packed) -> list[Bound]:
         packed = self._packed
@@ -260,8 +262,8 @@ class SoilBorder(LoopBorder):
         accepted = np.asarray(self._top.points + committed)
         self._touch.surface.deformed[...] = accepted
         self._data.renew(self._contact.begun(self._touch))
-        if self._rubbing is not None:
-            self._rubbing.begin(before, len(self._found.force))
+        if self._friction is not None:
+            self._friction.begin(before)
         if self._reached is not self._top.reached or self._has_moved(accepted):
             self._look([])
         self._motion.value.accepted[...] = accepted
@@ -298,8 +300,8 @@ class SoilBorder(LoopBorder):
         if found.found[FULL]:
             self._found = _workspace(2 * len(found.force), len(found.met), found.after.shape[1])
             self._workspace.renew(self._found)
-            if self._rubbing is not None:
-                self._rubbing.make_room(len(self._found.force))
+            if self._friction is not None:
+                self._friction.make_room(len(self._found.force))
         self._look([self._touch.axis._replace(q=self._touch.axis.q.copy())])
 
     def _look(self, tried: Sequence[Axis]) -> None:
@@ -352,9 +354,9 @@ class SoilBorder(LoopBorder):
         work[self._soil.name] += self._soil.work(before, state)
         work[self._contact.name] += self._work_of_contact(before, state)
         stored = float(self._found.energy[0])
-        if self._rubbing is not None:
-            by_friction, turned = self._rubbing.account(self._found.near.area[: self._found.found[POINTS]])
-            work[self._rubbing.friction.name] += turned
+        if self._friction is not None:
+            by_friction, turned = self._friction.account(self._found.near.area[: self._found.found[POINTS]])
+            work[self._friction.part.name] += turned
             stored += by_friction
         return Energy(potential=stored) + self._soil.energy(state)
 
@@ -362,11 +364,10 @@ class SoilBorder(LoopBorder):
         """See `SurfaceContact.work`: without a history all is the time scheme's."""
         if self._contact.law.columns:
             return self._contact.work(before, after)
-        t = after.t
         first, last = self._stored.get(before.t), float(self._found.energy[0])
         if first is None:
             first = self._contact.energy(before).potential
-        self._stored = {before.t: first, t: last}
+        self._stored = {before.t: first, after.t: last}
         lost = float(self._taken[0]) - last + first
         return Work(dissipated=lost, by_scheme=lost)
 

@@ -92,7 +92,7 @@ def test_friction_is_mobilised_by_a_thirtieth_of_the_diameter() -> None:
     assert friction is not None
     np.testing.assert_allclose(assembly.friction._stiffness, 0.6 * weight / (D / 30.0))
     width = contact_width(assembly.scales, E)
-    assert friction._rough.stiffness == pytest.approx(0.6 * weight / width / (D / 30.0))
+    assert friction._resistance.stiffness == pytest.approx(0.6 * weight / width / (D / 30.0))
 
 
 def test_the_riser_bounces_on_the_stiffest_of_its_grounds() -> None:

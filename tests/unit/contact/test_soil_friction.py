@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.contact.law import Penalty, SuctionLaw
-from riser_soil.contact.soil_friction import SoilFriction, rub_tangents
+from riser_soil.contact.soil_friction import SoilFriction, friction_tangents
 from riser_soil.core.arrays import Array
 from tests.support.differences import slope as differences
 from tests.support.pipe_on_surface import RADIUS, STIFFNESS, PipeOnSurface, pipe_on_surface, sagging, shaken
@@ -126,8 +126,8 @@ def test_the_tangent_needs_the_change_of_the_pressure(monkeypatch: pytest.Monkey
     expected = made.tangent(u, friction)
 
     monkeypatch.setattr(
-        "riser_soil.contact.soil_friction.rub_tangents",
-        lambda rough, points, force, slope, *given: rub_tangents(rough, points, force, 0.0 * slope, *given),
+        "riser_soil.contact.soil_friction.friction_tangents",
+        lambda law, points, force, slope, *given: friction_tangents(law, points, force, 0.0 * slope, *given),
     )
     assert np.abs(made.tangent(u, friction) - expected).max() > 1e-2 * np.abs(expected).max()
 
