@@ -16,7 +16,7 @@ from riser_soil.contact.integration_points import KeptRows, PointMemory, write_k
 from riser_soil.contact.near_points import NearPoints, Surface, first_of
 from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
-from riser_soil.contact.surface_loop import POINTS, Border, TopMotion, TouchData, TouchWorkspace, add_pairs
+from riser_soil.contact.surface_loop import POINTS, TopMotion, TouchData, TouchWorkspace, add_pairs
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
@@ -25,7 +25,7 @@ from riser_soil.core.saved_state import Saved, Stateful, gathered, within
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.part_kernels import LineForces
+from riser_soil.riser.part_kernels import Border, LineForces
 from riser_soil.riser.vectors import add, scale, sub, vector, write
 
 AREA = 3  # column of the memory, behind the traction

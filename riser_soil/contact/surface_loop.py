@@ -28,7 +28,7 @@ from riser_soil.contact.pressed_points import (
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration
-from riser_soil.riser.part_kernels import LineForces
+from riser_soil.riser.part_kernels import Border, LineForces
 
 # In `TouchWorkspace.found`: how many points touch; whether something has left what is watched, and whether more points
 # are near than there is room for.
@@ -60,28 +60,14 @@ class Watched(NamedTuple):
 
 
 class TopMotion(NamedTuple):
-    """How the watched nodes (k,) of the top move by the border's increments: by (3 k, nb). accepted (np, 3): where all
-    are before [m]. rows (np, 3): of the border, HELD or BEYOND.
+    """How the watched nodes (k,) of the top move by the increments of the border's first unknowns, the reached dofs
+    (na,): by (3 k, na). accepted (np, 3): where all are before [m]. rows (np, 3): of the border, HELD or BEYOND.
     """
 
     nodes: IntArray
     by: Array
     accepted: Array
     rows: IntArray
-
-
-class Border(NamedTuple):
-    """Unknowns beside the line's dofs (n,), which all couple with each other: increments u (nb,), residual (nb,); of
-    the tangent the corner (nb, nb), and what couples it with the line (n, nb): to the right, in the border's columns,
-    and below, in its rows, turned over; the line's nodes (nn,) that are coupled.
-    """
-
-    u: Array
-    residual: Array
-    corner: Array
-    right: Array
-    below: Array
-    coupled: BoolArray
 
 
 class TouchWorkspace(NamedTuple):
@@ -104,7 +90,7 @@ class TouchWorkspace(NamedTuple):
 @njit
 def move_top(touch: TouchData, top: TopMotion, border: Border) -> None:
     """Write where the watched nodes are."""
-    moved = np.dot(top.by, border.u)
+    moved = np.dot(top.by, border.u[: top.by.shape[1]])
     for k in range(top.nodes.size):
         for i in range(3):
             touch.surface.deformed[top.nodes[k], i] = top.accepted[top.nodes[k], i] + moved[3 * k + i]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
@@ -30,6 +30,20 @@ class LineForces(NamedTuple):
     inertia: Array
     force: Array
     end: Array
+
+
+class Border(NamedTuple):
+    """Unknowns beside a line's dofs (n,), which all couple with each other: increments u (nb,), residual (nb,); of
+    the tangent the corner (nb, nb), and what couples it with the line (n, nb): to the right, in the border's columns,
+    and below, in its rows, turned over; the line's nodes (nn,) that are coupled.
+    """
+
+    u: Array
+    residual: Array
+    corner: Array
+    right: Array
+    below: Array
+    coupled: BoolArray
 
 
 class LineWeights(NamedTuple):

@@ -7,9 +7,10 @@ shortening, is left to Newton's method over the parts.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,23 +27,24 @@ from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.accepted_lines import CompiledMass, LineResults
 from riser_soil.solve.newton_progress import CONVERGED, NAMES, OUTGROWN, StopLimits, largest_at
-from riser_soil.solve.packed_line import KernelParts, LoopBorder, MakeBorder, PackedLine, PackedSystem
+from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
 from riser_soil.solve.solver import Accepted, NewtonSettings, Solution, Step, limits_of, reported
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
+    from riser_soil.solve.dense_border import MakeBorder
 
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is given up
 
 
 def compiled_loop(system: System, most: int) -> CompiledLoop | None:
-    """The compiled loop over lines and bodies, joined or not, or over a line on condensed soil; None where one of their
-    parts has no kernels. most: iterations of a step.
+    """The compiled loop over lines and bodies, joined or not, one of them on condensed soil or none; None where one of
+    their parts has no kernels. most: iterations of a step.
     """
     fields = [field for field in system.model.lines if isinstance(field, MovingNodes)]
     parts = [_with_kernels(acting_on(field, system.model.parts)) for field in fields]
     known: list[Any] = [part for each in parts for part in each.parts]
-    make = _border_of(system, [part for part in system.model.parts if part not in known])
+    make = _beside(system, [part for part in system.model.parts if part not in known])
     if make is None or len(fields) < len(system.model.lines):
         return None
     weights = Packed(LineWeights(0.0, 0.0))
@@ -59,17 +61,34 @@ def _with_kernels(parts: Sequence[LinePart]) -> KernelParts:
     return KernelParts([(part, data) for part, data in asked if data is not None])
 
 
-def _border_of(system: System, beside: Sequence[Part]) -> MakeBorder | None:
-    """What stands beside the lines, by the parts that are none of theirs alone; None where these have no kernels."""
+def _beside(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedLine]], list[LoopBorder]] | None:
+    """What makes all that stands beside the lines, by the parts that are none of theirs alone; None where these have no
+    kernels.
+    """
+    if not parts:
+        return lambda lines: []
+    on_soil, hung = ([part for part in parts if (part.traits.groups == "E") is touching] for touching in (True, False))
+    makers: list[MakeBorder | None] = []
     if system.model.others:
         from riser_soil.solve.soil_border import border_on_soil
 
-        return border_on_soil(system, beside)
-    if not beside:
-        return lambda lines: LoopBorder()
-    from riser_soil.solve.joint_border import joint_border
+        makers.append(border_on_soil(system, on_soil))
+    elif on_soil:
+        return None
+    if hung:
+        from riser_soil.solve.joint_border import joint_border
 
-    return joint_border(beside)
+        makers.append(joint_border(hung))
+    known = [make for make in makers if make is not None]
+    if len(known) < len(makers):
+        return None
+    from riser_soil.solve.dense_border import DenseBorder
+
+    def make(lines: Sequence[PackedLine]) -> list[LoopBorder]:
+        border = DenseBorder(lines)
+        return [*(each(border, lines) for each in known), border]
+
+    return make
 
 
 class CompiledLoop(Accepted):
@@ -81,12 +100,12 @@ class CompiledLoop(Accepted):
     def __init__(self, system: System, packed: PackedSystem) -> None:
         super().__init__(system)
         self.iterations = 0
-        self.packed, self._lines, self._border = packed, packed.lines, packed.border
+        self.packed, self._lines, self._beside = packed, packed.lines, packed.beside
         self._solved: State | None = None  # by the compiled loop
         self._nothing = np.zeros(system.numbering.size)
         self._no_work = {part.name: Work() for part in system.model.parts}
         self._results: dict[Line, LineResults] = {}
-        if self._border.smooth:
+        if packed.all_beside(attrgetter("smooth")):
             found = [(packed, packed.line) for packed in self._lines]
             self._results = {
                 line: LineResults(packed, line, system.smooth) for packed, line in found if isinstance(line, Line)
@@ -112,7 +131,8 @@ class CompiledLoop(Accepted):
 
     def leaves(self, before: State) -> bool:
         """Whether a step from an accepted state that could not be solved may be solved over the parts."""
-        return self._border.leave_to_newton(before)
+        left = [each.leave_to_newton(before) for each in self._beside]
+        return any(left)
 
     def _begun(self, step: Step) -> State:
         """Where the step is balanced: the first guess, and rates of no increments but those that are prescribed."""
@@ -128,21 +148,24 @@ class CompiledLoop(Accepted):
         """Why the loop does not get to balance, "" where it does; norms of the residual on the way."""
         scheme, past = step.scheme, step.scheme.past(step.start)
         for _ in range(MOST_STARTS):
-            self._border.begin(step.before, begun.t, begun.u)
+            for each in self._beside:
+                each.begin(step.before, begun.t, begun.u)
             self.packed.begin(begun, past, scheme.weights(step.dt), limits)
             outcome, taken = self.packed.solve()
             self.iterations += taken
             norms: list[float] = as_list(self.packed.progress.norms[: taken + 1])
             if outcome == CONVERGED:
-                return self._tangle(step, begun) or ("" if self._border.holds else NAMES[OUTGROWN]), norms
+                holds = self.packed.all_beside(attrgetter("holds"))
+                return self._tangle(step, begun) or ("" if holds else NAMES[OUTGROWN]), norms
             if outcome != OUTGROWN:
                 break
-            self._border.widen()
+            for each in self._beside:
+                each.widen()
         return self._reason(outcome, norms), norms
 
     def _limits(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
-        smooth, gradual = self.system.smooth, self.system.gradual and self._border.gradual
+        smooth, gradual = self.system.smooth, self.system.gradual and self.packed.all_beside(attrgetter("gradual"))
         answers = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
         limits, moves = limits_of(settings, smooth, gradual, answers), step.scheme.moves
         if moves == 1.0:
@@ -170,7 +193,8 @@ class CompiledLoop(Accepted):
             end = step.scheme.trial(step.before, step.t, step.dt, step.scheme.moves * u)
             self.system.prescribe(end)
             return end
-        self._border.put_increments(step.scheme.weights(step.dt), u, v, a)
+        for each in self._beside:
+            each.put_increments(step.scheme.weights(step.dt), u, v, a)
         return State(step.t, u, v, a, dt=step.dt)
 
     def _forces(self) -> Forces:
@@ -191,7 +215,7 @@ class CompiledLoop(Accepted):
         for packed in self._lines:
             packed.keep()
         kept = [part for packed in self._lines for part in packed.parts.committed]
-        self.system.commit(state, [*kept, *self._border.parts])
+        self.system.commit(state, [*kept, *(part for each in self._beside for part in each.parts)])
         for results in self._results.values():
             results.commit()
         self.system.clock.add("compiled loop", since)
@@ -204,7 +228,8 @@ class CompiledLoop(Accepted):
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E zero."""
         found = self.mass.bulk_forces(state)
-        self._border.add_bulk_forces(state, found)
+        for each in self._beside:
+            each.add_bulk_forces(state, found)
         return found
 
     def element_residual(self, line: Line, state: State) -> Array:
@@ -226,23 +251,27 @@ class CompiledLoop(Accepted):
     def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         if solution.state is not self._solved:
-            self._border.forget_account()
+            for each in self._beside:
+                each.forget_account()
             return super().energy_exchanged(before, solution)
         since = time.perf_counter()
         work = dict(self._no_work)
         self.packed.account(before)
         for packed in self._lines:
             packed.parts.add_work(before, solution.state, as_list(packed.work), work)
-        beside = self._border.add_account(before, solution.state, work)
+        energy = Energy(*as_list(self.packed.energy))
+        for each in self._beside:
+            energy += each.add_account(before, solution.state, work)
         self.system.clock.add("compiled loop", since)
-        return Energy(*as_list(self.packed.energy)) + beside, work
+        return energy, work
 
     def state(self) -> Saved:
         """What would be the same but to round-off if it were found anew."""
-        return self._border.state()
+        return {name: value for each in self._beside for name, value in each.state().items()}
 
     def restore(self, saved: Saved) -> None:
-        self._border.restore(saved)
+        for each in self._beside:
+            each.restore(saved)
 
     def _reason(self, outcome: int, norms: list[float]) -> str:
         return reported(NAMES[outcome], norms, self._place())

@@ -5,8 +5,7 @@ the dofs of both nodes of all joints as further unknowns,
 
     B x + K z = f,    z - x = 0 at the joints,
 
-the bands B are factorised each on its own, and what is left is dense and small: (1 + E inv(B) K) z = E inv(B) f, where
-E takes the joints' rows. Rows that joints touch are few, as in `linear_solver`.
+the bands B stay each on its own, and the copies stand in their border, see `dense_border`.
 """
 
 from __future__ import annotations
@@ -18,25 +17,22 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.bodies.joints import JointPlaces, Joints, Laws, add_tangent, conjugate, energy_of
-from riser_soil.core import banded, dense
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.dense import PIVOT
 from riser_soil.core.part import Forces, Part, State
 from riser_soil.riser.configuration import SpatialConfiguration
-from riser_soil.riser.part_kernels import LineForces, LineWeights
-from riser_soil.solve.newton_progress import GOING_ON, SINGULAR
-from riser_soil.solve.packed_line import LoopBorder, MakeBorder, PackedLine
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
+from riser_soil.riser.part_kernels import Border, LineForces, LineWeights
+from riser_soil.solve.dense_border import DenseBorder, MakeBorder
+from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace
 
 MOST_JOINTS = 32  # from which on a sparse matrix of all is cheaper
 
 
 class JointData(NamedTuple):
     """m joints: laws; places of their nodes; left (1,): the share of the first gap that is open; forces (m, 12) and
-    matrices K (m, 12, 12); sizes (m, 12) of the coordinates; schur (12 m, 12 m) and its pivots; answer (12 m,): copies
-    of the dofs.
+    matrices K (m, 12, 12); sizes (m, 12) of the coordinates.
     """
 
     laws: Laws
@@ -45,22 +41,14 @@ class JointData(NamedTuple):
     forces: Array
     K: Array
     sizes: Array
-    schur: Array
-    pivots: IntArray
-    answer: Array
 
 
 class Sides(NamedTuple):
-    """Those of the joints that are on one line: joint, side and node (k,); first (k,): where the node's rows begin
-    among the rows (r,) that joints touch, in increasing order; right (r, 12 m): how these follow the copies.
-    """
+    """Those of the joints that are on one line: joint, side and node (k,)."""
 
     joint: IntArray
     side: IntArray
     node: IntArray
-    first: IntArray
-    rows: IntArray
-    right: Array
 
 
 @njit
@@ -131,67 +119,24 @@ def add_to_band(joints: JointData, sides: Sides, workspace: MatrixWorkspace, dof
 
 
 @njit
-def begin_copies(joints: JointData) -> None:
-    """Write the copies' own matrix."""
-    joints.schur[:] = 0.0
-    for k in range(joints.schur.shape[0]):
-        joints.schur[k, k] = 1.0
+def balance_copies(joints: JointData, border: Border) -> None:
+    """The copies are where the dofs are."""
+    border.residual[border.residual.size - joints.forces.size :] = 0.0
 
 
 @njit
-def add_to_copies(
-    joints: JointData, sides: Sides, workspace: MatrixWorkspace, dofs: Dofs, progress: NewtonProgress
-) -> None:
-    """Add what a line's dofs do as they follow the copies."""
-    if progress.ending[0] != GOING_ON:
-        return
-    right, schur = sides.right, joints.schur
-    right[:] = 0.0
+def write_copies(joints: JointData, sides: Sides, border: Border) -> None:
+    """Write how a line's dofs follow the copies, and these the dofs."""
+    first = border.residual.size - joints.forces.size
     for k in range(sides.node.size):
         j, s, n = sides.joint[k], sides.side[k], sides.node[k]
+        own, other = 6 * s, 6 * (1 - s)
+        border.coupled[n] = True
         for i in range(6):
-            if not dofs.fixed[n, i]:
-                for c in range(6):
-                    other = 6 * (1 - s) + c
-                    right[sides.first[k] + i, 12 * j + other] += joints.K[j, 6 * s + i, other]
-    inner = banded.inverse_at(workspace.ab, workspace.pivots, sides.rows, workspace.band)
-    follow = np.dot(inner, right)
-    for k in range(sides.node.size):
-        for i in range(6):
-            row = 12 * sides.joint[k] + 6 * sides.side[k] + i
-            for c in range(schur.shape[1]):
-                schur[row, c] += follow[sides.first[k] + i, c]
-
-
-@njit
-def factorise_copies(joints: JointData, progress: NewtonProgress) -> None:
-    """Factorise the copies' matrix."""
-    if progress.ending[0] == GOING_ON and not dense.factorise(joints.schur, joints.pivots):
-        progress.ending[0] = SINGULAR
-
-
-@njit
-def load_copies(joints: JointData, sides: Sides, workspace: MatrixWorkspace, dofs: Dofs) -> None:
-    """Write where a line's nodes alone would go."""
-    inner = dofs.residual.copy().reshape(dofs.residual.size)
-    banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
-    for k in range(sides.node.size):
-        for i in range(6):
-            joints.answer[12 * sides.joint[k] + 6 * sides.side[k] + i] = inner[6 * sides.node[k] + i]
-
-
-@njit
-def solve_copies(joints: JointData) -> None:
-    """Solve for the copies."""
-    dense.solve(joints.schur, joints.pivots, joints.answer)
-
-
-@njit
-def take_from_line(joints: JointData, sides: Sides, dofs: Dofs) -> None:
-    """Take what the copies do to a line off its residual."""
-    residual = dofs.residual.reshape(dofs.residual.size)
-    for r in range(sides.rows.size):
-        residual[sides.rows[r]] -= dense.product(sides.right, r, 0, joints.answer.size, joints.answer)
+            copy = first + 12 * j + own + i
+            border.below[6 * n + i, copy], border.corner[copy, copy] = -1.0, 1.0
+            for c in range(6):
+                border.right[6 * n + i, first + 12 * j + other + c] = joints.K[j, own + i, other + c]
 
 
 @njit
@@ -201,7 +146,7 @@ def add_energy_of_joints(joints: JointData, energy: Array) -> None:
 
 
 def joint_border(beside: Sequence[Part]) -> MakeBorder | None:
-    """That of lines and bodies beside which there are joints, not too many; None for anything else."""
+    """That of joints, if they are not too many; None for anything else."""
     if len(beside) != 1 or not isinstance(beside[0], Joints) or len(beside[0].joints) > MOST_JOINTS:
         return None
     return partial(JointBorder, beside[0])
@@ -213,14 +158,14 @@ class JointBorder(LoopBorder):
     lines: that have joints, each with its sides of them; data: what the loop writes to.
     """
 
-    def __init__(self, joints: Joints, lines: Sequence[PackedLine]) -> None:
-        self._joints, m, self.parts = joints, len(joints.joints), (joints,)
+    def __init__(self, joints: Joints, dense: DenseBorder, lines: Sequence[PackedLine]) -> None:
+        self._joints, m, self.parts, self._dense = joints, len(joints.joints), (joints,), dense
         vectors, frames = (m, 2, 3), (m, 2, 3, 3)
         places = JointPlaces(*(np.zeros(shape) for shape in (vectors, vectors, frames, frames, frames)))
-        copies, matrices = 12 * m, (np.zeros((m, 12)), np.zeros((m, 12, 12)), np.zeros((m, 12)))
-        factors = np.zeros((copies, copies)), np.zeros(copies, PIVOT), np.zeros(copies)
-        self.data = JointData(joints.laws, places, np.zeros(1), *matrices, *factors)
+        matrices = np.zeros((m, 12)), np.zeros((m, 12, 12)), np.zeros((m, 12))
+        self.data = JointData(joints.laws, places, np.zeros(1), *matrices)
         self._packed = Packed(self.data)
+        dense.make_room(copies=12 * m)
         found = ((line, _sides_of(joints, line)) for line in lines)
         self.lines = [(line, Packed(sides)) for line, sides in found if sides.node.size]
 
@@ -233,6 +178,7 @@ class JointBorder(LoopBorder):
             *(Bound(look, line.packed_at, sides, data) for line, sides in self.lines),
             Bound(find_forces, data),
             *(Bound(add_to_line, data, sides, line.packed_forces) for line, sides in self.lines),
+            Bound(balance_copies, data, self._dense.of[self.lines[0][0]]),
         ]
 
     def bulk_tangent(self) -> list[Bound]:
@@ -248,23 +194,7 @@ class JointBorder(LoopBorder):
         return [Bound(add_to_band, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self.lines]
 
     def factorise(self, progress: Packed) -> list[Bound]:
-        data = self._packed
-        return [
-            Bound(begin_copies, data),
-            *(
-                Bound(add_to_copies, data, sides, line.packed_workspace, line.packed_dofs, progress)
-                for line, sides in self.lines
-            ),
-            Bound(factorise_copies, data, progress),
-        ]
-
-    def couple(self) -> list[Bound]:
-        data = self._packed
-        return [
-            *(Bound(load_copies, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self.lines),
-            Bound(solve_copies, data),
-            *(Bound(take_from_line, data, sides, line.packed_dofs) for line, sides in self.lines),
-        ]
+        return [Bound(write_copies, self._packed, sides, self._dense.of[line]) for line, sides in self.lines]
 
     def account(self, energy: Packed) -> list[Bound]:
         return [Bound(add_energy_of_joints, self._packed, energy)]
@@ -282,6 +212,4 @@ def _sides_of(joints: Joints, line: PackedLine) -> Sides:
         if side.field is line.line
     ]
     joint, side, node = np.array(found, dtype=np.int64).reshape(-1, 3).T.copy()
-    nodes, at = np.unique(node, return_inverse=True)
-    rows = (6 * nodes[:, None] + np.arange(6)).ravel()
-    return Sides(joint, side, node, 6 * at.astype(np.int64), rows, np.zeros((rows.size, 12 * len(joints.joints))))
+    return Sides(joint, side, node)

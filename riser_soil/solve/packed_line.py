@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -209,8 +210,8 @@ def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
 
 
 class LoopBorder:
-    """Nothing beside the lines. One that couples them, or has unknowns of its own, overrides all of this; kernels are
-    bound to what they take.
+    """What stands beside the lines, couples them or has unknowns of its own: here nothing; kernels are bound to what
+    they take.
 
     knows_round_off: whether a residual can be told from its round-off by `riser_loop.write_terms`; smooth: whether
     nothing touches the lines; gradual: whether a tangent may be kept beside contact, see `System`; parts: whose forces
@@ -295,56 +296,62 @@ class LoopBorder:
         """Nothing is kept."""
 
 
-MakeBorder = Callable[[Sequence[PackedLine]], LoopBorder]
-
-
 class PackedSystem:
-    """Lines and bodies with what couples them, for the compiled loop. weights: as the lines have them; most: iterations
-    of a step. evaluate, write_tangent, renew_contact, improve: pieces of the loop, to be looked at one by one.
+    """Lines and bodies with what stands beside them, for the compiled loop. weights: as the lines have them; most:
+    iterations of a step. evaluate, write_tangent, renew_contact, improve: pieces of the loop, to be looked at alone.
     """
 
-    def __init__(self, lines: Sequence[PackedLine], border: LoopBorder, weights: Packed, most: int) -> None:
-        self.lines, self.border, self._weights = lines, border, weights
+    def __init__(self, lines: Sequence[PackedLine], beside: Sequence[LoopBorder], weights: Packed, most: int) -> None:
+        self.lines, self.beside, self._weights = lines, beside, weights
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(most + 1), np.zeros(2, dtype=np.int64))
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
         self._bind()
         self.energy = np.zeros(3)
         energy = Packed(self.energy)
         each = [kernel for line in lines for kernel in line.account(energy)]
-        self._account = in_turn(Bound(loop.set_zero, energy), *each, *border.account(energy))
+        self._account = in_turn(Bound(loop.set_zero, energy), *each, *self._kernels(lambda it: it.account(energy)))
+
+    def _kernels(self, of: Callable[[LoopBorder], list[Bound]]) -> list[Bound]:
+        """Of all that stands beside the lines."""
+        return [kernel for each in self.beside for kernel in of(each)]
+
+    def all_beside(self, holds: Callable[[LoopBorder], bool]) -> bool:
+        """Whether something holds of all that stands beside the lines."""
+        return all(map(holds, self.beside))
 
     def _bind(self) -> None:
         """Bind the kernels of the loop to where they read and write."""
-        lines, border, progress, limits = self.lines, self.border, Packed(self.progress), self._limits
+        lines, beside, progress, limits = self.lines, self._kernels, Packed(self.progress), self._limits
+        smooth, knows_round_off = (self.all_beside(attrgetter(name)) for name in ("smooth", "knows_round_off"))
         sums, above = Packed(np.zeros(5)), Packed(np.zeros(1, dtype=np.bool_))
         evaluate = [
             *(kernel for line in lines for kernel in line.evaluate()),
-            *border.forces(),
+            *beside(lambda it: it.forces()),
             Bound(loop.set_zero, sums),
             *(kernel for line in lines for kernel in line.balance(sums)),
-            *border.norms(sums),
+            *beside(lambda it: it.norms(sums)),
             Bound(loop.judge, sums, limits, progress),
-            *border.outgrown(progress),
+            *beside(lambda it: it.outgrown(progress)),
         ]
         bulk, contact, held_bulk, held_contact = (
             [kernel for line in each for kernel in line]
-            for each in zip(*(line.tangents(not border.smooth) for line in lines), strict=True)
+            for each in zip(*(line.tangents(not smooth) for line in lines), strict=True)
         )
-        joined = border.bulk_tangent()
-        contact += border.tangent()
-        fill = [*(line.fill() for line in lines), *border.fill()]
-        factors = [*fill, *(line.factorise(progress) for line in lines), *border.factorise(progress)]
+        joined = beside(lambda it: it.bulk_tangent())
+        contact += beside(lambda it: it.tangent())
+        fill = [*(line.fill() for line in lines), *beside(lambda it: it.fill())]
+        factors = [*fill, *(line.factorise(progress) for line in lines), *beside(lambda it: it.factorise(progress))]
         sizes = [line.write_sizes for line in lines]
         terms = [Bound(loop.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
         looked = [Bound(loop.find_above, line.packed_dofs, above) for line in lines]
         probe = [
-            *held_bulk, *joined, *held_contact, *sizes, *terms, *border.terms(),
+            *held_bulk, *joined, *held_contact, *sizes, *terms, *beside(lambda it: it.terms()),
             Bound(loop.set_zero, above), *looked, Bound(loop.judge_round_off, above, progress),
         ]  # fmt: skip
         renew = [*bulk, *joined, *contact, *factors]
         touch = [*contact, *factors] if contact else []
-        improve = [*border.couple(), *(line.improve() for line in lines)]
-        each = evaluate, probe if border.knows_round_off else [], renew, touch, improve
+        improve = [*beside(lambda it: it.couple()), *(line.improve() for line in lines)]
+        each = evaluate, probe if knows_round_off else [], renew, touch, improve
         tables = (Packed(calls(*kernels)) for kernels in each)
         tangles = (kernel for line in lines for kernel in line.look_for_tangles)
         self._solve = in_turn(Bound(loop.solve_step, *tables, limits, progress), *tangles)

@@ -1,14 +1,7 @@
-"""Condensed soil beside a riser in the compiled loop: its reached dofs are the loop's border, and contact couples both.
+"""Condensed soil beside lines in the compiled loop: its reached dofs are in the border, and contact couples both.
 
 Which pairs of an element and a facet may touch is found for boxes around the elements, and holds as long as these stay
 within; which dofs are reached, see `soil.condensed`. Where either doesn't do, the loop says so, and begins anew.
-
-What the compiled loop over a riser does besides where other unknowns stand beside it, which all couple: its border.
-
-    [B  U] [x]   [f]
-    [V  D] [y] = [g]
-
-B is the riser's band, U and V the coupling, zero but at few nodes, and D dense, as in `linear_solver`.
 """
 
 from __future__ import annotations
@@ -27,7 +20,6 @@ from riser_soil.contact.surface_loop import (
     FULL,
     LEFT,
     POINTS,
-    Border,
     TopMotion,
     TouchWorkspace,
     Watched,
@@ -36,18 +28,18 @@ from riser_soil.contact.surface_loop import (
     move_top,
     write_touch_work,
 )
-from riser_soil.core import banded, dense
 from riser_soil.core.arrays import Array, IntArray, as_list
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.dense import PIVOT
 from riser_soil.core.part import Energy, Part, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
+from riser_soil.riser.part_kernels import Border
 from riser_soil.soil.condensed import CondensedSoil, Reached
-from riser_soil.solve.newton_progress import GOING_ON, OUTGROWN, SINGULAR
-from riser_soil.solve.packed_line import LoopBorder, MakeBorder, PackedLine
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
+from riser_soil.solve.dense_border import DenseBorder, MakeBorder
+from riser_soil.solve.newton_progress import OUTGROWN
+from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.riser_loop import NewtonProgress
 
 if TYPE_CHECKING:
     from riser_soil.contact.soil_friction import LoopFriction
@@ -65,30 +57,19 @@ class SoilData(NamedTuple):
     holding: Array
 
 
-class Factors(NamedTuple):
-    """Workspace for the factors of the border: the Schur complement (nb, nb) and its pivots; rows (n,) of the line that
-    are coupled, as many as `filled` (1,) says.
-    """
-
-    schur: Array
-    pivots: IntArray
-    rows: IntArray
-    filled: IntArray
-
-
 @njit
 def begin_border(soil: SoilData, border: Border) -> None:
     """Write what the soil's own forces leave out of balance."""
-    found = np.dot(soil.stiffness, border.u)
+    found = np.dot(soil.stiffness, border.u[: soil.holding.size])
     for i in range(found.size):
         border.residual[i] = soil.holding[i] + found[i]
 
 
 @njit
-def add_norm_of_border(border: Border, sums: Array) -> None:
+def add_norm_of_soil(soil: SoilData, border: Border, sums: Array) -> None:
     """Add the soil's residual to the norms, see `riser_loop.add_norms`."""
-    for residual in border.residual:
-        sums[0] += residual * residual
+    for i in range(soil.holding.size):
+        sums[0] += border.residual[i] * border.residual[i]
 
 
 @njit
@@ -101,7 +82,8 @@ def find_outgrown(workspace: TouchWorkspace, progress: NewtonProgress) -> None:
 @njit
 def clear_border(soil: SoilData, border: Border) -> None:
     """Write the soil's own tangent."""
-    border.corner[...] = soil.stiffness
+    count = soil.holding.size
+    border.corner[:count, :count] = soil.stiffness
     ndof = border.right.shape[0] // border.coupled.size
     for n in range(border.coupled.size):
         if border.coupled[n]:
@@ -110,60 +92,22 @@ def clear_border(soil: SoilData, border: Border) -> None:
             border.coupled[n] = False
 
 
-@njit
-def factorise_with_border(
-    workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, progress: NewtonProgress
-) -> None:
-    """Factorise the border, beside the factors of the band."""
-    if progress.ending[0] != GOING_ON:
-        return
-    fixed, count, ndof = dofs.fixed, 0, dofs.fixed.shape[1]
-    for n in range(fixed.shape[0]):
-        for i in range(ndof):
-            if border.coupled[n] and not fixed[n, i]:
-                factors.rows[count] = n * ndof + i
-                count += 1
-    factors.filled[0] = count
-    rows, schur = factors.rows[:count], factors.schur
-    schur[...] = border.corner
-    if count > 0:
-        inner = banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band)
-        schur -= np.dot(np.ascontiguousarray(border.below[rows].T), np.dot(inner, border.right[rows]))
-    if not dense.factorise(schur, factors.pivots):
-        progress.ending[0] = SINGULAR
-
-
-@njit
-def improve_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors) -> None:
-    """Take what the factorised tangent answers off the border's increments, and what that moves off the residual."""
-    residual = dofs.residual.reshape(dofs.residual.size)
-    rows, answer = factors.rows[: factors.filled[0]], border.residual
-    inner = residual.copy()
-    banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
-    for k in rows:
-        for j in range(answer.size):
-            answer[j] -= border.below[k, j] * inner[k]
-    dense.solve(factors.schur, factors.pivots, answer)
-    for k in rows:
-        residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
-    for j in range(answer.size):
-        border.u[j] -= answer[j]
-
-
 def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
-    """That of a line on condensed soil; None where there are no kernels."""
+    """That of lines on condensed soil, one of which touches it; None where there are no kernels."""
     contact = next((part for part in beside if isinstance(part, SurfaceContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
     others = [part for part in beside if part is not contact and part is not soil]
-    if len(system.model.lines) > 1 or contact is None or soil is None:
+    if contact is None or soil is None:
         return None
-    if not others:
-        return partial(SoilBorder, system, contact, soil, None)
-    from riser_soil.contact.soil_friction import SoilFriction
+    friction = None
+    if others:
+        from riser_soil.contact.soil_friction import SoilFriction
 
-    part = others[0]
-    friction = part.in_loop() if len(others) == 1 and isinstance(part, SoilFriction) else None
-    return None if friction is None else partial(SoilBorder, system, contact, soil, friction)
+        part = others[0]
+        friction = part.in_loop() if len(others) == 1 and isinstance(part, SoilFriction) else None
+        if friction is None:
+            return None
+    return partial(SoilBorder, system, contact, soil, friction)
 
 
 class SoilBorder(LoopBorder):
@@ -179,9 +123,10 @@ class SoilBorder(LoopBorder):
         contact: SurfaceContact,
         soil: CondensedSoil,
         friction: LoopFriction | None,
+        dense: DenseBorder,
         lines: Sequence[PackedLine],
     ) -> None:
-        (packed,) = lines
+        packed = next(packed for packed in lines if packed.line is contact.line)
         self._line, self._contact, self._soil, self._top = contact.line, contact, soil, soil.top
         self._system, self._packed, self._friction = system, packed, friction
         self.parts = (contact, soil) if friction is None else (contact, friction.part, soil)
@@ -193,20 +138,12 @@ class SoilBorder(LoopBorder):
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
         self._workspace, self._data = Packed(self._found), Packed(self._touch)
         self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
-        self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
+        self._dense, self._border, self._held = dense, dense.of[packed], Packed(_held(0))
         self._taken: Array = np.zeros(1)
         self._seen: Array = np.empty((0, 3))
         self._reached: Reached | None = None  # as it was taken last
         self._prescribed: Reached = soil.top.reached  # as the system has it
         self._stored = dict[float, float]()  # contact's energy [J] by the time of states
-
-    def _empty(self, nb: int) -> tuple[Border, SoilData, Factors]:
-        """Workspace for so many dofs."""
-        n, nodes = self._line.size, self._line.nodes
-        right, below = np.zeros((n, nb)), np.zeros((n, nb))
-        border = Border(np.zeros(nb), np.zeros(nb), np.zeros((nb, nb)), right, below, np.zeros(nodes, dtype=np.bool_))
-        factors = Factors(np.zeros((nb, nb)), np.zeros(nb, PIVOT), np.zeros(n, np.int64), np.zeros(1, np.int64))
-        return border, SoilData(np.zeros((nb, nb)), np.zeros(nb)), factors
 
     def _motion_of(self, by: Array, nodes: IntArray) -> TopMotion:
         rows = np.full(self._top.size, HELD, dtype=np.int64)
@@ -227,7 +164,7 @@ class SoilBorder(LoopBorder):
         return [moved, begun, touched, self._friction.forces(self._data, self._motion, *out)]
 
     def norms(self, sums: Packed) -> list[Bound]:
-        return [Bound(add_norm_of_border, self._border, sums)]
+        return [Bound(add_norm_of_soil, self._held, self._border, sums)]
 
     def outgrown(self, progress: Packed) -> list[Bound]:
         return [Bound(find_outgrown, self._workspace, progress)]
@@ -240,15 +177,6 @@ class SoilBorder(LoopBorder):
         if self._friction is None:
             return [cleared, touched]
         return [cleared, touched, self._friction.tangent(self._data, self._motion, *out)]
-
-    def factorise(self, progress: Packed) -> list[Bound]:
-        packed = self._packed
-        given = packed.packed_workspace, packed.packed_dofs, self._border, self._factors
-        return [Bound(factorise_with_border, *given, progress)]
-
-    def couple(self) -> list[Bound]:
-        packed = self._packed
-        return [Bound(improve_border, packed.packed_workspace, packed.packed_dofs, self._border, self._factors)]
 
     def account(self, energy: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
@@ -269,7 +197,7 @@ class SoilBorder(LoopBorder):
         self._motion.value.accepted[...] = accepted
         held, at = self._held.value, self._top.reached.dofs
         np.dot(held.stiffness, committed.ravel()[at], out=held.holding)
-        self._border.value.u[:] = self._top.own(guess)[at]
+        self._moved[:] = self._top.own(guess)[at]
         self._prescribe_anew()
 
     def _prescribe_anew(self) -> None:
@@ -330,14 +258,19 @@ class SoilBorder(LoopBorder):
 
     def _take(self, reached: Reached) -> None:
         """Take other dofs."""
-        border, held, factors = self._empty(len(reached.dofs))
+        held = _held(len(reached.dofs))
         held.stiffness[...] = reached.stiffness
-        for kept, value in ((self._border, border), (self._held, held), (self._factors, factors)):
-            kept.renew(value)
+        self._held.renew(held)
+        self._dense.make_room(soil=len(reached.dofs))
         self._reached = reached
 
+    @property
+    def _moved(self) -> Array:
+        """Increments (na,) of the reached dofs in the last trial."""
+        return np.asarray(self._border.value.u[: len(self._held.value.holding)])
+
     def put_increments(self, weights: Weights, u: Array, v: Array, a: Array) -> None:
-        dofs, moved = self._top.offset + self._top.reached.dofs, self._border.value.u
+        dofs, moved = self._top.offset + self._top.reached.dofs, self._moved
         u[dofs] = moved
         v[dofs] += weights.shift_v * moved
         a[dofs] += weights.shift_a * moved
@@ -348,7 +281,7 @@ class SoilBorder(LoopBorder):
     @property
     def holds(self) -> bool:
         """Whether the soil has moved so little in the last trial that the pairs still are all that may touch."""
-        return bool(np.abs(self._border.value.u).max(initial=0.0) <= self._slack)
+        return bool(np.abs(self._moved).max(initial=0.0) <= self._slack)
 
     def add_account(self, before: State, state: State, work: dict[str, Work]) -> Energy:
         work[self._soil.name] += self._soil.work(before, state)
@@ -380,6 +313,11 @@ class SoilBorder(LoopBorder):
 
     def restore(self, saved: Saved) -> None:
         self._stored = dict(zip(as_list(saved["times"]), as_list(saved["stored"]), strict=True))
+
+
+def _held(count: int) -> SoilData:
+    """For so many dofs."""
+    return SoilData(np.zeros((count, count)), np.zeros(count))
 
 
 def _workspace(count: int, nodes: int, columns: int) -> TouchWorkspace:

@@ -24,7 +24,7 @@ from riser_soil.riser.section_forces import element_residual, section_forces, vi
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.compiled_loop import compiled_loop
 from riser_soil.solve.newton_progress import CONVERGED, StopLimits
-from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
+from riser_soil.solve.packed_line import KernelParts, PackedLine, PackedSystem
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.solver import Accepted
 from tests.support import sample_water
@@ -61,7 +61,7 @@ class Compiled:
         numbers, free = KernelParts([(part, part.kernel_data()) for part in parts]), np.zeros(line.size, dtype=bool)
         weights = Packed(LineWeights(0.0, 0.0))
         self.line = PackedLine(line, numbers, free, np.ones(line.size), weights)
-        self.riser = PackedSystem([self.line], LoopBorder(), weights, most=1)
+        self.riser = PackedSystem([self.line], [], weights, most=1)
         for part in parts:
             part.renew_kernel_data(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u

@@ -167,7 +167,7 @@ def at_first_step(case: str) -> tuple[PackedSystem, System]:
 def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     """Of riser and border, and it is another one without contact's share."""
     riser, system = at_first_step(case)
-    (line,), beside = riser.lines, riser.border
+    (line,), (beside, _) = riser.lines, riser.beside
     assert isinstance(beside, SoilBorder)
     border = beside._border.value
     step, dofs, n = line.step, line.dofs, line.line.size

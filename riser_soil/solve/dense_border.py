@@ -1,0 +1,154 @@
+"""What couples lines and bodies beside their bands in the compiled loop: a dense border of further unknowns.
+
+    [B  U] [x]   [f]
+    [V  D] [y] = [g]
+
+B are the bands of all lines, each factorised on its own. U and V couple, zero but at few nodes, and D is dense, as in
+`linear_solver`. The soil's reached dofs come first among the unknowns y, see `soil_border`, then copies of the dofs at
+joints, see `joint_border`; these write U, V and D.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core import banded, dense
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.compiled import njit
+from riser_soil.core.dense import PIVOT
+from riser_soil.riser.part_kernels import Border
+from riser_soil.solve.newton_progress import GOING_ON, SINGULAR
+from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
+
+
+class Factors(NamedTuple):
+    """Workspace for the factors: the Schur complement (nb, nb) and its pivots; rows (n,) of the line that are coupled,
+    as many as `filled` (1,) says.
+    """
+
+    schur: Array
+    pivots: IntArray
+    rows: IntArray
+    filled: IntArray
+
+
+@njit
+def begin_schur(border: Border, factors: Factors) -> None:
+    """Write the border's own matrix."""
+    factors.schur[...] = border.corner
+
+
+@njit
+def eliminate(
+    workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, progress: NewtonProgress
+) -> None:
+    """Take off what a line does as it follows the border, with its band factorised."""
+    if progress.ending[0] != GOING_ON:
+        return
+    fixed, count, ndof = dofs.fixed, 0, dofs.fixed.shape[1]
+    for n in range(fixed.shape[0]):
+        for i in range(ndof):
+            if border.coupled[n] and not fixed[n, i]:
+                factors.rows[count] = n * ndof + i
+                count += 1
+    factors.filled[0] = count
+    if count > 0:
+        rows, schur = factors.rows[:count], factors.schur
+        inner = banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band)
+        schur -= np.dot(np.ascontiguousarray(border.below[rows].T), np.dot(inner, border.right[rows]))
+
+
+@njit
+def factorise_schur(factors: Factors, progress: NewtonProgress) -> None:
+    """Factorise what is left of the border."""
+    if progress.ending[0] == GOING_ON and not dense.factorise(factors.schur, factors.pivots):
+        progress.ending[0] = SINGULAR
+
+
+@njit
+def load_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors) -> None:
+    """Take off the border's residual what a line alone answers to its own."""
+    rows, answer = factors.rows[: factors.filled[0]], border.residual
+    if rows.size == 0:
+        return
+    inner = dofs.residual.copy().reshape(dofs.residual.size)
+    banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
+    for k in rows:
+        for j in range(answer.size):
+            answer[j] -= border.below[k, j] * inner[k]
+
+
+@njit
+def improve_border(border: Border, factors: Factors) -> None:
+    """Take what the factorised tangent answers, which is left in place of the residual, off the border's increments."""
+    answer = border.residual
+    dense.solve(factors.schur, factors.pivots, answer)
+    for j in range(answer.size):
+        border.u[j] -= answer[j]
+
+
+@njit
+def take_from_line(dofs: Dofs, border: Border, factors: Factors) -> None:
+    """Take what the border's answer moves off a line's residual."""
+    residual, answer = dofs.residual.reshape(dofs.residual.size), border.residual
+    for k in factors.rows[: factors.filled[0]]:
+        residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
+
+
+class DenseBorder(LoopBorder):
+    """The border of lines and bodies, and its elimination. It stands behind those who write to it.
+
+    of: the `Border` of each line, packed.
+    """
+
+    def __init__(self, lines: Sequence[PackedLine]) -> None:
+        self._soil = self._copies = 0
+        made = list(zip(lines, self._made(lines), strict=True))
+        self.of = {line: Packed(border) for line, (border, _) in made}
+        self._factors = {line: Packed(factors) for line, (_, factors) in made}
+
+    def make_room(self, *, soil: int | None = None, copies: int | None = None) -> None:
+        """For so many unknowns, as many as before where nothing is said; what was written is lost."""
+        self._soil = self._soil if soil is None else soil
+        self._copies = self._copies if copies is None else copies
+        for line, (border, factors) in zip(self.of, self._made([*self.of]), strict=True):
+            self.of[line].renew(border)
+            self._factors[line].renew(factors)
+
+    def _made(self, lines: Sequence[PackedLine]) -> list[tuple[Border, Factors]]:
+        """Of each line, with what is the border's own shared by all."""
+        nb = self._soil + self._copies
+        own, factors = (np.zeros(nb), np.zeros(nb), np.zeros((nb, nb))), (np.zeros((nb, nb)), np.zeros(nb, PIVOT))
+        made = []
+        for packed in lines:
+            n, nodes = packed.line.size, packed.line.nodes
+            coupling = np.zeros((n, nb)), np.zeros((n, nb)), np.zeros(nodes, dtype=np.bool_)
+            made.append((Border(*own, *coupling), Factors(*factors, np.zeros(n, np.int64), np.zeros(1, np.int64))))
+        return made
+
+    def factorise(self, progress: Packed) -> list[Bound]:
+        first, *_ = zip(self.of.values(), self._factors.values(), strict=True)
+        return [
+            Bound(begin_schur, *first),
+            *(Bound(eliminate, line.packed_workspace, *self._given(line), progress) for line in self.of),
+            Bound(factorise_schur, first[1], progress),
+        ]
+
+    def couple(self) -> list[Bound]:
+        first, *_ = zip(self.of.values(), self._factors.values(), strict=True)
+        return [
+            *(Bound(load_border, line.packed_workspace, *self._given(line)) for line in self.of),
+            Bound(improve_border, *first),
+            *(Bound(take_from_line, *self._given(line)) for line in self.of),
+        ]
+
+    def _given(self, line: PackedLine) -> tuple[Packed, Packed, Packed]:
+        return line.packed_dofs, self.of[line], self._factors[line]
+
+
+MakeBorder = Callable[[DenseBorder, Sequence[PackedLine]], LoopBorder]
