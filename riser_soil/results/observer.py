@@ -32,7 +32,7 @@ from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.hung_figures import hung_reader, joined, looked_at
 from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.results.plausibility import Plausibility
+from riser_soil.results.plausibility import BoundaryStress, Plausibility, boundary_stress
 from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.riser_snapshot import elastic_residual
 from riser_soil.results.schedule import DueOutputs, Schedule
@@ -46,7 +46,6 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
-    from riser_soil.soil.boundary_stress import BoundaryStress
 
 MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # that are looked at before they are told of
 
@@ -261,8 +260,6 @@ class Observer:
         lying, soil = self._assembly.line_on_soil, self._assembly.recovered_soil()
         if lying is None or soil is None:
             return None
-        from riser_soil.soil.boundary_stress import boundary_stress
-
         return boundary_stress(soil, int(np.abs(lying.line.direction[:2]).argmin()))
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from riser_soil.riser.section_forces import at_most
 from riser_soil.scene.stages import Stage
 
 if TYPE_CHECKING:
-    from riser_soil.soil.boundary_stress import BoundaryStress
+    from riser_soil.soil.soil import Soil
 
 # Strain from which EA and EI would be no constants, and a section would not keep its shape.
 LARGE_STRAIN = 0.1
@@ -39,6 +39,29 @@ NEAR_STRESS = 0.15
 SMOOTH_MISFIT, STEEP_MISFIT = 0.1, 0.2
 # The same as a turn of the element [rad] that is too small to mind: it strains a pipe's outside by 1e-3 D/L.
 SMALL_TURN = 2e-3
+
+
+class BoundaryStress(NamedTuple):
+    """Largest change of the equivalent stress since the start, as means of cells [Pa]: in cells at the bottom, and in
+    cells at the two sides along the riser.
+    """
+
+    bottom: float
+    sides: float
+
+
+def boundary_stress(soil: Soil, across: int) -> BoundaryStress:
+    """Of the committed state; across: the axis, x (0) or y (1), more nearly square to the riser (collective)."""
+    from mpi4py import MPI
+
+    grid, change = soil.grid, soil.stress_change()
+    corners = grid.nodes.points[grid.nodes.cells]
+    near = 1e-6 * float(np.max(grid.high - grid.low))
+    bottom = (corners[..., 2] < grid.low[2] + near).any(axis=1)
+    y = corners[..., across]
+    sides = ((y < grid.low[across] + near) | (y > grid.high[across] - near)).any(axis=1)
+    found = [float(change[cells].max(initial=0.0)) for cells in (bottom, sides)]
+    return BoundaryStress(*(grid.nodes.comm.allreduce(value, MPI.MAX) for value in found))
 
 
 @dataclass(frozen=True)
