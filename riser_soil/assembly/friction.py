@@ -81,7 +81,8 @@ def soil_friction_of(
 def _soil_adhesion(
     scene: Scene, soil: SoilScene, share: float | None, volume: IntArray, scales: Scales
 ) -> SoilAdhesion | None:
-    if share is None:
+    """What clay holds the pipe by at most; None where nothing yields."""
+    if share is None or soil.is_linear:
         return None
     level, strength = scene.seabed_level, strength_of(soil, SHALLOWEST * scales.diameter)
     return lambda facet, z: share * strength(volume[facet], np.maximum(level - z, 0.0))

@@ -203,14 +203,34 @@ def _forms_of_one(xi: Array, at: Array, ddN: Array, forms: Array, H: Array) -> N
                 H[p, q] += ddN[a, p, q] * height
 
 
+@njit
 def penalty_hessian(forms: Array, H: Array, force: Array, slope: Array) -> Array:
     """Second derivative (n, nr, nr) of ψ(−g): slope·δg⊗δg − force·δ²g.
 
     forms (n, 5, nr), H (n, 2, 2): of `gap_forms`. force, slope (n,): ψ' and ψ'' at the penetration −g.
     """
-    core = np.zeros((len(forms), 5, 5))
-    core[:, 0, 0] = slope
-    core[:, [1, 2], [3, 4]] = core[:, [3, 4], [1, 2]] = force[:, None]
-    core[:, 3:, 3:] = force[:, None, None] * H
-    hessian: Array = forms.transpose(0, 2, 1) @ (core @ forms)
-    return hessian
+    n, nr = len(force), forms.shape[2]
+    out = np.empty((n, nr, nr))
+    for i in range(n):
+        g, g1, g2, x1, x2 = forms[i, 0], forms[i, 1], forms[i, 2], forms[i, 3], forms[i, 4]
+        for a in range(nr):
+            # What of the point's place on the facet belongs to the second variation.
+            h1, h2 = H[i, 0, 0] * x1[a] + H[i, 0, 1] * x2[a], H[i, 1, 0] * x1[a] + H[i, 1, 1] * x2[a]
+            for b in range(nr):
+                turned = g1[a] * x1[b] + x1[a] * g1[b] + g2[a] * x2[b] + x2[a] * g2[b] + h1 * x1[b] + h2 * x2[b]
+                out[i, a, b] = slope[i] * g[a] * g[b] + force[i] * turned
+    return out
+
+
+@njit
+def within_line(forms: Array, basis: Array) -> Array:
+    """Forms (n, 5, d + 3·nv) whose first columns are those of a point of a line, with basis (3, d)."""
+    n, d, nr = len(forms), basis.shape[1], forms.shape[2]
+    out = np.zeros((n, 5, d + nr - 3))
+    for i in range(n):
+        for k in range(5):
+            for j in range(d):
+                for c in range(3):
+                    out[i, k, j] += forms[i, k, c] * basis[c, j]
+            out[i, k, d:] = forms[i, k, 3:]
+    return out

@@ -7,13 +7,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.facets import QUAD, gap_forms, heights, penalty_hessian, strips, triangular
+from riser_soil.contact.facets import (
+    QUAD,
+    fill_shape,
+    gap_forms,
+    heights,
+    penalty_hessian,
+    strips,
+    triangular,
+    within_line,
+)
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.pairing import Cover, FacetSearch, bounds
+from riser_soil.contact.pairing import Cover, FacetSearch, bounds, facet_below
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
@@ -28,8 +37,7 @@ ASPECT = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class ContactPoints:
+class ContactPoints(NamedTuple):
     """Points fixed to nodes that carry the nodes' contact forces.
 
     node (n,). offset (n, 2): horizontal distance from the node [m]. length (n,): riser length that a point
@@ -49,10 +57,41 @@ class ContactPoints:
         node = np.repeat(np.arange(len(tributary)), len(corners))
         return cls(node, np.tile(corners, (len(tributary), 1)), tributary[node] / len(corners))
 
-    def of_chosen(self, nodes: BoolArray) -> ContactPoints:
-        """The points of those nodes (nn,) that are marked."""
-        chosen = nodes[self.node]
-        return ContactPoints(self.node[chosen], self.offset[chosen], self.length[chosen])
+
+class PointsBelow(NamedTuple):
+    """Where contact points (n,) stand: soil facet below, −1 where there is none or none is looked for; place on it (n,
+    2); gap, the height [m] of the riser's underside over the ground, inf without a facet.
+    """
+
+    facet: IntArray
+    xi: Array
+    gap: Array
+
+
+def points_below(count: int) -> PointsBelow:
+    """Workspace for so many points."""
+    return PointsBelow(np.full(count, -1), np.zeros((count, 2)), np.full(count, np.inf))
+
+
+@njit
+def find_below(x: Array, radius: Array, points: ContactPoints, level: float, cover: Cover, out: PointsBelow) -> None:
+    """Write where the points of nodes at x (nn, 3) stand whose undersides are below a level [m]. radius (nn,): [m] from
+    the axis to the line that touches.
+    """
+    N, dN = np.empty(cover.facets.shape[1]), np.empty((cover.facets.shape[1], 2))
+    for p in range(points.node.size):
+        n = points.node[p]
+        out.facet[p], out.gap[p] = -1, np.inf
+        if not x[n, 2] - radius[n] < level:
+            continue
+        out.facet[p] = facet_below(cover, x[n, 0] + points.offset[p, 0], x[n, 1] + points.offset[p, 1], -1)
+        if out.facet[p] >= 0:
+            out.xi[p] = cover.xi
+            fill_shape(cover.xi[0], cover.xi[1], N, dN)
+            height = 0.0
+            for a in range(N.size):
+                height += N[a] * cover.points[cover.facets[out.facet[p], a], 2]
+            out.gap[p] = x[n, 2] - radius[n] - height
 
 
 class DeformedSurface:
@@ -131,9 +170,9 @@ class DeformedSurface:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
         return self._pairing.locate(xy, points)
 
-    def cover(self) -> Cover:
-        """Of what lies below the surface as accepted so far."""
-        return self._pairing.cover(self.settled)
+    def cover(self, points: Array | None = None) -> Cover:
+        """Of what lies below the surface with its points at (np, 3) [m], as accepted so far where none are given."""
+        return self._pairing.cover(self.settled if points is None else points)
 
     def facet_dofs(self, facet: IntArray) -> IntArray:
         """Local dof numbers (n, 3·nv) of facets, node by node."""
@@ -188,16 +227,12 @@ class ActiveContacts:
 
 @dataclass(frozen=True, eq=False)
 class ContactState:
-    """Contact points near the ground at a state.
-
-    facet (n,): soil facet below, −1 where there is none. gap (n,): height [m] of the riser's underside over
-    the ground, inf where there is no ground. surface (np, 3): deformed points of the soil [m]. touching: one
-    entry for each ground.
+    """Contact points at a state, and where they stand. surface (np, 3): deformed points of the soil [m]. touching: what
+    of them touches.
     """
 
     points: ContactPoints
-    facet: IntArray
-    gap: Array
+    below: PointsBelow
     surface: Array
     touching: ActiveContacts
 
@@ -218,21 +253,18 @@ class ContactDetection:
     def detect(self, state: State) -> ContactState:
         """Gaps at a state, and forces where the riser touches."""
         x, surface = self._line.positions3(state), self._soil.deformed(state)
-        points = self._points.of_chosen(x[:, 2] - self._radius < surface[:, 2].max() + self._near)
-        facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
-        ground = heights(facet, xi, self._soil.facets, surface)
-        gap = x[points.node, 2] - self._radius[points.node] - ground
-        at = np.flatnonzero(gap < self._law.smoothing)
-        return ContactState(points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
+        below = points_below(len(self._points.node))
+        level = float(surface[:, 2].max()) + self._near
+        find_below(x, self._radius, self._points, level, self._soil.cover(surface), below)
+        return ContactState(self._points, below, surface, self._touch(below, surface))
 
-    def _touch(
-        self, points: ContactPoints, facet: IntArray, gap: Array, surface: Array, at: IntArray, xi: Array
-    ) -> ActiveContacts:
-        node, below = points.node[at], facet[at]
-        forms, H = gap_forms(below, xi, self._soil.facets, surface)
-        forms = np.concatenate((forms[:, :, :3] @ self._line.basis, forms[:, :, 3:]), axis=2)
-        rows = np.hstack((self._line.translation_dofs[node], self._soil.facet_dofs(below)))
-        return ActiveContacts(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
+    def _touch(self, below: PointsBelow, surface: Array) -> ActiveContacts:
+        at = np.flatnonzero(below.gap < self._law.smoothing)
+        node, facet = self._points.node[at], below.facet[at]
+        forms, H = gap_forms(facet, below.xi[at], self._soil.facets, surface)
+        rows = np.hstack((self._line.translation_dofs[node], self._soil.facet_dofs(facet)))
+        given = self._points.length[at], -below.gap[at], rows, within_line(forms, self._line.basis), H
+        return ActiveContacts(self._law, node, facet, *given)
 
 
 @njit

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.facets import heights
+from riser_soil.contact.facets import gap_forms, heights, penalty_hessian, within_line
 from riser_soil.contact.ground import (
     ASPECT,
     CandidatePairs,
@@ -14,19 +14,29 @@ from riser_soil.contact.ground import (
     ContactPoints,
     ContactState,
     DeformedSurface,
+    PointsBelow,
     add_blocks,
     add_shares,
+    find_below,
     pairs_around,
+    points_below,
 )
-from riser_soil.contact.law import Penalty
-from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.contact.law import Penalty, PenaltyData
+from riser_soil.contact.pairing import Cover, renew_boxes
+from riser_soil.contact.soil_contact import LEFT, POINTS, SOIL, CandidateRange, LoopContact, SoilContact, TopMotion
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.compiled import njit
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import Energy, Forces, State, Weights, Work
 from riser_soil.core.saved_state import Saved
+from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
+from riser_soil.riser.part_kernels import BEYOND, Border, LineForces
+from riser_soil.seabed.compiled_law import answer, may_act
 
 if TYPE_CHECKING:
+    from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.soil.condensed import SoilSurface
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
@@ -68,8 +78,9 @@ class NodeContact(SoilContact):
         self._reach = reach or _default_reach(line, self._soil)
         self._footprint = FOOTPRINT * float(radius.mean()) if footprint is None else footprint
         axis = line.basis[:2, 0] if along is None else along
-        points = ContactPoints.of_nodes(line.tributary_length, self._footprint, axis)
-        self._detection = ContactDetection(line, radius, points, law, self._soil, self._reach.above)
+        self._points = ContactPoints.of_nodes(line.tributary_length, self._footprint, axis)
+        self._basis = np.ascontiguousarray(line.basis)
+        self._detection = ContactDetection(line, radius, self._points, law, self._soil, self._reach.above)
 
     def detect(self, state: State) -> ContactState:
         """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
@@ -81,10 +92,14 @@ class NodeContact(SoilContact):
 
     def candidates(self, state: State) -> CandidatePairs:
         detected = self.detect(state)
-        nodes = np.unique(detected.points.node[detected.gap < self._reach.above])
+        nodes = np.unique(detected.points.node[detected.below.gap < self._reach.above])
         xy = self.line.positions3(state)[nodes, :2]
-        distance = ASPECT * self._footprint + self._reach.around
-        return pairs_around(nodes, xy, detected.surface, self._soil.facets, distance)
+        return pairs_around(nodes, xy, detected.surface, self._soil.facets, self._distance)
+
+    @property
+    def _distance(self) -> float:
+        """How far beside a node facets are candidates [m]."""
+        return ASPECT * self._footprint + self._reach.around
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
@@ -137,7 +152,7 @@ class NodeContact(SoilContact):
 
     def max_penetration(self, state: State) -> float:
         """Largest penetration [m], ≥ 0: an error."""
-        return max(0.0, -float(self.detect(state).gap.min(initial=np.inf))) if self.active else 0.0
+        return max(0.0, -float(self.detect(state).below.gap.min(initial=np.inf))) if self.active else 0.0
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
@@ -168,6 +183,17 @@ class NodeContact(SoilContact):
             np.add.at(total, touching.node, on_nodes.sum(axis=1))
         return np.asarray(total / self.line.tributary_length[:, None])
 
+    def in_loop(self, friction: SoilFriction | None) -> NodesInLoop:
+        assert friction is None  # the surface has some
+        data = NodeTouchData(self.line.origin, self._basis, self._radius, self._points, self.law.kernel_data)
+        return NodesInLoop(self, data, self._soil.cover(), self._reach.around)
+
+    def watch(self, x: Array, cover: Cover, slack: float) -> tuple[IntArray, float]:
+        """Facets near nodes at x (nn, 3) that may come to touch, and the level [m] above which none does."""
+        level = float(cover.points[:, 2].max()) + slack + self.law.start
+        nodes = np.flatnonzero(x[:, 2] - self._radius < level + self._reach.above)
+        return pairs_around(nodes, x[nodes, :2], cover.points, self._soil.facets, self._distance).facet, level
+
     def stretch(self, state: State) -> float:
         if not self.active:
             return 1.0
@@ -178,12 +204,199 @@ class NodeContact(SoilContact):
         """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
         detected = self.detect(state)
         least = np.full(self.line.nodes, np.inf)
-        np.minimum.at(least, detected.points.node, detected.gap - self.law.start)
+        np.minimum.at(least, detected.points.node, detected.below.gap - self.law.start)
         return least
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
         self._detected.forget()
+
+
+class NodeTouchData(NamedTuple):
+    """The nodes, for compiled code: origin (3,) and basis (3, d) of the line, radius (nn,) [m] and points; the law."""
+
+    origin: Array
+    basis: Array
+    radius: Array
+    points: ContactPoints
+    law: PenaltyData
+
+
+class WatchedFacets(NamedTuple):
+    """Facets (k,) that may come to touch, as marked (nf,), as long as no other lies below a node whose underside is
+    below a level [m].
+    """
+
+    facets: IntArray
+    marked: BoolArray
+    level: float
+
+
+class NodeTouch(NamedTuple):
+    """What was found last: places x (nn, 3) of the nodes; where all points (n,) stand; those that touch, with force [N]
+    and its derivative by the penetration [N/m], length included; found, met, energy: see `LoopContact`.
+    """
+
+    x: Array
+    below: PointsBelow
+    touching: IntArray
+    force: Array
+    slope: Array
+    found: IntArray
+    met: BoolArray
+    energy: Array
+
+
+@njit
+def write_places(touch: NodeTouchData, x: Array, out: Array) -> None:
+    """Write places x (nn, d) of a line's nodes in global axes (nn, 3)."""
+    for n in range(out.shape[0]):
+        for i in range(3):
+            out[n, i] = touch.origin[i]
+            for j in range(x.shape[1]):
+                out[n, i] += touch.basis[i, j] * x[n, j]
+
+
+@njit
+def touching_forms(touch: NodeTouchData, cover: Cover, found: NodeTouch) -> tuple[IntArray, IntArray, Array, Array]:
+    """Node and facet (n,) of the points that touch, and their forms by node and facet, see `gap_forms`."""
+    at = found.touching[: found.found[POINTS]]
+    facet = found.below.facet[at]
+    forms, H = gap_forms(facet, found.below.xi[at], cover.facets, cover.points)
+    return touch.points.node[at], facet, within_line(forms, touch.basis), H
+
+
+@njit
+def add_node_touch(
+    touch: NodeTouchData,
+    cover: Cover,
+    watched: WatchedFacets,
+    top: TopMotion,
+    at: Configuration,
+    out: LineForces,
+    border: Border,
+    found: NodeTouch,
+) -> None:
+    """Add the contact's residual to that of the line and to the border's."""
+    write_places(touch, at.x, found.x)
+    renew_boxes(cover, watched.facets)
+    below, length = found.below, touch.points.length
+    find_below(found.x, touch.radius, touch.points, watched.level, cover, below)
+    found.met[:] = False
+    found.found[POINTS], found.found[LEFT], found.energy[0] = 0, 0, 0.0
+    nothing, n = np.empty(0), 0
+    for p in range(length.size):
+        if below.facet[p] >= 0 and not watched.marked[below.facet[p]]:
+            found.found[LEFT] = 1
+        if may_act(touch.law, -below.gap[p], nothing):
+            force, slope, stored = answer(touch.law, -below.gap[p], nothing, nothing)
+            found.touching[n], found.force[n], found.slope[n] = p, length[p] * force, length[p] * slope
+            found.energy[0] += length[p] * stored
+            n += 1
+    found.found[POINTS] = n
+    nodes, facets, forms, _ = touching_forms(touch, cover, found)
+    d = touch.basis.shape[1]
+    for i in range(n):
+        for j in range(d):
+            out.end[nodes[i], j] -= found.force[i] * forms[i, 0, j]
+        for k in range(d, forms.shape[2]):
+            a, share = cover.facets[facets[i], (k - d) // 3], found.force[i] * forms[i, 0, k]
+            row = top.rows[a, (k - d) % 3]
+            if row >= 0:
+                border.residual[row] -= share
+            elif row == BEYOND and share != 0.0:
+                found.met[a] = True
+
+
+@njit
+def add_node_touch_tangent(
+    touch: NodeTouchData, cover: Cover, top: TopMotion, K: Array, border: Border, found: NodeTouch
+) -> None:
+    """Add the derivative of the contact's residual, found last, to K (ne, n, n) and to the border's."""
+    nodes, facets, forms, H = touching_forms(touch, cover, found)
+    blocks = penalty_hessian(forms, H, found.force[: nodes.size], found.slope[: nodes.size])
+    d, ndof = touch.basis.shape[1], K.shape[1] // 2
+    for i in range(nodes.size):
+        n, block, corners = nodes[i], blocks[i], cover.facets[facets[i]]
+        e = min(n, K.shape[0] - 1)
+        first = (n - e) * ndof
+        border.coupled[n] = True
+        K[e, first : first + d, first : first + d] += block[:d, :d]
+        for a in range(d, block.shape[0]):
+            row = top.rows[corners[(a - d) // 3], (a - d) % 3]
+            if row < 0:
+                continue
+            border.right[n * ndof : n * ndof + d, row] += block[:d, a]
+            border.below[n * ndof : n * ndof + d, row] += block[a, :d]
+            for b in range(d, block.shape[0]):
+                column = top.rows[corners[(b - d) // 3], (b - d) % 3]
+                if column >= 0:
+                    border.corner[row, column] += block[a, b]
+
+
+@njit
+def write_node_touch_work(
+    touch: NodeTouchData, cover: Cover, top: TopMotion, first: Configuration, found: NodeTouch, work: Array
+) -> None:
+    """Write to work (1,) what the force at a step's end, found last, takes along the step [J]."""
+    before = np.empty_like(found.x)
+    write_places(touch, first.x, before)
+    at = found.touching[: found.found[POINTS]]
+    facet, node = found.below.facet[at], touch.points.node[at]
+    forms, _ = gap_forms(facet, found.below.xi[at], cover.facets, cover.points)
+    work[0] = 0.0
+    for i in range(at.size):
+        way = 0.0
+        for j in range(3):
+            way += forms[i, 0, j] * (found.x[node[i], j] - before[node[i], j])
+            for k in range(cover.facets.shape[1]):
+                a = cover.facets[facet[i], k]
+                way += forms[i, 0, 3 + 3 * k + j] * (cover.points[a, j] - top.accepted[a, j])
+        work[0] -= found.force[i] * way
+
+
+class NodesInLoop(LoopContact):
+    """`NodeContact` in the compiled loop. cover: with the workspace for the top's points; around: range beside a node
+    in which facets are candidates [m].
+    """
+
+    contact: NodeContact
+
+    def __init__(self, contact: NodeContact, data: NodeTouchData, cover: Cover, around: float) -> None:
+        super().__init__(contact, around)
+        self.parts, self._cover, self.deformed = (contact,), cover, cover.points
+        self.met: BoolArray = np.zeros(len(cover.points), dtype=np.bool_)
+        n, x = len(data.points.node), np.zeros((contact.line.nodes, 3))
+        forces = np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n)
+        self._found = NodeTouch(x, points_below(n), *forces, self.found, self.met, self.energy)
+        self._data, self._packed_cover, self._workspace = Packed(data), Packed(cover), Packed(self._found)
+        none = np.empty(0, dtype=np.int64), np.zeros(len(cover.facets), dtype=np.bool_)
+        self._watched = Packed(WatchedFacets(*none, 0.0))
+
+    def begin(self, before: State) -> None:
+        self._cover.renew(self.deformed)
+
+    def look(self, before: State, tried: bool) -> IntArray:
+        found, places = list[IntArray](), [self.contact.line.positions3(before)]
+        for x in [*places, self._found.x] if tried else places:
+            facets, level = self.contact.watch(x, self._cover, self.slack)
+            found.append(facets)
+        facets, marked = np.unique(np.concatenate(found)), np.zeros(len(self._cover.facets), dtype=np.bool_)
+        marked[facets] = True
+        self._watched.renew(WatchedFacets(facets, marked, level))
+        return np.unique(self._cover.facets[facets])
+
+    def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
+        given = self._data, self._packed_cover, self._watched, top, at
+        return [Bound(add_node_touch, *given, forces, border, self._workspace)]
+
+    def tangent(self, top: Packed, at: Packed, K: Packed, border: Packed) -> list[Bound]:
+        given = self._data, self._packed_cover, top, K, border
+        return [Bound(add_node_touch_tangent, *given, self._workspace)]
+
+    def account(self, top: Packed, first: Packed) -> list[Bound]:
+        given = self._data, self._packed_cover, top, first, self._workspace
+        return [Bound(write_node_touch_work, *given, Packed(self.taken))]
 
 
 def _default_reach(line: Line, soil: DeformedSurface) -> CandidateRange:

@@ -100,6 +100,18 @@ def _plan(boxes: Array) -> Plan:
 
 
 @njit
+def renew_boxes(cover: Cover, facets: IntArray) -> None:
+    """Write the boxes of facets (k,) whose points have moved, and the box around all."""
+    for f in facets:
+        box = _box(cover.points, cover.facets[f])
+        for i in range(4):
+            cover.boxes[f, i] = box[i]
+    limits = limits_of(cover.boxes)
+    for i in range(4):
+        cover.limits[i] = limits[i]
+
+
+@njit
 def bounds(points: Array, facets: IntArray) -> Array:
     """Horizontal boxes (nf, 4) around facets: lowest x and y, highest x and y [m]; see `_box`."""
     boxes = np.empty((len(facets), 4))

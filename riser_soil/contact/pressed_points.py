@@ -19,10 +19,9 @@ from riser_soil.contact.near_points import NearPoints, Surface, first_of, point_
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import shape as axis_shape
+from riser_soil.riser.part_kernels import BEYOND
 from riser_soil.riser.vectors import add, dot, scale, sub, vector, write
 from riser_soil.seabed.compiled_law import answer, may_act
-
-HELD, BEYOND = -1, -2  # in place of a dof's row: of those that are supported, and of those that are not reached
 
 
 class Pairs(NamedTuple):

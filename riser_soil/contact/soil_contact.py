@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,17 +17,34 @@ from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_contact import Covering
 from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.contact.touchdown import PointsAlong
-from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import MatrixBlock, State, Traits
+from riser_soil.core.arrays import Array, BoolArray, IntArray, as_list
+from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.part import MatrixBlock, Part, State, Traits, Work
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
 from riser_soil.riser.vectors import Vec
 
 if TYPE_CHECKING:
+    from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.soil.condensed import SoilSurface
 
 SOIL = "contact.soil"
+SHARE = 0.25  # of the range around the pipe by which soil may move before what may touch is looked for anew
+# In `LoopContact.found`: how many points touch; whether something has left what is watched, and whether more points are
+# near than there is room for.
+POINTS, LEFT, FULL = range(3)
+
+
+class TopMotion(NamedTuple):
+    """How the watched nodes (k,) of the top move by the increments of the border's first unknowns, the reached dofs
+    (na,): by (3 k, na). accepted (np, 3): where all are before [m]. rows (np, 3): of the border, HELD or BEYOND.
+    """
+
+    nodes: IntArray
+    by: Array
+    accepted: Array
+    rows: IntArray
 
 
 @dataclass(frozen=True)
@@ -125,6 +143,10 @@ class SoilContact(RiserContact):
             self._patch = self.candidates(State.at_rest(0.0, max(ends)))
         return self._patch
 
+    @abstractmethod
+    def in_loop(self, friction: SoilFriction | None) -> LoopContact:
+        """For the compiled loop, with friction where there is some."""
+
     @property
     def covering(self) -> Covering:
         """What covers a seabed beside it: the soil as it is now. Used where contact is active."""
@@ -186,3 +208,72 @@ class SoilContact(RiserContact):
 @covered_by.of(Cover)
 def _by_surface(cover: Cover, x: Vec, known: int) -> int:
     return facet_below(cover, x[0], x[1], known)
+
+
+class LoopContact(ABC):
+    """Contact with condensed soil in the compiled loop, see `solve.soil_border`: kernels, bound to where they read and
+    write.
+
+    parts: whose forces these are. deformed (np, 3): where the loop writes the top's points [m]. found (3,): see POINTS.
+    met (np,): nodes of the top that are not reached, and bear a force in the last trial. energy, taken (1,): stored
+    then, and what the forces took along the step [J].
+    """
+
+    parts: Sequence[Part]
+    deformed: Array
+    met: BoolArray
+
+    def __init__(self, contact: SoilContact, around: float) -> None:
+        self.contact, self.slack = contact, SHARE * around
+        self.found: IntArray = np.zeros(3, dtype=np.int64)
+        self.energy: Array = np.zeros(1)
+        self.taken: Array = np.zeros(1)
+        self._stored = dict[float, float]()  # energy [J] by the time of states
+
+    @abstractmethod
+    def begin(self, before: State) -> None:
+        """Begin a step from an accepted state, at which the top's points are written."""
+
+    @abstractmethod
+    def look(self, before: State, tried: bool) -> IntArray:
+        """Find what may touch near the accepted place and, where asked for, near the last trial: the top's nodes (k,).
+        """
+
+    @abstractmethod
+    def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
+        """Kernels that add to the residuals of the line and of the border."""
+
+    @abstractmethod
+    def tangent(self, top: Packed, at: Packed, K: Packed, border: Packed) -> list[Bound]:
+        """Kernels that add to the tangents."""
+
+    @abstractmethod
+    def account(self, top: Packed, first: Packed) -> list[Bound]:
+        """Kernels that write what the forces at a step's end took along it, from a configuration."""
+
+    def add_work(self, before: State, after: State, work: dict[str, Work]) -> float:
+        """Add what the parts have turned over in the step solved last; the energy that they store [J]."""
+        work[self.contact.name] += self._work(before, after)
+        return float(self.energy[0])
+
+    def _work(self, before: State, after: State) -> Work:
+        """See `SurfaceContact.work`: without a history all is the time scheme's."""
+        if self.contact.law.columns:
+            return self.contact.work(before, after)
+        first, last = self._stored.get(before.t), float(self.energy[0])
+        if first is None:
+            first = self.contact.energy(before).potential
+        self._stored = {before.t: first, after.t: last}
+        lost = float(self.taken[0]) - last + first
+        return Work(dissipated=lost, by_scheme=lost)
+
+    def forget(self) -> None:
+        """A step was solved elsewhere."""
+        self._stored.clear()
+
+    def state(self) -> Saved:
+        """What contact has stored at the times known: found anew it would be the same but to round-off."""
+        return {"times": np.array([*self._stored]), "stored": np.array([*self._stored.values()])}
+
+    def restore(self, saved: Saved) -> None:
+        self._stored = dict(zip(as_list(saved["times"]), as_list(saved["stored"]), strict=True))

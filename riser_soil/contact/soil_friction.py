@@ -15,8 +15,9 @@ from riser_soil.contact.friction import components, read_along, resistance_by_mo
 from riser_soil.contact.integration_points import KeptRows, PointMemory, write_kept
 from riser_soil.contact.near_points import NearPoints, Surface, first_of
 from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
+from riser_soil.contact.soil_contact import POINTS, TopMotion
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
-from riser_soil.contact.surface_loop import POINTS, TopMotion, TouchData, TouchWorkspace, add_pairs
+from riser_soil.contact.surface_loop import TouchData, TouchWorkspace, add_pairs
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
@@ -129,10 +130,9 @@ class SoilFriction(LinePart):
             self._at_start = found.axis.q, found.surface.deformed
         return self._at_start
 
-    def in_loop(self) -> LoopFriction | None:
-        """For the compiled loop; None where the soil adheres."""
-        if self._adhesion is not None:
-            return None
+    def in_loop(self) -> LoopFriction:
+        """For the compiled loop, on soil that does not yield."""
+        assert self._adhesion is None
         q = np.zeros((self.line.length.size, 4, 3))
         return LoopFriction(self, SoilFrictionData(self._resistance, self._memory.kept, q))
 

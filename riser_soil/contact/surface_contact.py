@@ -26,7 +26,7 @@ from riser_soil.contact.near_points import (
 )
 from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, write_axis
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
-from riser_soil.contact.surface_loop import TouchData
+from riser_soil.contact.surface_loop import SurfaceInLoop, TouchData
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
 from riser_soil.core.saved_state import Saved, gathered, within
@@ -35,6 +35,7 @@ from riser_soil.riser.moving_nodes import Trial
 from riser_soil.riser.sections import larger_beside
 
 if TYPE_CHECKING:
+    from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.soil.condensed import SoilSurface
 
 AROUND = 0.25  # radii around the pipe in which facets are candidates: each of them couples its nodes to the element
@@ -112,6 +113,9 @@ class SurfaceContact(SoilContact):
     def _acts_within(self) -> float:
         """Gap [m] within which the law may act in a step that starts here."""
         return float(self._pressure.reach if len(self._memory.numbers) else self.law.start)
+
+    def in_loop(self, friction: SoilFriction | None) -> SurfaceInLoop:
+        return SurfaceInLoop(self, None if friction is None else friction.in_loop())
 
     def touch_data(self) -> TouchData:
         """For the compiled loop, with workspace for axis and surface."""

@@ -16,6 +16,8 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_geometric, collect_nodal, scatter, write_pulled_back
 
+HELD, BEYOND = -1, -2  # in place of a border's row: of dofs that are supported, and of those that are not reached
+
 
 class LineForces(NamedTuple):
     """Residuals by group, see `core.part`: conjugate to q (ne, 4, d), to the dofs of the elements (ne, 2 ndof), and to

@@ -32,6 +32,8 @@ CASES: dict[str, tuple[int, Mapping]] = {
     "with friction": (2, {"friction": {"axial": 0.4, "lateral": 0.7}}),
     "with friction in space": (3, {"friction": {"axial": 0.4, "lateral": 0.7}}),
     "with suction": (2, {"suction": {"cap": 300.0, "reach": 0.02}}),
+    "at nodes": (2, {"method": "node"}),
+    "at nodes in space": (3, {"method": "node"}),
     "with both": (2, {"friction": {"axial": 0.4, "lateral": 0.7}, "suction": {"cap": 300.0, "reach": 0.02}}),
 }
 MARKED = [pytest.param(name, marks=[pytest.mark.verify] * ("in space" in name)) for name in CASES]
@@ -128,7 +130,7 @@ def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> N
 
     forbid(monkeypatch)
     monkeypatch.setattr(SoilBorder, "_prescribe_anew", count)
-    monkeypatch.setattr("riser_soil.solve.soil_border.FEW", 4)
+    monkeypatch.setattr("riser_soil.contact.surface_loop.FEW", 4)
     monkeypatch.setattr("riser_soil.contact.near_points.FEW", 2)
     monkeypatch.setattr("riser_soil.contact.surface_contact.AROUND", 0.05)
     found = taken("in a plane", "compiled")
@@ -144,7 +146,7 @@ def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: p
         return usual(loop, before)
 
     monkeypatch.setattr(CompiledLoop, "leaves", count)
-    monkeypatch.setattr("riser_soil.solve.soil_border.SHARE", 1e-4)
+    monkeypatch.setattr("riser_soil.contact.soil_contact.SHARE", 1e-4)
     found = taken("in a plane", "compiled")
     assert len(left) > 0
     assert_same(found, by_snes("in a plane"))
@@ -199,21 +201,13 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     system.destroy()
 
 
-@pytest.mark.parametrize(
-    ("changed", "why"),
-    [
-        ({"method": "node"}, "contact at nodes"),
-    ],
-)
-def test_what_has_no_kernels_is_left_to_newton(changed: Mapping, why: str) -> None:
-    mapping = scene("in a plane", "compiled")
-    mapping["contact"] = ({"method": "surface"} | changed) if "method" not in changed else changed
+def test_elastic_soil_adheres_without_a_limit() -> None:
+    """So friction on it has kernels."""
+    mapping = scene("with friction", "compiled")
+    mapping["contact"]["friction"]["adhesion"] = 0.5
     assembly = built(mapping)
     system = System(assembly.comm, assembly.begin(assembly.scene.stages[1]), Timer.new())
-    assert compiled_loop(system, SETTINGS.max_iterations) is None, why
-    found = solver_of(system, SCHEME, SETTINGS)
-    assert found.compiled is None
-    found.destroy()
+    assert compiled_loop(system, SETTINGS.max_iterations) is not None
     system.destroy()
 
 
