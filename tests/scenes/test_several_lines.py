@@ -626,6 +626,7 @@ def drifting(x: float, y: float) -> dict[str, Any]:
     return scene
 
 
+@pytest.mark.verify
 def test_dynamic_relaxation_finds_where_a_buoy_drifts_to(tmp_path: Path) -> None:
     """Wherever it begins: where its chain bears what the current's drag and its buoyancy on the wet share put there."""
     each = [ran(drifting(*at), tmp_path / str(n)) for n, at in enumerate(((0.0, 0.0), (196.0, 36.0)))]

@@ -29,7 +29,7 @@ def whole(model: str) -> Found:
     return run(pressed("whole", model=model))
 
 
-@MODELS
+@SECTIONS_FIRST
 def test_half_of_the_soil_is_as_good_as_all_of_it(model: str) -> None:
     """At large strain, on new meshes, with friction."""
     half = run(pressed("auto", model=model))

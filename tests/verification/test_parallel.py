@@ -156,6 +156,7 @@ def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
     assert_same(name, ranks)
 
 
+@pytest.mark.verify
 def test_surface_contact_agrees_on_two_ranks() -> None:
     assert_same("surface", 2)
 

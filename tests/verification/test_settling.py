@@ -55,6 +55,7 @@ def test_a_pipe_settles_to_where_one_that_is_pushed_bears_its_weight() -> None:
     assert pushed.at(rested.w) == pytest.approx(rested.V, rel=0.02)
 
 
+@pytest.mark.verify
 def test_settling_ends_where_the_clay_bears_all(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where no equilibrium without the drag is taken, as where one is judged unstable: it went on to an error."""
     usual, step = Rested(2.7), settling._Settling._step

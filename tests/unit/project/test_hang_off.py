@@ -144,6 +144,7 @@ def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
         assert end["angle_deg"] == pytest.approx(angle - 90.0, abs=0.002)
 
 
+@pytest.mark.verify
 def test_a_joint_goes_farther_than_its_line_is_long_at_first(tmp_path: Path) -> None:
     """The weight's place is a guess; the scene in numbers can be run again."""
     scene = on_a_weight(west=30.0, east=30.0)

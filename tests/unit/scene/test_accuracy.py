@@ -247,6 +247,7 @@ def test_check_tells_the_setting_that_the_search_begins_with(tmp_path: Path) -> 
     assert "riser: 24 elements" in done.output
 
 
+@pytest.mark.verify
 def test_ranks_choose_alike(tmp_path: Path) -> None:
     file = tmp_path / "scene.yaml"
     file.write_text(json.dumps(asking("on springs, coarse")), encoding="utf-8")

@@ -37,7 +37,7 @@ CONTACTS: dict[str, Mapping] = {
 CASES = [
     ("node", "hex", 2),
     pytest.param("surface", "tet", 2, marks=pytest.mark.verify),
-    ("surface with friction", "hex", 3),
+    pytest.param("surface with friction", "hex", 3, marks=pytest.mark.verify),
     ("surface with suction", "hex", 2),
 ]
 SAME = 1e-8

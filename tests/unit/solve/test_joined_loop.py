@@ -73,7 +73,7 @@ def on_elastic_soil() -> dict[str, Any]:
     scene = hung_over_clay(shaken() | moved)
     scene["soil"] |= {"law": {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}}
     scene["soil"]["mesh"]["size_at_riser"] |= {"across": 0.1, "strip": 0.3}
-    return scene | {"contact": {"method": "surface", "friction": {"axial": 0.4, "lateral": 0.7}}}
+    return scene | {"contact": {"method": "surface", "smoothing": 1e-3}}
 
 
 SCENES = {
