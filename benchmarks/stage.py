@@ -31,7 +31,7 @@ class TimedStage:
         self.assembly, self.stage = assembly, stage
         self.system = System(assembly.comm, assembly.begin(stage), clock)
         settings = replace(settings_of(assembly), linear_start=linear_start)
-        self.newton = solver_of(self.system, scheme_of(stage), settings)
+        self.newton = solver_of(self.system, scheme_of(stage).dynamic, settings)
         self.stepper = TimeStepper(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
         self.control = steps_of(assembly, stage, self.stepper)
         self.iterations, self.seconds = 0, 0.0

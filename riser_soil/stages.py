@@ -32,7 +32,6 @@ from riser_soil.solve.newton import Newton, solver_of
 from riser_soil.solve.settling import Pressed, SinkingError, settle
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.step_control import AutoSteps, PathSteps, StepControl, from_last_to_first
-from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 LAID_IN = 8  # load steps on soil, at least
@@ -164,7 +163,7 @@ def _take(
         begin = State.at_rest(0.0, system.numbering.size)
     if not isinstance(begin, State):
         _restore(system, begin)
-    newton = solver_of(system, scheme_of(stage), _settings_in(assembly, stage))
+    newton = solver_of(system, scheme_of(stage).dynamic, _settings_in(assembly, stage))
     with destroyed_together(assembly.comm, newton.destroy, system.destroy):
         try:
             run = _begin_run(assembly, stage, system, newton, begin, observer)
@@ -428,8 +427,7 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
     newton = Newton(system, replace(settings, line_search=False))
     with destroyed_together(assembly.comm, newton.destroy, system.destroy):
         try:
-            size = system.numbering.size
-            solution = newton.solve(Step(Static(), State.at_rest(0.0, size), 0.0, 1.0, None, np.zeros(size)))
+            solution = newton.solve(Step.static(State.at_rest(0.0, system.numbering.size)))
             newton.require_stable(solution)
             system.commit(solution.state)
         except NotConvergedError:

@@ -166,6 +166,10 @@ class DeformedSurface:
         """The same; −inf beside it."""
         return np.asarray(heights(*self.locate(xy, points), self.corners, points))
 
+    def heights_at(self, facet: IntArray, xi: Array, points: Array) -> Array:
+        """Height (n,) [m] of the surface of some points at places on facets (n,); −inf where there is none."""
+        return np.asarray(heights(facet, xi, self.facets, points))
+
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
         return self._pairing.locate(xy, points)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.facets import gap_forms, heights, penalty_hessian, within_line
+from riser_soil.contact.facets import gap_forms, penalty_hessian, within_line
 from riser_soil.contact.ground import (
     ASPECT,
     CandidatePairs,
@@ -23,7 +23,7 @@ from riser_soil.contact.ground import (
 )
 from riser_soil.contact.law import Penalty, PenaltyData
 from riser_soil.contact.pairing import Cover, renew_boxes
-from riser_soil.contact.soil_contact import LEFT, POINTS, SOIL, CandidateRange, LoopContact, SoilContact, TopMotion
+from riser_soil.contact.soil_contact import SOIL, CandidateRange, LoopContact, SoilContact
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
@@ -32,11 +32,10 @@ from riser_soil.core.part import Energy, Forces, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import BEYOND, Border, LineForces
+from riser_soil.riser.part_kernels import BEYOND, LEFT, POINTS, Border, LineForces, TopMotion
 from riser_soil.seabed.compiled_law import answer, may_act
 
 if TYPE_CHECKING:
-    from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.soil.condensed import SoilSurface
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
@@ -147,7 +146,7 @@ class NodeContact(SoilContact):
             points, x, surface = self.detect(state).points, self.line.positions3(state), self._soil.at_first
             facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
             underside = (x[:, 2] - self._radius)[points.node]
-            np.maximum.at(deepest, points.node, heights(facet, xi, self._soil.facets, surface) - underside)
+            np.maximum.at(deepest, points.node, self._soil.heights_at(facet, xi, surface) - underside)
         return deepest
 
     def max_penetration(self, state: State) -> float:
@@ -183,8 +182,7 @@ class NodeContact(SoilContact):
             np.add.at(total, touching.node, on_nodes.sum(axis=1))
         return np.asarray(total / self.line.tributary_length[:, None])
 
-    def in_loop(self, friction: SoilFriction | None) -> NodesInLoop:
-        assert friction is None  # the surface has some
+    def in_loop(self, friction: None) -> NodesInLoop:
         data = NodeTouchData(self.line.origin, self._basis, self._radius, self._points, self.law.kernel_data)
         return NodesInLoop(self, data, self._soil.cover(), self._reach.around)
 

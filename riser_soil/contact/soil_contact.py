@@ -5,14 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from riser_soil.contact.along_step import landing_predictor
 from riser_soil.contact.contact import RiserContact
 from riser_soil.contact.ground import CandidatePairs, DeformedSurface
-from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_contact import Covering
 from riser_soil.contact.seabed_kernels import covered_by
@@ -24,27 +23,13 @@ from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
 from riser_soil.riser.vectors import Vec
+from riser_soil.seabed.law import NormalLaw
 
 if TYPE_CHECKING:
-    from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.soil.condensed import SoilSurface
 
 SOIL = "contact.soil"
 SHARE = 0.25  # of the range around the pipe by which soil may move before what may touch is looked for anew
-# In `LoopContact.found`: how many points touch; whether something has left what is watched, and whether more points are
-# near than there is room for.
-POINTS, LEFT, FULL = range(3)
-
-
-class TopMotion(NamedTuple):
-    """How the watched nodes (k,) of the top move by the increments of the border's first unknowns, the reached dofs
-    (na,): by (3 k, na). accepted (np, 3): where all are before [m]. rows (np, 3): of the border, HELD or BEYOND.
-    """
-
-    nodes: IntArray
-    by: Array
-    accepted: Array
-    rows: IntArray
 
 
 @dataclass(frozen=True)
@@ -68,7 +53,7 @@ class SoilContact(RiserContact):
     name = "contact"
     traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor, Stateful))
 
-    def __init__(self, line: Line, law: Penalty | SuctionLaw, surface: SoilSurface) -> None:
+    def __init__(self, line: Line, law: NormalLaw, surface: SoilSurface) -> None:
         super().__init__(line, law)
         self.outgrown = False
         if not self.active:
@@ -144,8 +129,8 @@ class SoilContact(RiserContact):
         return self._patch
 
     @abstractmethod
-    def in_loop(self, friction: SoilFriction | None) -> LoopContact:
-        """For the compiled loop, with friction where there is some."""
+    def in_loop(self, friction: Any) -> LoopContact:
+        """For the compiled loop; friction: its kernels, see `surface_loop.LoopFriction`, None where there is none."""
 
     @property
     def covering(self) -> Covering:

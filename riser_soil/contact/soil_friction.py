@@ -15,9 +15,8 @@ from riser_soil.contact.friction import components, read_along, resistance_by_mo
 from riser_soil.contact.integration_points import KeptRows, PointMemory, write_kept
 from riser_soil.contact.near_points import NearPoints, Surface, first_of
 from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
-from riser_soil.contact.soil_contact import POINTS, TopMotion
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
-from riser_soil.contact.surface_loop import TouchData, TouchWorkspace, add_pairs
+from riser_soil.contact.surface_loop import LoopFriction, TouchData, TouchWorkspace, add_pairs
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
@@ -26,7 +25,7 @@ from riser_soil.core.saved_state import Saved, Stateful, gathered, within
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.part_kernels import Border, LineForces
+from riser_soil.riser.part_kernels import POINTS, Border, LineForces, TopMotion
 from riser_soil.riser.vectors import add, scale, sub, vector, write
 
 AREA = 3  # column of the memory, behind the traction
@@ -130,11 +129,11 @@ class SoilFriction(LinePart):
             self._at_start = found.axis.q, found.surface.deformed
         return self._at_start
 
-    def in_loop(self) -> LoopFriction:
+    def in_loop(self) -> FrictionInLoop:
         """For the compiled loop, on soil that does not yield."""
         assert self._adhesion is None
         q = np.zeros((self.line.length.size, 4, 3))
-        return LoopFriction(self, SoilFrictionData(self._resistance, self._memory.kept, q))
+        return FrictionInLoop(self, SoilFrictionData(self._resistance, self._memory.kept, q))
 
     def begun(self, given: SoilFrictionData, state: State) -> SoilFrictionData:
         """The same for a step that starts at a state."""
@@ -380,31 +379,28 @@ def add_friction_tangent(
     add_pairs(by_dofs, pairs, top.rows, touch.surface.facets, K, border)
 
 
-class LoopFriction:
-    """Friction in the compiled loop: its kernels, and what they read and write beside contact."""
+class FrictionInLoop(LoopFriction):
+    """Its kernels, and what they read and write beside contact."""
+
+    part: SoilFriction
 
     def __init__(self, friction: SoilFriction, data: SoilFrictionData) -> None:
         self.part = friction
         self._data, self._points = Packed(data), Packed(sliding_workspace(0))
 
     def begin(self, before: State) -> None:
-        """Begin a step from an accepted state."""
         self._data.renew(self.part.begun(self._data.value, before))
 
     def make_room(self, count: int) -> None:
-        """For so many points that touch."""
         self._points.renew(sliding_workspace(count))
 
     def forces(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
-        """The kernel that adds to the residuals, see `add_friction`."""
         return Bound(add_friction, touch, self._data, top, *out, self._points)
 
     def tangent(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
-        """The kernel that adds to the tangents, see `add_friction_tangent`."""
         return Bound(add_friction_tangent, touch, self._data, top, *out, self._points)
 
     def account(self, area: Array) -> tuple[float, Work]:
-        """What friction stores [J] at the points that touch, of areas (n,), and its work in the step."""
         points = SlidingPoints(*(each[: len(area)] for each in self._points.value))
         taken, stored = self.part.exchanged(points, area)
         return stored, self.part.work_of(taken, stored)

@@ -11,11 +11,10 @@ import numpy as np
 from riser_soil.contact.along_step import landing_predictor, work_along_step
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gaps_of
-from riser_soil.contact.facets import heights
 from riser_soil.contact.ground import CandidatePairs, add_blocks, touching_boxes
 from riser_soil.contact.integration_points import PointMemory, divisions
-from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.near_points import (
+    FEW,
     NearPoints,
     PairsByFacet,
     Surface,
@@ -23,19 +22,30 @@ from riser_soil.contact.near_points import (
     by_facet,
     near_points,
     points_of,
+    points_workspace,
 )
 from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, write_axis
-from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
-from riser_soil.contact.surface_loop import SurfaceInLoop, TouchData
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.contact.soil_contact import SOIL, CandidateRange, LoopContact, SoilContact
+from riser_soil.contact.surface_loop import (
+    LoopFriction,
+    TouchData,
+    TouchWorkspace,
+    Watched,
+    add_touch,
+    add_touch_tangent,
+    write_touch_work,
+)
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
 from riser_soil.core.saved_state import Saved, gathered, within
 from riser_soil.riser.line import Line
 from riser_soil.riser.moving_nodes import Trial
+from riser_soil.riser.part_kernels import FULL, POINTS
 from riser_soil.riser.sections import larger_beside
+from riser_soil.seabed.law import NormalLaw
 
 if TYPE_CHECKING:
-    from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.soil.condensed import SoilSurface
 
 AROUND = 0.25  # radii around the pipe in which facets are candidates: each of them couples its nodes to the element
@@ -74,14 +84,14 @@ class SurfaceContact(SoilContact):
         line: Line,
         radius: Array,
         surface: SoilSurface,
-        pressure: Penalty | SuctionLaw,
+        pressure: NormalLaw,
         spacing: tuple[float, float],
         *,
         along: Array | None = None,
         reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, pressure, surface)
-        self._radius, self._pressure, self._basis = radius, pressure, np.ascontiguousarray(line.basis)
+        self._radius, self._basis = radius, np.ascontiguousarray(line.basis)
         if not self.active:
             return
         half = 0.5 * self._soil.facet_size
@@ -112,10 +122,10 @@ class SurfaceContact(SoilContact):
     @property
     def _acts_within(self) -> float:
         """Gap [m] within which the law may act in a step that starts here."""
-        return float(self._pressure.reach if len(self._memory.numbers) else self.law.start)
+        return float(self.law.reach if len(self._memory.numbers) else self.law.start)
 
-    def in_loop(self, friction: SoilFriction | None) -> SurfaceInLoop:
-        return SurfaceInLoop(self, None if friction is None else friction.in_loop())
+    def in_loop(self, friction: LoopFriction | None) -> SurfaceInLoop:
+        return SurfaceInLoop(self, friction)
 
     def touch_data(self) -> TouchData:
         """For the compiled loop, with workspace for axis and surface."""
@@ -131,7 +141,7 @@ class SurfaceContact(SoilContact):
         """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
         and the pairs that may touch within; settled (np, 3): the surface.
         """
-        reach = self._pressure.reach
+        reach = self.law.reach
         around = [boxes(axis, self._reach.above + reach, self._reach.around + reach) for axis in axes]
         low, high = np.min([low for low, _ in around], axis=0), np.max([high for _, high in around], axis=0)
         elements, facets = touching_boxes(low, high, settled, self._soil.corners)
@@ -143,7 +153,7 @@ class SurfaceContact(SoilContact):
 
     def first_heights(self, points: NearPoints) -> Array:
         """Heights (n,) of points before the riser came [m]."""
-        return heights(points.facet, points.xi, self._soil.facets, self._soil.at_first)
+        return self._soil.heights_at(points.facet, points.xi, self._soil.at_first)
 
     def axis(self, trial: Trial) -> Axis:
         """The riser's axis at a trial."""
@@ -354,3 +364,65 @@ class SurfaceContact(SoilContact):
         if self.active:
             self._memory.restore(within(saved, "points"))
 
+
+class SurfaceInLoop(LoopContact):
+    """`SurfaceContact` in the compiled loop, with its friction, if any."""
+
+    contact: SurfaceContact
+
+    def __init__(self, contact: SurfaceContact, friction: LoopFriction | None) -> None:
+        super().__init__(contact, contact.around)
+        self._line, self._friction = contact.line, friction
+        self.parts = (contact,) if friction is None else (contact, friction.part)
+        self._touch = contact.touch_data()
+        self.deformed, ne = self._touch.surface.deformed, self._line.length.size
+        self.met: BoolArray = np.zeros(len(self.deformed), dtype=np.bool_)
+        self._data, self._workspace = Packed(self._touch), Packed(self._with_room(FEW))
+        none, low_high = np.empty(0, dtype=np.int64), (np.zeros((ne, 3)), np.zeros((ne, 3)))
+        self._watched = Packed(Watched(PairsByFacet(none, none, none), *low_high, 0.0))
+
+    def _with_room(self, count: int) -> TouchWorkspace:
+        """For so many points that touch."""
+        if self._friction is not None:
+            self._friction.make_room(count)
+        columns = len(self.contact.law.columns)
+        histories = np.zeros((count, columns)), np.zeros((count, columns))
+        forces = np.zeros(count), np.zeros(count), np.zeros((count, 3))
+        return TouchWorkspace(points_workspace(count), *histories, *forces, self.found, self.met, self.energy)
+
+    def begin(self, before: State) -> None:
+        self._data.renew(self.contact.begun(self._touch))
+        if self._friction is not None:
+            self._friction.begin(before)
+
+    def look(self, before: State, tried: bool) -> IntArray:
+        if self.found[FULL]:
+            self._workspace.renew(self._with_room(2 * len(self._workspace.value.force)))
+        axes = [self.contact.axis(self._line.trial(before))]
+        if tried:
+            axes.append(self._touch.axis._replace(q=self._touch.axis.q.copy()))
+        low, high, pairs = self.contact.watch(axes, self.deformed)
+        level = float(self.deformed[:, 2].max()) + self.slack
+        self._watched.renew(Watched(pairs, low + self.slack, high - self.slack, level))
+        return np.unique(self._touch.surface.facets[pairs.facets])
+
+    def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
+        out = forces, border, self._workspace
+        touched = Bound(add_touch, self._data, self._watched, top, at, *out)
+        return [touched] if self._friction is None else [touched, self._friction.forces(self._data, top, *out)]
+
+    def tangent(self, top: Packed, at: Packed, K: Packed, border: Packed) -> list[Bound]:
+        out = at, K, border, self._workspace
+        touched = Bound(add_touch_tangent, self._data, top, *out)
+        return [touched] if self._friction is None else [touched, self._friction.tangent(self._data, top, *out)]
+
+    def account(self, top: Packed, first: Packed) -> list[Bound]:
+        return [Bound(write_touch_work, self._data, top, first, self._workspace, Packed(self.taken))]
+
+    def add_work(self, before: State, after: State, work: dict[str, Work]) -> float:
+        stored = super().add_work(before, after, work)
+        if self._friction is None:
+            return stored
+        by_friction, turned = self._friction.account(self._workspace.value.near.area[: self.found[POINTS]])
+        work[self._friction.part.name] += turned
+        return stored + by_friction

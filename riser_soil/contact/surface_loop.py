@@ -6,7 +6,8 @@ facets' shares.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from abc import ABC, abstractmethod
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,14 +15,12 @@ from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gap_forms
 from riser_soil.contact.integration_points import KeptRows, write_kept
 from riser_soil.contact.near_points import (
-    FEW,
     NearPoints,
     PairsByFacet,
     Surface,
     boxes,
     fill_near,
     first_of,
-    points_workspace,
 )
 from riser_soil.contact.pressed_points import (
     Pairs,
@@ -34,19 +33,13 @@ from riser_soil.contact.pressed_points import (
     write_axis,
     write_on_riser,
 )
-from riser_soil.contact.soil_contact import FULL, LEFT, POINTS, LoopContact, TopMotion
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State, Work
+from riser_soil.core.part import Part, State, Work
 from riser_soil.riser.configuration import Configuration
-from riser_soil.riser.part_kernels import Border, LineForces
+from riser_soil.riser.part_kernels import FULL, LEFT, POINTS, Border, LineForces, TopMotion
 
-if TYPE_CHECKING:
-    from riser_soil.contact.soil_friction import LoopFriction
-    from riser_soil.contact.surface_contact import SurfaceContact
-
-NONE: IntArray = np.empty(0, dtype=np.int64)
 
 class TouchData(NamedTuple):
     """The pipe and the surface. axis: workspace for q; surface: with workspace for its present points. basis (3, d),
@@ -179,64 +172,27 @@ def write_touch_work(
     work[0] = work_of(*given, before, top.accepted)
 
 
-class SurfaceInLoop(LoopContact):
-    """`SurfaceContact` in the compiled loop, with its friction, if any."""
+class LoopFriction(ABC):
+    """Friction with condensed soil in the compiled loop: kernels, bound to what they read and write. part: its own."""
 
-    contact: SurfaceContact
+    part: Part
 
-    def __init__(self, contact: SurfaceContact, friction: LoopFriction | None) -> None:
-        super().__init__(contact, contact.around)
-        self._line, self._friction = contact.line, friction
-        self.parts = (contact,) if friction is None else (contact, friction.part)
-        self._touch = contact.touch_data()
-        self.deformed, ne = self._touch.surface.deformed, self._line.length.size
-        self.met: BoolArray = np.zeros(len(self.deformed), dtype=np.bool_)
-        self._data, self._workspace = Packed(self._touch), Packed(self._with_room(FEW))
-        boxes = np.zeros((ne, 3)), np.zeros((ne, 3))
-        self._watched = Packed(Watched(PairsByFacet(NONE, NONE, NONE), *boxes, 0.0))
-
-    def _with_room(self, count: int) -> TouchWorkspace:
-        """For so many points that touch."""
-        if self._friction is not None:
-            self._friction.make_room(count)
-        columns = len(self.contact.law.columns)
-        histories = np.zeros((count, columns)), np.zeros((count, columns))
-        forces = np.zeros(count), np.zeros(count), np.zeros((count, 3))
-        return TouchWorkspace(points_workspace(count), *histories, *forces, self.found, self.met, self.energy)
-
+    @abstractmethod
     def begin(self, before: State) -> None:
-        self._data.renew(self.contact.begun(self._touch))
-        if self._friction is not None:
-            self._friction.begin(before)
+        """Begin a step from an accepted state."""
 
-    def look(self, before: State, tried: bool) -> IntArray:
-        if self.found[FULL]:
-            self._workspace.renew(self._with_room(2 * len(self._workspace.value.force)))
-        axes = [self.contact.axis(self._line.trial(before))]
-        if tried:
-            axes.append(self._touch.axis._replace(q=self._touch.axis.q.copy()))
-        low, high, pairs = self.contact.watch(axes, self.deformed)
-        level = float(self.deformed[:, 2].max()) + self.slack
-        self._watched.renew(Watched(pairs, low + self.slack, high - self.slack, level))
-        return np.unique(self._touch.surface.facets[pairs.facets])
+    @abstractmethod
+    def make_room(self, count: int) -> None:
+        """For so many points that touch."""
 
-    def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
-        out = forces, border, self._workspace
-        touched = Bound(add_touch, self._data, self._watched, top, at, *out)
-        return [touched] if self._friction is None else [touched, self._friction.forces(self._data, top, *out)]
+    @abstractmethod
+    def forces(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
+        """The kernel that adds to the residuals, contact's being found."""
 
-    def tangent(self, top: Packed, at: Packed, K: Packed, border: Packed) -> list[Bound]:
-        out = at, K, border, self._workspace
-        touched = Bound(add_touch_tangent, self._data, top, *out)
-        return [touched] if self._friction is None else [touched, self._friction.tangent(self._data, top, *out)]
+    @abstractmethod
+    def tangent(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
+        """The kernel that adds to the tangents."""
 
-    def account(self, top: Packed, first: Packed) -> list[Bound]:
-        return [Bound(write_touch_work, self._data, top, first, self._workspace, Packed(self.taken))]
-
-    def add_work(self, before: State, after: State, work: dict[str, Work]) -> float:
-        stored = super().add_work(before, after, work)
-        if self._friction is None:
-            return stored
-        by_friction, turned = self._friction.account(self._workspace.value.near.area[: self.found[POINTS]])
-        work[self._friction.part.name] += turned
-        return stored + by_friction
+    @abstractmethod
+    def account(self, area: Array) -> tuple[float, Work]:
+        """What it stores [J] at the points that touch, of areas (n,), and its work in the step."""

@@ -21,9 +21,9 @@ from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.dense import PIVOT
 from riser_soil.riser.part_kernels import Border
-from riser_soil.solve.newton_progress import GOING_ON, SINGULAR
+from riser_soil.solve.newton_progress import GOING_ON, SINGULAR, NewtonProgress
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace
 
 
 class Factors(NamedTuple):

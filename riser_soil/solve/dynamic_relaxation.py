@@ -25,7 +25,6 @@ from riser_soil.riser.line import Line
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.stability import buckling_mode, stabilising_drag
-from riser_soil.solve.time_scheme import Static
 
 if TYPE_CHECKING:
     from riser_soil.bodies.body import MovingBody
@@ -247,7 +246,7 @@ def step_against(system: System, newton: Newton, part: Relaxation, t: float, dra
     riser that falls away from an unstable one, but return to it.
     """
     usual, part.drag = part.drag, drag
-    step = Step(Static(), at_rest(system, t), t, 0.0, None, np.zeros(system.numbering.size))
+    step = Step.static(at_rest(system, t))
     try:
         solution = newton.solve(step)
         newton.require_stable(solution)
@@ -281,7 +280,7 @@ def _leave(system: System, newton: Newton, part: Relaxation, unstable: Solution)
     _pass_through(system, unstable.state)
     t, left = unstable.state.t, _places(part)
     _stabilise(newton, part, t, least=True)
-    mode = buckling_mode(system, part, part.fields, at_rest(system, t), Static().weights(0.0))
+    mode = buckling_mode(system, part, part.fields, at_rest(system, t), Weights.of_statics())
     moved = at_rest(system, t)
     moved.u[:] = NUDGE * part.shortest * mode
     _pass_through(system, moved)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from riser_soil.core.communicator import Communicator, destroyed_together
 from riser_soil.core.matrix import Patterns
 from riser_soil.core.part import Forces, Model, State
@@ -14,12 +12,10 @@ from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.solver import Accepted, NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.step_iteration import StepIteration
-from riser_soil.solve.time_scheme import Scheme, Static
 
 if TYPE_CHECKING:
     from riser_soil.solve.compiled_loop import CompiledLoop
 
-INSTANT = Static(seconds=0.0)  # what flows under rate keeps its stress
 
 
 class Newton:
@@ -103,12 +99,12 @@ class Newton:
             self._by_parts.destroy()
 
 
-def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> Newton:
+def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton:
     """`Newton`, with the compiled loop where it can be and SNES is not asked for: on one rank for lines and bodies, or
     for a line on condensed soil, in time steps.
     """
     compiled = None
-    if system.comm.size == 1 and not settings.snes and scheme.dynamic and system.whole_soil is None:
+    if system.comm.size == 1 and not settings.snes and dynamic and system.whole_soil is None:
         from riser_soil.solve.compiled_loop import compiled_loop
 
         compiled = compiled_loop(system, settings.max_iterations)
@@ -128,9 +124,9 @@ def balance_held(
         system = System(comm, Model(model.lines, parts, model.others), clock, known)
         newton = Newton(system, settings)
         with destroyed_together(comm, newton.destroy, system.destroy):
-            size = system.numbering.size
+            before = State.at_rest(t, system.numbering.size)
             try:
-                found = newton.solve(Step(INSTANT, State.at_rest(t, size), t, 0.0, None, np.zeros(size))).state
+                found = newton.solve(Step.static(before, seconds=0.0)).state  # what flows under rate keeps its stress
             except NotConvergedError:
                 return
             for part in parts:

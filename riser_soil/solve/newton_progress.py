@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.communicator import all_of
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces
@@ -130,6 +130,16 @@ def _between(low: float, high: float, below: float, above: float) -> float:
     part = low - below * (high - low) / (above - below)
     edge = 0.05 * (high - low)
     return min(max(part, low + edge), high - edge)
+
+
+class NewtonProgress(NamedTuple):
+    """norms (most + 1,): of the residuals [N] so far; apart (most + 1,): of their share at nodes that nothing touches;
+    ending (2,): the outcome, and the iterations taken.
+    """
+
+    norms: Array
+    apart: Array
+    ending: IntArray
 
 
 class StopLimits(NamedTuple):

@@ -39,8 +39,8 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.newton_progress import StopLimits
-from riser_soil.solve.riser_loop import Dofs, NewtonProgress, StepData, matrix_workspace
+from riser_soil.solve.newton_progress import NewtonProgress, StopLimits
+from riser_soil.solve.riser_loop import Dofs, StepData, matrix_workspace
 
 KernelData = tuple[Any, ...]
 

@@ -27,6 +27,7 @@ from riser_soil.solve.newton_progress import (
     GOING_ON,
     SINGULAR,
     TOO_MANY,
+    NewtonProgress,
     StopLimits,
     above_round_off,
     diverges,
@@ -77,16 +78,6 @@ class MatrixWorkspace(NamedTuple):
     ab: Array
     pivots: IntArray
     band: Size
-
-
-class NewtonProgress(NamedTuple):
-    """norms (most + 1,): of the residuals [N] so far; apart (most + 1,): of their share at nodes that nothing touches;
-    ending (2,): the outcome, and the iterations taken.
-    """
-
-    norms: Array
-    apart: Array
-    ending: IntArray
 
 
 @njit

@@ -12,19 +12,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.soil_contact import FULL, LEFT, LoopContact, SoilContact, TopMotion
+from riser_soil.contact.soil_contact import LoopContact, SoilContact
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Energy, Part, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.riser.part_kernels import BEYOND, HELD, Border
+from riser_soil.riser.part_kernels import BEYOND, FULL, HELD, LEFT, Border, TopMotion
 from riser_soil.soil.condensed import CondensedSoil, Reached
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
-from riser_soil.solve.newton_progress import OUTGROWN
+from riser_soil.solve.newton_progress import OUTGROWN, NewtonProgress
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
-from riser_soil.solve.riser_loop import NewtonProgress
 
 FRICTION = "soil friction"
 
@@ -92,7 +91,7 @@ def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     others: list[Any] = [part for part in beside if part is not contact and part is not soil]
     if contact is None or soil is None or any(part.name != FRICTION for part in others):
         return None
-    return partial(SoilBorder, system, contact.in_loop(others[0] if others else None), soil)
+    return partial(SoilBorder, system, contact.in_loop(others[0].in_loop() if others else None), soil)
 
 
 class SoilBorder(LoopBorder):

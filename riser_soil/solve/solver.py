@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -20,7 +21,7 @@ from riser_soil.riser.sections import Elements
 from riser_soil.solve.newton_progress import StopLimits
 from riser_soil.solve.riser_loop import write_balance, write_rates
 from riser_soil.solve.riser_mass import RiserMass
-from riser_soil.solve.time_scheme import InverseMass, Scheme
+from riser_soil.solve.time_scheme import InverseMass, Scheme, Static
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -103,6 +104,11 @@ class Step:
     dt: float
     start: Forces | None
     guess: Array
+
+    @classmethod
+    def static(cls, before: State, seconds: float = math.inf) -> Step:
+        """One to equilibrium from an accepted state; seconds: see `Static`."""
+        return cls(Static(seconds), before, before.t, 0.0, None, np.zeros(before.u.size))
 
 
 @dataclass(frozen=True, eq=False)

@@ -130,7 +130,7 @@ def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> N
 
     forbid(monkeypatch)
     monkeypatch.setattr(SoilBorder, "_prescribe_anew", count)
-    monkeypatch.setattr("riser_soil.contact.surface_loop.FEW", 4)
+    monkeypatch.setattr("riser_soil.contact.surface_contact.FEW", 4)
     monkeypatch.setattr("riser_soil.contact.near_points.FEW", 2)
     monkeypatch.setattr("riser_soil.contact.surface_contact.AROUND", 0.05)
     found = taken("in a plane", "compiled")
@@ -158,7 +158,7 @@ def at_first_step(case: str) -> tuple[PackedSystem, System]:
     lay, move = assembly.scene.stages
     before = run_stage(assembly, lay, State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     system = System(assembly.comm, assembly.begin(move), Timer.new())
-    found = solver_of(system, SCHEME, SETTINGS)
+    found = solver_of(system, SCHEME.dynamic, SETTINGS)
     assert found.compiled is not None
     guess = np.zeros(assembly.size)
     found.solve(Step(SCHEME, before, 0.01, 0.01, None, guess))
@@ -202,9 +202,10 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
 
 
 def test_elastic_soil_adheres_without_a_limit() -> None:
-    """So friction on it has kernels."""
+    """Beside a seabed of clay, whose strength adhesion is a share of: friction on the soil has kernels."""
     mapping = scene("with friction", "compiled")
     mapping["contact"]["friction"]["adhesion"] = 0.5
+    mapping["seabed"] = {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 2.0e3}}
     assembly = built(mapping)
     system = System(assembly.comm, assembly.begin(assembly.scene.stages[1]), Timer.new())
     assert compiled_loop(system, SETTINGS.max_iterations) is not None
