@@ -21,12 +21,12 @@ from riser_soil.contact.facets import (
     triangular,
     within_line,
 )
-from riser_soil.contact.law import Penalty
 from riser_soil.contact.pairing import Cover, FacetSearch, bounds, facet_below
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
+from riser_soil.seabed.law import NormalLaw, SeabedResponse
 
 if TYPE_CHECKING:
     from riser_soil.soil.condensed import SoilSurface
@@ -199,7 +199,7 @@ class ActiveContacts:
     H (n, 2, 2): derivatives of the gap, see `gap`.
     """
 
-    law: Penalty
+    law: NormalLaw
     node: IntArray
     facet: IntArray
     length: Array
@@ -209,9 +209,13 @@ class ActiveContacts:
     H: Array
 
     @cached_property
+    def _response(self) -> SeabedResponse:
+        return self.law.update(self.penetration, self.law.initial_history(self.penetration.shape))
+
+    @cached_property
     def force(self) -> Array:
         """Contact force of each point (n,) [N], ≥ 0."""
-        return self.length * self.law.force(self.penetration)
+        return self.length * self._response.force
 
     @cached_property
     def gradient(self) -> Array:
@@ -221,12 +225,12 @@ class ActiveContacts:
     @property
     def hessian(self) -> Array:
         """d²ψ/du² (n, nr, nr) [N/m]."""
-        return penalty_hessian(self.forms, self.H, self.force, self.length * self.law.slope(self.penetration))
+        return penalty_hessian(self.forms, self.H, self.force, self.length * self._response.slope)
 
     @property
     def potential(self) -> float:
         """ψ [J]."""
-        return float(self.length @ self.law.potential(self.penetration))
+        return float(self.length @ self._response.stored)
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,7 +253,7 @@ class ContactDetection:
     """
 
     def __init__(
-        self, line: Line, radius: Array, points: ContactPoints, law: Penalty, soil: DeformedSurface, near: float
+        self, line: Line, radius: Array, points: ContactPoints, law: NormalLaw, soil: DeformedSurface, near: float
     ) -> None:
         self._line, self._radius, self._points = line, radius, points
         self._law, self._soil, self._near = law, soil, near
@@ -263,7 +267,7 @@ class ContactDetection:
         return ContactState(self._points, below, surface, self._touch(below, surface))
 
     def _touch(self, below: PointsBelow, surface: Array) -> ActiveContacts:
-        at = np.flatnonzero(below.gap < self._law.smoothing)
+        at = np.flatnonzero(below.gap < self._law.start)
         node, facet = self._points.node[at], below.facet[at]
         forms, H = gap_forms(facet, below.xi[at], self._soil.facets, surface)
         rows = np.hstack((self._line.translation_dofs[node], self._soil.facet_dofs(facet)))

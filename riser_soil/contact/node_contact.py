@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from riser_soil.contact.ground import (
     pairs_around,
     points_below,
 )
-from riser_soil.contact.law import Penalty, PenaltyData
 from riser_soil.contact.pairing import Cover, renew_boxes
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, LoopContact, SoilContact
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -34,6 +33,7 @@ from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import BEYOND, LEFT, POINTS, Border, LineForces, TopMotion
 from riser_soil.seabed.compiled_law import answer, may_act
+from riser_soil.seabed.law import NormalLaw
 
 if TYPE_CHECKING:
     from riser_soil.soil.condensed import SoilSurface
@@ -63,7 +63,7 @@ class NodeContact(SoilContact):
         line: Line,
         radius: Array,
         surface: SoilSurface,
-        law: Penalty,
+        law: NormalLaw,
         *,
         footprint: float | None = None,
         along: Array | None = None,
@@ -217,7 +217,7 @@ class NodeTouchData(NamedTuple):
     basis: Array
     radius: Array
     points: ContactPoints
-    law: PenaltyData
+    law: Any
 
 
 class WatchedFacets(NamedTuple):

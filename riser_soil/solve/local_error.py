@@ -33,10 +33,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Energy, State
+from riser_soil.core.part import Energy, Forces, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.solver import Solution
 from riser_soil.solve.time_scheme import GeneralizedAlpha, InverseMass, Scheme
 
 CONTACT = GeneralizedAlpha.newmark(0.5, 1.0)
@@ -77,21 +76,21 @@ class LocalError:
     def restore(self, saved: Saved) -> None:
         self._jerk, self._dt = saved.get("jerk"), float(saved.get("dt", 0.0))
 
-    def of(self, start: State, moving: State, solution: Solution, dt: float) -> float:
-        """Largest local error of a place [m] in a step from `start` that is solved, but not committed.
+    def of(self, start: State, moving: State, end: State, forces: Forces, dt: float) -> float:
+        """Largest local error of a place [m] in a step from `start` to an end that is not committed, with its forces.
 
         moving: the state at the start as the riser moves, contact's share of the accelerations included.
         """
-        missed = self._missed(start, moving, solution)
+        missed = self._missed(start, moving, end, forces.end)
         missed[self._system.prescribed_dofs] = 0.0
         return dt**2 * _farthest(self._system, missed)
 
-    def _missed(self, start: State, moving: State, solution: Solution) -> Array:
-        """Local error of the displacements, relative to dt^2 [m/s2]."""
-        scheme, end = self._scheme, solution.state
+    def _missed(self, start: State, moving: State, end: State, touching: Array) -> Array:
+        """Local error of the displacements, relative to dt^2 [m/s2]; touching (size,): contact's residual."""
+        scheme = self._scheme
         if self._system.smooth:
             return scheme.error_constant * (end.a - start.a)
-        contact = self._mass.accelerations(start.t, -solution.forces.end)
+        contact = self._mass.accelerations(start.t, -touching)
         bulk = scheme.split_contact(end, contact, 0.0).a
         change = contact - (moving.a - start.a)
         return scheme.error_constant * (bulk - start.a) + CONTACT.error_constant * change

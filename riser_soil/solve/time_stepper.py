@@ -242,7 +242,8 @@ class TimeStepper:
         """NotConvergedError for a step whose local error is too large, so that it is cut."""
         if self._error is None:
             return
-        error = self._error.of(self._start(step.dt), self.now, step.solution, step.dt)
+        solution = step.solution
+        error = self._error.of(self._start(step.dt), self.now, solution.state, solution.forces, step.dt)
         if rejection := control.rejection(error):
             raise NotConvergedError(rejection)
 

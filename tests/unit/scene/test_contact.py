@@ -141,7 +141,7 @@ def test_tangent_needs_the_gaps_second_derivative(kind: str) -> None:
     case = deformed_case(kind, 3)
     state = case.state(small(case))
     soil = case.contact.detect(state).touching
-    slope = soil.length * soil.law.slope(soil.penetration)
+    slope = soil.length * LAW.slope(soil.penetration)
     gradient = soil.forms[:, 0]
     first = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
     assert abs(soil.hessian - first).max() > 1e-3 * abs(first).max()
