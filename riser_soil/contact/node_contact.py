@@ -394,7 +394,7 @@ class NodesInLoop(LoopContact):
 
     def account(self, top: Packed, first: Packed) -> list[Bound]:
         given = self._data, self._packed_cover, top, first, self._workspace
-        return [Bound(write_node_touch_work, *given, Packed(self.taken))]
+        return [Bound(write_node_touch_work, *given, Packed(self.work))]
 
 
 def _default_reach(line: Line, soil: DeformedSurface) -> CandidateRange:

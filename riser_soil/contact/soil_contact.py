@@ -200,8 +200,8 @@ class LoopContact(ABC):
     write.
 
     parts: whose forces these are. deformed (np, 3): where the loop writes the top's points [m]. found (3,): see POINTS.
-    met (np,): nodes of the top that are not reached, and bear a force in the last trial. energy, taken (1,): stored
-    then, and what the forces took along the step [J].
+    met (np,): nodes of the top that are not reached, and bear a force in the last trial. energy, work (1,): stored
+    then, and that of the forces along the step [J].
     """
 
     parts: Sequence[Part]
@@ -212,7 +212,7 @@ class LoopContact(ABC):
         self.contact, self.slack = contact, SHARE * around
         self.found: IntArray = np.zeros(3, dtype=np.int64)
         self.energy: Array = np.zeros(1)
-        self.taken: Array = np.zeros(1)
+        self.work: Array = np.zeros(1)
         self._stored = dict[float, float]()  # energy [J] by the time of states
 
     @abstractmethod
@@ -234,7 +234,7 @@ class LoopContact(ABC):
 
     @abstractmethod
     def account(self, top: Packed, first: Packed) -> list[Bound]:
-        """Kernels that write what the forces at a step's end took along it, from a configuration."""
+        """Kernels that write the work of the forces at a step's end along it, from a configuration."""
 
     def add_work(self, before: State, after: State, work: dict[str, Work]) -> float:
         """Add what the parts have turned over in the step solved last; the energy that they store [J]."""
@@ -249,7 +249,7 @@ class LoopContact(ABC):
         if first is None:
             first = self.contact.energy(before).potential
         self._stored = {before.t: first, after.t: last}
-        lost = float(self.taken[0]) - last + first
+        lost = float(self.work[0]) - last + first
         return Work(dissipated=lost, by_scheme=lost)
 
     def forget(self) -> None:

@@ -135,7 +135,7 @@ class SoilFriction(LinePart):
         q = np.zeros((self.line.length.size, 4, 3))
         return FrictionInLoop(self, SoilFrictionData(self._resistance, self._memory.kept, q))
 
-    def begun(self, given: SoilFrictionData, state: State) -> SoilFrictionData:
+    def at_start(self, given: SoilFrictionData, state: State) -> SoilFrictionData:
         """The same for a step that starts at a state."""
         given.q[...] = self.contact.axis(self.line.trial(state)).q
         return given._replace(kept=self._memory.kept)
@@ -181,8 +181,8 @@ class SoilFriction(LinePart):
     def work_of(self, taken: float, stored: float) -> Work:
         """Energy dissipated: what friction has taken less the change of the energy stored [J]; never negative."""
         kept = self._memory.rows
-        begun = 0.5 / self._resistance.stiffness * float(np.sum(kept[:, AREA] * np.sum(kept[:, :AREA] ** 2, axis=1)))
-        return Work(dissipated=taken - stored + begun)
+        squares = float(np.sum(kept[:, AREA] * np.sum(kept[:, :AREA] ** 2, axis=1)))
+        return Work(dissipated=taken - stored + 0.5 / self._resistance.stiffness * squares)
 
     def commit(self, state: State) -> None:
         """Keep the tractions."""
@@ -389,7 +389,7 @@ class FrictionInLoop(LoopFriction):
         self._data, self._points = Packed(data), Packed(sliding_workspace(0))
 
     def begin(self, before: State) -> None:
-        self._data.renew(self.part.begun(self._data.value, before))
+        self._data.renew(self.part.at_start(self._data.value, before))
 
     def make_room(self, count: int) -> None:
         self._points.renew(sliding_workspace(count))

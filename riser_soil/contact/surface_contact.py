@@ -131,9 +131,9 @@ class SurfaceContact(SoilContact):
         """For the compiled loop, with workspace for axis and surface."""
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
         surface, law = self.surface(self._soil.settled), self.law.kernel_data
-        return self.begun(TouchData(axis, surface, self._basis, self.line.origin, law, self._memory.kept, 0.0))
+        return self.at_start(TouchData(axis, surface, self._basis, self.line.origin, law, self._memory.kept, 0.0))
 
-    def begun(self, touch: TouchData) -> TouchData:
+    def at_start(self, touch: TouchData) -> TouchData:
         """The same for a step that starts here."""
         return touch._replace(kept=self._memory.kept, reach=self._acts_within)
 
@@ -391,7 +391,7 @@ class SurfaceInLoop(LoopContact):
         return TouchWorkspace(points_workspace(count), *histories, *forces, self.found, self.met, self.energy)
 
     def begin(self, before: State) -> None:
-        self._data.renew(self.contact.begun(self._touch))
+        self._data.renew(self.contact.at_start(self._touch))
         if self._friction is not None:
             self._friction.begin(before)
 
@@ -417,7 +417,7 @@ class SurfaceInLoop(LoopContact):
         return [touched] if self._friction is None else [touched, self._friction.tangent(self._data, top, *out)]
 
     def account(self, top: Packed, first: Packed) -> list[Bound]:
-        return [Bound(write_touch_work, self._data, top, first, self._workspace, Packed(self.taken))]
+        return [Bound(write_touch_work, self._data, top, first, self._workspace, Packed(self.work))]
 
     def add_work(self, before: State, after: State, work: dict[str, Work]) -> float:
         stored = super().add_work(before, after, work)
