@@ -232,5 +232,6 @@ def within_line(forms: Array, basis: Array) -> Array:
             for j in range(d):
                 for c in range(3):
                     out[i, k, j] += forms[i, k, c] * basis[c, j]
-            out[i, k, d:] = forms[i, k, 3:]
+            for c in range(3, nr):
+                out[i, k, d + c - 3] = forms[i, k, c]
     return out

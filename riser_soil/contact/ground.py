@@ -86,7 +86,7 @@ def find_below(x: Array, radius: Array, points: ContactPoints, level: float, cov
             continue
         out.facet[p] = facet_below(cover, x[n, 0] + points.offset[p, 0], x[n, 1] + points.offset[p, 1], -1)
         if out.facet[p] >= 0:
-            out.xi[p] = cover.xi
+            out.xi[p, 0], out.xi[p, 1] = cover.xi[0], cover.xi[1]
             fill_shape(cover.xi[0], cover.xi[1], N, dN)
             height = 0.0
             for a in range(N.size):

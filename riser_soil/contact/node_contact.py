@@ -280,7 +280,8 @@ def add_node_touch(
     renew_boxes(cover, watched.facets)
     below, length = found.below, touch.points.length
     find_below(found.x, touch.radius, touch.points, watched.level, cover, below)
-    found.met[:] = False
+    for a in range(found.met.size):
+        found.met[a] = False
     found.found[POINTS], found.found[LEFT], found.energy[0] = 0, 0, 0.0
     nothing, n = np.empty(0), 0
     for p in range(length.size):
@@ -315,21 +316,24 @@ def add_node_touch_tangent(
     blocks = penalty_hessian(forms, H, found.force[: nodes.size], found.slope[: nodes.size])
     d, ndof = touch.basis.shape[1], K.shape[1] // 2
     for i in range(nodes.size):
-        n, block, corners = nodes[i], blocks[i], cover.facets[facets[i]]
+        n, f = nodes[i], facets[i]
         e = min(n, K.shape[0] - 1)
         first = (n - e) * ndof
         border.coupled[n] = True
-        K[e, first : first + d, first : first + d] += block[:d, :d]
-        for a in range(d, block.shape[0]):
-            row = top.rows[corners[(a - d) // 3], (a - d) % 3]
+        for a in range(d):
+            for b in range(d):
+                K[e, first + a, first + b] += blocks[i, a, b]
+        for a in range(d, blocks.shape[1]):
+            row = top.rows[cover.facets[f, (a - d) // 3], (a - d) % 3]
             if row < 0:
                 continue
-            border.right[n * ndof : n * ndof + d, row] += block[:d, a]
-            border.below[n * ndof : n * ndof + d, row] += block[a, :d]
-            for b in range(d, block.shape[0]):
-                column = top.rows[corners[(b - d) // 3], (b - d) % 3]
+            for b in range(d):
+                border.right[n * ndof + b, row] += blocks[i, b, a]
+                border.below[n * ndof + b, row] += blocks[i, a, b]
+            for b in range(d, blocks.shape[1]):
+                column = top.rows[cover.facets[f, (b - d) // 3], (b - d) % 3]
                 if column >= 0:
-                    border.corner[row, column] += block[a, b]
+                    border.corner[row, column] += blocks[i, a, b]
 
 
 @njit

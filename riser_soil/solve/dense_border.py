@@ -40,7 +40,9 @@ class Factors(NamedTuple):
 @njit
 def begin_schur(border: Border, factors: Factors) -> None:
     """Write the border's own matrix."""
-    factors.schur[...] = border.corner
+    for i in range(border.corner.shape[0]):
+        for j in range(border.corner.shape[1]):
+            factors.schur[i, j] = border.corner[i, j]
 
 
 @njit

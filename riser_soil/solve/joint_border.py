@@ -121,7 +121,8 @@ def add_to_band(joints: JointData, sides: Sides, workspace: MatrixWorkspace, dof
 @njit
 def balance_copies(joints: JointData, border: Border) -> None:
     """The copies are where the dofs are."""
-    border.residual[border.residual.size - joints.forces.size :] = 0.0
+    for k in range(border.residual.size - joints.forces.size, border.residual.size):
+        border.residual[k] = 0.0
 
 
 @njit

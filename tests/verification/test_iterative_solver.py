@@ -31,7 +31,8 @@ def on_clay(linear: str) -> Mapping:
     return scene
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])
+@pytest.mark.verify
+@pytest.mark.parametrize("ranks", [1, 2])
 def test_states_are_those_of_the_direct_solver(ranks: int, tmp_path: Path) -> None:
     """Clay that yields, touched by the riser, at rest and in motion."""
     direct = ran(on_clay("direct"), tmp_path / "direct")

@@ -112,7 +112,7 @@ SHORT = {
 LONG = (
     *("waves", "vortices", "slugs", "plastic clay in space", "touchdown in sections", "kept factors"),
     *("laid and lifted on clay", "sinks into tetrahedra", "midpoint rule", "midpoint rule in space"),
-    *("friction on hysteretic clay", "midpoint rule of a rigid body"),
+    *("friction on hysteretic clay", "midpoint rule of a rigid body", "sinks into clay"),
 )
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 

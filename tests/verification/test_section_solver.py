@@ -88,6 +88,7 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
     assert sum(made) < 0.8 * SECTIONS * len(errors)
 
 
+@pytest.mark.verify
 def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: pytest.MonkeyPatch) -> None:
     """A step of 0.1 um has the round-off of those of 9 mm before it."""
     expected, usual, calls = steps(on_sections("direct")), SectionFactors.take, count()

@@ -78,6 +78,7 @@ def test_steps_half_as_long_settle_the_pipe_as_deep(monkeypatch: pytest.MonkeyPa
     assert Rested(2.7).w == pytest.approx(usual.w, rel=0.015)
 
 
+@pytest.mark.verify
 def test_a_pipe_that_nothing_bears_is_told_to_sink_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """Eight times su D in all: beyond a twentieth of a diameter it is not waited for here."""
     monkeypatch.setattr(settling, "DEEPEST", 0.05)

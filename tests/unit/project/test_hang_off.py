@@ -129,6 +129,7 @@ def _between(line: str) -> list[Mapping]:
     return [{"line": line, "at": "end"}, {"body": "weight"}]
 
 
+@pytest.mark.verify
 def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
     """Both pull with the same H, and together bear all weight, of which each angle's tangent gives a share."""
     found = hung(scene_from_mapping(on_a_weight(west=45.0, east=40.0)))

@@ -152,7 +152,7 @@ def test_dissipation_per_cycle_grows_with_its_amplitude(law: NormalLaw) -> None:
     assert np.all(np.diff(lost) > 0.0)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.verify), 3])
 @pytest.mark.parametrize("rise", [-0.16, 0.1], ids=["sinking", "rising"])
 @pytest.mark.parametrize("kind", ["randolph-quiggin", "aubeny-biscontin"])
 def test_tangent_along_a_riser_with_a_history(kind: str, rise: float, dimension: int) -> None:
