@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -44,20 +44,11 @@ WITHIN_ELEMENTS = [
     *("beam", "inertia", "rotary", "damping", "morison", "forces", "attachments", "contents"),
     *("half out of waves", "buoyancy", "modules", "modules half out of waves", "modules' buoyancy"),
 ]
-OWN = ("beam", "inertia", "rotary", "damping")  # whose kernels in a plane are others than those in space
-
-
-def in_both(names: Iterable[str]) -> pytest.MarkDecorator:
-    cases = [(name, dimension) for name in names for dimension in (2, 3)]
-    planar = [pytest.mark.verify]
-    marked = [pytest.param(*case, marks=planar * (case[1] == 2 and case[0] not in OWN)) for case in cases]
-    return pytest.mark.parametrize(("name", "dimension"), marked)
-
-
-every_part = in_both(MAKERS)
+every_part = pytest.mark.parametrize("name", list(MAKERS))
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 
 
+@both_dimensions
 @every_part
 def test_tangent_is_the_derivative_of_the_residual(name: str, dimension: int) -> None:
     at = sample(dimension)
@@ -70,6 +61,7 @@ def test_tangent_is_the_derivative_of_the_residual(name: str, dimension: int) ->
         assert error(K, expected) < 1e-7
 
 
+@both_dimensions
 @every_part
 def test_symmetric_parts_say_so(name: str, dimension: int) -> None:
     at = sample(dimension)
@@ -79,6 +71,7 @@ def test_symmetric_parts_say_so(name: str, dimension: int) -> None:
     assert symmetric == part.traits.symmetric
 
 
+@both_dimensions
 @every_part
 def test_forces_are_in_the_groups_that_a_part_declares(name: str, dimension: int) -> None:
     at = sample(dimension)
@@ -150,6 +143,7 @@ def in_space(plane: Sample, values: Array) -> Array:
     return np.asarray(lifting(plane) @ values)
 
 
+@both_dimensions
 @every_part
 def test_residual_survives_a_commit(name: str, dimension: int) -> None:
     at = sample(dimension)
@@ -164,6 +158,7 @@ def test_residual_survives_a_commit(name: str, dimension: int) -> None:
     assert np.abs(after - before).max() <= 1e-11 * max(np.abs(before).max(), 1.0)
 
 
+@both_dimensions
 @every_part
 def test_forces_of_an_accepted_step_are_those_that_the_next_one_starts_from(name: str, dimension: int) -> None:
     """In the axes of the configuration just accepted; in space those of the step would not do."""
@@ -185,7 +180,8 @@ def forces_in_global_axes(at: Sample, state: State, part: Part, weights: Weights
     return out
 
 
-@in_both(WITHIN_ELEMENTS)
+@both_dimensions
+@pytest.mark.parametrize("name", WITHIN_ELEMENTS)
 def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(6)
@@ -200,6 +196,7 @@ def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> Non
     assert acting_on(sample(dimension).line, [part]) == []
 
 
+@both_dimensions
 @every_part
 def test_parts_keep_to_their_slice(name: str, dimension: int) -> None:
     near, far = sample(dimension), sample(dimension, offset=7)
