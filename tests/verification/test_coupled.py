@@ -196,6 +196,7 @@ def yielding(soil: Soil, state: State) -> frozenset[int]:
 # The demo
 
 
+@pytest.mark.verify
 def test_riser_on_block_needs_few_newton_iterations(on_block: WatchedRun) -> None:
     steps = on_block.of_kind(static=False)
     assert len(steps) == 120

@@ -113,6 +113,7 @@ LONG = (
     *("waves", "vortices", "slugs", "plastic clay in space", "touchdown in sections", "kept factors"),
     *("laid and lifted on clay", "sinks into tetrahedra", "midpoint rule", "midpoint rule in space"),
     *("friction on hysteretic clay", "midpoint rule of a rigid body", "sinks into clay"),
+    "surface contact on plastic clay",
 )
 NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
 

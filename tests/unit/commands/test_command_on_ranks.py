@@ -44,7 +44,7 @@ def test_wrong_scene_is_reported_once(tmp_path: Path) -> None:
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("failing", ["(0, 1)", "(0,)", "(1,)"])
+@pytest.mark.parametrize("failing", ["(0, 1)", pytest.param("(0,)", marks=pytest.mark.verify), "(1,)"])
 def test_failed_solve_ends_all_ranks_and_is_reported_once(failing: str, tmp_path: Path) -> None:
     script = DRIVER.replace("FAILING", failing).replace("FAILURE", "SolveError('failed at 24 m')")
     done = mpirun(2, "-c", script, folder=tmp_path)

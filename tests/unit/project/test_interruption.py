@@ -225,7 +225,7 @@ main()
 """
 
 
-@pytest.mark.parametrize("begin", ["make_block", "lagrange_nodes"])
+@pytest.mark.parametrize("begin", [pytest.param("make_block", marks=pytest.mark.verify), "lagrange_nodes"])
 def test_ctrl_c_is_heard_while_the_soil_is_meshed(begin: str, tmp_path: Path) -> None:
     """Within a session of gmsh, which would end the process without a word."""
     call = [sys.executable, "-c", MESHING.replace("BEGIN", begin), str(tmp_path / "out")]

@@ -108,7 +108,10 @@ print(*solver.x.getArray(readonly=True))
 """
 
 
-@pytest.mark.parametrize(("end", "in_use"), [("", 1), ("del solver", 1), ("solver.snes.destroy()", 0)])
+@pytest.mark.parametrize(
+    ("end", "in_use"),
+    [("", 1), pytest.param("del solver", 1, marks=pytest.mark.verify), ("solver.snes.destroy()", 0)],
+)
 def test_python_ends_well_with_solvers_left_over(end: str, in_use: int) -> None:
     """Of those destroyed, nothing is kept."""
     counted = f"{end}\nprint(len(BorderedBand.in_use))"
