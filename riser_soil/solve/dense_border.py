@@ -59,10 +59,30 @@ def eliminate(
                 factors.rows[count] = n * ndof + i
                 count += 1
     factors.filled[0] = count
-    if count > 0:
-        rows, schur = factors.rows[:count], factors.schur
-        inner = banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band)
-        schur -= np.dot(np.ascontiguousarray(border.below[rows].T), np.dot(inner, border.right[rows]))
+    if count == 0:
+        return
+    rows, columns = factors.rows[:count], _coupled_columns(border, factors.rows[:count])
+    right, below = np.empty((count, columns.size)), np.empty((columns.size, count))
+    for i in range(count):
+        for j in range(columns.size):
+            right[i, j], below[j, i] = border.right[rows[i], columns[j]], border.below[rows[i], columns[j]]
+    follow = np.dot(below, np.dot(banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band), right))
+    for i in range(columns.size):
+        for j in range(columns.size):
+            factors.schur[columns[i], columns[j]] -= follow[i, j]
+
+
+@njit
+def _coupled_columns(border: Border, rows: IntArray) -> IntArray:
+    """Unknowns of the border that a line's rows (r,) are coupled with."""
+    found, count = np.empty(border.u.size, dtype=np.int64), 0
+    for j in range(found.size):
+        for k in rows:
+            if border.right[k, j] != 0.0 or border.below[k, j] != 0.0:
+                found[count] = j
+                count += 1
+                break
+    return found[:count]
 
 
 @njit

@@ -12,10 +12,11 @@ from mpi4py import MPI
 from benchmarks.stage import TimedStage
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Energy
+from riser_soil.core.part import Energy, State
 from riser_soil.core.system import Timer
 from riser_soil.riser.part_kernels import Border
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve.compiled_loop import CompiledLoop
 from riser_soil.solve.joint_border import JointBorder
 from riser_soil.solve.packed_line import PackedSystem
 from riser_soil.solve.soil_border import SoilBorder
@@ -85,7 +86,8 @@ SCENES = {
 
 
 def last_stage(case: str, newton: str) -> TimedStage:
-    solver = {"newton": newton, "tolerance": 1e-9} | ({"soil": "condensed"} if "soil" in case else {})
+    # Beside soil, whose round-off the loop does not know, the tolerance stays above that of stiff joints.
+    solver = {"newton": newton} | ({"soil": "condensed", "tolerance": 1e-8} if "soil" in case else {"tolerance": 1e-9})
     scene = scene_from_mapping(SCENES[case]() | {"solver": solver})
     assembly = build(scene, MPI.COMM_SELF)
     before, _ = lay(assembly, Timer.new())
@@ -94,7 +96,11 @@ def last_stage(case: str, newton: str) -> TimedStage:
 
 
 @pytest.mark.parametrize("case", SCENES)
-def test_steps_are_those_of_snes(case: str) -> None:
+def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(loop: CompiledLoop, before: State) -> bool:
+        raise AssertionError("a step was left to Newton's method over the parts")
+
+    monkeypatch.setattr(CompiledLoop, "leaves", refuse)
     compiled, snes = (last_stage(case, newton) for newton in ("compiled", "snes"))
     assert compiled.newton.compiled is not None
     assert snes.newton.compiled is None
