@@ -133,7 +133,8 @@ def wait_for_steps(folder: Path, steps: int) -> None:
     raise TimeoutError("the run has not come that far")
 
 
-@ALONE
+@pytest.mark.verify
+@pytest.mark.parametrize("ranks", [1, 2])
 def test_finished_run_is_replaced_by_force_alone(ranks: int, tmp_path: Path) -> None:
     first, second = touchdown(LAY), touchdown(LAY, su=2000.0)
     assert command(tmp_path, ranks, first).returncode == 0

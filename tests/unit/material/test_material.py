@@ -177,6 +177,7 @@ def test_closed_loops_keep_mean_stress_and_strain(material: Call, law: dict[str,
     assert law_of(law).forgets_at is None
 
 
+@pytest.mark.verify
 def test_drained_triaxial_compression_of_sand_fails_as_coulomb_says(material: Call) -> None:
     strain, still = np.linspace(0.0, -0.01, 101)[1:], np.zeros(100)
     done = material(SAND, rows("eps_zz [-], sigma_xx [Pa], sigma_yy [Pa]", strain, still, still), K0=0.5)

@@ -118,7 +118,14 @@ def test_nothing_else_runs_before_the_setting_is_chosen(tmp_path: Path) -> None:
         run(scene_from_mapping(asking("catenary, 35 elements")), tmp_path / "run")
 
 
-@pytest.mark.parametrize("name", ["beam under tension, unresolved", "on springs, coarse", "hose on a rigid floor"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "beam under tension, unresolved",
+        "on springs, coarse",
+        pytest.param("hose on a rigid floor", marks=pytest.mark.verify),
+    ],
+)
 def test_statics_reach_it(name: str, tmp_path: Path) -> None:
     run_to_accuracy(scene_from_mapping(asking(name)), tmp_path / "run")
     reported = summary(tmp_path / "run")
