@@ -151,11 +151,18 @@ def heights(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> Arra
     out = np.full(len(facet), -np.inf)
     for i in range(len(facet)):
         if facet[i] >= 0:
-            N, _ = shape(facets.shape[1], xi[i, 0], xi[i, 1])
-            out[i] = 0.0
-            for a, p in enumerate(facets[facet[i]]):
-                out[i] += N[a] * points[p, 2]
+            out[i] = height_at(facets[facet[i]], xi[i, 0], xi[i, 1], points)
     return out
+
+
+@njit
+def height_at(nodes: IntArray, xi: float, eta: float, points: Array) -> float:
+    """The same at a place on one facet of nodes (nv,)."""
+    N, _ = shape(len(nodes), xi, eta)
+    height = 0.0
+    for a, p in enumerate(nodes):
+        height += N[a] * points[p, 2]
+    return height
 
 
 @njit

@@ -13,8 +13,8 @@ import numpy as np
 
 from riser_soil.contact.facets import (
     QUAD,
-    fill_shape,
     gap_forms,
+    height_at,
     heights,
     penalty_hessian,
     strips,
@@ -78,7 +78,6 @@ def find_below(x: Array, radius: Array, points: ContactPoints, level: float, cov
     """Write where the points of nodes at x (nn, 3) stand whose undersides are below a level [m]. radius (nn,): [m] from
     the axis to the line that touches.
     """
-    N, dN = np.empty(cover.facets.shape[1]), np.empty((cover.facets.shape[1], 2))
     for p in range(points.node.size):
         n = points.node[p]
         out.facet[p], out.gap[p] = -1, np.inf
@@ -87,11 +86,8 @@ def find_below(x: Array, radius: Array, points: ContactPoints, level: float, cov
         out.facet[p] = facet_below(cover, x[n, 0] + points.offset[p, 0], x[n, 1] + points.offset[p, 1], -1)
         if out.facet[p] >= 0:
             out.xi[p, 0], out.xi[p, 1] = cover.xi[0], cover.xi[1]
-            fill_shape(cover.xi[0], cover.xi[1], N, dN)
-            height = 0.0
-            for a in range(N.size):
-                height += N[a] * cover.points[cover.facets[out.facet[p], a], 2]
-            out.gap[p] = x[n, 2] - radius[n] - height
+            ground = height_at(cover.facets[out.facet[p]], cover.xi[0], cover.xi[1], cover.points)
+            out.gap[p] = x[n, 2] - radius[n] - ground
 
 
 class DeformedSurface:

@@ -14,14 +14,7 @@ import numpy as np
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gap_forms
 from riser_soil.contact.integration_points import KeptRows, write_kept
-from riser_soil.contact.near_points import (
-    NearPoints,
-    PairsByFacet,
-    Surface,
-    boxes,
-    fill_near,
-    first_of,
-)
+from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of
 from riser_soil.contact.pressed_points import (
     Pairs,
     keep_active,
