@@ -26,6 +26,9 @@ class CsrMatrix:
 
         return on_arrays(*self.csr(), symmetric=self._symmetric)
 
+    def write(self) -> None:
+        """PETSc works on the same arrays."""
+
     def put(self, data: Array) -> None:
         """The sums are here already."""
         self._changed()
@@ -76,6 +79,70 @@ def union(a: IntArray, b: IntArray) -> IntArray:
         out[count] = a[i] if first else b[j]
         i, j, count = i + first, j + second, count + 1
     return out[:count].copy()
+
+
+@njit
+def number_entries(
+    rows: IntArray, cols: IntArray, minus: tuple[BoolArray, BoolArray], n: int, numbers: IntArray
+) -> IntArray:
+    """Sorted distinct entries row n + col that blocks have in a system of n unknowns. Written are the blocks' numbers
+    (m, nr, nc) among these, -1 less it where an entry is minus what is there; absent ones get how many there are.
+
+    rows (m, nr), cols (m, nc): of the system, -1 for none; minus: which of them are minus what the system has.
+    """
+    begin, places = _blocks_by_row(rows, n)
+    begun, found, column = np.zeros(n + 1, np.int64), np.full(n, -1), np.empty(n, np.int64)
+    for r in range(n):
+        begun[r + 1] = begun[r] + _columns_of_row(r, begin, places, cols, found, column, rows.shape[1])
+    numbers[...] = begun[n]
+    keys = np.empty(begun[n], np.int64)
+    found[:] = -1
+    for r in range(n):
+        count = _columns_of_row(r, begin, places, cols, found, column, rows.shape[1])
+        own = np.sort(column[:count])
+        for k in range(count):
+            keys[begun[r] + k], column[own[k]] = r * n + own[k], begun[r] + k
+        for k in range(begin[r], begin[r + 1]):
+            b, i = places[k] // rows.shape[1], places[k] % rows.shape[1]
+            for j in range(cols.shape[1]):
+                if cols[b, j] >= 0:
+                    at = column[cols[b, j]]
+                    numbers[b, i, j] = -1 - at if minus[0][b, i] != minus[1][b, j] else at
+    return keys
+
+
+@njit
+def _blocks_by_row(rows: IntArray, n: int) -> tuple[IntArray, IntArray]:
+    """Where blocks have rows (m, nr) of n: places b nr + i, those of row r from begin[r] to begin[r + 1]."""
+    m, nr = rows.shape
+    begin = np.zeros(n + 1, np.int64)
+    for b in range(m):
+        for i in range(nr):
+            if rows[b, i] >= 0:
+                begin[rows[b, i] + 1] += 1
+    begin = np.cumsum(begin)
+    places, at = np.empty(begin[n], np.int64), begin[:-1].copy()
+    for b in range(m):
+        for i in range(nr):
+            r = rows[b, i]
+            if r >= 0:
+                places[at[r]] = b * nr + i
+                at[r] += 1
+    return begin, places
+
+
+@njit
+def _columns_of_row(
+    r: int, begin: IntArray, places: IntArray, cols: IntArray, found: IntArray, out: IntArray, nr: int
+) -> int:
+    """Write the distinct columns of a row; how many there are. found (n,): the last row in which each was found."""
+    count = 0
+    for k in range(begin[r], begin[r + 1]):
+        for c in cols[places[k] // nr]:
+            if c >= 0 and found[c] != r:
+                found[c], out[count] = r, c
+                count += 1
+    return count
 
 
 @njit

@@ -6,21 +6,27 @@ first and sends what belongs to others in one exchange (`shared_matrix`).
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.csr_matrix import CsrMatrix, add_at, add_filled_at, add_magnitudes, union, write_places
+from riser_soil.core.csr_matrix import (
+    CsrMatrix,
+    add_at,
+    add_filled_at,
+    add_magnitudes,
+    number_entries,
+    union,
+    write_places,
+)
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import MatrixBlock
 
 if TYPE_CHECKING:
     from riser_soil.core.shared_matrix import SharedMatrix
-
-AT_ONCE = 2048  # blocks whose entries are looked up together: all at once take several times the matrix' own memory
 
 
 class Matrix:
@@ -48,6 +54,10 @@ class Matrix:
     def mat(self) -> Any:
         """The matrix as PETSc has it."""
         return self.stored.mat
+
+    def write(self) -> None:
+        """See that PETSc has the present values; collective."""
+        self.stored.write()
 
     def clear(self) -> None:
         for key, values in self.values.items():
@@ -107,8 +117,9 @@ class BlockPattern:
 
     def __init__(self, rows: IntArray, cols: IntArray, minus: tuple[BoolArray, BoolArray], n: int) -> None:
         self._rows, self._cols, self._minus, self._n = rows, cols, minus, n
-        self.keys = _keys(rows, cols, n)
-        self._numbers = _numbers(self.keys, rows, cols, n, minus)
+        numbers = np.empty((*rows.shape, cols.shape[1]), dtype=np.int32)
+        self.keys = number_entries(rows, cols, minus, n, numbers)
+        self._numbers = numbers.reshape(-1)
 
     def is_of(self, rows: IntArray, cols: IntArray, minus: tuple[BoolArray, BoolArray], n: int) -> bool:
         mine, others = (self._rows, self._cols, *self._minus), (rows, cols, *minus)
@@ -143,39 +154,3 @@ def _is_minus(numbering: Numbering, block: MatrixBlock) -> tuple[BoolArray, Bool
     """Which rows (m, nr) and columns (m, nc) of blocks are minus what the system has."""
     minus = np.append(numbering.sign < 0.0, False)
     return minus[block.rows], minus[block.cols]
-
-
-def _keys(rows: IntArray, cols: IntArray, n: int) -> IntArray:
-    """Sorted distinct entries row·n + col of a batch of blocks, found some of them at a time."""
-    found = [_distinct(rows[some], cols[some], n) for some in _some_at_a_time(len(rows))]
-    return np.unique(np.concatenate(found)) if found else np.empty(0, dtype=np.int64)
-
-
-def _distinct(rows: IntArray, cols: IntArray, n: int) -> IntArray:
-    keys, there = _entries(rows, cols, n)
-    return np.unique(keys[there])
-
-
-def _entries(rows: IntArray, cols: IntArray, n: int) -> tuple[IntArray, BoolArray]:
-    """Entries row·n + col (m, nr, nc) of blocks, and which are there."""
-    keys = rows.astype(np.int64)[:, :, None] * n + cols[:, None, :]
-    return keys, (rows >= 0)[:, :, None] & (cols >= 0)[:, None, :]
-
-
-def _some_at_a_time(blocks: int) -> Iterator[slice]:
-    yield from (slice(first, first + AT_ONCE) for first in range(0, blocks, AT_ONCE))
-
-
-def _numbers(
-    keys: IntArray, rows: IntArray, cols: IntArray, n: int, minus: tuple[BoolArray, BoolArray]
-) -> IntArray:
-    """Number of every block entry among the keys, -1 less it where the entry is minus that; absent ones get that behind
-    the last.
-    """
-    numbers = np.empty((*rows.shape, cols.shape[1]), dtype=np.int32)
-    for some in _some_at_a_time(len(rows)):
-        wanted, there = _entries(rows[some], cols[some], n)
-        numbers[some] = np.where(there, np.searchsorted(keys, wanted), len(keys))
-        turned = minus[0][some][:, :, None] != minus[1][some][:, None, :]
-        numbers[some] = np.where(turned, -1 - numbers[some], numbers[some])
-    return numbers.reshape(-1)

@@ -33,6 +33,7 @@ from riser_soil.soil.soil_cells import SoilCells
 SHEAR = 1.0 / np.sqrt(2.0)  # of a component in Mandel's notation
 SLOPE = ("slope_x", "slope_y", "slope_z")
 FIRST, LAST = STRESS[0][-3:], STRESS[-1][-3:]  # "_xx", "_yz"
+APART = 10.0  # largest extent of the soil, by which sections are moved apart
 Take = Callable[[Array, Array, Array], tuple[Array, ...]]  # of places, rows there, and places asked for
 
 
@@ -140,11 +141,22 @@ def _nearest(places: Array, held: Array, asked: Array) -> tuple[Array, Array]:
 
 
 def _taken(grid: DistributedMesh, take: Take, before: Array, after: Array, rows: Array) -> tuple[Array, ...]:
-    """This rank's share of what is taken, at the places after of all ranks, from the rows of all; collective."""
+    """This rank's share of what is taken, at the places after of all ranks, from the rows of all; collective. Sections
+    take nothing from each other, and each is one rank's.
+    """
+    if grid.family.plane:
+        return take(_apart(grid, before), rows, _apart(grid, after))
     comm = grid.nodes.comm
     gathered = comm.gather((before, rows, after))
     mine: tuple[Array, ...] = comm.scatter([] if gathered is None else _split(gathered, take))
     return mine
+
+
+def _apart(grid: DistributedMesh, points: Array) -> Array:
+    """Points (n, 3) of sections, these so far from each other that no point is near one of another section."""
+    out, (along,) = points.copy(), {0, 1, 2}.difference(grid.family.axes)
+    out[:, along] *= APART * float((grid.high - grid.low).max()) / grid.family.thickness
+    return out
 
 
 def _split(gathered: list[tuple[Array, Array, Array]], take: Take) -> list[tuple[Array, ...]]:

@@ -58,6 +58,11 @@ class LinearSystems:
     factorises: ClassVar[bool] = True
     to_tolerance: ClassVar[bool] = False
 
+    @property
+    def reads_mat(self) -> bool:
+        """Whether PETSc's own matrix is read, and not the rows that it is made of."""
+        return True
+
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         """Solve what this KSP is asked for; by the levers [m] moments count as forces."""
         raise NotImplementedError

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from riser_soil.core.communicator import Communicator, destroyed_together
@@ -16,6 +17,7 @@ from riser_soil.solve.step_iteration import StepIteration
 if TYPE_CHECKING:
     from riser_soil.solve.compiled_loop import CompiledLoop
 
+HELD = 1e-4  # of the forces in play, that a balance under held lines may lack
 
 
 class Newton:
@@ -114,9 +116,10 @@ def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton
 def balance_held(
     comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer, known: Patterns | None = None
 ) -> None:
-    """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it. Where that fails
-    it is left to the next step. known: see `Matrix`. Collective.
+    """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it: to `HELD`, as
+    the next step takes up what is left, or all of it where this fails. known: see `Matrix`. Collective.
     """
+    settings = replace(settings, tolerance=max(settings.tolerance, HELD))
     parts = [part for part in model.parts if part.traits.groups == "E"]
     with ExitStack() as stack:
         for line in model.lines:

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 from petsc4py import PETSc
-from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -284,7 +284,8 @@ def take_on(bands: Bands, b: int, x: Array) -> None:
     inner, border = np.empty(bands.band.shape[1]), np.empty(bands.right.shape[2])
     for s in range(bands.first.size):
         n, start, band, below = bands.counts[s, 1], bands.counts[s, 3], bands.band[s], bands.below[s]
-        _gather(bands, s, x, inner, border)
+        if not _gather(bands, s, x, inner, border):
+            continue
         _forward(band, inner[:n], b)
         for k in range(start, n):
             for j in range(border.size):
@@ -298,7 +299,8 @@ def insert(bands: Bands, b: int, x: Array) -> None:
     inner, border = np.empty(bands.band.shape[1]), np.empty(bands.right.shape[2])
     for s in range(bands.first.size):
         n, start, band, right = bands.counts[s, 1], bands.counts[s, 3], bands.band[s], bands.right[s]
-        _gather(bands, s, x, inner, border)
+        if not _gather(bands, s, x, inner, border):
+            continue
         for k in range(start, n):
             for j in range(border.size):
                 inner[k] -= right[k, j] * border[j]
@@ -307,15 +309,18 @@ def insert(bands: Bands, b: int, x: Array) -> None:
 
 
 @njit
-def _gather(bands: Bands, s: int, x: Array, inner: Array, border: Array) -> None:
-    """Take a section's numbers from those of the rank's rows."""
+def _gather(bands: Bands, s: int, x: Array, inner: Array, border: Array) -> bool:
+    """Take a section's numbers from those of the rank's rows; whether there is anything to solve."""
     border[:] = 0.0
+    some = False
     for i in range(bands.first[s], bands.first[s] + bands.counts[s, 0]):
         row = bands.number[i]
+        some |= x[i] != 0.0
         if row >= 0:
             inner[row] = x[i]
         else:
             border[-1 - row] = x[i]
+    return some
 
 
 @njit
@@ -357,6 +362,23 @@ def _product(band: Array, k: int, first: int, x: Array, start: int, count: int) 
     return (s0 + s1) + (s2 + s3)
 
 
+@njit
+def entries_between(indptr: IntArray, indices: IntArray, values: Array, first: int, number: IntArray) -> Entries:
+    """Entries, those that are not zero, of this rank's rows in some rows and columns of the system, by the numbers (n,)
+    of these; -1 of the others.
+    """
+    own = number[first : first + indptr.size - 1]
+    count = np.sum(np.diff(indptr)[own >= 0])
+    rows, columns, found = np.empty(count, np.int64), np.empty(count, np.int64), np.empty(count)
+    n = 0
+    for i in np.flatnonzero(own >= 0):
+        for k in range(indptr[i], indptr[i + 1]):
+            if number[indices[k]] >= 0 and values[k] != 0.0:
+                rows[n], columns[n], found[n] = own[i], number[indices[k]], values[k]
+                n += 1
+    return rows[:n], columns[:n], found[:n]
+
+
 THRESHOLD = 0.1  # of the largest entry of its column, that a pivot on the diagonal may have
 
 
@@ -376,6 +398,10 @@ class SectionSolver(PythonContext, LinearSystems):
         self._factors = SectionFactors((), 0, 0)
         self._rest: _Rest | None = None
 
+    @property
+    def reads_mat(self) -> bool:
+        return self._by_rows_exchanged
+
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         if self._by_rows_exchanged:
@@ -394,10 +420,10 @@ class SectionSolver(PythonContext, LinearSystems):
         if not all_of(comm, self._factors.take(csr, coupled[mine])):
             raise SingularError
         left = coupled | (self._section < 0)
-        self._left, number = np.flatnonzero(left[mine]), np.cumsum(left) - 1
-        own = _between(csr, self._left, left, number, first)
-        taken = self._factors.taken(number[mine])
-        self._rest = _Rest(comm, _joined([own, *taken]), int(np.count_nonzero(left)))
+        number = np.where(left, np.cumsum(left) - 1, -1)
+        self._left = np.flatnonzero(left[mine])
+        parts = [entries_between(*csr, first, number), *self._factors.taken(number[mine])]
+        self._rest = _Rest(comm, _joined(parts), int(np.count_nonzero(left)))
 
     def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
         """Solve."""
@@ -470,14 +496,6 @@ def _runs(section: IntArray) -> list[slice]:
     """Rows of each section, of rows (n,) of which these are the numbers."""
     starts = np.flatnonzero(np.diff(section, prepend=-1, append=-1))
     return [slice(int(a), int(b)) for a, b in pairwise(starts) if section[a] >= 0]
-
-
-def _between(csr: Csr, rows: IntArray, left: BoolArray, number: IntArray, first: int) -> Entries:
-    """Entries of some of a rank's rows in the columns that are left, by their numbers among these."""
-    indptr, indices, values = csr
-    some = csr_matrix((values, indices, indptr), shape=(len(indptr) - 1, len(left)))[rows].tocoo()
-    there = left[some.col] & (some.data != 0.0)
-    return number[first + rows[some.row[there]]], number[some.col[there]], some.data[there]
 
 
 def _joined(parts: Sequence[Entries]) -> Entries:

@@ -141,6 +141,8 @@ class SnesLoop(Loop):
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
         """The convergence test has assembled it; a matrix that it has left as it was keeps its factors."""
+        if self.linear.reads_mat:
+            self._system.matrix.write()
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         ending = self._balance.judge(np.array(self._x.array_r), np.array(self._f.array_r))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,28 @@ def test_patterns_known_from_before_serve_as_long_as_they_are_of_the_same_entrie
         numbering.destroy()
 
 
+def test_blocks_of_any_dofs_some_minus_what_the_system_has_add_up() -> None:
+    """Against the sum over all entries; dofs that come twice in a block, too."""
+    rng, n = np.random.default_rng(5), 12
+    rows, cols = rng.integers(-1, n, (9, 4)), rng.integers(-1, n, (9, 3))
+    values, minus = rng.uniform(-1.0, 1.0, (9, 4, 3)), rng.random(n) < 0.4
+    numbering = Numbering(MPI.COMM_SELF, [Chain(np.arange(float(n)), prescribed=False)])
+    numbering.sign = np.where(minus, -1.0, 1.0)
+    matrix = Matrix(numbering, {"some": MatrixBlock(rows, cols)}, symmetric=False)
+    matrix.values["some"][...] = values
+    matrix.assemble()
+    expected = np.zeros((n, n))
+    for block, i, j in np.ndindex(values.shape):
+        row, col = rows[block, i], cols[block, j]
+        if min(row, col) >= 0:
+            expected[row, col] += values[block, i, j] * numbering.sign[row] * numbering.sign[col]
+    assert matrix.mat.getValues(range(n), range(n)) == pytest.approx(expected, abs=1e-15)
+    indptr, indices, _ = matrix.stored.csr()
+    assert all((np.diff(indices[a:b]) > 0).all() for a, b in pairwise(indptr))
+    matrix.destroy()
+    numbering.destroy()
+
+
 def test_magnitudes_are_sums_of_absolute_values_over_the_blocks() -> None:
     """Where the blocks' own entries cancel one another, too; of absent dofs nothing, of prescribed ones their size."""
     chain = Chain(np.arange(4.0), prescribed=True)
@@ -125,8 +148,9 @@ numbering.to_local(y, local)
 x = numbering.add_to_global(local / comm.size)
 matrix.add_to_diagonal(x)
 square = comm.allreduce(float(x @ matrix.stored.diagonal()))
+changed = comm.allreduce(float(x @ matrix.stored.times(x)))
 if comm.rank == 0:
-    print(" ".join(f"{v:.12e}" for v in np.concatenate([local, [square]])))
+    print(" ".join(f"{v:.12e}" for v in np.concatenate([local, [square, changed]])))
 '''
 
 
@@ -135,5 +159,5 @@ def test_product_on_ranks(tmp_path: Path, ranks: int) -> None:
     script = tmp_path / "on_ranks.py"
     script.write_text(ON_RANKS)
     alone, together = (np.array(mpirun(n, str(script)).stdout.split(), dtype=float) for n in (1, ranks))
-    assert len(alone) == 41
+    assert len(alone) == 42
     assert together == pytest.approx(alone, rel=1e-12)

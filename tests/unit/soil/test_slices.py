@@ -13,6 +13,7 @@ from riser_soil.errors import MeshError
 from riser_soil.soil import kernels
 from riser_soil.soil.families import cell_gradients
 from riser_soil.soil.grading import BlockSpec
+from riser_soil.soil.large_strain import carried_rows, nearest_rows
 from riser_soil.soil.slices import slice_grid
 from riser_soil.soil.soil import Soil
 from tests.support.sinking_pipe import CLAY, sink, sinking
@@ -45,6 +46,26 @@ def test_slices_fill_the_block(along: int) -> None:
     corners = mesh.points[mesh.cells]
     assert np.ptp(corners, axis=1).prod(axis=1).sum() == pytest.approx(4.0, rel=1e-12)
     assert len(soil.output_fields().displacement) == len(mesh.points)
+
+
+@ALONG
+def test_slices_take_nothing_from_each_other(along: int) -> None:
+    """A new mesh of thin slices whose nodes lie nearer to those of the next one than to their own neighbours."""
+    line, ranges = np.zeros((2, 2)), [(0.0, 0.2), (-1.0, 1.0)]
+    line[1, along] = 0.2
+    x, y = ranges if along == 0 else ranges[::-1]
+    thin = BlockSpec(x, y, 1.0, 0.25, 0.5, riser=((0.0, 0.0), (float(line[1, 0]), float(line[1, 1]))), along=0.05)
+    soil = Soil(slice_grid(MPI.COMM_SELF, thin), ELASTIC, level=0.0, unit_weight=5.0e3)
+    before = soil.cells.at_points(soil.points)
+    number = np.round(before[:, along] / 0.05 - 0.5)
+    assert set(number) == {0.0, 1.0, 2.0, 3.0}
+    after = before + 0.05 * np.random.default_rng(7).uniform(-1.0, 1.0, before.shape)
+    after[:, along] = before[:, along]
+    for found in (
+        carried_rows(soil.grid, before, after, number[:, None], ("number",)),
+        nearest_rows(soil.grid, before, after, number[:, None], ("number",))[0],
+    ):
+        np.testing.assert_array_equal(found[:, 0], number)
 
 
 @ALONG
