@@ -22,6 +22,8 @@ EASED = 0.01  # of the gradient's matrix, added to it: where no points lie ahead
 
 def carried(places: Array, held: Array, asked: Array) -> Array:
     """Rows (n, k) at places (n, 3) of the field that holds rows (m, k) at others (m, 3)."""
+    if not len(asked):
+        return held[:0]
     apart, near = cKDTree(places).query(asked, k=min(AROUND, len(places)))
     out = held[near[:, 0]]
     _carry(places, held, asked, apart, near, out)

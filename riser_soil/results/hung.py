@@ -8,7 +8,6 @@ in turn, each held within its segment (Ericson, Real-Time Collision Detection, 2
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from riser_soil.core.part import State
 from riser_soil.results.netcdf import Variable
 from riser_soil.riser import rotations
 from riser_soil.riser.vectors import add, dot, matrix, norm, scale, sub, vector
-from riser_soil.scene.lines import arc_of
+from riser_soil.scene.lines import apart_from_joints
 from riser_soil.scene.output import Clearance
 
 GAPES = 0.01  # of the diameter, by which a rigid joint may gape
@@ -104,7 +103,7 @@ class _Pair:
     def __init__(self, assembly: Assembly, given: Clearance) -> None:
         self.path = f"clearance/{given.key}"
         self._lines = [assembly.lines[name].line for name in given.between]
-        self._counts = [_counting(assembly, name, given.beyond) for name in given.between]
+        self._counts = [np.array(apart_from_joints(assembly.scene, name, given.beyond)) for name in given.between]
 
     def look(self) -> tuple[Array, Array, Array]:
         """Distance and both arc lengths, each without axes [m]."""
@@ -114,17 +113,6 @@ class _Pair:
         arcs = (line.arc[at] + share * line.length[at] for line, at, share in ((one, e, s), (other, f, t)))
         first, second = arcs
         return np.array(distance), np.array(first), np.array(second)
-
-
-def _counting(assembly: Assembly, name: str, beyond: float) -> BoolArray:
-    """Elements (ne,) of a line no part of which lies within a length of a joint of it."""
-    own, scene = assembly.lines[name], assembly.scene
-    points = [point for joint in scene.joints.values() for point in joint.between if point.line == name]
-    joints = [arc_of(own.scene.line, point) for point in points]
-    return np.array([
-        all(last <= at - beyond or first >= at + beyond for at in joints) or beyond == 0.0
-        for first, last in pairwise(own.line.arc)
-    ])  # fmt: skip
 
 
 def _vector(units: str, text: str) -> Variable:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
-from riser_soil.scene.lines import ENDS, acts_on, arc_of, axis_across, by_line, first_place
+from riser_soil.scene.lines import ENDS, acts_on, apart_from_joints, arc_of, axis_across, by_line, first_place
 from riser_soil.scene.motions import Vessel, VesselHistory
 from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.plane import VerticalPlane, leaving_the_plane, positions
@@ -38,7 +38,7 @@ def all_conflicts(scene: Scene) -> list[Problem]:
     if own:
         return own
     found = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
-    return list(found.values())
+    return [*found.values(), *_clearances_beyond(scene)]
 
 
 def _without_lines(scene: Scene) -> Iterator[Problem]:
@@ -168,6 +168,15 @@ def _clearances(scene: Scene) -> Iterator[Problem]:
         if pair.key in before:
             allowed = f"is {pair.key} in the results, as output.clearance.{before.index(pair.key)} is"
             yield Problem(path, allowed, "leave one out, turn the two names round, or rename a line")
+
+
+def _clearances_beyond(scene: Scene) -> Iterator[Problem]:
+    """Of a scene without other conflicts."""
+    for n, pair in enumerate(scene.output.clearance):
+        for name in pair.between:
+            if not any(apart_from_joints(scene, name, pair.beyond)):
+                allowed = f"must leave an element of {name}, which is {scene.lines[name].length:g} m long"
+                yield Problem(("output", "clearance", n, "beyond"), allowed, "take a shorter length")
 
 
 def _soil(scene: Scene) -> Iterator[Problem]:

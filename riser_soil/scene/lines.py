@@ -153,6 +153,19 @@ def arc_of(line: Riser, point: JointPoint) -> float:
     return {"start": 0.0, "end": line.length}[point.at] if isinstance(point.at, str) else float(point.at or 0.0)
 
 
+def apart_from_joints(scene: Scene, name: str, beyond: float) -> list[bool]:
+    """Of each element of a line, whether no part of it lies within a length [m] of the line's joints; a length of zero
+    leaves out none.
+    """
+    line = by_line(scene)[name].line
+    points = (point for joint in scene.joints.values() for point in joint.between if point.line == name)
+    joints = [arc_of(line, point) for point in points]
+    return [
+        all(last <= at - beyond or first >= at + beyond for at in joints) or beyond == 0.0
+        for first, last in pairwise(line.node_arcs)
+    ]
+
+
 def _inner_arcs(scene: Scene, name: str) -> Iterator[float]:
     for joint in scene.joints.values():
         yield from (float(p.at) for p in joint.between if p.line == name and isinstance(p.at, float))

@@ -675,6 +675,10 @@ REFUSED = [
     (joint(EAST, NORTH), "nothing says where the joint is at first"),
     (joint(TO_BUOY, TO_BUOY), "both points are of the same line or body"),
     (changed(output={"clearance": [{"between": ["east", "west"]}]}), "output.clearance.0.between.1: value .west."),
+    (
+        changed(output={"clearance": [{"between": ["east", "north"], "beyond": 1.0e3}]}),
+        r"output\.clearance\.0\.beyond: value 1000.* east",
+    ),
     (clearances(("east", "north"), ("east", "north")), "output.clearance.1.between: .*is east_north .*clearance.0 is"),
     (stage(**MOVED), "stages.0.move: value .*: does not say of which line it is"),
     (stage(bodies={"boy": {}}), "stages.0.bodies.boy: .*must be one of bodies .buoy.; name one of them"),
