@@ -213,12 +213,11 @@ class LoopBorder:
     """What stands beside the lines, couples them or has unknowns of its own: here nothing; kernels are bound to what
     they take.
 
-    knows_round_off: whether a residual can be told from its round-off by `riser_loop.write_terms`; smooth: whether
-    nothing touches the lines; gradual: whether a tangent may be kept beside contact, see `System`; parts: whose forces
-    are evaluated here.
+    smooth: whether nothing touches the lines; gradual: whether a tangent may be kept beside contact, see `System`;
+    parts: whose forces are evaluated here.
     """
 
-    knows_round_off = smooth = gradual = True
+    smooth = gradual = True
     parts: Sequence[Any] = ()
 
     def begin(self, before: State, step_to: float, guess: Array) -> None:
@@ -257,7 +256,13 @@ class LoopBorder:
         return []
 
     def terms(self) -> list[Bound]:
-        """Kernels that add to the terms that the lines' residuals are made of."""
+        """Kernels that add to the terms that the lines' residuals are made of, and write the border's, see
+        `riser_loop.write_terms`. The tangents of contact need not outlive them.
+        """
+        return []
+
+    def above(self, above: Packed) -> list[Bound]:
+        """Kernels that tell where something in the border's residual can be told from its round-off, above (1,)."""
         return []
 
     def fill(self) -> list[Bound]:
@@ -322,7 +327,7 @@ class PackedSystem:
     def _bind(self) -> None:
         """Bind the kernels of the loop to where they read and write."""
         lines, beside, progress, limits = self.lines, self._kernels, Packed(self.progress), self._limits
-        smooth, knows_round_off = (self.all_beside(attrgetter(name)) for name in ("smooth", "knows_round_off"))
+        smooth = self.all_beside(attrgetter("smooth"))
         sums, above = Packed(np.zeros(5)), Packed(np.zeros(1, dtype=np.bool_))
         evaluate = [
             *(kernel for line in lines for kernel in line.evaluate()),
@@ -346,12 +351,13 @@ class PackedSystem:
         looked = [Bound(loop.find_above, line.packed_dofs, above) for line in lines]
         probe = [
             *held_bulk, *joined, *held_contact, *sizes, *terms, *beside(lambda it: it.terms()),
-            Bound(loop.set_zero, above), *looked, Bound(loop.judge_round_off, above, progress),
+            Bound(loop.set_zero, above), *looked, *beside(lambda it: it.above(above)),
+            Bound(loop.judge_round_off, above, progress),
         ]  # fmt: skip
         renew = [*bulk, *joined, *contact, *factors]
         touch = [*contact, *factors] if contact else []
         improve = [*beside(lambda it: it.couple()), *(line.improve() for line in lines)]
-        each = evaluate, probe if knows_round_off else [], renew, touch, improve
+        each = evaluate, probe, renew, touch, improve
         tables = (Packed(calls(*kernels)) for kernels in each)
         tangles = (kernel for line in lines for kernel in line.look_for_tangles)
         self._solve = in_turn(Bound(loop.solve_step, *tables, limits, progress), *tangles)

@@ -16,25 +16,30 @@ from riser_soil.contact.soil_contact import LoopContact, SoilContact
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
+from riser_soil.core.csr_matrix import add_magnitudes
 from riser_soil.core.part import Energy, Part, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.part_kernels import BEYOND, FULL, HELD, LEFT, Border, TopMotion
 from riser_soil.soil.condensed import CondensedSoil, Reached
+from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
-from riser_soil.solve.newton_progress import OUTGROWN, NewtonProgress
+from riser_soil.solve.newton_progress import OUTGROWN, NewtonProgress, above_round_off
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace
 
 FRICTION = "soil friction"
 
 
 class SoilData(NamedTuple):
-    """Of condensed soil: stiffness (nb, nb) [N/m] of its reached dofs, and the forces (nb,) that hold them as they were
-    accepted [N].
+    """Of condensed soil: stiffness (nb, nb) [N/m] of its reached dofs; how far these were moved as accepted (nb,) [m],
+    and the forces (nb,) [N] that hold them there. terms (nb,): see `riser_loop.write_terms`.
     """
 
     stiffness: Array
+    accepted: Array
     holding: Array
+    terms: Array
 
 
 @njit
@@ -84,6 +89,30 @@ def clear_border(soil: SoilData, border: Border) -> None:
             border.coupled[n] = False
 
 
+@njit
+def add_terms(soil: SoilData, border: Border, workspace: MatrixWorkspace, dofs: Dofs) -> None:
+    """Add contact's share to the terms that the line's residual is made of, and write those of the soil's; K: contact's
+    share.
+    """
+    n, count = dofs.terms.size, soil.holding.size
+    terms, line = dofs.terms.reshape(n), dofs.sizes.reshape(n)
+    sizes = np.abs(soil.accepted + border.u[:count])
+    add_magnitudes(workspace.K, workspace.rows, workspace.rows, line, terms)
+    ndof = n // border.coupled.size
+    for j in range(count):
+        soil.terms[j] = np.dot(np.abs(border.corner[j, :count]), sizes)
+        for i in range(n):
+            if border.coupled[i // ndof]:
+                terms[i] += abs(border.right[i, j]) * sizes[j]
+                soil.terms[j] += abs(border.below[i, j]) * line[i]
+
+
+@njit
+def find_above(soil: SoilData, border: Border, above: BoolArray) -> None:
+    """The same as `riser_loop.find_above` of the soil's residual."""
+    above[0] |= above_round_off(border.residual[: soil.holding.size], soil.terms)
+
+
 def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     """That of lines on condensed soil, one of which touches it; None where there are no kernels."""
     contact = next((part for part in beside if isinstance(part, SoilContact)), None)
@@ -97,7 +126,7 @@ def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
 class SoilBorder(LoopBorder):
     """The soil's reached dofs with what touches it; their kernels, bound to where they read and write."""
 
-    knows_round_off = smooth = gradual = False
+    smooth = gradual = False
 
     def __init__(
         self,
@@ -142,6 +171,14 @@ class SoilBorder(LoopBorder):
         cleared, packed = Bound(clear_border, self._held, self._border), self._packed
         return [cleared, *self._touching.tangent(self._motion, packed.packed_at, packed.K, self._border)]
 
+    def terms(self) -> list[Bound]:
+        packed = self._packed
+        own = Bound(add_terms, self._held, self._border, packed.packed_workspace, packed.packed_dofs)
+        return [Bound(loop.set_zero, packed.K), *self.tangent(), own]
+
+    def above(self, above: Packed) -> list[Bound]:
+        return [Bound(find_above, self._held, self._border, above)]
+
     def account(self, energy: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
         return self._touching.account(self._motion, Packed(self._packed.placed.at))
@@ -157,7 +194,8 @@ class SoilBorder(LoopBorder):
             self._look(tried=False)
         self._motion.value.accepted[...] = accepted
         held, at = self._held.value, self._top.reached.dofs
-        np.dot(held.stiffness, committed.ravel()[at], out=held.holding)
+        held.accepted[...] = committed.ravel()[at]
+        np.dot(held.stiffness, held.accepted, out=held.holding)
         self._moved[:] = self._top.own(guess)[at]
         self._prescribe_anew()
 
@@ -250,4 +288,4 @@ class SoilBorder(LoopBorder):
 
 def _held(count: int) -> SoilData:
     """For so many dofs."""
-    return SoilData(np.zeros((count, count)), np.zeros(count))
+    return SoilData(np.zeros((count, count)), *np.zeros((3, count)))

@@ -12,6 +12,7 @@ from mpi4py import MPI
 from benchmarks.stage import TimedStage
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import in_turn
 from riser_soil.core.part import Energy, State
 from riser_soil.core.system import Timer
 from riser_soil.riser.part_kernels import Border
@@ -86,8 +87,7 @@ SCENES = {
 
 
 def last_stage(case: str, newton: str) -> TimedStage:
-    # Beside soil, whose round-off the loop does not know, the tolerance stays above that of stiff joints.
-    solver = {"newton": newton} | ({"soil": "condensed", "tolerance": 1e-8} if "soil" in case else {"tolerance": 1e-9})
+    solver = {"newton": newton, "tolerance": 1e-9} | ({"soil": "condensed"} if "soil" in case else {})
     scene = scene_from_mapping(SCENES[case]() | {"solver": solver})
     assembly = build(scene, MPI.COMM_SELF)
     before, _ = lay(assembly, Timer.new())
@@ -215,6 +215,26 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
         sizes = np.abs(tangent) @ np.abs(direction)
         assert np.abs(slope - tangent @ direction)[free].max() < 1e-7 * sizes.max()
         assert (np.abs(slope - tangent @ direction)[free] < 1e-5 * sizes[free] + 1e-9 * sizes.max()).all()
+
+
+def test_terms_of_what_soil_and_line_do_to_each_other() -> None:
+    """Products of tangent and coordinates: of soil's rows all, of the line's those by what touches it."""
+    packed = at_first_step("on elastic soil")
+    residual(packed, shaken_increments(packed)[0])
+    K = np.abs(matrix(packed))
+    soil = next(each for each in packed.beside if isinstance(each, SoilBorder))
+    moved = np.abs(soil._held.value.accepted + soil_in(packed, lambda border: border.u))
+    sizes = np.concatenate([*(line.dofs.sizes.ravel() for line in packed.lines), moved])
+    touched, n = soil._packed, len(sizes) - len(moved)
+    at = slice(touched.line.offset, touched.line.offset + touched.line.size)
+    touched.dofs.terms[...] = 0.0
+    in_turn(*soil.terms())()
+    own, by_itself = touched.workspace, np.zeros(touched.line.size)
+    for rows, block in zip(own.rows, np.abs(own.K), strict=True):
+        by_itself[rows] += block @ sizes[at][rows]
+    assert K[n:, at].any()
+    np.testing.assert_allclose(soil._held.value.terms, K[n:] @ sizes, rtol=1e-12)
+    np.testing.assert_allclose(touched.dofs.terms.ravel(), by_itself + K[at, n:] @ moved, rtol=1e-12)
 
 
 def left_over(packed: PackedSystem) -> float:
