@@ -52,6 +52,11 @@ class Family:
         return len(self.axes) == 2
 
     @cached_property
+    def normal(self) -> int:
+        """The axis along which cells in plane strain don't extend."""
+        return next(axis for axis in range(3) if axis not in self.axes)
+
+    @cached_property
     def quadrature(self) -> tuple[Array, Array]:
         """Points (nq, 3) and weights (nq,) on the reference cell; in a plane (nq, 2)."""
         points, weights = basix.make_quadrature(self.cell, self.quadrature_degree)

@@ -154,8 +154,8 @@ def _taken(grid: DistributedMesh, take: Take, before: Array, after: Array, rows:
 
 def _apart(grid: DistributedMesh, points: Array) -> Array:
     """Points (n, 3) of sections, these so far from each other that no point is near one of another section."""
-    out, (along,) = points.copy(), {0, 1, 2}.difference(grid.family.axes)
-    out[:, along] *= APART * float((grid.high - grid.low).max()) / grid.family.thickness
+    out = points.copy()
+    out[:, grid.family.normal] *= APART * float((grid.high - grid.low).max()) / grid.family.thickness
     return out
 
 

@@ -53,7 +53,7 @@ def slice_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
 
 def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
     """The surface on rank 0: a row of each slice's top nodes, those of the outermost ones at the block's ends, too."""
-    along = next(axis for axis in range(2) if axis not in grid.family.axes)
+    along = grid.family.normal
     top = np.flatnonzero(mesh.points[:, 2] > grid.high[2] - 1e-9 * float(np.ptp([grid.low[2], grid.high[2]])))
     if not len(mesh.points):
         none = np.zeros(0, dtype=np.int64)
@@ -73,7 +73,7 @@ def top_of_slices(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> Soi
 
 def slabs(grid: DistributedMesh, mesh: GatheredMesh) -> SoilMesh:
     """Slices as hexahedra in VTK's order, as thick as they stand for: of the nodes all those in front come first."""
-    along = next(axis for axis in range(2) if axis not in grid.family.axes)
+    along = grid.family.normal
     half = np.zeros(3)
     half[along] = 0.5 * grid.family.thickness
     n, quads = len(mesh.points), mesh.cells[:, grid.family.vtk]

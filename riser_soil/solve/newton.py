@@ -17,7 +17,7 @@ from riser_soil.solve.step_iteration import StepIteration
 if TYPE_CHECKING:
     from riser_soil.solve.compiled_loop import CompiledLoop
 
-HELD = 1e-4  # of the forces in play, that a balance under held lines may lack
+BALANCED = 1e-4  # of the forces in play, that a balance under held lines may lack
 
 
 class Newton:
@@ -116,10 +116,10 @@ def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton
 def balance_held(
     comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer, known: Patterns | None = None
 ) -> None:
-    """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it: to `HELD`, as
-    the next step takes up what is left, or all of it where this fails. known: see `Matrix`. Collective.
+    """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it: to `BALANCED`,
+    as the next step takes up what is left, or all of it where this fails. known: see `Matrix`. Collective.
     """
-    settings = replace(settings, tolerance=max(settings.tolerance, HELD))
+    settings = replace(settings, tolerance=max(settings.tolerance, BALANCED))
     parts = [part for part in model.parts if part.traits.groups == "E"]
     with ExitStack() as stack:
         for line in model.lines:

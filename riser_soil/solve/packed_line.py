@@ -165,6 +165,13 @@ class PackedLine:
             Bound(turn, now, turning, K),
         ]
 
+    def terms_of(self, tangent: Sequence[Bound]) -> list[Bound]:
+        """Kernels that add a share of the tangent to the terms of the residual, and leave this share alone in K.
+        tangent: those that add it to K.
+        """
+        own = Bound(loop.add_terms, self.packed_workspace, self.packed_dofs)
+        return [Bound(loop.set_zero, self.K), *tangent, own]
+
     def fill(self) -> Bound:
         """The kernel that writes the band."""
         return Bound(loop.fill, self.packed_workspace, self.packed_dofs)

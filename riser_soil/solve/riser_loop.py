@@ -212,10 +212,16 @@ def begin_with(bulk: Array, K: Array) -> None:
 @njit
 def write_terms(workspace: MatrixWorkspace, dofs: Dofs) -> None:
     """Write the terms that the residual is made of, see `newton_progress`; K: at held rates."""
-    n, rows = dofs.terms.size, workspace.rows
-    terms = dofs.terms.reshape(n)
+    terms = dofs.terms.reshape(dofs.terms.size)
     terms[:] = 0.0
-    add_magnitudes(workspace.K, rows, rows, dofs.sizes.reshape(n), terms)
+    add_terms(workspace, dofs)
+
+
+@njit
+def add_terms(workspace: MatrixWorkspace, dofs: Dofs) -> None:
+    """Add those of K, which may be a share of the tangent."""
+    n, rows = dofs.terms.size, workspace.rows
+    add_magnitudes(workspace.K, rows, rows, dofs.sizes.reshape(n), dofs.terms.reshape(n))
 
 
 @njit

@@ -16,17 +16,14 @@ from riser_soil.contact.soil_contact import LoopContact, SoilContact
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.csr_matrix import add_magnitudes
 from riser_soil.core.part import Energy, Part, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.part_kernels import BEYOND, FULL, HELD, LEFT, Border, TopMotion
 from riser_soil.soil.condensed import CondensedSoil, Reached
-from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
 from riser_soil.solve.newton_progress import OUTGROWN, NewtonProgress, above_round_off
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace
 
 FRICTION = "soil friction"
 
@@ -90,21 +87,20 @@ def clear_border(soil: SoilData, border: Border) -> None:
 
 
 @njit
-def add_terms(soil: SoilData, border: Border, workspace: MatrixWorkspace, dofs: Dofs) -> None:
-    """Add contact's share to the terms that the line's residual is made of, and write those of the soil's; K: contact's
-    share.
+def add_terms(soil: SoilData, border: Border, sizes: Array, terms: Array) -> None:
+    """Add what the soil's coordinates contribute to the terms (nn, ndof) of the line's residual, and write those of the
+    soil's. sizes (nn, ndof): of the line's coordinates.
     """
-    n, count = dofs.terms.size, soil.holding.size
-    terms, line = dofs.terms.reshape(n), dofs.sizes.reshape(n)
-    sizes = np.abs(soil.accepted + border.u[:count])
-    add_magnitudes(workspace.K, workspace.rows, workspace.rows, line, terms)
-    ndof = n // border.coupled.size
-    for j in range(count):
-        soil.terms[j] = np.dot(np.abs(border.corner[j, :count]), sizes)
-        for i in range(n):
-            if border.coupled[i // ndof]:
-                terms[i] += abs(border.right[i, j]) * sizes[j]
-                soil.terms[j] += abs(border.below[i, j]) * line[i]
+    n, ndof = sizes.shape
+    moved = np.abs(soil.accepted + border.u[: soil.accepted.size])
+    for j in range(moved.size):
+        soil.terms[j] = np.dot(np.abs(border.corner[j, : moved.size]), moved)
+    for k in range(n):
+        if border.coupled[k]:
+            for i in range(ndof):
+                for j in range(moved.size):
+                    terms[k, i] += abs(border.right[k * ndof + i, j]) * moved[j]
+                    soil.terms[j] += abs(border.below[k * ndof + i, j]) * sizes[k, i]
 
 
 @njit
@@ -173,8 +169,8 @@ class SoilBorder(LoopBorder):
 
     def terms(self) -> list[Bound]:
         packed = self._packed
-        own = Bound(add_terms, self._held, self._border, packed.packed_workspace, packed.packed_dofs)
-        return [Bound(loop.set_zero, packed.K), *self.tangent(), own]
+        coordinates = Packed(packed.dofs.sizes), Packed(packed.dofs.terms)
+        return [*packed.terms_of(self.tangent()), Bound(add_terms, self._held, self._border, *coordinates)]
 
     def above(self, above: Packed) -> list[Bound]:
         return [Bound(find_above, self._held, self._border, above)]

@@ -23,13 +23,13 @@ from tests.support.soil_cases import ELASTIC
 ALONG = pytest.mark.parametrize("along", [0, 1])
 
 
-def spec(along: int, **more: Any) -> BlockSpec:
-    """Four cells of half a metre along the riser."""
-    line, ranges = np.zeros((2, 2)), [(0.0, 2.0), (-1.0, 1.0)]
-    line[1, along] = 2.0
+def spec(along: int, length: float = 2.0, **more: Any) -> BlockSpec:
+    """Four cells along the riser."""
+    line, ranges = np.zeros((2, 2)), [(0.0, length), (-1.0, 1.0)]
+    line[1, along] = length
     x, y = ranges if along == 0 else ranges[::-1]
     first, second = ((float(p[0]), float(p[1])) for p in line)
-    return BlockSpec(x, y, 1.0, 0.25, 0.5, riser=(first, second), along=0.5, **more)
+    return BlockSpec(x, y, 1.0, 0.25, 0.5, riser=(first, second), along=length / 4.0, **more)
 
 
 def soil_of(along: int, law: Any = ELASTIC) -> Soil:
@@ -51,11 +51,7 @@ def test_slices_fill_the_block(along: int) -> None:
 @ALONG
 def test_slices_take_nothing_from_each_other(along: int) -> None:
     """A new mesh of thin slices whose nodes lie nearer to those of the next one than to their own neighbours."""
-    line, ranges = np.zeros((2, 2)), [(0.0, 0.2), (-1.0, 1.0)]
-    line[1, along] = 0.2
-    x, y = ranges if along == 0 else ranges[::-1]
-    thin = BlockSpec(x, y, 1.0, 0.25, 0.5, riser=((0.0, 0.0), (float(line[1, 0]), float(line[1, 1]))), along=0.05)
-    soil = Soil(slice_grid(MPI.COMM_SELF, thin), ELASTIC, level=0.0, unit_weight=5.0e3)
+    soil = Soil(slice_grid(MPI.COMM_SELF, spec(along, length=0.2)), ELASTIC, level=0.0, unit_weight=5.0e3)
     before = soil.cells.at_points(soil.points)
     number = np.round(before[:, along] / 0.05 - 0.5)
     assert set(number) == {0.0, 1.0, 2.0, 3.0}
