@@ -26,7 +26,7 @@ test_packages=(
 run_modules=(
     dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib jinja2 raschii
 )
-dev_modules=(pytest xdist hypothesis xarray ruff mypy)
+dev_modules=(pytest xdist hypothesis xarray meshio ruff mypy)
 
 main() {
     export LC_ALL=C.UTF-8

@@ -3,13 +3,13 @@
 One group is of that layout, VTKHDF: points, cells, values on both, and for each instant where its own begin. Values of
 all instants stand one after the other, in chunks of an instant or of several small ones, so that a frame costs the same
 however many there are. What they share is stored once: a mesh that stays, a line's cells; offsets that are the same for
-several values are links to one array. XDMF finds the values of an instant by their place in the file, see `Instants`.
+several values are links to one array. XDMF refers to datasets that store nothing: `CELLS`, and the values of single
+instants that `Instants` makes.
 Source: VTK's file formats, "VTKHDF File Format", version 2.0.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -21,6 +21,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.results.growing_file import append_rows
 
 ROOT = "VTKHDF"
+CELLS = "cells"  # (nc, k) numbers of each cell's points: a view of VTKHDF's own, which are in one row
 _VIEWS = "views"
 _TYPES = {4: 10, 8: 12, 10: 24}  # tetrahedron, hexahedron, second-order tetrahedron, by their points
 _KINDS_OF_LINES = ("Vertices", "Lines", "Polygons", "Strips")
@@ -39,6 +40,7 @@ def lay_out(store: h5py.File, cells: IntArray, points: Array | None, polyline: b
     kinds = _KINDS_OF_LINES if polyline else ("",)
     for kind in kinds:
         _add_cells(root.create_group(kind) if kind else root, cells if kind in ("", "Lines") else cells[:0])
+    _add_view_of_cells(store, root["Lines/Connectivity" if polyline else "Connectivity"], cells.shape)
     if not polyline:
         root["Types"] = np.full(len(cells), _TYPES[cells.shape[1]], dtype=np.uint8)
     steps = root.create_group("Steps")
@@ -138,6 +140,13 @@ def _add_cells(group: h5py.Group, cells: IntArray) -> None:
     group["Offsets"] = points * np.arange(count + 1, dtype=np.int64)
 
 
+def _add_view_of_cells(store: h5py.File, connectivity: h5py.Dataset, shape: tuple[int, ...]) -> None:
+    layout = h5p.create(h5p.DATASET_CREATE)
+    rows, flat = h5s.create_simple(shape), connectivity.id.get_space()
+    layout.set_virtual(rows, b".", connectivity.name.encode(), flat)
+    h5d.create(store.id, CELLS.encode(), connectivity.id.get_type(), rows, layout)
+
+
 class Instants:
     """Where the values of single instants are, for readers that know no parts of datasets. What all instants share is
     found once.
@@ -147,16 +156,6 @@ class Instants:
         self._root, self._views = store[ROOT], store.require_group(_VIEWS)
         self._sources: dict[tuple[str, str], _Source] = {}
         self._rows = dict[str, int]()
-
-    def offset(self, kind: str, name: str, number: int) -> int:
-        """The place of the first byte of a quantity's values at an instant, which lie together, in this file."""
-        source = self._source(kind, name)
-        in_chunk, first = source.values.chunks[0], number * source.shape[0]
-        chunk = first // in_chunk
-        if chunk not in source.places:
-            corner = (chunk * in_chunk, *(0 for _ in source.shape[1:]))
-            source.places[chunk] = source.values.id.get_chunk_info_by_coord(corner).byte_offset
-        return int(source.places[chunk] + (first - chunk * in_chunk) * source.bytes_of_row)
 
     def view(self, kind: str, name: str, number: int) -> str:
         """The path of a dataset of a quantity's values at an instant alone, which stores no number."""
@@ -174,22 +173,17 @@ class Instants:
             values = self._root[f"{kind}Data"][name]
             shape = self._rows[kind], *values.shape[1:]
             spaces = h5s.create_simple(values.shape), h5s.create_simple(shape)
-            row = values.dtype.itemsize * math.prod(shape[1:])
-            self._sources[kind, name] = _Source(values, *spaces, shape, row, {})
+            self._sources[kind, name] = _Source(values, *spaces, shape)
         return self._sources[kind, name]
 
 
 class _Source(NamedTuple):
-    """Values of all instants, their space, and the space and shape of one instant's; bytes of a row, and where chunks
-    begin in the file, by number.
-    """
+    """Values of all instants, their space, and the space and shape of one instant's."""
 
     values: h5py.Dataset
     space: h5s.SpaceID
     of_one: h5s.SpaceID
     shape: tuple[int, ...]
-    bytes_of_row: int
-    places: dict[int, int]
 
 
 def _append_values(data: h5py.Group, offsets: h5py.Group, numbers: IntArray, values: Mapping[str, Array]) -> None:

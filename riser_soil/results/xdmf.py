@@ -1,13 +1,13 @@
 """Time series for ParaView and VTK: a VTKHDF file, which opens by itself, and XDMF that refers to its numbers.
 
-Readable at any moment. The XDMF is one temporal collection of uniform grids. Numbers are written before the XML that
-refers to them, so that the XML never refers to missing data.
+Readable at any moment. The XDMF is one temporal collection of uniform grids. Each of its items is a whole HDF5 dataset
+in the item's own shape: readers other than VTK's, as meshio, know no parts of datasets, nor bytes of a file. Numbers
+are written before the XML that refers to them, so that the XML never refers to missing data.
 """
 
 from __future__ import annotations
 
 import io
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -68,7 +68,7 @@ class XdmfFile:
             vtkhdf.lay_out(store, cells, points, polyline)
         self._heavy = GrowingFile(heavy, None if goes_on else content.getvalue())
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
-        item = self._item(f"{vtkhdf.ROOT}/{'Lines/' if polyline else ''}Connectivity", (cells.size,), "Int")
+        item = self._item(vtkhdf.CELLS, cells.shape, "Int")
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
         self._points = None if points is None else self._item(f"{vtkhdf.ROOT}/Points", points.shape)
         self._path, self._head = path, XDMF_HEAD.format(name=quoted(name))
@@ -138,14 +138,11 @@ class XdmfFile:
 
     def _grid(self, instants: vtkhdf.Instants, number: int, in_run: int, frame: Frame) -> str:
         """number: of the frame in the VTKHDF file; in_run: in a run that may have had other files before."""
-        on, items = {"Point": frame.on_points, "Cell": frame.on_cells}, {}
-        for kind, values in on.items():
-            for name, v in values.items():
-                if name == frame.geometry or v.dtype != np.float64:
-                    # VTK's reader keeps points as long as they have the same name, which bytes of one file have.
-                    items[name] = self._item(instants.view(kind, name, number), v.shape)
-                else:
-                    items[name] = self._bytes(instants.offset(kind, name, number), v.shape)
+        items = {
+            name: self._item(instants.view(kind, name, number), values.shape)
+            for kind, on in {"Point": frame.on_points, "Cell": frame.on_cells}.items()
+            for name, values in on.items()
+        }
         points = self._points if frame.geometry is None else items[frame.geometry]
         lines = [
             f'{_GRID}{in_run:06d}" GridType="Uniform">',
@@ -162,13 +159,6 @@ class XdmfFile:
         return (
             f'<DataItem Dimensions="{_words(shape)}" NumberType="{number}" Precision="8" Format="HDF">'
             f"{self._heavy_name}:/{where}</DataItem>"
-        )
-
-    def _bytes(self, offset: int, shape: Sequence[int]) -> str:
-        """Double numbers that lie in the VTKHDF file from a byte on."""
-        return (
-            f'<DataItem Dimensions="{_words(shape)}" NumberType="Float" Precision="8" Format="Binary" '
-            f'Endian="{sys.byteorder.capitalize()}" Seek="{offset}">{self._heavy_name}</DataItem>'
         )
 
     def _append(self, grids: str) -> None:

@@ -162,8 +162,10 @@ def test_python(first: Run, newcomer: Path) -> None:
     (newcomer / "read.py").write_text("\n".join(code), encoding="utf-8")
     ended = bash(".venv/bin/python read.py", newcomer)
     assert ended.returncode == 0, ended.stderr
-    period, moment, stiffness, tension = ended.stdout.splitlines()
+    period, moment, stiffness, by_pyvista, by_meshio, tension = ended.stdout.splitlines()
     line_with([period], "natural period", "11.59 s", "in plane")
     line_with([moment], "moment", "3837 N.m", "arc 36.5 m", "['hang', 'heave']")
     line_with([stiffness], "21991 Pa", "arc 25 m", "last cycle")
+    line_with([by_pyvista], "t 20.0 s", "tension 0 N apart")
+    line_with([by_meshio], "t 20.0 s", "150 nodes", "top at z 100.00 m")
     line_with([tension], "mean 89.12 kN", "deviation 8.19 kN")
