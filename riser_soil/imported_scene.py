@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from riser_soil.errors import SceneError
+from riser_soil.scene.document import Document
 from riser_soil.scene.files import content
+from riser_soil.scene.problem import Path as KeyPath
 
 MOST_BYTES = 10_000_000
 
@@ -17,11 +19,20 @@ Remark = tuple[int, str]
 
 @dataclass
 class ImportedScene:
-    """The scene as a mapping, remarks on what it lacks, and texts of the files that it names, by their names."""
+    """The scene as a mapping, remarks on what it lacks, and texts of the files that it names, by their names.
+
+    origins: line of the other program's file that a value of the scene comes from, by the value's path in the scene,
+    ("riser", "segments", 0); it counts for all values within that have none of their own.
+    """
 
     data: dict[str, Any]
     remarks: list[Remark] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
+    origins: dict[KeyPath, int] = field(default_factory=dict)
+
+    def document(self, name: str) -> Document:
+        """The scene as a document whose lines are those of the other program's file of this name."""
+        return Document(name, self.data, self.origins)
 
 
 def text_of(file: Path) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,8 +31,11 @@ STIFFNESSES = ("EA N", "EI N.m2")
 TOUCHING = 1e-6  # of the length: what rests on the seabed
 
 
-def describe(scene: Scene) -> str:
-    """The report of `riser-soil check`; collective. Raises SceneError or MeshError."""
+def describe(scene: Scene, place: Callable[[str], str] = str) -> str:
+    """The report of `riser-soil check`; collective. Raises SceneError or MeshError.
+
+    place: puts before a warning that begins with a key where that key comes from.
+    """
     comm, scene = communicator_of(scene), sized(scene)
     size = size_that_fits(scene, Path(), comm)
     tell(size, comm)
@@ -42,7 +45,7 @@ def describe(scene: Scene) -> str:
     for name, line in assembly.by_line.items():
         lines += [*_unknowns(line, name)]
     lines += [*_hung(assembly), _memory_line(assembly), *_results(size)]
-    warnings = [*physical_warnings(assembly), *of_size]
+    warnings = [place(warning) for warning in (*physical_warnings(assembly), *of_size)]
     return "\n".join([*lines, *(f"warning: {warning}" for warning in warnings), _verdict(warnings)])
 
 

@@ -1,6 +1,7 @@
 """Commands that write a scene, or another program's file of one: riser-soil new | import | export."""
 
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,7 +9,7 @@ import typer
 
 from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.commands.scenes import placed, read, refuse_existing
-from riser_soil.errors import SceneError
+from riser_soil.errors import MeshError, SceneError
 
 if TYPE_CHECKING:
     from riser_soil.drafts.wishes import Wishes
@@ -29,7 +30,10 @@ def import_(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite a scene file, which is refused otherwise")] = False,
 ) -> None:
-    """Write the scene of a line of a MoorDyn v2 deck or of OrcaFlex data, and tell line by line what it leaves out."""
+    """Write the scene of a line of a MoorDyn v2 deck or of OrcaFlex data, and tell line by line what it leaves out.
+
+    The scene is checked, as by `check`: one that a run would refuse is not written.
+    """
     with expected_errors():
         if rank() > 0:
             return
@@ -38,8 +42,13 @@ def import_(
         for name in (scene.name, *found.files):
             refuse_existing(scene.parent / name, force)
         lost = [f"{file.name}:{number}: not carried over: {text}" for number, text in found.remarks]
-        _write(found, scene, [f"From {file.name}.", *lost], file)
-        typer.echo("\n".join([*lost, f"{scene}: written; {len(lost)} entries of the file are not carried over"]))
+        try:
+            report = _write(found, scene, [f"From {file.name}.", *lost], file.name)
+        except (SceneError, MeshError) as err:
+            refused = f"{file}: gives no scene that runs, and none is written; correct the file:"
+            raise type(err)("\n".join([*lost, refused, str(err)])) from err
+        written = f"{scene}: written; {len(lost)} entries of the file are not carried over; check says of it:"
+        typer.echo("\n".join([*lost, written, report]))
 
 
 def export(
@@ -86,21 +95,27 @@ def _imported(file: Path, line: str | None, stem: str) -> "ImportedScene":
     return scene_of_deck(deck.read_deck(file), line)
 
 
-def _write(found: "ImportedScene", scene: Path, head: list[str], source: Path) -> None:
-    """The scene and the files that it names, if it is one."""
+def _write(found: "ImportedScene", scene: Path, head: list[str], source: str) -> str:
+    """The scene and the files that it names, if it is one that runs; what `check` says of it, with the source's lines
+    where messages name keys.
+    """
+    from riser_soil.checks.check import describe
     from riser_soil.results.whole_file import written_together
     from riser_soil.scene.dump import yaml_text
-    from riser_soil.scene.reader import scene_from_mapping
+    from riser_soil.scene.reader import checked, with_place_in
 
+    document = found.document(source)
     with written_together(scene.parent, [scene.name, *found.files]) as folder:
         for name, text in found.files.items():
             (folder / name).write_text(text, encoding="utf-8")
+        model = checked(document, folder)
         try:
-            scene_from_mapping(found.data, folder)
-        except SceneError as err:
-            raise SceneError(f"{source}: gives no scene: {err}") from err
+            report = describe(model, place=partial(with_place_in, document))
+        except (SceneError, MeshError) as err:
+            raise type(err)(with_place_in(document, str(err))) from err
         comments = "".join(f"# {each}\n" for each in head)
         (folder / scene.name).write_text(comments + yaml_text(found.data), encoding="utf-8")
+    return report
 
 
 def new(

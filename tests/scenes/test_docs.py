@@ -16,7 +16,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.on_ranks import ROOT
 from tests.support.pages import DEMOS, DOCS, README, blocks, text
-from tests.support.small_scene import BASE
+from tests.support.small_scene import BASE, joined
 
 PAGES = [README, *DOCS]
 LIST = ROOT / "docs" / "README.md"
@@ -36,13 +36,6 @@ def found(pattern: str, pages: list[Path]) -> list[Any]:
 def pieces(page: Path) -> Iterator[dict[str, Any]]:
     """The page's YAML blocks as data."""
     yield from (YAML(typ="safe").load(block) for block in blocks(page, "yaml"))
-
-
-def joined(base: Any, piece: Any) -> Any:
-    """A mapping with another laid over it, key by key."""
-    if not isinstance(base, dict) or not isinstance(piece, dict):
-        return piece
-    return base | {key: joined(base.get(key), value) for key, value in piece.items()}
 
 
 @pytest.mark.parametrize(("page", "n"), [(page, n) for page in DOCS for n, _ in enumerate(pieces(page))])

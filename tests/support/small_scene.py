@@ -25,3 +25,10 @@ BASE: dict[str, Any] = {
     "seabed": {"kind": "rigid"},
     "stages": [{"name": "move", "kind": "dynamic", "duration": 1.0, "time_step": 0.1}],
 }
+
+
+def joined(base: Any, piece: Any) -> Any:
+    """A mapping with another laid over it, key by key."""
+    if not isinstance(base, dict) or not isinstance(piece, dict):
+        return piece
+    return base | {key: joined(base.get(key), value) for key, value in piece.items()}
