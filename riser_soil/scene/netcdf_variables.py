@@ -63,7 +63,10 @@ def _decoded(variable: Any) -> NetcdfVariable:
         missing = np.isin(values, [attributes.get(key, np.nan) for key in ("_FillValue", "missing_value")])
         values = values * float(_one(attributes, "scale_factor", 1.0)) + float(_one(attributes, "add_offset", 0.0))
         values = np.where(missing, np.nan, values)
-    return NetcdfVariable(tuple(variable.dimensions), values, attributes)
+    dims = tuple(variable.dimensions)
+    if values.dtype == "S1" and dims:  # words by their letters, along the last dimension
+        dims, values = dims[:-1], np.char.rstrip(np.ascontiguousarray(values).view(f"S{values.shape[-1]}")[..., 0])
+    return NetcdfVariable(dims, values, attributes)
 
 
 def _one(attributes: Mapping[str, Any], name: str, default: float) -> Any:

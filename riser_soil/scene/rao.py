@@ -43,6 +43,7 @@ _SAME_DIRECTION = 1e-9
 _FREQUENCY: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "omega": lambda omega: omega, "freq": lambda freq: TURN * freq, "period": lambda period: TURN / period
 }  # fmt: skip
+_WAVES = (*_FREQUENCY, "wavenumber", "wavelength")  # dimensions that waves may be counted along
 _DEGREES_OF_FREEDOM = ("radiating_dof", "influenced_dof")
 _SAME_WAVES = 1e-9  # directions [rad] nearer than this are one
 
@@ -169,7 +170,8 @@ def _wrapped(angle: float) -> float:
 
 
 def read_capytaine(file: Path) -> Rao:
-    """The variable RAO, by omega (or freq, period), wave_direction [rad] and a dof: Surge, ... Yaw [m/m, rad/m].
+    """The variable RAO, by omega (or freq, period), wave_direction [rad] and a dof: Surge, ... Yaw [m/m, rad/m]; in the
+    files of capytaine 2 and 3 (its export_dataset), where waves may be counted by their number or length, too.
 
     Complex numbers stand in a dimension `complex` of re and im, or are the file's own. Capytaine's motions are
     Re(X exp(-i w t)) where the crest of a wave passes the origin at t = 0, so that the argument of X is the lag behind
@@ -177,15 +179,17 @@ def read_capytaine(file: Path) -> Rao:
     """
     variables = read_variables(file)
     if "RAO" not in variables:
-        raise wrong_file(f"{file}: has no variable RAO; write capytaine's RAO by separate_complex_values, to this name")
+        remedy = 'give the dataset capytaine.post_pro.rao(dataset) by this name before capytaine.export_dataset'
+        raise wrong_file(f"{file}: has no variable RAO; {remedy}")
+    _refuse_another_centre(file, variables)
     rao = _as_complex(file, variables["RAO"], variables)
-    by = _dim(file, rao, tuple(_FREQUENCY)), _dim(file, rao, ("wave_direction",)), _dim(file, rao, _DEGREES_OF_FREEDOM)
+    by = _dim(file, rao, _WAVES), _dim(file, rao, ("wave_direction",)), _dim(file, rao, _DEGREES_OF_FREEDOM)
     if missing := [dim for dim in (*by, *rao.dims) if dim not in variables or dim not in by]:
         raise wrong_file(f"{file}: RAO has a dimension {missing[0]} without values, or of another kind; leave it out")
     modes = [_mode(file, name) for name in variables[by[2]].values]
     if len(set(modes)) < len(modes):
         raise wrong_file(f"{file}: has several bodies; keep the degrees of freedom of one")
-    w, columns = _sorted(file, "frequency", _FREQUENCY[by[0]](variables[by[0]].values), NEAREST)
+    w, columns = _sorted(file, "frequency", _frequency_along(file, by[0], variables), NEAREST)
     angle = np.round(variables[by[1]].values % TURN, 12) % round(TURN, 12)
     direction, rows = _sorted(file, "wave_direction", angle, _SAME_WAVES)
     values = np.conj(rao.along(by[1], by[0], by[2]))[rows][:, columns]
@@ -193,6 +197,25 @@ def read_capytaine(file: Path) -> Rao:
         raise wrong_file(f"{file}: RAO has values that are not finite, or a frequency of 0; leave such waves out")
     table = {mode: tuple(tuple(map(complex, row)) for row in values[:, :, n]) for n, mode in enumerate(modes)}
     return Rao(w, direction, table)
+
+
+def _refuse_another_centre(file: Path, variables: dict[str, NetcdfVariable]) -> None:
+    """Phases count from the crest at the mesh's origin, displacements are those of the rotation centre; a scene has one
+    reference for both. Capytaine 3 writes the centre, 2 doesn't.
+    """
+    centre = variables.get("rotation_center")
+    if centre is not None and centre.values.shape == (3,) and (np.abs(centre.values[:2]) > NEAREST).any():
+        place = ", ".join(f"{x:.6g}" for x in centre.values[:2])
+        remedy = "compute with rigid_body_dofs(rotation_center=(0, 0, z)), the mesh moved so that this is the reference"
+        raise wrong_file(f"{file}: its body turns about x, y = {place} m, and phases count from 0, 0; {remedy}")
+
+
+def _frequency_along(file: Path, dim: str, variables: dict[str, NetcdfVariable]) -> np.ndarray:
+    """Frequencies [rad/s] of waves that are counted along a dimension."""
+    for name in (dim, *_FREQUENCY):
+        if name in _FREQUENCY and name in variables and variables[name].dims == (dim,):
+            return _FREQUENCY[name](variables[name].values)
+    raise wrong_file(f"{file}: has no omega, freq or period of each {dim}; write them, too")
 
 
 def _sorted(file: Path, what: str, values: np.ndarray, apart: float) -> tuple[tuple[float, ...], np.ndarray]:
@@ -206,7 +229,7 @@ def _sorted(file: Path, what: str, values: np.ndarray, apart: float) -> tuple[tu
 def _as_complex(file: Path, rao: NetcdfVariable, variables: dict[str, NetcdfVariable]) -> NetcdfVariable:
     if "complex" not in rao.dims:
         if rao.values.dtype.kind != "c":
-            raise wrong_file(f"{file}: RAO is real; keep its phases, by separate_complex_values")
+            raise wrong_file(f"{file}: RAO is real; keep its phases, as capytaine.export_dataset does")
         return rao
     names = [_word(name) for name in variables["complex"].values] if "complex" in variables else ["re", "im"]
     re, im = (rao.at({"complex": names.index(name)}) for name in ("re", "im"))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpi4py import MPI
+from pydantic_core import PydanticCustomError
 
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
@@ -112,6 +113,50 @@ def test_other_forms(tmp_path: Path) -> None:
     assert second.frequency == pytest.approx(first.frequency)
     for mode, table in first.response.items():
         assert np.array(second.response[mode]) == pytest.approx(np.array(table), abs=1e-15)
+
+
+def by_capytaine(version: int, along: str = "omega") -> Variables:
+    """As its export_dataset writes them: scalars, waves by all their measures along one of them, other matrices; in
+    version 3 the body's centre of rotation, too.
+    """
+    k, shape = OMEGA**2 / G, (OMEGA.size, 6, 6)
+    measures = {"omega": OMEGA, "freq": OMEGA / (2.0 * math.pi), "period": 2.0 * math.pi / OMEGA,
+                "wavenumber": k, "wavelength": 2.0 * math.pi / k}  # fmt: skip
+    values = following().transpose(1, 0, 2)
+    scalars = {"g": G, "rho": 1000.0, "water_depth": np.inf, "forward_speed": 0.0}
+    of_3 = {"space_coordinate": (("space_coordinate",), np.array(["x", "y", "z"])),
+            "rotation_center": (("space_coordinate",), np.array([0.0, 0.0, -2.0]))}  # fmt: skip
+    return {
+        **{name: ((along,), each) for name, each in measures.items()},
+        **{name: ((), np.array(each)) for name, each in scalars.items()},
+        **(of_3 if version == 3 else {}), "body" if version == 3 else "body_name": ((), np.array("barge")),
+        "wave_direction": (("wave_direction",), BETA), "complex": (("complex",), np.array(["re", "im"])),
+        **{dof: ((dof,), DOFS) for dof in ("influenced_dof", "radiating_dof")},
+        "added_mass": ((along, "influenced_dof", "radiating_dof"), np.ones(shape)),
+        "RAO": (("complex", along, "wave_direction", "radiating_dof"), np.stack([values.real, values.imag])),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("along", ["omega", "freq", "period", "wavenumber", "wavelength"])
+@pytest.mark.parametrize("version", [2, 3])
+def test_files_of_capytaine(version: int, along: str, tmp_path: Path) -> None:
+    first, second = written(tmp_path, variables(following())), written(tmp_path, by_capytaine(version, along))
+    assert second.frequency == pytest.approx(first.frequency)
+    for mode, table in first.response.items():
+        assert np.array(second.response[mode]) == pytest.approx(np.array(table), abs=1e-15)
+
+
+def test_names_by_their_letters(tmp_path: Path) -> None:
+    """As netCDF's classic model has words."""
+    letters = np.array([name.ljust(5) for name in DOFS], dtype="S5").view("S1").reshape(6, 5)
+    rao = written(tmp_path, changed(radiating_dof=(("radiating_dof", "string5"), letters)))
+    assert [*rao.response] == [name.lower() for name in DOFS]
+
+
+def test_a_body_that_turns_about_another_place_than_its_phases_count_from_is_refused(tmp_path: Path) -> None:
+    centre = {"rotation_center": (("space_coordinate",), np.array([3.0, 0.0, -2.0]))}
+    with pytest.raises(PydanticCustomError, match=r"turns about x, y = 3, 0 m, .* count from 0, 0"):
+        written(tmp_path, by_capytaine(3) | centre)
 
 
 @pytest.mark.parametrize(
