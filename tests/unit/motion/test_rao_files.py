@@ -156,7 +156,7 @@ def test_names_by_their_letters(tmp_path: Path) -> None:
 def test_a_body_that_turns_about_another_place_than_its_phases_count_from_is_refused(tmp_path: Path) -> None:
     centre = {"rotation_center": (("space_coordinate",), np.array([3.0, 0.0, -2.0]))}
     with pytest.raises(PydanticCustomError, match=r"turns about x, y = 3, 0 m, .* count from 0, 0"):
-        written(tmp_path, by_capytaine(3) | centre)
+        written(tmp_path, {**by_capytaine(3), **centre})
 
 
 @pytest.mark.parametrize(
