@@ -1,6 +1,8 @@
 """Commands that write a scene, or another program's file of one: riser-soil new | import | export."""
 
+import os
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -8,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from riser_soil.commands.exit_status import expected_errors, rank
-from riser_soil.commands.scenes import placed, read, refuse_existing
-from riser_soil.errors import MeshError, SceneError
+from riser_soil.commands.scenes import guessed, placed_in, refuse_existing
+from riser_soil.errors import SceneError
 
 if TYPE_CHECKING:
     from riser_soil.drafts.wishes import Wishes
@@ -63,17 +65,15 @@ def export(
     with expected_errors():
         from riser_soil.moordyn.deck_of import deck_of, left_out
         from riser_soil.results.whole_file import written_whole
-        from riser_soil.scene.reader import checked, read_document, with_place_in
+        from riser_soil.scene.reader import checked, read_document
 
         if rank() > 0:
             return
         deck, document = output or Path(f"{scene.stem}.dat"), read_document(scene)
         refuse_existing(deck, force)
         model = checked(document, scene.parent)
-        try:
+        with placed_in(lambda: document):
             text = deck_of(model)
-        except SceneError as err:
-            raise SceneError(with_place_in(document, str(err))) from err
         lost = [f"{scene.name}:{line}: not in the deck: {what}" for line, what in left_out(document, model)]
         with written_whole(deck) as part:
             part.write_text(text, encoding="utf-8")
@@ -109,10 +109,8 @@ def _write(found: "ImportedScene", scene: Path, head: list[str], source: str) ->
         for name, text in found.files.items():
             (folder / name).write_text(text, encoding="utf-8")
         model = checked(document, folder)
-        try:
+        with placed_in(lambda: document):
             report = describe(model, place=partial(with_place_in, document))
-        except (SceneError, MeshError) as err:
-            raise type(err)(with_place_in(document, str(err))) from err
         comments = "".join(f"# {each}\n" for each in head)
         (folder / scene.name).write_text(comments + yaml_text(found.data), encoding="utf-8")
     return report
@@ -142,35 +140,63 @@ def new(
     ground: Annotated[
         str | None, typer.Option(metavar="KIND", help="spring (the default), rigid or hysteretic")
     ] = None,
+    angle: Annotated[
+        float | None, typer.Option(metavar="DEGREES", help="at the top from the vertical, solved for as a hang_off")
+    ] = None,
+    su: Annotated[float | None, typer.Option(metavar="PA", help="strength of hysteretic clay at the seabed")] = None,
+    gradient: Annotated[float | None, typer.Option(metavar="PA/M", help="its growth with depth")] = None,
+    contents: Annotated[
+        float | None, typer.Option(metavar="KG/M3", help="density of the contents, by default oil's, 800; 0: empty")
+    ] = None,
+    yield_stress: Annotated[
+        float | None, typer.Option(metavar="PA", help="of a steel pipe; by default X65's, 448e6")
+    ] = None,
+    min_bend_radius: Annotated[float | None, typer.Option(metavar="METRES", help="smallest one allowed")] = None,
+    max_tension: Annotated[float | None, typer.Option(metavar="NEWTON", help="largest one allowed")] = None,
+    rao: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="RAOs of the vessel that moves the top (.csv, .nc)")
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite a scene file, which is refused otherwise")] = False,
 ) -> None:
     """Write a first scene of a common line, with comments; check it; name the command that runs it."""
     with expected_errors():
         if rank() > 0:
             return
+        from riser_soil.drafts.text import draft
         from riser_soil.drafts.wishes import Wishes
+        from riser_soil.results.whole_file import written_whole
 
-        wishes = Wishes(depth, diameter, wall, mass, hs, tp, current, ground)
+        wishes = Wishes(depth, diameter, wall, mass, hs, tp, current, ground, angle, su, gradient, contents)
+        wishes = replace(wishes, yield_stress=yield_stress, min_bend_radius=min_bend_radius, max_tension=max_tension)
         if kind is None:
             kind, wishes = _asked(wishes)
         file = output or Path(f"{kind}.yaml")
+        wishes = replace(wishes, rao=None if rao is None else _beside(rao, file.parent))
+        text = draft(kind, wishes, f"riser-soil {' '.join(sys.argv[1:])}")
         refuse_existing(file, force)
-        _write_draft(file, kind, wishes)
-        from riser_soil.checks.check import describe
-
-        with placed(str(file), None):
-            typer.echo(describe(read(str(file), None)))
-        typer.echo(f"{file}: written; next: riser-soil run {file}")
+        report = _report(text, file)
+        with written_whole(file) as part:
+            part.write_text(text, encoding="utf-8")
+        typer.echo(f"{report}\n{file}: written; next: riser-soil run {file}")
 
 
-def _write_draft(file: Path, kind: str, wishes: "Wishes") -> None:
-    """Write the draft; SceneError where the wishes give no scene."""
-    from riser_soil.drafts.text import checked_draft
-    from riser_soil.results.whole_file import written_whole
+def _report(text: str, file: Path) -> str:
+    """What `check` says of a draft before it is written; SceneError where it is no scene."""
+    from riser_soil.checks.check import describe
+    from riser_soil.scene.document import parse
+    from riser_soil.scene.reader import checked
 
-    text = checked_draft(kind, wishes, f"riser-soil {' '.join(sys.argv[1:])}")
-    with written_whole(file) as part:
-        part.write_text(text, encoding="utf-8")
+    document = parse(text, f"draft of {file}")
+    scene = checked(document, file.parent)
+    with placed_in(lambda: document):
+        return describe(guessed(scene))
+
+
+def _beside(named: Path, folder: Path) -> str:
+    """The name of a file as a scene in the folder has it."""
+    if not named.is_file():
+        raise SceneError(f"--rao {named}: there is no such file")
+    return str(named) if named.is_absolute() else os.path.relpath(named, folder)
 
 
 def _asked(given: "Wishes") -> "tuple[str, Wishes]":

@@ -58,11 +58,11 @@ def run(
 def check(scene: SceneFile, overrides: Overrides = None) -> None:
     """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
     with expected_errors():
-        checked = guessed(read_start(scene, overrides), scene, overrides)
+        checked = read_start(scene, overrides)
         from riser_soil.checks.check import describe
 
         with placed(scene, overrides):
-            text = describe(checked)
+            text = describe(guessed(checked))
         if rank() == 0:
             typer.echo(text)
 

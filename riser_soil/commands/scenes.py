@@ -1,6 +1,6 @@
 """What commands share: arguments and options, the scene with its errors placed in the file, its result folder."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,6 +11,7 @@ from riser_soil.commands.exit_status import rank
 from riser_soil.errors import MeshError, ResultsError, SceneError
 
 if TYPE_CHECKING:
+    from riser_soil.scene.document import Document
     from riser_soil.scene.scene import Scene
 
 SceneFile = Annotated[str, typer.Argument(metavar="SCENE", help="scene file (.yaml)")]
@@ -44,18 +45,17 @@ def read(scene: str, overrides: list[str] | None) -> "Scene":
         raise SceneError(f"{scene}: cannot be read: {err.strerror}") from err
 
 
-def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
-    """The scene with its hang-offs as a cable would have them, where it asks for some."""
+def guessed(scene: "Scene") -> "Scene":
+    """The scene with its hang-offs as a cable would have them, where it asks for some; SceneError begins with a key."""
     from riser_soil.scene.lines import risers
 
     if not any(line.hangs_off for line in risers(scene).values()):
         return scene
     from riser_soil.assembly.hang_off import first_value, hung_ends, reported, settled
 
-    with placed(file, overrides):
-        ends = hung_ends(scene)
-        values = [first_value(hung) for hung in ends]
-        found = settled(ends, values)
+    ends = hung_ends(scene)
+    values = [first_value(hung) for hung in ends]
+    found = settled(ends, values)
     for each in zip(ends, values, strict=True) if rank() == 0 else ():
         print(f"{reported(*each)} by the cable without bending stiffness; a run solves it on the riser itself")
     return found
@@ -98,12 +98,21 @@ def result_folder(file: str, scene: "Scene", output: Path | None, force: bool, g
 @contextmanager
 def placed(file: str, overrides: list[str] | None) -> Iterator[None]:
     """Parts that find a scene impossible know its keys; file and line are added here."""
+    from riser_soil.scene.reader import overridden_document
+
+    with placed_in(lambda: overridden_document(file, overrides or ())):
+        yield
+
+
+@contextmanager
+def placed_in(document: "Callable[[], Document]") -> Iterator[None]:
+    """The same with the scene's document, which is asked for where it is needed."""
     try:
         yield
     except (SceneError, MeshError) as err:
-        from riser_soil.scene.reader import with_place
+        from riser_soil.scene.reader import with_place_in
 
-        raise type(err)(with_place(str(err), file, overrides or ())) from err
+        raise type(err)(with_place_in(document(), str(err))) from err
 
 
 def positive(name: str, value: float | None) -> None:

@@ -53,7 +53,10 @@ class LineLayout(NamedTuple):
 
 
 def layout_of(kind: Kind, pipe: CrossSection, depth: float) -> LineLayout:
-    """The line of a kind in water of a depth [m]; SceneError where it is too shallow."""
+    """The line of a kind in water of a depth [m]; SceneError where it is too shallow.
+
+    The start rests on the ground by half a diameter, as the scene has it.
+    """
     if depth < SHALLOW * pipe.outer:
         reported = f"too shallow for a line of {pipe.outer:.3g} m"
         raise SceneError(f"--depth {depth:g}: {reported}: take {SHALLOW * pipe.outer:.3g} m or more")

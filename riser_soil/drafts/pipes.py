@@ -25,9 +25,12 @@ BAR = 1.8  # diameter of the rod with a chain's volume, over that of its bar
 
 @dataclass(frozen=True)
 class CrossSection:
-    """A line type: diameters [m], mass [kg/m], stiffnesses [N, N.m2], coefficients (across, along).
+    """A line type as a scene has it: given numbers with all their digits, others in six figures.
 
-    wall: whether it is a metal pipe whose wall bears stress. source: where its numbers come from.
+    Diameters [m], mass [kg/m], stiffnesses [N, N.m2], coefficients (across, along).
+
+    source: where its numbers come from. contents: density of what fills the bore [kg/m3]; 0: empty. yield_stress: of a
+    metal wall [Pa]; None: no metal wall. min_bend_radius [m], max_tension [N]: allowed; None: any.
     """
 
     outer: float
@@ -37,24 +40,33 @@ class CrossSection:
     EI: float
     drag: tuple[float, float]
     added_mass: float
-    wall: bool
     source: str
+    contents: float = OIL
+    yield_stress: float | None = None
+    min_bend_radius: float | None = None
+    max_tension: float | None = None
 
     @property
     def weight(self) -> float:
         """In water, with its contents [N/m]."""
-        return GRAVITY * (self.mass + 0.25 * math.pi * (OIL * self.inner**2 - WATER * self.outer**2))
+        return GRAVITY * (self.mass + 0.25 * math.pi * (self.contents * self.inner**2 - WATER * self.outer**2))
+
+
+def rounded(value: float) -> float:
+    """To six figures."""
+    return float(f"{value:.6g}")
 
 
 def steel(diameter: float, wall: float | None, mass: float | None) -> CrossSection:
     """A steel pipe by its wall [m] or by its mass [kg/m]; the wall is 1/12 of the diameter by default."""
-    inner = diameter - 2.0 * (diameter / 12.0 if wall is None else wall)
+    inner = rounded(diameter * 5.0 / 6.0) if wall is None else diameter - 2.0 * wall
     if mass is not None:
-        inner = _bore(diameter, wall, mass)
+        inner = rounded(_bore(diameter, wall, mass))
     area, second = 0.25 * math.pi * (diameter**2 - inner**2), math.pi / 64.0 * (diameter**4 - inner**4)
-    stiffness = E_STEEL * area, E_STEEL * second
+    stiffness = rounded(E_STEEL * area), rounded(E_STEEL * second)
+    mass = rounded(STEEL * area) if mass is None else mass
     reported = f"steel pipe, wall {500.0 * (diameter - inner):.4g} mm"
-    return CrossSection(diameter, inner, STEEL * area, *stiffness, (1.0, 0.0), 1.0, wall=True, source=reported)
+    return CrossSection(diameter, inner, mass, *stiffness, (1.0, 0.0), 1.0, reported, yield_stress=YIELD)
 
 
 def _bore(diameter: float, wall: float | None, mass: float) -> float:
@@ -70,27 +82,27 @@ def _bore(diameter: float, wall: float | None, mass: float) -> float:
 
 def flexible(diameter: float, wall: float | None, mass: float | None) -> CrossSection:
     """A flexible pipe by its diameter [m], and its mass [kg/m] where that is known."""
-    inner = BORE * diameter if wall is None else diameter - 2.0 * wall
-    mass = MASS * diameter**2 if mass is None else mass
-    stiffness = AXIAL * diameter**2, BENDING * diameter**4
+    inner = rounded(BORE * diameter) if wall is None else diameter - 2.0 * wall
+    mass = rounded(MASS * diameter**2) if mass is None else mass
+    stiffness = rounded(AXIAL * diameter**2), rounded(BENDING * diameter**4)
     reported = "flexible pipe, stiffness by rule of thumb: take its maker's numbers"
-    return CrossSection(diameter, inner, mass, *stiffness, (1.1, 0.05), 1.0, wall=False, source=reported)
+    return CrossSection(diameter, inner, mass, *stiffness, (1.1, 0.05), 1.0, reported)
 
 
 def buoyant(pipe: CrossSection) -> CrossSection:
     """The same pipe inside buoyancy modules spread evenly, which lift it by its own submerged weight."""
     volume = (1.0 + LIFT) * pipe.weight / (GRAVITY * (WATER - FLOAT_DENSITY))
-    outer = math.sqrt(pipe.outer**2 + 4.0 * volume / math.pi)
+    outer = rounded(math.sqrt(pipe.outer**2 + 4.0 * volume / math.pi))
     reported = "the same pipe inside buoyancy modules, spread evenly"
-    mass = pipe.mass + FLOAT_DENSITY * volume
-    return replace(pipe, outer=outer, mass=mass, drag=(1.0, 0.1), wall=False, source=reported)
+    mass = rounded(pipe.mass + FLOAT_DENSITY * volume)
+    return replace(pipe, outer=outer, mass=mass, drag=(1.0, 0.1), source=reported)
 
 
 def chain(diameter: float, wall: float | None, mass: float | None) -> CrossSection:
     """Studless chain by the diameter of its bar [m]."""
     if wall is not None:
         raise SceneError(f"--wall {wall:g}: chain has none; leave it out")
-    mass = 19.9e3 * diameter**2 if mass is None else mass
-    drag = 2.4 / BAR, round(1.15 / (math.pi * BAR), 3)
+    mass = rounded(19.9e3 * diameter**2) if mass is None else mass
+    drag = round(2.4 / BAR, 3), round(1.15 / (math.pi * BAR), 3)
     reported = f"studless chain, bar of {1e3 * diameter:.4g} mm; outer_diameter is that of a rod of its volume"
-    return CrossSection(BAR * diameter, 0.0, mass, 8.54e10 * diameter**2, 0.0, drag, 1.0, wall=False, source=reported)
+    return CrossSection(BAR * diameter, 0.0, mass, rounded(8.54e10 * diameter**2), 0.0, drag, 1.0, reported)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Iterator
-from pathlib import Path
+from dataclasses import replace
 
 from riser_soil.drafts.layout import Cut, LineLayout, Place, layout_of
-from riser_soil.drafts.pipes import NU_STEEL, OIL, WATER, YIELD, CrossSection
-from riser_soil.drafts.wishes import GROUNDS, SeaState, Wishes, kind_of, pipe_of, refuse, sea_of
-from riser_soil.scene.document import parse
-from riser_soil.scene.reader import checked
+from riser_soil.drafts.pipes import NU_STEEL, WATER, CrossSection
+from riser_soil.drafts.wishes import CLAY, SeaState, Wishes, kind_of, pipe_of, refuse, sea_of
 
 RESPONSE = 0.25  # amplitude of the floater over Hs, where its RAOs are not known
 WAVES, STEPS = 10, 40  # periods that the dynamic stage lasts, steps in one
@@ -17,27 +17,26 @@ COMMENT = 40  # column at which comments begin
 BEDS = {
     "spring": ("seabed: {kind: spring, stiffness: 1.0e5}", "N/m2: force per length and penetration"),
     "rigid": ("seabed: {kind: rigid}", ""),
-    "hysteretic": (
-        "seabed: {kind: hysteretic, law: {kind: randolph-quiggin, su: 2.0e3, su_gradient: 1.5e3}}",
-        "clay: Pa, Pa/m",
-    ),
 }
+SU, GRADIENT = 2.0e3, 1.5e3  # Pa, Pa/m: soft clay
+ALL = 12  # figures of a number: as many as anybody gives
 Coded = tuple[str, str]  # a line of the file, its comment
 
 
-def text(title: str, call: str, layout: LineLayout, sea: SeaState, ground: str | None) -> str:
+def text(title: str, call: str, layout: LineLayout, sea: SeaState, wishes: Wishes) -> str:
     """The scene file; call: the command that wrote it."""
     head = (
         f"# {title}: a first draft by `{call}`. Units are SI; z = 0 is the seabed.",
         "# Its numbers are common ones, not yours: go through them.",
         f"title: {title}",
     )
-    parts = _water(sea), _line_types(layout), _riser(layout), _seabed(ground), _stages(layout, sea)
+    line = _line_types(layout), _riser(layout, wishes), _seabed(layout, wishes)
+    parts = _water(sea), *line, _stages(layout, sea, wishes.rao)
     lines = (f"{code:<{COMMENT - 2}}  # {reported}" if reported else code for part in parts for code, reported in part)
     return "\n".join([*head, *lines]) + "\n"
 
 
-def number(value: float, figures: int = 4) -> str:
+def number(value: float, figures: int = ALL) -> str:
     """A float in so many figures that every reader of YAML takes for one: it has a point, and its exponent a sign."""
     reported = f"{value:.{figures}g}"
     if "e" not in reported and abs(value) >= 1e5:
@@ -50,20 +49,22 @@ def number(value: float, figures: int = 4) -> str:
 
 
 def _metres(value: float) -> str:
-    """To the centimetre, lengths below 10 m to six figures."""
-    return number(round(value, 2) if value > 10.0 else value, 6)
+    """A length to the centimetre, below 10 m to six figures."""
+    return number(round(value, 2)) if value > 10.0 else number(value, 6)
 
 
 def _place(place: Place) -> str:
-    return f"[{', '.join(map(_metres, place))}]"
+    """x and y as lengths; z, which the pipe's radius or the depth gives, with all its digits."""
+    x, y, z = place
+    return f"[{_metres(x)}, {_metres(y)}, {number(z)}]"
 
 
 def _water(sea: SeaState) -> Iterator[Coded]:
     yield "water:", ""
     yield f"  density: {number(WATER)}", "kg/m3"
-    yield f"  surface_level: {_metres(sea.depth)}", "m"
+    yield f"  surface_level: {number(sea.depth)}", "m"
     if sea.current:
-        profile = f"[[0.0, 0.0, 0.0], [{_metres(sea.depth)}, {number(sea.current)}, 0.0]]"
+        profile = f"[[0.0, 0.0, 0.0], [{number(sea.depth)}, {number(sea.current)}, 0.0]]"
         yield f"  current: {{profile: {profile}}}", "z, u_x, u_y"
     if sea.Hs:
         yield "  waves:", "they act in dynamic stages"
@@ -87,26 +88,36 @@ def _line_type(name: str, pipe: CrossSection) -> Iterator[Coded]:
     yield f"    EA: {number(pipe.EA)}", "N"
     yield f"    EI: {number(pipe.EI)}", "N.m2"
     if pipe.EI:
-        yield f"    GJ: {number(pipe.EI / (1.0 + NU_STEEL))}", "N.m2; counts where the line leaves its plane"
+        yield f"    GJ: {number(pipe.EI / (1.0 + NU_STEEL), 6)}", "N.m2; counts where the line leaves its plane"
     yield f"    drag: {{normal: {number(across)}, tangential: {number(along)}}}", ""
     yield f"    added_mass: {{normal: {number(pipe.added_mass)}}}", ""
-    if pipe.wall:
-        yield f"    wall: {{yield_stress: {number(YIELD)}, design_factor: 0.67}}", "Pa; with it stress is told"
+    if pipe.min_bend_radius:
+        yield f"    min_bend_radius: {number(pipe.min_bend_radius)}", "m"
+    if pipe.max_tension:
+        yield f"    max_tension: {number(pipe.max_tension)}", "N"
+    if pipe.yield_stress:
+        wall = f"{{yield_stress: {number(pipe.yield_stress)}, design_factor: 0.67}}"
+        yield f"    wall: {wall}", "Pa; with it there are results of stress"
 
 
-def _riser(layout: LineLayout) -> Iterator[Coded]:
+def _riser(layout: LineLayout, wishes: Wishes) -> Iterator[Coded]:
+    pipe = next(iter(layout.pipes.values()))
     yield "riser:", ""
-    if any(pipe.inner for pipe in layout.pipes.values()):
-        yield f"  contents: {{density: {number(OIL)}}}", "kg/m3"
+    if pipe.inner and pipe.contents:
+        yield f"  contents: {{density: {number(pipe.contents)}}}", "kg/m3"
     yield "  segments:", "from start to end; elements in m, or [first, last] of them"
     yield from ((f"    - {_segment(cut)}", "") for cut in layout.cuts)
     yield f"  start: {{position: {_place(layout.start)}}}", "free to turn"
-    if layout.tension is None:
+    if layout.tension is not None:
+        yield "  end:", "held sideways, pulled up with one force at any height"
+        yield f"    position: {_place(layout.end)}", ""
+        yield f"    tensioner: {{tension: {number(layout.tension, 3)}}}", "N"
+    elif wishes.angle is not None:
+        yield "  end:", "at the floater"
+        yield f"    position: {_place(layout.end)}", "x is a first guess: the angle decides"
+        yield f"    hang_off: {{angle: {number(wishes.angle)}}}", "deg from the vertical, at rest"
+    else:
         yield f"  end: {{position: {_place(layout.end)}}}", "at the floater"
-        return
-    yield "  end:", "held sideways, pulled up with one force at any height"
-    yield f"    position: {_place(layout.end)}", ""
-    yield f"    tensioner: {{tension: {number(layout.tension, 3)}}}", "N"
 
 
 def _segment(cut: Cut) -> str:
@@ -115,12 +126,18 @@ def _segment(cut: Cut) -> str:
     return f"{{line_type: {cut.line_type}, length: {_metres(cut.length)}, element_length: {elements}}}"
 
 
-def _seabed(ground: str | None) -> Iterator[Coded]:
-    if ground is not None:
-        yield BEDS[ground]
+def _seabed(layout: LineLayout, wishes: Wishes) -> Iterator[Coded]:
+    if layout.tension is not None:
+        return
+    if wishes.bed != CLAY:
+        yield BEDS[wishes.bed]
+        return
+    su, gradient = wishes.su or SU, wishes.gradient or GRADIENT
+    clay = f"{{kind: randolph-quiggin, su: {number(su)}, su_gradient: {number(gradient)}}}"
+    yield f"seabed: {{kind: hysteretic, law: {clay}}}", "clay: Pa, Pa/m"
 
 
-def _stages(layout: LineLayout, sea: SeaState) -> Iterator[Coded]:
+def _stages(layout: LineLayout, sea: SeaState, rao: str | None) -> Iterator[Coded]:
     yield "stages:", ""
     yield "  - {name: rest, kind: static}", ""
     if not sea.Hs:
@@ -129,8 +146,12 @@ def _stages(layout: LineLayout, sea: SeaState) -> Iterator[Coded]:
     yield "    kind: dynamic", ""
     yield f"    duration: {number(WAVES * sea.Tp)}", "s; extremes of a storm take hours, or several seeds"
     yield f"    time_step: {number(sea.Tp / STEPS, 3)}", ""
-    yield "    motion:", "stands for the floater's; {vessel: {rao: rao.csv, ...}} follows the waves"
-    yield f"      end: {{harmonic: {_harmonic(layout, sea)}}}", ""
+    if rao is None:
+        yield "    motion:", "stands for the floater's; {vessel: {rao: rao.csv, ...}} follows the waves"
+        yield f"      end: {{harmonic: {_harmonic(layout, sea)}}}", ""
+    else:
+        yield "    motion:", "reference: the point of the RAOs, here the hang-off: give the vessel's own"
+        yield f"      end: {{vessel: {{rao: {json.dumps(rao)}, reference: {_place(layout.end)}}}}}", ""
     yield f"output: {{interval: {number(sea.Tp / STEPS, 3)}}}", "s"
 
 
@@ -140,19 +161,14 @@ def _harmonic(layout: LineLayout, sea: SeaState) -> str:
     return f"{{amplitude: [{surge}, 0.0, {heave}], period: {period}, phase_deg: [90.0, 0.0, 0.0], ramp: {period}}}"
 
 
-def checked_draft(name: str, wishes: Wishes, call: str) -> str:
-    """The scene file of a kind; SceneError where a wish can't be met, or the scene breaks a rule of its language.
+def draft(name: str, wishes: Wishes, call: str) -> str:
+    """The scene file of a kind, as yet unchecked; SceneError where a wish can't be met.
 
     call: the command, for the file's first line.
     """
-    written = _draft(name, wishes, call)
-    checked(parse(written, "draft"), Path())
-    return written
-
-
-def _draft(name: str, wishes: Wishes, call: str) -> str:
     kind = kind_of(name)
     refuse(wishes, kind)
+    if wishes.angle is not None:
+        kind = replace(kind, angle=math.radians(wishes.angle))
     sea = sea_of(kind, wishes)
-    layout = layout_of(kind, pipe_of(kind, wishes), sea.depth)
-    return text(kind.title, call, layout, sea, (wishes.ground or GROUNDS[0]) if kind.hangs else None)
+    return text(kind.title, call, layout_of(kind, pipe_of(kind, wishes), sea.depth), sea, wishes)

@@ -11,6 +11,8 @@ from riser_soil.drafts.pipes import CrossSection, chain, flexible, steel
 from riser_soil.errors import SceneError
 
 GROUNDS = ("spring", "rigid", "hysteretic")
+CLAY = GROUNDS[2]
+VERTICAL = 80.0  # deg: the largest angle at the top; a line that hangs flatter is pulled taut
 STEEPNESS = 4.3  # default Tp/sqrt(Hs) [s/m^0.5], between DNV-RP-C205's 3.6 and 5
 Prompt = Callable[..., Any]
 
@@ -59,7 +61,9 @@ def kind_of(name: str) -> Kind:
 class Wishes:
     """What a draft is asked for: depth, diameter, wall [m], mass [kg/m], Hs [m], Tp [s], current [m/s], kind of ground.
 
-    None: by rule, or by the kind.
+    angle: at the top, from the vertical [deg]. su [Pa], gradient [Pa/m]: of clay. contents: their density [kg/m3], 0
+    for none. yield_stress [Pa], min_bend_radius [m], max_tension [N]: what the pipe may bear. rao: the file of the
+    vessel's RAOs, as the scene names it. None: by rule, or by the kind.
     """
 
     depth: float | None = None
@@ -70,6 +74,19 @@ class Wishes:
     Tp: float | None = None
     current: float = 0.0
     ground: str | None = None
+    angle: float | None = None
+    su: float | None = None
+    gradient: float | None = None
+    contents: float | None = None
+    yield_stress: float | None = None
+    min_bend_radius: float | None = None
+    max_tension: float | None = None
+    rao: str | None = None
+
+    @property
+    def bed(self) -> str:
+        """The kind of ground: clay where its strength is given."""
+        return self.ground or (GROUNDS[0] if self.su is None and self.gradient is None else CLAY)
 
 
 class SeaState(NamedTuple):
@@ -83,24 +100,46 @@ class SeaState(NamedTuple):
 
 def refuse(wishes: Wishes, kind: Kind) -> None:
     """SceneError for numbers that are none, for two that contradict each other, and for words that are unknown."""
-    positive = {"depth": wishes.depth, "diameter": wishes.diameter, "wall": wishes.wall, "mass": wishes.mass}
-    for name, value in (positive | {"tp": wishes.Tp}).items():
+    for name, value in _positive(wishes).items():
         if value is not None and not 0.0 < value < math.inf:
             raise SceneError(f"--{name} {value:g}: must be greater than 0")
-    if wishes.Hs is not None and not 0.0 <= wishes.Hs < math.inf:
-        raise SceneError(f"--hs {wishes.Hs:g}: must be 0, for no waves, or more")
+    or_none = {"hs": (wishes.Hs, "waves"), "contents": (wishes.contents, "contents")}
+    for name, (value, what) in or_none.items():
+        if value is not None and not 0.0 <= value < math.inf:
+            raise SceneError(f"--{name} {value:g}: must be 0, for no {what}, or more")
     if not math.isfinite(wishes.current):
         raise SceneError(f"--current {wishes.current:g}: must be a velocity [m/s]")
-    _refuse_ground(wishes.ground, kind)
+    if wishes.angle is not None and wishes.angle > VERTICAL:
+        raise SceneError(f"--angle {wishes.angle:g}: must be at most {VERTICAL:g}: it counts from the vertical [deg]")
+    if wishes.rao is not None and wishes.Hs == 0.0:
+        raise SceneError("--rao: the vessel follows the waves, and --hs is 0; leave out one of the two")
+    _refuse_ground(wishes, kind)
 
 
-def _refuse_ground(ground: str | None, kind: Kind) -> None:
-    if ground is None:
-        return
-    if ground not in GROUNDS:
-        raise SceneError(f'--ground "{ground}": must be one of {", ".join(GROUNDS)}')
-    if not kind.hangs:
-        raise SceneError(f"--ground {ground}: a {kind.title.lower()} does not lie on the ground; leave it out")
+def _positive(wishes: Wishes) -> dict[str, float | None]:
+    """Numbers that are greater than 0, by the names of their options."""
+    of_line = {"depth": wishes.depth, "diameter": wishes.diameter, "wall": wishes.wall, "mass": wishes.mass}
+    allowed = {"yield-stress": wishes.yield_stress, "max-tension": wishes.max_tension}
+    allowed["min-bend-radius"] = wishes.min_bend_radius
+    others = {"tp": wishes.Tp, "angle": wishes.angle, "su": wishes.su, "gradient": wishes.gradient}
+    return of_line | allowed | others
+
+
+def _refuse_ground(wishes: Wishes, kind: Kind) -> None:
+    if wishes.ground not in (None, *GROUNDS):
+        raise SceneError(f'--ground "{wishes.ground}": must be one of {", ".join(GROUNDS)}')
+    clay = {"su": wishes.su, "gradient": wishes.gradient}
+    for name, value in {"ground": wishes.ground, "angle": wishes.angle, **clay}.items():
+        if value is not None and not kind.hangs:
+            does = f"a {kind.title.lower()} stands upright and does not lie on the ground"
+            raise SceneError(f"--{name} {_in_words(value)}: {does}; leave it out")
+    for name, value in clay.items():
+        if value is not None and wishes.bed != CLAY:
+            raise SceneError(f"--{name} {value:g}: is of clay, and --ground is {wishes.ground}; take --ground {CLAY}")
+
+
+def _in_words(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def sea_of(kind: Kind, wishes: Wishes) -> SeaState:
@@ -115,13 +154,28 @@ def pipe_of(kind: Kind, wishes: Wishes) -> CrossSection:
     diameter = kind.diameter if wishes.diameter is None else wishes.diameter
     if wishes.wall is not None and 2.0 * wishes.wall >= diameter:
         raise SceneError(f"--wall {wishes.wall:g}: must be less than half the diameter, {diameter:g} m")
-    pipe = kind.pipe(diameter, wishes.wall, wishes.mass)
+    pipe = _allowed(kind, kind.pipe(diameter, wishes.wall, wishes.mass), wishes)
     if pipe.weight <= 0.0:
         reported = f"in water, with its contents, this weighs {pipe.weight:.4g} N/m and floats"
         raise SceneError(
             f"--diameter {diameter:g}: {reported}; give more --mass or, to a pipe of steel, a thicker --wall"
         )
     return pipe
+
+
+def _allowed(kind: Kind, pipe: CrossSection, wishes: Wishes) -> CrossSection:
+    """The pipe with its contents and what it may bear; SceneError where it has no such thing."""
+    given = {key: getattr(wishes, key) for key in ("contents", "yield_stress", "min_bend_radius", "max_tension")}
+    lacks = {
+        "contents": ("no bore", pipe.inner == 0.0),
+        "yield_stress": ("no metal wall", pipe.yield_stress is None),
+        "min_bend_radius": ("no bending stiffness", pipe.EI == 0.0),
+    }
+    for key, (what, lacking) in lacks.items():
+        if given[key] is not None and lacking:
+            option = key.replace("_", "-")
+            raise SceneError(f"--{option} {given[key]:g}: a {kind.title.lower()} has {what}; leave it out")
+    return replace(pipe, **{key: value for key, value in given.items() if value is not None})
 
 
 def ask(given: Wishes, prompt: Prompt) -> tuple[str, Wishes]:

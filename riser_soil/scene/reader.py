@@ -36,9 +36,7 @@ VALUES: dict[tuple[str, ...], tuple[Any, ...]] = {
 
 def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """The scene in a file, with `path=value` overrides; SceneError has one line per problem found."""
-    document = read_document(file)
-    override(document, overrides)
-    return checked(document, Path(file).parent)
+    return checked(overridden_document(file, overrides), Path(file).parent)
 
 
 def read_document(file: str | Path) -> Document:
@@ -46,16 +44,16 @@ def read_document(file: str | Path) -> Document:
     return parse(read_text(Path(file)), str(file))
 
 
+def overridden_document(file: str | Path, overrides: Sequence[str] = ()) -> Document:
+    """The same with `path=value` overrides."""
+    document = read_document(file)
+    override(document, overrides)
+    return document
+
+
 def scene_from_mapping(data: dict[str, Any], folder: Path = Path()) -> Scene:
     """A scene from plain data as a file would give it; relative file names are sought in `folder`."""
     return checked(Document("scene", data), folder)
-
-
-def with_place(message: str, file: str | Path, overrides: Sequence[str] = ()) -> str:
-    """`with_place_in` the document of a file with `path=value` overrides."""
-    document = read_document(file)
-    override(document, overrides)
-    return with_place_in(document, message)
 
 
 def with_place_in(document: Document, message: str) -> str:
