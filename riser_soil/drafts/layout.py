@@ -98,10 +98,23 @@ def _touchdown(first: Stretch, laid: float, coarse: float, layer: float) -> Iter
         yield Cut(name, laid + first.length, coarse, coarse)
         return
     half = min(ZONE * layer, 0.3 * laid, 0.3 * first.length)
-    before, after = (list(_growing(name, length - half, fine, coarse)) for length in (laid, first.length))
-    yield from (Cut(name, cut.length, cut.last, cut.first) for cut in reversed(before))
+    yield from _laid(name, laid - half, fine, coarse)
     yield Cut(name, 2.0 * half, fine, fine)
-    yield from after
+    yield from _growing(name, first.length - half, fine, coarse)
+
+
+def _laid(name: str, length: float, fine: float, coarse: float) -> Iterator[Cut]:
+    """Fine elements at both ends: beside the start, too, the pipe bends, as it sinks into the bed and the start does
+    not.
+    """
+    grows = (coarse - fine) / GROWTH
+    level = length - 2.0 * grows
+    middle = coarse if level > 2.0 * coarse else min(coarse, fine + 0.5 * GROWTH * length)
+    each = grows if level > 2.0 * coarse else 0.5 * length
+    yield Cut(name, each, fine, middle)
+    if level > 2.0 * coarse:
+        yield Cut(name, level, coarse, coarse)
+    yield Cut(name, each, middle, fine)
 
 
 def _growing(name: str, length: float, fine: float, coarse: float) -> Iterator[Cut]:

@@ -127,7 +127,7 @@ def test_a_lazy_wave_has_its_hog_and_sag_where_they_are_meant() -> None:
 
 
 def test_cross_sections() -> None:
-    """A steel pipe by hand; by its mass it is the same; modules lift by the pipe's own weight; chain of 0.1 m. Six figures."""
+    """A steel pipe by hand; by its mass it is the same; modules lift by the pipe's own weight; chain of 0.1 m."""
     area = math.pi / 4.0 * (0.3**2 - 0.26**2)
     pipe = steel(0.3, 0.02, None)
     assert (pipe.mass, pipe.EA) == pytest.approx((7850.0 * area, 2.07e11 * area), rel=5e-6)
