@@ -11,7 +11,7 @@ import typer
 
 from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.commands.scenes import guessed, placed_in, refuse_existing
-from riser_soil.errors import SceneError
+from riser_soil.errors import MeshError, SceneError
 
 if TYPE_CHECKING:
     from riser_soil.drafts.wishes import Wishes
