@@ -61,11 +61,14 @@ def film(
     """Film the last cycle of a run's dynamic stage: the riser over the soil, which a field colours."""
     with expected_errors():
         from riser_soil.plots import film as draw
+        from riser_soil.plots.progress import DrawingProgress
 
         for name, value in {"period": period, "magnify": magnify}.items():
             positive(name, value)
         file = output or Path(f"{folder.resolve().name}.gif")
-        typer.echo(draw(folder, file, stage=stage, period=period, field=field, magnify=magnify))
+        with DrawingProgress() as progress:
+            draw(folder, file, stage=stage, period=period, field=field, magnify=magnify, tell=progress.tell)
+        typer.echo(file)
 
 
 def plot(
@@ -80,23 +83,27 @@ def plot(
             "--what",
             metavar="NAME,…",
             help="ranges, histories, shape, soil, energy, solver, touchdown, film, or a picture by the name of its "
-            "file; may be repeated; by default all that the run has",
+            "file; may be repeated; by default all that the run has but the film",
         ),
     ] = None,
+    with_film: Annotated[bool, typer.Option("--film", help="draw the film, too; it takes a minute or two")] = False,
     ending: Annotated[str, typer.Option("--format", metavar="png|svg|pdf", help="format of the curves")] = "png",
     stage: AnyStage = None,
 ) -> None:
-    """Draw a run: ranges along the riser, histories, shapes through a cycle, soil, energy, touchdown zone, film."""
+    """Draw a run: ranges along the riser, histories, shapes of a cycle, soil, energy, touchdown zone; and a film."""
     with expected_errors():
         from riser_soil.plots.album import FORMATS, album
+        from riser_soil.plots.progress import DrawingProgress
         from riser_soil.results.read import Run
 
         if ending not in FORMATS:
             raise ResultsError(f'--format "{ending}": must be one of {", ".join(FORMATS)}')
         wanted = [name for group in what or () for name in group.split(",") if name]
-        for name, run in Run(folder).of_lines.items():
-            for file, words in album(run, (output or folder / "plots") / name, wanted, ending, stage):
-                typer.echo(f"{file}: {words}" if file else words)
+        with DrawingProgress() as progress:
+            for name, run in Run(folder).of_lines.items():
+                place = (output or folder / "plots") / name
+                for file, words in album(run, place, wanted, ending, stage, with_film, progress.tell):
+                    print(f"{file}: {words}" if file else words)  # not by click, which the bar can't keep apart
 
 
 def report(
@@ -112,11 +119,14 @@ def report(
 ) -> None:
     """Report runs on one HTML page: scene, warnings, extremes, pictures, energy, solver, how to reproduce them."""
     with expected_errors():
+        from riser_soil.plots.progress import DrawingProgress
         from riser_soil.report.report import write_report
 
         if output.suffix not in (".html", ".htm"):
             raise ResultsError(f"{output}: a report is an .html file; change its ending")
-        typer.echo(write_report(folders, output, stage))
+        with DrawingProgress() as progress:
+            page = write_report(folders, output, stage, progress.tell)
+        typer.echo(page)
 
 
 def fatigue(

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from riser_soil.core.environment import environment_alone
 from riser_soil.errors import ResultsError
+from riser_soil.plots.progress import Tell, silent
 from riser_soil.results import Run
 from riser_soil.results.whole_file import written_whole
 
@@ -41,6 +43,7 @@ def film(
     period: float | None = None,
     field: str | None = None,
     magnify: float | None = None,
+    tell: Tell = silent,
 ) -> Path:
     """Films the last whole cycle of a dynamic stage: the riser over its soil, coloured by a field, frame by frame; of a
     run without soil the riser's shape, coloured by bending moment.
@@ -48,7 +51,7 @@ def film(
     file: GIF, or MP4 where ffmpeg is installed. stage: by default the last dynamic one. period: s, by default that of
     the stage's motion; without any the whole stage is filmed (without soil: the records around the largest bending
     moment). field: of `riser_soil.plots.film.FIELDS`, by default the
-    settlement. magnify: as of `picture`.
+    settlement. magnify: as of `picture`. tell: hears of each frame.
     Raises ResultsError when the folder holds nothing to film, or drawing fails; a file is then left as it was.
     """
     file = Path(file)
@@ -59,27 +62,35 @@ def film(
         if run.has_soil:
             given = {"--stage": stage, "--period": period, "--field": field, "--magnify": magnify}
             options = [f"{name}={value}" for name, value in given.items() if value is not None]
-            _draw(["film", str(folder), str(part), *options])
+            _draw(["film", str(folder), str(part), *options], tell)
         elif field is not None or magnify is not None:
             raise ResultsError(f"{run.place}: the run has no soil, so there is nothing to colour or to magnify")
         else:
             from riser_soil.plots.riser_film import film_riser
 
-            film_riser(run, part, stage, period)
+            film_riser(run, part, stage, period, tell)
     return file
 
 
-def _draw(command: list[str]) -> None:
-    """Runs a module of this folder with its arguments."""
+def _draw(command: list[str], tell: Tell = silent) -> None:
+    """Runs a module of this folder with its arguments; each line that it prints is how many frames are done, and of how
+    many.
+    """
     module, *arguments = command
     call = [sys.executable, "-m", f"riser_soil.plots.{module}", *arguments]
-    done = subprocess.run(call, env=environment_alone(), capture_output=True, text=True)
-    if done.returncode != 0:
-        raise ResultsError(_reason(done))
+    with tempfile.TemporaryFile("w+") as errors:
+        with subprocess.Popen(call, env=environment_alone(), stdout=subprocess.PIPE, stderr=errors, text=True) as child:
+            assert child.stdout is not None
+            for line in child.stdout:
+                done, count = map(int, line.split())
+                tell("film: frames", done, count)
+        if child.returncode != 0:
+            errors.seek(0)
+            raise ResultsError(_reason(child.returncode, errors.read()))
 
 
-def _reason(done: subprocess.CompletedProcess[str]) -> str:
-    last = done.stderr.strip().splitlines()[-1:] or ["no message"]
-    if done.returncode > 0:
+def _reason(status: int, reported: str) -> str:
+    last = reported.strip().splitlines()[-1:] or ["no message"]
+    if status > 0:
         return last[0]
-    return f"drawing was killed by signal {-done.returncode}; is EGL there (Debian: libegl1 libgl1-mesa-dri)?"
+    return f"drawing was killed by signal {-status}; is EGL there (Debian: libegl1 libgl1-mesa-dri)?"

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from riser_soil.errors import ResultsError
 from riser_soil.plots import film, histories, picture
 from riser_soil.plots.curves import save, sheet
+from riser_soil.plots.progress import Tell, in_turn, silent
 from riser_soil.plots.ranges import draw_range, names
 from riser_soil.plots.shape import snapshots
 from riser_soil.results import Run
@@ -24,6 +25,7 @@ from riser_soil.results.whole_file import refuse_file, written_whole
 FORMATS = ("png", "svg", "pdf")
 GROUPS = ("ranges", "histories", "shape", "soil", "energy", "solver", "touchdown", "film")
 _ALONE = {"touchdown": "touchdown.png", "film": "film.gif"}  # drawn by a process of their own, in one format
+_UNASKED = ("touchdown",)  # of these
 _TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
@@ -43,27 +45,36 @@ def pictures(stage: StageRecords) -> list[Picture]:
 
 
 def album(
-    run: Run, folder: Path, what: Sequence[str] = (), ending: str = "png", stage: str | None = None
+    run: Run,
+    folder: Path,
+    what: Sequence[str] = (),
+    ending: str = "png",
+    stage: str | None = None,
+    with_film: bool = False,
+    tell: Tell = silent,
 ) -> Iterator[tuple[Path | None, str]]:
     """Draws pictures into a folder: file by file with its caption, or None and the reason why one is not there.
 
-    what: of GROUPS, or names of pictures; none for all that there is. Raises ResultsError for unknown names, and where
-    what was asked for by name can't be drawn.
+    what: of GROUPS, or names of pictures; none for all that there is but the film. with_film: the film, too. tell:
+    hears of each picture and frame. Raises ResultsError for unknown names, and where what was asked for by name can't
+    be drawn.
     """
     of_stage = stage_records(run, stage)
     there = pictures(of_stage)
     _check(what, there)
     refuse_file(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    for each in there:
-        if not what or {each.group, each.name} & set(what):
-            file = folder / f"{each.name}.{ending}"
+    curves = {each.name: each for each in there if not what or {each.group, each.name} & set(what)}
+    asked = {*what, *(("film",) if with_film else ())}
+    alone = [name for name in _ALONE if name in asked or (name in _UNASKED and not what)]
+    for name in in_turn([*curves, *alone], str, tell):
+        if name in curves:
+            file = folder / f"{name}.{ending}"
             with written_whole(file) as part:
-                save(each.draw(), part)
-            yield file, each.caption
-    for name, file_name in _ALONE.items():
-        if not what or name in what:
-            yield _drawn_alone(name, of_stage, folder / file_name, asked=bool(what))
+                save(curves[name].draw(), part)
+            yield file, curves[name].caption
+        else:
+            yield _drawn_alone(name, of_stage, folder / _ALONE[name], name in asked, tell)
 
 
 def _check(what: Sequence[str], there: Sequence[Picture]) -> None:
@@ -129,12 +140,12 @@ def when(stage: StageRecords) -> str:
     return f"{stage.name}, {stage.time[0]:.5g} to {stage.time[-1]:.5g} s"
 
 
-def _drawn_alone(name: str, stage: StageRecords, file: Path, asked: bool) -> tuple[Path | None, str]:
+def _drawn_alone(name: str, stage: StageRecords, file: Path, asked: bool, tell: Tell) -> tuple[Path | None, str]:
     """The picture of the run's end, or the film of a stage; what was asked for must be there."""
     run = stage.run
     try:
         if name == "film":
-            return film(run.place, file, stage=stage.name), f"film: {stage.name}"
+            return film(run.place, file, stage=stage.name, tell=tell), f"film: {stage.name}"
         return picture(run.place, file), "the touchdown zone at the run's end"
     except ResultsError as err:
         if asked:

@@ -121,9 +121,10 @@ def _record(run: Run, frame: int) -> int:
 
 
 def _pictures(scene: _Film) -> Iterator[Array]:
-    """Frames (height, width, 3), bytes of red, green and blue."""
+    """Frames (height, width, 3), bytes of red, green and blue; how many are done goes to standard output."""
     position, ahead = scene.run["position"], along(scene.run["position"][0])
-    for n in scene.frames:
+    for done, n in enumerate(scene.frames):
+        print(done, len(scene.frames), flush=True)
         plotter = pv.Plotter(off_screen=True, window_size=list(_SIZE), border=False)
         plotter.set_background("white")
         frame = scene.run.soil_frame(int(n))

@@ -14,7 +14,8 @@ from riser_soil import __version__
 from riser_soil.accuracy.key_results import key_results
 from riser_soil.errors import ResultsError
 from riser_soil.plots import picture
-from riser_soil.plots.album import GROUPS, embedded, embedded_png, pictures
+from riser_soil.plots.album import GROUPS, Picture, embedded, embedded_png, pictures
+from riser_soil.plots.progress import Tell, silent
 from riser_soil.plots.side_by_side import sheets
 from riser_soil.report import health, scene_words
 from riser_soil.report.extremes import READ_IN, ends_table, extremes_table, hung_table, key_results_table
@@ -73,8 +74,9 @@ class RunPart:
     scene_text: str
 
 
-def write_report(folders: Sequence[Path], file: Path, stage: str | None = None) -> Path:
-    """Writes the page. stage: the one that is drawn; by default all along t, else the last.
+def write_report(folders: Sequence[Path], file: Path, stage: str | None = None, tell: Tell = silent) -> Path:
+    """Writes the page. stage: the one that is drawn; by default all along t, else the last. tell: hears of each
+    picture.
 
     Raises ResultsError where a folder holds no run, or nothing was recorded; the file is then left as it was.
     """
@@ -82,13 +84,13 @@ def write_report(folders: Sequence[Path], file: Path, stage: str | None = None) 
     hung = {label: hung_table(run.summary) for label, run in given}
     runs = {" ".join([label, name]).strip(): line for label, run in given for name, line in run.of_lines.items()}
     with written_whole(file) as part:
-        part.write_text(_page(runs, hung, stage), encoding="utf-8")
+        part.write_text(_page(runs, hung, stage, tell), encoding="utf-8")
     return file
 
 
-def _page(runs: Mapping[str, Run], hung: Mapping[str, ReportTable], stage: str | None) -> str:
+def _page(runs: Mapping[str, Run], hung: Mapping[str, ReportTable], stage: str | None, tell: Tell) -> str:
     """hung: of bodies, joints and clearances, by the labels of whole runs."""
-    parts = [_run_part(label, f"run{n}", run, stage) for n, (label, run) in enumerate(runs.items())]
+    parts = [_run_part(label, f"run{n}", run, stage, tell) for n, (label, run) in enumerate(runs.items())]
     page: str = _template().render(
         title=" | ".join(dict.fromkeys(part.summary["title"] for part in parts)),
         runs=parts,
@@ -113,10 +115,14 @@ def _labels(folders: Sequence[Path]) -> list[str]:
     return names if len({*names}) == len(names) else [str(folder) for folder in folders]
 
 
-def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
-    drawn = _drawn_stages(run, stage)
+def _run_part(label: str, anchor: str, run: Run, stage: str | None, tell: Tell) -> RunPart:
+    shapes, drawn = _shapes(run), {n: pictures(each) for n, each in _drawn_stages(run, stage).items()}
     summary, scene = run.summary, scene_words.read(run)
-    shape, touchdown, why = _shape(run), None, ""
+    touchdown, why = None, ""
+    whole = sum(map(len, drawn.values())) + len(shapes) + 1
+    images = _Images(label, whole, tell)
+    shape = [images.drawn(each) for each in shapes]
+    images.begin("touchdown")
     try:
         uri = embedded_png(lambda png: picture(run.place, png))
         touchdown = Image(uri, f"the touchdown zone and the whole riser at {run.time[-1]:.5g} s")
@@ -134,7 +140,9 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
         shape=shape,
         touchdown=touchdown,
         no_touchdown=why,
-        stages=[_stage_part(summary, reported, drawn.get(n)) for n, reported in enumerate(summary["stages"])],
+        stages=[
+            _stage_part(summary, reported, drawn.get(n, ()), images) for n, reported in enumerate(summary["stages"])
+        ],
         key_results=key_results_table(summary),
         solver=health.solver_table(summary),
         seconds=health.seconds_table(summary),
@@ -159,11 +167,27 @@ def _scene_tables(scene: Any) -> Iterator[tuple[str, ReportTable]]:
     yield "Stages", scene_words.stages_table(scene)
 
 
-def _shape(run: Run) -> list[Image]:
+class _Images:
+    """The pictures of a run's part of the page, each reported before it is drawn."""
+
+    def __init__(self, label: str, count: int, tell: Tell) -> None:
+        self._label, self._count, self._tell = label, count, tell
+        self._begun = 0
+
+    def begin(self, name: str) -> None:
+        """Report that a picture is drawn."""
+        self._tell(f"{self._label}: {name}", self._begun, self._count)
+        self._begun += 1
+
+    def drawn(self, each: Picture) -> Image:
+        self.begin(each.name)
+        return Image(embedded(each.draw()), each.caption)
+
+
+def _shapes(run: Run) -> list[Picture]:
     """The shape at the end of the first stage: where the riser lies before it is moved."""
     first = all_stages(run)[:1]
-    still = [each for stage in first if not stage.timed for each in pictures(stage) if each.group == "shape"]
-    return [Image(embedded(each.draw()), each.caption) for each in still]
+    return [each for stage in first if not stage.timed for each in pictures(stage) if each.group == "shape"]
 
 
 def _drawn_stages(run: Run, stage: str | None) -> dict[int, StageRecords]:
@@ -173,10 +197,12 @@ def _drawn_stages(run: Run, stage: str | None) -> dict[int, StageRecords]:
     return {each.number: each for each in (timed or [chosen])}
 
 
-def _stage_part(summary: Mapping[str, Any], reported: Mapping[str, Any], drawn: StageRecords | None) -> StagePart:
+def _stage_part(
+    summary: Mapping[str, Any], reported: Mapping[str, Any], drawn: Sequence[Picture], images: _Images
+) -> StagePart:
     groups: dict[str, list[Image]] = {group: [] for group in GROUPS}
-    for each in pictures(drawn) if drawn is not None else ():
-        groups[each.group].append(Image(embedded(each.draw()), each.caption))
+    for each in drawn:
+        groups[each.group].append(images.drawn(each))
     return StagePart(
         name=reported["name"],
         kind=reported["kind"],

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 from rich.console import Console
-from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
@@ -192,7 +192,8 @@ def _number(value: float | None, unit: str, scale: float) -> str:
 
 
 class Progress:
-    """Stage, time, time step, Newton iterations and seconds left; silent unless enabled and on a terminal.
+    """Stage, per cent of it, time and end time, time step, Newton iterations and seconds left; silent unless enabled
+    and on a terminal.
 
     Goes to standard error, so that what the command prints can be piped. Use in a `with` statement.
     """
@@ -202,6 +203,7 @@ class Progress:
         self._bar = Bar(
             TextColumn("[bold]{task.description}"),
             BarColumn(),
+            TaskProgressColumn(),
             TextColumn("{task.fields[state]}"),
             TimeElapsedColumn(),
             TextColumn("left"),
@@ -211,7 +213,7 @@ class Progress:
             refresh_per_second=4,
         )
         self._task = self._bar.add_task("", total=None, state="", visible=False)
-        self._kind = "static"
+        self._kind, self._end = "static", 1.0
 
     def __enter__(self) -> Self:
         self._bar.start()
@@ -224,7 +226,7 @@ class Progress:
 
     def begin_stage(self, name: str, kind: str, end: float = 1.0) -> None:
         """kind: `static`, `quasi-static` or `dynamic`. end: t at the stage's end; in a static stage the load factor."""
-        self._kind = kind
+        self._kind, self._end = kind, end
         self._bar.reset(self._task, total=end, description=name, state="", visible=True)
 
     def update(self, t: float, time_step: float, newton_iterations: int) -> None:
@@ -233,5 +235,5 @@ class Progress:
             return
         label = "load" if self._kind == "static" else "t"
         unit = "" if self._kind == "static" else " s"
-        state = f"{label} {t:.4g}{unit}  step {time_step:.3g}{unit}  Newton {newton_iterations}"
+        state = f"{label} {t:.4g} of {self._end:.6g}{unit}  step {time_step:.3g}{unit}  Newton {newton_iterations}"
         self._bar.update(self._task, completed=t, state=state)

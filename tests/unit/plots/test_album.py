@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import warnings
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
+from rich.console import Console
 from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
@@ -19,10 +21,12 @@ from riser_soil.plots import film
 from riser_soil.plots.album import album, pictures
 from riser_soil.plots.curves import envelope, sheet
 from riser_soil.plots.histories import energy
+from riser_soil.plots.progress import DrawingProgress
 from riser_soil.plots.ranges import draw_range, mean_in_time, names
 from riser_soil.plots.scales import axis_words, drawn_radius, metres
 from riser_soil.plots.shape import filmed_records, seabed_under, snapshots
 from riser_soil.plots.side_by_side import sheets
+from riser_soil.report.report import write_report
 from riser_soil.results import Run
 from riser_soil.results.stage_records import stage_records
 from riser_soil.scene.reader import scene_from_mapping
@@ -124,6 +128,48 @@ def test_all_pictures_of_a_riser_alone(run: Run, tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     assert sorted(file.name for file in tmp_path.iterdir()) == ["range_slip.png", "shape.png", "solver.png"]
     line_with(done.output, f"{tmp_path / 'shape.png'}:", "shape", "heave", "0 to 1 s")
+
+
+def test_a_film_is_drawn_where_it_is_asked_for(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`plot` alone draws all else; each picture is reported before it is drawn, and the last one after it."""
+    told: list[tuple[str, int, int]] = []
+    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: told.append(given))
+    monkeypatch.setattr("riser_soil.plots.album.picture", lambda _, file: Path(file).touch())
+    monkeypatch.setattr("riser_soil.plots.album.film", lambda _, file, **given: Path(file).touch())
+    monkeypatch.setattr("riser_soil.plots.album.save", lambda _, file: file.touch())
+    drawn = [*(each.name for each in pictures(stage_records(run))), "touchdown"]
+    for asked, films in (([], []), (["--film"], ["film"]), (["--what", "shape", "--film"], ["film"])):
+        told.clear()
+        folder = tmp_path / str(len(asked))
+        done = CliRunner().invoke(app, ["plot", str(run.folder), "-o", str(folder), *asked])
+        assert done.exit_code == 0, done.output
+        expected = [*(["shape"] if "shape" in asked else drawn), *films]
+        assert sorted(file.stem for file in folder.iterdir()) == sorted(expected)
+        count = len(expected)
+        assert told == [*((name, n, count) for n, name in enumerate(expected)), (expected[-1], count, count)]
+
+
+def test_frames_of_a_film_and_pictures_of_a_report_are_reported(run: Run, tmp_path: Path) -> None:
+    told: list[tuple[str, int, int]] = []
+    film(run.folder, tmp_path / "riser.gif", period=0.3, tell=lambda *given: told.append(given))
+    assert told == [("film: frames", n, 4) for n in range(5)]
+    told.clear()
+    write_report([run.folder], tmp_path / "report.html", tell=lambda *given: told.append(given))
+    names_of_stage = [each.name for each in pictures(stage_records(run))]
+    expected = ["run: shape", "run: touchdown", *(f"run: {name}" for name in names_of_stage)]
+    assert [words for words, _, _ in told] == expected
+    assert {count for _, _, count in told} == {len(expected)}
+
+
+def test_progress_of_drawing_shows_number_and_per_cent() -> None:
+    console = Console(force_terminal=True, width=120, record=True, file=io.StringIO())
+    with DrawingProgress(console) as progress:
+        progress.tell("shape", 3, 12)
+    text = console.export_text()
+    for words in ("shape", "3/12", "25%"):
+        assert words in text
+    with DrawingProgress(Console(file=io.StringIO())) as progress:
+        progress.tell("shape", 3, 12)
 
 
 @pytest.mark.parametrize(("ending", "begins"), [("svg", b"<?xml"), ("pdf", b"%PDF")])

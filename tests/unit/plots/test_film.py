@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from riser_soil.__main__ import app
 from riser_soil.errors import ResultsError, WriteError
 from riser_soil.plots import film
+from riser_soil.plots.progress import DrawingProgress
 from tests.support.recorded_run import block, record
 from tests.support.said import line_with, telling
 
@@ -41,10 +42,13 @@ def frames(gif: Path) -> list[np.ndarray]:
     return seen
 
 
-def test_a_film_shows_every_frame_of_the_stage(folder: Path) -> None:
+def test_a_film_shows_every_frame_of_the_stage(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[tuple[str, int, int]] = []
+    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: told.append(given))
     done = CliRunner().invoke(app, ["film", str(folder), "-o", str(folder / "film.gif"), "--stage", "heave"])
     assert (done.exit_code, done.output.strip()) == (0, str(folder / "film.gif"))
     seen = frames(folder / "film.gif")
+    assert told == [("film: frames", n, 3) for n in range(3)]
     assert [image.shape for image in seen] == [(540, 960, 3)] * 3
     drawing = [image[80:400] for image in seen]  # without caption and colour bar
     for this, following in pairwise(drawing):

@@ -392,5 +392,5 @@ def test_progress_names_stage_time_step_and_iterations() -> None:
         progress.begin_stage("heave", "dynamic", 10.0)
         progress.update(5.0, 0.1, 3)
     text = console.export_text()
-    for words in ("heave", "t 5 s", "step 0.1 s", "Newton 3"):
+    for words in ("heave", "50%", "t 5 of 10 s", "step 0.1 s", "Newton 3"):
         assert words in text
