@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from riser_soil.scene.files import content
 from riser_soil.scene.problem import Path as KeyPath
 
 MOST_BYTES = 10_000_000
+_TWIST = 1e-4  # of EA D^2: torsional stiffness of a line without bending stiffness
 
 Remark = tuple[int, str]
 """Line of the file, and what of it the scene does not have."""
@@ -38,7 +40,9 @@ class ImportedScene:
 def text_of(file: Path) -> str:
     """The text of another program's file; SceneError where it can't be read."""
     try:
-        return content(file, MOST_BYTES).decode("utf-8-sig", errors="replace")
+        found = content(file, MOST_BYTES)
+        in_pairs = found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        return found.decode("utf-16" if in_pairs else "utf-8-sig", errors="replace")
     except OSError as err:
         raise SceneError(f"{file}: can't be read ({err.strerror}); check the file's name") from err
 
@@ -49,3 +53,11 @@ def friction(axial: float, lateral: float) -> tuple[dict[str, Any], str]:
         return {"contact": {"friction": {"axial": axial, "lateral": lateral}}}, ""
     reported = f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"
     return {}, reported if axial or lateral else ""
+
+
+def twisting_stiffness(EI: float, EA: float, diameter: float) -> float:
+    """GJ [N m2] for a line of which a file has none, for three dimensions: as EI; 1e-4 EA D^2 without any.
+
+    The line bears no torque, whatever GJ is, while one of its ends is free to spin.
+    """
+    return EI or _TWIST * EA * diameter**2

@@ -1,4 +1,7 @@
-"""A data file's objects: values by name, where each stands, and which of them were asked for."""
+"""A data file's objects: values by name, where each stands, and which of them were asked for.
+
+OrcaFlex reads names of data, of objects and of choices in any case, so they are compared without it.
+"""
 
 from __future__ import annotations
 
@@ -15,38 +18,68 @@ from riser_soil.scene.problem import Path as Keys
 
 MASS = 1e3  # kg in te
 FORCE = 1e3  # N in kN
-_OTHERS = ("BaseFile", "IncludeFile", "includefile")
+_OTHERS = ("basefile", "includefile")
+_NONE = ("", "~", "null")
+_BYTE_ORDER_MARK = "\ufeff"  # at the beginning of each file that was joined to others
+
+
+def folded(word: Any) -> str:
+    """A word as it is compared: in lower case, with single blanks."""
+    return " ".join(str(word).split()).lower()
 
 
 @dataclass
 class DataFile:
-    """A whole file. read: the places of values that were asked for. remarks: what they can't stand for in a scene."""
+    """A whole file.
+
+    read: the places of values that were asked for. remarks: what they can't stand for in a scene. refused: what a scene
+    can't do without and can't be made of them; all of it is found before `end_if_refused` ends the import.
+    """
 
     document: Document
     read: set[Keys] = field(default_factory=set)
     remarks: list[Remark] = field(default_factory=list)
+    refused: list[Remark] = field(default_factory=list)
 
     def section(self, name: str) -> Item:
         """A section that is one object, as Environment; empty where there is none."""
-        found = self.document.data.get(name) or {}
-        return Item(self, name, {key: ((name, key), value) for key, value in found.items()})
+        key, found = self._found(name)
+        return Item(self, key, _by_name((key,), found if isinstance(found, dict) else {}))
 
     def objects(self, section: str) -> list[Item]:
         """Objects of a section that is a list of them, as Lines."""
-        return _items(self, (section,), self.document.data.get(section))
+        key, found = self._found(section)
+        return _items(self, (key,), found)
 
-    def named(self, section: str, name: str, asking: Item, key: str) -> Item:
-        """The object of this name, for which another one asks by a key."""
-        for each in (found := self.objects(section)):
-            if each.word("Name") == name:
-                return each
-        known = ", ".join(each.name for each in found) or "none"
-        raise asking.error(key, f"{name} is not among the {section} ({known}); correct the name")
+    def find(self, section: str, name: str) -> Item | None:
+        """The object of this name in a section; None where there is none."""
+        return next((each for each in self.objects(section) if folded(each.word("Name")) == folded(name)), None)
+
+    def named(self, section: str, name: str, asking: Item, key: str) -> Item | None:
+        """The object of this name, for which another one asks by a key; refused where there is none."""
+        found = self.find(section, name)
+        if found is None:
+            known = ", ".join(each.word("Name") for each in self.objects(section)) or "none"
+            asking.refuse(key, f"{name} is not among the {section} ({known}); correct the name")
+        return found
+
+    def end_if_refused(self, remarks: list[Remark]) -> None:
+        """SceneError with all that was refused, and with the remarks, a line for each, if anything was."""
+        if not self.refused:
+            return
+        name = self.document.name
+        lines = [f"{name}:{line}: {text}" for line, text in sorted(set(self.refused))]
+        lines += [f"{name}:{line}: not carried over: {text}" for line, text in remarks]
+        raise SceneError("\n".join(lines))
+
+    def _found(self, section: str) -> tuple[str, Any]:
+        return next(((key, each) for key, each in self.document.data.items() if folded(key) == folded(section)),
+                    (section, None))  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Item:
-    """An object, or a row of a table: by name of each value its place in the file, and the value."""
+    """An object, or a row of a table: by name of each value in lower case its place in the file, and the value."""
 
     file: DataFile
     name: str
@@ -54,27 +87,29 @@ class Item:
 
     def has(self, key: str) -> bool:
         """Whether a value is given; ~ is none."""
-        return self.values.get(key, ((), None))[1] is not None
+        return self.values.get(folded(key), ((), None))[1] is not None
 
     def get(self, key: str) -> Any:
         """A value as YAML has it, None where there is none; it counts as read."""
-        if key not in self.values:
+        if folded(key) not in self.values:
             return None
-        place, value = self.values[key]
+        place, value = self.values[folded(key)]
         self.file.read.add(place)
         return value
 
     def word(self, key: str, default: str = "") -> str:
-        """A value as a word."""
+        """A value as a word, such as a name."""
         value = self.get(key)
         return default if value is None else str(value)
 
+    def choice(self, key: str, default: str = "") -> str:
+        """A value that is one of several words, in lower case."""
+        return folded(self.word(key, default))
+
     def number(self, key: str, default: float | None = None) -> float:
-        """A finite number; SceneError where there is none, and no default."""
+        """A finite number; refused, and nan, where there is none and no default."""
         value = self._number(key, self.get(key), default)
-        if not math.isfinite(value):
-            raise self.error(key, f"is {self.values[key][1]!r}, not a finite number; correct it")
-        return value
+        return self.refuse(key, f"is {self.get(key)}, not a finite number; correct it") if math.isinf(value) else value
 
     def stiffness(self, key: str, default: float | None = None) -> float:
         """A number that may be Infinity."""
@@ -86,37 +121,47 @@ class Item:
         given = value if isinstance(value, list) else [value]
         return [self._number(key, each, default) for each in (given + [None] * count)[:count]]
 
+    def all_numbers(self, key: str) -> list[float]:
+        """All numbers of a list, or of one number; none where there is nothing."""
+        value = self.get(key)
+        given = [] if value is None else value if isinstance(value, list) else [value]
+        return [self._number(key, each, None) for each in given]
+
     def rows(self, first: str) -> list[Item]:
         """Rows of the table whose columns begin with one of this name: `first, second, third`."""
         for names, (place, table) in self.values.items():
-            columns = [name.strip() for name in names.split(",")]
-            if columns[0] == first and isinstance(table, list):
+            columns = [folded(name) for name in names.split(",")]
+            if columns[0] == folded(first) and isinstance(table, list):
                 return [self._row(columns, (*place, n), row) for n, row in enumerate(table)]
         return []
 
     def items(self, key: str) -> list[Item]:
         """Objects that this one has in a list."""
-        place, value = self.values.get(key, ((), None))
+        place, value = self.values.get(folded(key), ((), None))
         return _items(self.file, place, value)
 
     def part(self, key: str) -> Item:
         """An object that this one has; empty where there is none."""
-        place, value = self.values.get(key, ((), None))
-        found = value if isinstance(value, dict) else {}
-        return Item(self.file, f"{self.name}: {key}", {name: ((*place, name), each) for name, each in found.items()})
+        place, value = self.values.get(folded(key), ((), None))
+        return Item(self.file, f"{self.name}: {key}", _by_name(place, value if isinstance(value, dict) else {}))
 
     def left(self, key: str, text: str) -> None:
         """Tells that a value, which counts as read, is not carried over."""
         self.get(key)
         self.file.remarks.append((self.line(key), f"{self.name}: {text}"))
 
+    def refuse(self, key: str, text: str) -> float:
+        """Tells that there is no scene because of a value; nan, in place of what it would have been."""
+        self.get(key)
+        self.file.refused.append((self.line(key), f"{self.name}: {key}: {text}"))
+        return math.nan
+
     def line(self, key: str) -> int:
         """Line of a value, or of the object where it has none of this name."""
+        if folded(key) in self.values:
+            return self.file.document.where(self.values[folded(key)][0])[0]
         places = [place for place, _ in self.values.values()] or [()]
-        return self.file.document.where(self.values[key][0] if key in self.values else places[0][:-1])[0]
-
-    def error(self, key: str, text: str) -> SceneError:
-        return SceneError(f"{self.file.document.name}:{self.line(key)}: {self.name}: {key}: {text}")
+        return self.file.document.where(places[0][:-1])[0]
 
     def _row(self, columns: list[str], place: Keys, row: Any) -> Item:
         cells = row if isinstance(row, list) else [row]
@@ -127,24 +172,29 @@ class Item:
         if value is None and default is not None:
             return default
         try:
-            return math.nan if value is None else float(value)
+            found = math.nan if value is None else float(value)
         except (TypeError, ValueError):
-            raise self.error(key, f"is {value!r}, not a number; correct it") from None
+            found = math.nan
+        if math.isnan(found):
+            shown = "missing" if value is None else f"{value!r}, not a number"
+            return self.refuse(key, f"is {shown}; correct it")
+        return found
 
 
 def read_data(file: Path) -> DataFile:
-    """The data in a file; SceneError where it can't be read, or is none of OrcaFlex in SI units."""
-    text = text_of(file).replace("%YAML 1.1", "", 1)  # in which Yes is a truth value and 1e6 a word
-    document = parse(text, file.name, "is empty; give a text data file of OrcaFlex")
-    if not isinstance(document.data, dict) or "Lines" not in document.data or "General" not in document.data:
+    """The data in a file; SceneError where it can't be read, or is none of OrcaFlex."""
+    text = text_of(file).replace(_BYTE_ORDER_MARK, "")
+    # In YAML 1.1 Yes is a truth value and 1e6 a word.
+    document = parse(text.replace("%YAML 1.1", "", 1), file.name, "is empty; give a text data file of OrcaFlex")
+    _refuse_parts(document)
+    names = {folded(key) for key in document.data} if isinstance(document.data, dict) else set[str]()
+    if not {"lines", "general"} <= names:
         raise SceneError(f"{file}: has no General and Lines; give a text data file (.yml) of OrcaFlex 11, of one model")
+    document.data = _plain(document.data)
     data = DataFile(document)
-    for key in _OTHERS:
-        if key in document.data:
-            raise SceneError(f"{file.name}:{document.lines[key,]}: {key}: takes from another file; save as one file")
     general = data.section("General")
-    if general.word("UnitsSystem") != "SI":
-        raise general.error("UnitsSystem", f"is {general.word('UnitsSystem') or 'missing'}; save it in SI units")
+    if general.choice("UnitsSystem") != "si":
+        general.refuse("UnitsSystem", f"is {general.word('UnitsSystem') or 'missing'}; save it in SI units")
     return data
 
 
@@ -154,6 +204,34 @@ def unit_vector(azimuth: float) -> tuple[float, float]:
     return round(math.cos(angle), 15) + 0.0, round(math.sin(angle), 15) + 0.0
 
 
+def _refuse_parts(document: Document) -> None:
+    """SceneError for a file that takes data from others, by a key or by a list of them."""
+    several = document.data if isinstance(document.data, list) else [document.data]
+    for n, each in enumerate(several):
+        for key in each if isinstance(each, dict) else ():
+            if folded(key) in _OTHERS:
+                place = (key,) if each is document.data else (n, key)
+                line = document.where(place)[0]
+                raise SceneError(f"{document.name}:{line}: {key}: takes from another file; save as one file")
+
+
+def _plain(value: Any) -> Any:
+    """Without quotes around what stands for nothing, and with OrcaFlex's words for truth values."""
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_plain(each) for each in value]
+    if isinstance(value, bool):
+        return "Yes" if value else "No"
+    if isinstance(value, str):
+        return None if value.strip().lower() in _NONE else value.strip()
+    return value
+
+
+def _by_name(place: Keys, found: Mapping[str, Any]) -> dict[str, tuple[Keys, Any]]:
+    return {folded(key): ((*place, key), value) for key, value in found.items()}
+
+
 def _items(file: DataFile, place: Keys, found: Any) -> list[Item]:
     return list(_each(file, place, found)) if isinstance(found, list) else []
 
@@ -161,5 +239,9 @@ def _items(file: DataFile, place: Keys, found: Any) -> list[Item]:
 def _each(file: DataFile, place: Keys, found: list[Any]) -> Iterator[Item]:
     for n, each in enumerate(found):
         if isinstance(each, dict):
-            name = f"{place[-1]} {each.get('Name', n + 1)}"
-            yield Item(file, name, {key: ((*place, n, key), value) for key, value in each.items()})
+            yield Item(file, f"{place[-1]} {name_of(each) or n + 1}", _by_name((*place, n), each))
+
+
+def name_of(found: Mapping[str, Any]) -> str:
+    """The name that an object has among its values."""
+    return next((str(value) for key, value in found.items() if folded(key) == "name" and value is not None), "")

@@ -1,22 +1,20 @@
-"""A line of a data file: its line types, sections, contents, and what its ends are connected to."""
+"""A line of a data file: its sections, contents, attachments, and what its ends are connected to."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import Any
 
-from riser_soil.orcaflex.data_file import FORCE, MASS, DataFile, Item, unit_vector
+from riser_soil.orcaflex.data_file import FORCE, MASS, DataFile, Item, folded, unit_vector
 from riser_soil.orcaflex.environment import surface_level, water_depth
+from riser_soil.orcaflex.line_types import Pipe, line_type, pieces
+from riser_soil.orcaflex.variable_data import is_name, points_of
 from riser_soil.orcaflex.vessels import place_on
 
 _OUT_OF_PLANE = 1e-6  # of a neutral direction that a flex joint in the riser's plane can have
 _LEVEL = 1e-9  # horizontal distance of the ends [m] below which there is no such plane
-_EQUAL = 1e-9
-_LEFT = {
-    "Cs": "slamming", "Ce": "slamming", "Cl": "lift", "CompressionIsLimited": "a limit of compression",
-    "ExpansionTable": "expansion", "ClashStiffness": "clashing",
-}  # fmt: skip
 
 
 @dataclass
@@ -28,42 +26,112 @@ class LineEnd:
     position: list[float] | None
     vessel: Item | None
 
-
-def chosen(file: DataFile, name: str | None) -> Item:
-    """The line of this name, by default the file's first."""
-    lines = file.objects("Lines")
-    found = [each for each in lines if name is None or each.word("Name") == name]
-    if not found:
-        known = ", ".join(each.word("Name") for each in lines)
-        raise file.section("General").error("Lines", f"there is no line {name or 'at all'}; it has {known or 'none'}")
-    for n, each in enumerate(lines):
-        if each.word("Name") != found[0].word("Name"):
-            each.left("Name", f"a scene has one riser; --line {each.word('Name')!r} imports this one")
-            file.read.add(("Lines", n))
-    return found[0]
+    @property
+    def height(self) -> float:
+        """Of a free end below all others [m]."""
+        return -math.inf if self.position is None else self.position[2]
 
 
-def ends(file: DataFile, line: Item) -> list[LineEnd]:
+@dataclass
+class Line:
+    """A line from its lower end to its upper one: as a scene has it, its ends, and what lies at its lower end."""
+
+    item: Item
+    data: dict[str, Any]
+    ends: list[LineEnd]
+    lowest: Pipe
+    types: dict[str, Pipe] = field(default_factory=dict)
+
+
+def line_of(file: DataFile, item: Item) -> Line | None:
+    """The line; None where something of it was refused without which there is no line at all."""
+    both, parts = _ends(file, item), list(_segments(file, item))
+    if not (both and parts):
+        return None
+    length = sum(segment["length"] for segment, _ in parts)
+    hung = _attachments(item, length)
+    if both[0].height > both[1].height:
+        both, parts = both[::-1], parts[::-1]
+        hung = [each | {"at": [length - at for at in each["at"]][::-1]} for each in hung]
+    supports = {key: _support(end, *both) for key, end in zip(("start", "end"), both, strict=True)}
+    data = {"segments": [segment for segment, _ in parts]} | ({"attachments": hung} if hung else {}) | supports
+    data |= {"contents": filled} if (filled := _contents(item)) else {}
+    types = {segment["line_type"]: pipe for segment, pipe in parts}
+    _tell_of_torsion(item, data)
+    return Line(item, data, both, parts[0][1], types)
+
+
+def line_types_of(lines: list[Line]) -> dict[str, Any]:
+    """The scene's line types, by name."""
+    return {name: line_type(pipe) for line in lines for name, pipe in line.types.items()}
+
+
+def _ends(file: DataFile, line: Item) -> list[LineEnd]:
     """Ends A and B."""
     connections, stiffnesses = line.rows("Connection"), line.rows("ConnectionxBendingStiffness")
     if len(connections) != 2:
-        raise line.error("Connection", f"{len(connections)} rows of Connection, ConnectionX, ...: it takes two")
+        line.refuse("Connection", f"{len(connections)} rows of Connection, ConnectionX, ...: it takes two")
+        return []
     pairs = zip(connections, stiffnesses if len(stiffnesses) == 2 else [None, None], strict=True)
     return [_end(file, connection, stiffness) for connection, stiffness in pairs]
 
 
-def segments(line: Item) -> list[dict[str, Any]]:
-    """The scene's segments, from end A."""
-    if not (rows := line.rows("LineType")):
-        raise line.error("LineType", "there is no table LineType, Length, ...; give the line's sections")
-    return [_segment(row) for row in rows]
+def _end(file: DataFile, connection: Item, stiffness: Item | None) -> LineEnd:
+    kind = connection.choice("Connection")
+    local = [connection.numbers(f"Connection{axis}", 1)[0] for axis in "XYZ"]
+    if kind == "free":
+        return LineEnd(connection, stiffness, None, None)
+    if connection.has("ConnectionzRelativeTo"):
+        given = connection.word("ConnectionzRelativeTo")
+        connection.refuse("ConnectionzRelativeTo", f"is {given}, over something else; give it as Fixed or Anchored")
+    if kind == "fixed":
+        return LineEnd(connection, stiffness, local, None)
+    if kind == "anchored":
+        environment = file.section("Environment")
+        local[2] += surface_level(environment) - water_depth(environment)
+        return LineEnd(connection, stiffness, local, None)
+    vessel = file.find("Vessels", kind)
+    if vessel is None:
+        given = connection.word("Connection")
+        connection.refuse("Connection", f"is {given}, which is no vessel; connect the end to one, or as Fixed")
+    return LineEnd(connection, stiffness, local if vessel is None else place_on(vessel, local), vessel)
 
 
-def contents(line: Item) -> dict[str, Any] | None:
+def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe]]:
+    """The scene's segments, from end A, each with its pipe."""
+    rows = line.rows("LineType")
+    if not rows:
+        line.refuse("LineType", "there is no table LineType, Length, ...; give the line's sections")
+    for row in rows:
+        name = row.word("LineType")
+        item = file.named("LineTypes", name, row, "LineType")
+        if item is None:
+            continue
+        length = row.number("Length") if row.has("Length") or not is_name(item.get("OD")) else math.inf
+        found = pieces(item, length)
+        whole = sum(length for length, _ in found)
+        for length, pipe in found:
+            step = "" if len(found) == 1 else f" {pipe.outer:.6g} x {pipe.inner:.6g}"
+            yield {"line_type": f"{item.word('Name')}{step}", "length": length} | _elements(row, length, whole), pipe
+
+
+def _elements(row: Item, length: float, whole: float) -> dict[str, Any]:
+    """Of a piece [m] of a section that is as long as the whole [m]."""
+    if row.has("TargetSegmentLength"):
+        return {"element_length": row.number("TargetSegmentLength")}
+    if row.has("NumberOfSegments"):
+        count = row.number("NumberOfSegments")
+        apart = length != whole or not math.isfinite(count)
+        return {"element_length": whole / count} if apart else {"elements": int(count)}
+    row.refuse("TargetSegmentLength", "is missing; give it, or NumberOfSegments")
+    return {}
+
+
+def _contents(line: Item) -> dict[str, Any] | None:
     """What fills the line; None where it is empty."""
-    method = line.word("ContentsMethod", "Uniform")
-    if method != "Uniform":
-        raise line.error("ContentsMethod", f"is {method}; only Uniform can be carried over")
+    if line.choice("ContentsMethod", "Uniform") != "uniform":
+        line.refuse("ContentsMethod", f"is {line.word('ContentsMethod')}; only Uniform can be carried over")
+        return None
     found = {"density": line.number("ContentsDensity", 0.0) * MASS}
     pressure = line.number("ContentsPressure", 0.0) * FORCE
     if pressure and not line.has("ContentsPressureRefZ"):
@@ -73,40 +141,45 @@ def contents(line: Item) -> dict[str, Any] | None:
     return found if found["density"] or pressure else None
 
 
-def support(end: LineEnd, lower: LineEnd, upper: LineEnd) -> Any:
+def _attachments(line: Item, length: float) -> list[dict[str, Any]]:
+    """Clumps of the scene, each kind with its arc lengths from end A [m]; other attachments are not carried over."""
+    found = dict[str, dict[str, Any]]()
+    for row in line.rows("AttachmentType"):
+        kind = row.word("AttachmentType")
+        clump = line.file.find("ClumpTypes", kind)
+        if clump is None:
+            row.left("AttachmentType", f"attachment {kind}: only clumps are carried over, and it is none")
+            continue
+        arc = row.number("Attachmentz")
+        if (relative := row.choice("AttachmentzRelativeTo", "End A")) == "end b":
+            arc = length - arc
+        elif relative != "end a":
+            row.refuse("AttachmentzRelativeTo", f"is {relative}; give it relative to End A or End B")
+        if any(row.numbers(key, 1)[0] for key in ("Attachmentx", "Attachmenty")):
+            row.left("Attachmentx", f"attachment {kind}, beside the line's axis: it sits on it here")
+        found.setdefault(folded(kind), _clump(clump) | {"at": []})["at"].append(arc)
+    return [each | {"at": sorted(each["at"])} for each in found.values()]
+
+
+def _clump(item: Item) -> dict[str, Any]:
+    """A clump, which has one drag area and one coefficient of added mass in all directions: those in x here."""
+    areas, drags, added = (item.numbers(key, 3) for key in ("DragArea", "Cd", "Ca"))
+    by_axis = [area * drag for area, drag in zip(areas, drags, strict=True)]
+    for key, values in (("DragArea", by_axis), ("Ca", added)):
+        if len({*values}) > 1:
+            shown = ", ".join(f"{value:g}" for value in values)
+            what = "Cd times DragArea" if key == "DragArea" else key
+            item.left(key, f"{what} of {shown} in x, y, z: that in x here, in all directions")
+    found = {"mass": item.number("Mass", 0.0) * MASS, "volume": item.number("Volume", 0.0), "drag_area": by_axis[0]}
+    found |= {"added_mass": added[0]} if found["volume"] else {}
+    return {key: value for key, value in found.items() if value != 0.0}
+
+
+def _support(end: LineEnd, lower: LineEnd, upper: LineEnd) -> Any:
     """An end as a scene has it: free, or its position and how it turns."""
     if end.position is None:
         return "free"
     return {"position": end.position} | _rotation(end, lower, upper)
-
-
-def _end(file: DataFile, connection: Item, stiffness: Item | None) -> LineEnd:
-    kind = connection.word("Connection")
-    local = connection.numbers("ConnectionX", 1) + connection.numbers("ConnectionY", 1)
-    local += connection.numbers("ConnectionZ", 1)
-    if kind == "Free":
-        return LineEnd(connection, stiffness, None, None)
-    if connection.has("ConnectionzRelativeTo"):
-        raise connection.error("ConnectionzRelativeTo", "a height over something else; give it as Fixed or Anchored")
-    if kind == "Fixed":
-        return LineEnd(connection, stiffness, local, None)
-    if kind == "Anchored":
-        environment = file.section("Environment")
-        local[2] += surface_level(environment) - water_depth(environment)
-        return LineEnd(connection, stiffness, local, None)
-    vessel = next((each for each in file.objects("Vessels") if each.word("Name") == kind), None)
-    if vessel is None:
-        raise connection.error("Connection", f"is {kind}, which is no vessel; connect the end to one, or as Fixed")
-    return LineEnd(connection, stiffness, place_on(vessel, local), vessel)
-
-
-def _segment(row: Item) -> dict[str, Any]:
-    found: dict[str, Any] = {"line_type": row.word("LineType"), "length": row.number("Length")}
-    if row.has("TargetSegmentLength"):
-        return found | {"element_length": row.number("TargetSegmentLength")}
-    if row.has("NumberOfSegments"):
-        return found | {"elements": int(row.number("NumberOfSegments"))}
-    raise row.error("TargetSegmentLength", "is missing; give it, or NumberOfSegments")
 
 
 def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd) -> dict[str, Any]:
@@ -114,10 +187,10 @@ def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd) -> dict[str, Any]:
     row = end.stiffness
     for key in ("ConnectionAzimuth", "ConnectionDeclination", "ConnectionGamma"):
         end.connection.get(key)  # of no effect on a hinge
-    size, across = (0.0, 0.0) if row is None else (
-        row.stiffness("ConnectionxBendingStiffness", 0.0), row.stiffness("ConnectionyBendingStiffness", math.nan)
-    )  # fmt: skip
-    if row is None or size == 0.0:
+    if row is None:
+        return {}
+    size, across = _joint_stiffness(row), row.word("ConnectionyBendingStiffness")
+    if size == 0.0:
         return {}
     if math.isinf(size):
         row.left("ConnectionxBendingStiffness", "clamped in a direction of its own: the end is free to turn here")
@@ -126,9 +199,24 @@ def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd) -> dict[str, Any]:
     if angle is None:
         end.connection.left("ConnectionAzimuth", "a joint out of the riser's plane: the end is free to turn here")
         return {}
-    if math.isfinite(across) and across != size:
-        row.left("ConnectionyBendingStiffness", f"{across:g} about y: it is that about x here")
+    if across not in ("", row.word("ConnectionxBendingStiffness")):
+        row.left("ConnectionyBendingStiffness", f"{across} about y: it is that about x here")
     return {"rotation": {"stiffness": math.degrees(size * FORCE), "neutral_angle": angle}}
+
+
+def _joint_stiffness(row: Item) -> float:
+    """About x [kN.m/deg]; of a table of angles and moments the slope from its beginning."""
+    key = "ConnectionxBendingStiffness"
+    if not is_name(name := row.get(key)):
+        return row.stiffness(key, 0.0)
+    points = points_of(row, key, name)
+    if len(points) < 2:
+        return math.nan if not points else row.refuse(key, f"the table {name} needs two rows; correct it")
+    (x0, y0), (x1, y1) = points[:2]
+    slope, (x, y) = (y1 - y0) / (x1 - x0), points[-1]
+    row.left(key, f"a joint by the table {name}: its slope at {x0:g} deg, {slope:.4g} kN.m/deg, for all angles; "
+             f"at {x:g} deg the moment would be {y:g} kN.m")  # fmt: skip
+    return slope
 
 
 def _neutral_angle(end: LineEnd, lower: LineEnd, upper: LineEnd) -> float | None:
@@ -149,81 +237,10 @@ def _neutral_angle(end: LineEnd, lower: LineEnd, upper: LineEnd) -> float | None
     return math.degrees(math.atan2(sign * along, sign * axis[2])) if abs(out) < _OUT_OF_PLANE else None
 
 
-def line_type(item: Item) -> dict[str, Any]:
-    """A scene's line type."""
-    outer = item.number("OD")
-    found = {"outer_diameter": outer, "inner_diameter": item.number("ID", 0.0)} | _section(item, outer)
-    _tell(item, outer)
-    for ours, theirs, size in (("max_tension", "AllowableTension", FORCE), ("min_bend_radius", "MinRadius", 1.0)):
-        if (value := item.numbers(theirs, 1, math.inf)[0]) not in (0.0, math.inf):
-            found[ours] = value * size
-    return found | _coefficients(item, outer)
-
-
-def contact_diameter(item: Item) -> float:
-    """What lies on the seabed [m]."""
-    return item.number("OuterContactDiameter", item.number("OD"))
-
-
-def friction_of(item: Item) -> tuple[float, float]:
-    """Coefficients of friction along and across; before version 11 the latter was called normal."""
-    across = item.number("SeabedLateralFrictionCoefficient", item.number("SeabedNormalFrictionCoefficient", 0.0))
-    return item.number("SeabedAxialFrictionCoefficient", across), across
-
-
-def _section(item: Item, outer: float) -> dict[str, Any]:
-    category = item.word("Category", "General")
-    if category == "Homogeneous pipe":
-        return _homogeneous(item, outer)
-    if category != "General":
-        raise item.error("Category", f"is {category}; only General and Homogeneous pipe can be carried over")
-    in_x, in_y = item.numbers("EI", 2, math.inf)
-    if math.isfinite(in_y) and abs(in_y - in_x) > _EQUAL * in_x:
-        item.left("EI", f"EI about y of {in_y:g}: it is that about x here")
-    if not all(map(math.isfinite, (in_x, axial := item.stiffness("EA", math.nan)))):
-        key = "EA" if math.isfinite(in_x) else "EI"
-        raise item.error(key, f"is {item.get(key)!r}: only plain numbers can be carried over, no tables")
-    found = {"mass": item.number("MassPerUnitLength") * MASS, "EA": axial * FORCE, "EI": in_x * FORCE}
-    if math.isfinite(twist := item.stiffness("GJ", math.nan)):
-        found["GJ"] = twist * FORCE
-    return found
-
-
-def _homogeneous(item: Item, outer: float) -> dict[str, Any]:
-    """Of an elastic pipe: E A, E I, G 2 I."""
-    inner, E = item.number("ID", 0.0), item.number("E") * FORCE
-    for key in ("CoatingThickness", "LiningThickness"):
-        if item.number(key, 0.0):
-            raise item.error(key, "a coat can't be carried over; save the line type as General")
-    area, inertia = math.pi / 4.0 * (outer**2 - inner**2), math.pi / 64.0 * (outer**4 - inner**4)
-    twist = E * inertia / (1.0 + item.number("PoissonRatio"))
-    return {"mass": item.number("MaterialDensity") * MASS * area, "EA": E * area, "EI": E * inertia, "GJ": twist}
-
-
-def _coefficients(item: Item, outer: float) -> dict[str, Any]:
-    """Drag and added mass; drag on another diameter is on the outer one here."""
-    found: dict[str, Any] = {}
-    for ours, theirs in (("drag", "Cd"), ("added_mass", "Ca")):
-        values = item.get(theirs)
-        if any(isinstance(each, str) for each in (values if isinstance(values, list) else [values])):
-            item.left(theirs, f"{theirs} by a table ({values}): the line type has no {ours}")
-            continue
-        x, y, along = item.numbers(theirs, 3, math.nan)
-        if math.isfinite(y) and y != x:
-            item.left(theirs, f"{theirs} of {y:g} in y: it is that in x here")
-        if math.isfinite(x):
-            found[ours] = {"normal": x, "tangential": along if math.isfinite(along) else 0.0}
-    for way, key in (("normal", "NormalDragLiftDiameter"), ("tangential", "AxialDragLiftDiameter")):
-        if "drag" in found:
-            found["drag"][way] *= item.number(key, outer) / outer
-    return found
-
-
-def _tell(item: Item, outer: float) -> None:
-    for key, what in _LEFT.items():
-        if item.word(key) not in ("", "0", "0.0", "No", "None"):
-            item.left(key, f"{key} {item.word(key)}: {what}")
-    if (ratio := item.number("PoissonRatio", 0.5)) != 0.5:
-        item.left("PoissonRatio", f"PoissonRatio {ratio:g}: the pipe stretches with effective tension here, as for 0.5")
-    if item.has("OuterContactDiameter") and contact_diameter(item) != outer:
-        item.left("OuterContactDiameter", f"OuterContactDiameter {contact_diameter(item):g}: OD touches here")
+def _tell_of_torsion(item: Item, data: dict[str, Any]) -> None:
+    """A line without torsion bears a torque here if both ends keep it from spinning, in three dimensions."""
+    held = [key for key in ("start", "end") if "rotation" in data[key]]
+    if len(held) == 2 and item.choice("IncludeTorsion", "No") == "no":
+        text = "both flex joints keep the line from spinning here, so that its GJ bears torque in three dimensions"
+        item.left("IncludeTorsion", f"IncludeTorsion No: {text}")
+    item.get("IncludeTorsion")

@@ -11,7 +11,9 @@ import math
 from collections.abc import Collection, Iterator
 from typing import Any
 
-from riser_soil.orcaflex.data_file import DataFile, Item, unit_vector
+import numpy as np
+
+from riser_soil.orcaflex.data_file import DataFile, Item, folded, unit_vector
 from riser_soil.scene.rao import MODES, ROTATIONS
 
 Table = dict[tuple[float, float], list[complex]]
@@ -23,24 +25,28 @@ _SIGNS = {
     "pitch": ("PitchPositiveBow", "down", "up"), "yaw": ("YawPositiveBow", "port", "starboard"),
 }  # fmt: skip
 _AFTER_CREST = {"crest": 0.0, "zero down-crossing": 90.0, "trough": 180.0, "zero up-crossing": 270.0}  # deg
-_MIRRORED = (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)  # in a vessel's xz plane
+_IN_XZ = (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)  # signs of the modes of a vessel that is mirrored in its xz plane
+_IN_YZ = (-1.0, 1.0, 1.0, 1.0, -1.0, -1.0)  # in its yz plane
 _FREQUENCY = {
     "period (s)": lambda value: 2.0 * math.pi / value if value else math.inf,
     "frequency (rad/s)": lambda value: value,
-    "frequency (Hz)": lambda value: 2.0 * math.pi * value,
+    "frequency (hz)": lambda value: 2.0 * math.pi * value,
 }
 _KNOWN: dict[str, Collection[str]] = {
     "WavesReferredToBy": _FREQUENCY, "RAOPhaseRelativeToConvention": _AFTER_CREST,
     "RAOPhaseConvention": ("lags", "leads"), "RAOPhaseUnitsConvention": ("degrees", "radians"),
-    "RAOResponseUnits": ("degrees", "radians"), "RAOWaveUnit": ("amplitude",), "Symmetry": ("None", "xz plane"),
+    "RAOResponseUnits": ("degrees", "radians"), "RAOWaveUnit": ("amplitude",),
+    "Symmetry": ("none", "xz plane", "yz plane", "xz and yz planes"),
 }  # fmt: skip
+_LONGEST = 1e-3  # rad/s, in place of waves without end
+_SHORTER = (1.0 / 2.0, 1.0 / 4.0, 1.0 / 8.0, 1.0 / 100.0)  # of the shortest period, down to waves of none
 
 
 def place_on(vessel: Item, local: list[float]) -> list[float]:
     """Global position of a point in the vessel's axes [m]."""
     heel, trim, heading = _orientation(vessel)
     if heel or trim:
-        raise vessel.error("Orientation", f"heel {heel:g} and trim {trim:g}: give what sits on the vessel as Fixed")
+        vessel.refuse("Orientation", f"heel {heel:g} and trim {trim:g}: give what sits on the vessel as Fixed")
     c, s = unit_vector(heading)
     x, y, z = vessel.numbers("InitialPosition", 3)
     return [x + c * local[0] - s * local[1], y + s * local[0] + c * local[1], z + local[2]]
@@ -52,14 +58,16 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
     None, and remarks, where the vessel does not move by displacement RAOs alone, or by some that can't be read.
     """
     primary, superimposed = vessel.word("PrimaryMotion", "None"), vessel.word("SuperimposedMotion", "None")
-    if primary != "None":
+    if folded(primary) != "none":
         vessel.left("PrimaryMotion", f"PrimaryMotion {primary}: the vessel has its superimposed motion alone here")
-    if "RAOs" not in superimposed:
-        if superimposed != "None":
+    if "raos" not in folded(superimposed):
+        if folded(superimposed) != "none":
             vessel.left("SuperimposedMotion", f"SuperimposedMotion {superimposed}: the vessel rests here")
         return None
     kind = file.named("VesselTypes", vessel.word("VesselType"), vessel, "VesselType")
-    draughts = [each for each in kind.items("Draughts") if each.word("Name") == vessel.word("Draught")]
+    if kind is None:
+        return None
+    draughts = [each for each in kind.items("Draughts") if each.choice("Name") == vessel.choice("Draught")]
     raos = draughts[0].part("DisplacementRAOs") if draughts else None
     if raos is None:
         vessel.left("Draught", f"there is no draught {vessel.word('Draught')}: the vessel rests here")
@@ -68,8 +76,12 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
         item, key, why = unlike
         item.left(key, f"{key} {why}: RAOs are not carried over, the vessel rests here")
         return None
+    table = _table(kind, raos)
+    if not table:
+        raos.left("RAOs", "RAOs: there is no row of them; the vessel rests here")
+        return None
     found = {"rao": rao, "reference": place_on(vessel, raos.numbers("RAOOrigin", 3))}
-    return found | {"heading_deg": _orientation(vessel)[2]}, _text(_table(kind, raos))
+    return found | {"heading_deg": _orientation(vessel)[2]}, _text(table)
 
 
 def _orientation(vessel: Item) -> list[float]:
@@ -82,43 +94,80 @@ def _unlike(kind: Item, raos: Item) -> tuple[Item, str, str] | None:
     if any(a != b for a, b in zip(raos.numbers("PhaseOrigin", 3, math.nan), origin, strict=True) if a == a):
         return raos, "PhaseOrigin", "is not RAOOrigin"
     for key, known in (*_KNOWN.items(), *((key, values) for key, *values in _SIGNS.values())):
-        if kind.word(key) not in known:
+        if kind.choice(key) not in known:
             return kind, key, f"{kind.word(key) or '~'} is none of {', '.join(known)}"
     return None
 
 
 def _table(kind: Item, raos: Item) -> Table:
-    found: Table = {}
-    limits = list[Item]()
-    for direction, row in _rows(raos):
-        frequency = _FREQUENCY[kind.word("WavesReferredToBy")](row.stiffness("RAOPeriodOrFrequency"))
-        if not 0.0 < frequency < math.inf:
-            limits.append(row)
-            continue
-        responses = [_response(kind, row, mode) for mode in MODES]
-        found[frequency, direction % 360.0] = responses
-        if kind.word("Symmetry") == "xz plane":
-            mirrored = [sign * each for sign, each in zip(_MIRRORED, responses, strict=True)]
-            found.setdefault((frequency, -direction % 360.0), mirrored)
-    for row in limits[:1]:
-        row.left("RAOPeriodOrFrequency", "waves of no frequency, or an infinite one, in all directions: not in a table")
+    """By all frequencies that any direction has, in all directions of the vessel's symmetry."""
+    rows = [*_rows(kind, raos)]
+    frequencies = sorted({w for w, _, _ in rows if 0.0 < w < math.inf})
+    if not frequencies:
+        return {}
+    directions = {direction: {w: found for w, at, found in rows if at == direction} for _, direction, _ in rows}
+    limits = {w for known in directions.values() for w in known if w in (0.0, math.inf)}
+    if limits:
+        text = "waves of no period: linear in the period below the shortest; endless ones: linear in the frequency"
+        raos.left("RAOs", f"RAOs of {text}, as between all rows here")
+    filled = {direction: _filled(known, frequencies, limits) for direction, known in directions.items()}
+    found = {(w, direction % 360.0): each for direction, known in filled.items() for w, each in known.items()}
+    for (w, direction), responses in list(found.items()):
+        for turned, signs in _mirrored(direction, kind.choice("Symmetry")):
+            found.setdefault((w, turned % 360.0), [sign * x for sign, x in zip(signs, responses, strict=True)])
     return found
 
 
-def _rows(raos: Item) -> Iterator[tuple[float, Item]]:
+def _rows(kind: Item, raos: Item) -> Iterator[tuple[float, float, list[complex]]]:
+    """Frequencies, 0 and infinite ones among them [rad/s], directions [deg], responses."""
+    turn = _FREQUENCY[kind.choice("WavesReferredToBy")]
     for each in raos.items("RAOs"):
         direction = each.number("RAODirection")
-        yield from ((direction, row) for row in each.rows("RAOPeriodOrFrequency"))
+        for row in each.rows("RAOPeriodOrFrequency"):
+            yield turn(row.stiffness("RAOPeriodOrFrequency")), direction, [_response(kind, row, mode) for mode in MODES]
+
+
+def _filled(
+    known: dict[float, list[complex]], frequencies: list[float], limits: set[float]
+) -> dict[float, list[complex]]:
+    """One direction's responses at all frequencies, and beyond them if the table has rows at these limits, 0 or inf.
+
+    Towards waves of no period (an infinite frequency) they are linear in the period, towards endless ones and between
+    rows linear in the frequency; without such a row constant, as a scene has them.
+    """
+    own = sorted(w for w in known if 0.0 < w < math.inf)
+    if not own:
+        return {}
+    table = np.array([known[w] for w in own])
+    found = {w: [complex(np.interp(w, own, column)) for column in table.T] for w in frequencies}
+    first, last = frequencies[0], frequencies[-1]
+    if 0.0 in limits and first > _LONGEST:
+        found[_LONGEST] = known.get(0.0, found[first])
+    if math.inf in limits:
+        for share in _SHORTER:
+            pairs = zip(known.get(math.inf, found[last]), found[last], strict=True)
+            found[last / share] = [at_none + share * (at_last - at_none) for at_none, at_last in pairs]
+    return found
+
+
+def _mirrored(direction: float, symmetry: str) -> Iterator[tuple[float, tuple[float, ...]]]:
+    """Directions [deg] in which responses are alike but for these signs, itself among them."""
+    across = [(1.0,) * 6] + ([_IN_XZ] if "xz" in symmetry else [])
+    along = [(1.0,) * 6] + ([_IN_YZ] if "yz" in symmetry else [])
+    for a in across:
+        for b in along:
+            turned = 180.0 - direction if b is _IN_YZ else direction
+            yield (-turned if a is _IN_XZ else turned), tuple(x * y for x, y in zip(a, b, strict=True))
 
 
 def _response(kind: Item, row: Item, mode: str) -> complex:
-    in_degrees, later = kind.word("RAOPhaseUnitsConvention") == "degrees", kind.word("RAOPhaseConvention") == "lags"
+    in_degrees, later = kind.choice("RAOPhaseUnitsConvention") == "degrees", kind.choice("RAOPhaseConvention") == "lags"
     phase = row.number(f"RAO{mode.capitalize()}Phase")
     lag = (phase if in_degrees else math.degrees(phase)) * (1.0 if later else -1.0)
-    lag += _AFTER_CREST[kind.word("RAOPhaseRelativeToConvention")]
+    lag += _AFTER_CREST[kind.choice("RAOPhaseRelativeToConvention")]
     key, ours, _ = _SIGNS[mode]
-    size = row.number(f"RAO{mode.capitalize()}Amp") * (1.0 if kind.word(key) == ours else -1.0)
-    if mode in ROTATIONS and kind.word("RAOResponseUnits") == "radians":
+    size = row.number(f"RAO{mode.capitalize()}Amp") * (1.0 if kind.choice(key) == ours else -1.0)
+    if mode in ROTATIONS and kind.choice("RAOResponseUnits") == "radians":
         size = math.degrees(size)
     return size * cmath.exp(-1j * math.radians(lag))
 
