@@ -111,6 +111,11 @@ class Item:
         value = self._number(key, self.get(key), default)
         return self.refuse(key, f"is {self.get(key)}, not a finite number; correct it") if math.isinf(value) else value
 
+    def positive(self, key: str, default: float | None = None) -> float:
+        """A number above 0; refused, and nan, where there is none."""
+        value = self.number(key, default)
+        return self.refuse(key, f"is {self.get(key)}; give a number above 0") if value <= 0.0 else value
+
     def stiffness(self, key: str, default: float | None = None) -> float:
         """A number that may be Infinity."""
         return self._number(key, self.get(key), default)

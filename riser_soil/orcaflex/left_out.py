@@ -53,6 +53,7 @@ _ASKED_ALONE = (
 _EFFECTS = (
     (r"6dbuoys|3dbuoys", "a buoy, its mass, buoyancy and drag"), (r"winches", "the pull of a winch"),
     (r"links", "the force of a tether or spring"), (r"shapes|solids", "contact, or water that is kept out"),
+    (r"vesseltype|draught|(primary|superimposed)motion", "how the vessel moves, which rests here without waves"),
     (r"constraints", "what holds or moves other objects"), (r"turbines", "the loads of a turbine"),
     (r"vessels", "another vessel"), (r"supporttypes|supports", "contact with supports"),
     (r"windspeed", "wind on what is above the water"), (r"layazimuth", "the direction of laying, along the line here"),
@@ -90,7 +91,7 @@ def _of(file: DataFile, place: Path, name: str, value: Any) -> Iterator[Remark]:
         for each in within:
             yield from _of(file, *each)
     elif len(place) != 2 or folded(place[0]) != "linetypes":
-        effect = _effect(name.rpartition(": ")[2], str(place[0]))
+        effect = _effect(name.rpartition(": ")[2])
         yield file.document.where(place)[0], f"{name}{'' if isinstance(value, dict) else _shown(value)}: {effect}"
 
 
@@ -127,8 +128,8 @@ def _says_nothing(key: str, value: Any) -> bool:
     return plain in _ALIKE.get(name, _NOTHING)
 
 
-def _effect(key: str, section: str) -> str:
-    words = (folded(key), folded(key).partition(" ")[0], folded(section))
+def _effect(key: str) -> str:
+    words = (folded(key), folded(key).partition(" ")[0])
     return next((text for word in words for names, text in _EFFECTS if re.fullmatch(names, word)), _UNKNOWN)
 
 

@@ -66,7 +66,9 @@ def pieces(item: Item, length: float) -> list[tuple[float, Pipe]]:
         return []
 
     def diameter(key: str, s: float, default: float | None) -> float:
-        return value_at(tables[key], s) if key in tables else item.number(key, default)
+        if key in tables:
+            return value_at(tables[key], s)
+        return item.positive(key) if default is None else item.number(key, default)
 
     def pipe(s: float) -> Pipe:
         return Pipe(item, diameter("OD", s, None), diameter("ID", s, 0.0), coats, linings)
@@ -138,8 +140,8 @@ def _section(pipe: Pipe) -> dict[str, Any]:
     if math.isfinite(in_y) and abs(in_y - in_x) > _EQUAL * in_x:
         item.left("EI", f"EI about y of {in_y:g}: it is that about x here")
     axial = _plain_stiffness(item, "EA", item.get("EA"))
-    for key, given in (("EA", axial), ("EI", in_x)):
-        if math.isinf(given):
+    for key, size in (("EA", axial), ("EI", in_x)):
+        if math.isinf(size):
             item.refuse(key, "is missing, or Infinity; give a number [kN.m2, kN]")
     found = {"mass": item.number("MassPerUnitLength") * MASS, "EA": axial * FORCE, "EI": in_x * FORCE}
     return found | {"GJ": _twisting(pipe, found)}
@@ -251,5 +253,5 @@ def _tell(pipe: Pipe) -> None:
     default = 0.3 if pipe.homogeneous else 0.5
     if (ratio := item.number("PoissonRatio", default)) != 0.5:
         item.left("PoissonRatio", f"PoissonRatio {ratio:g}: the pipe stretches with effective tension here, as for 0.5")
-    if pipe.contact_diameter != pipe.outermost:
+    if item.has("OuterContactDiameter") and pipe.contact_diameter != pipe.outermost:
         item.left("OuterContactDiameter", f"OuterContactDiameter {pipe.contact_diameter:g}: OD touches here")

@@ -27,7 +27,7 @@ def scene_of(file: DataFile, line: str | None = None, stem: str = "scene") -> Im
     stem: of the names of the files that it refers to.
     """
     chosen = _chosen(file, line)
-    lines = [found for item in chosen if (found := line_of(file, item))]
+    lines = [each for item in chosen if (each := line_of(file, item))]
     data: dict[str, Any] = {"title": _title(file, chosen), "gravity": GRAVITY}
     types, environment = line_types_of(lines), file.section("Environment")
     data["water"] = water(environment, any("by_reynolds" in each.get("drag", {}) for each in types.values()))

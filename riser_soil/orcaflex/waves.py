@@ -66,7 +66,7 @@ def _regular(train: Item, kind: str, build_up: float, g: float, depth: float) ->
     height, direction = train.number("WaveHeight"), train.number("WaveDirection", 0.0)
     if height == 0.0:
         return None
-    period = train.number("WavePeriod")
+    period = train.positive("WavePeriod")
     x, y = train.numbers("WaveOrigin", 2)
     toward = math.radians(direction)
     if kind != "airy" and (x or y):
@@ -74,10 +74,9 @@ def _regular(train: Item, kind: str, build_up: float, g: float, depth: float) ->
         x = y = 0.0
     later = build_up + train.number("WaveTimeOrigin", 0.0)
     train.get("WaveStreamFunctionOrder")  # ours has as many terms as the crest needs
-    if train.file.refused:
-        return None
     w = 2.0 * math.pi / period
-    k = float(wave_number(np.array([w]), g, depth)[0])
+    known = math.isfinite(w) and depth > 0.0
+    k = float(wave_number(np.array([w]), g, depth)[0]) if known else math.nan
     lag = w * later - k * (x * math.cos(toward) + y * math.sin(toward))
     found = {"height": height, "period": period, "direction_deg": direction, "phase_deg": math.degrees(lag) % 360.0}
     return {"airy": found} if kind == "airy" else {"regular": found | {"theory": kind}}
@@ -116,7 +115,7 @@ def _peak_period(train: Item, gamma: float) -> float | None:
         if train.has(key):
             return train.number(key)
     if train.has("Wavefm"):
-        return 1.0 / train.number("Wavefm")
+        return 1.0 / train.positive("Wavefm")
     if not train.has("WaveTz"):
         return None
     return train.number("WaveTz") / (mean_period(gamma) if math.isfinite(gamma) else math.nan)

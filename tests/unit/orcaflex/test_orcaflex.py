@@ -72,8 +72,8 @@ def test_what_is_not_carried_over_is_reported_by_line(tmp_path: Path) -> None:
     text = data_text()
     reported = dict(imported(tmp_path, text).remarks)
     words = {line: text.splitlines()[line - 1].split()[0] for line in reported}
-    assert [*words.values()] == ["WindSpeed:", "-", "LayAzimuth:", "-"]
-    line_with([reported[max(reported)]], "Lines Other:", "one riser", "--line 'Other'")
+    assert [*words.values()] == ["WindSpeed:", "RAOs:", "LayAzimuth:", "-"]
+    line_with([reported[max(reported)]], "Lines Other:", "one riser", "--line 'Other'", "--line all")
 
 
 def test_a_value_that_nothing_knows_is_reported(tmp_path: Path) -> None:
@@ -84,9 +84,9 @@ def test_a_value_that_nothing_knows_is_reported(tmp_path: Path) -> None:
         ("Groups:", "Winches:\n  - Name: Pull\n    Length: 3\nGroups:"),
     )  # fmt: skip
     reported = [text for _, text in imported(tmp_path, text).remarks]
-    assert 'LineTypes 8" hose: Novel 3' in reported
-    assert "Lines Riser: ConnectionPayoutRate 0.5" in reported
-    assert "Winches Pull" in reported
+    line_with(reported, 'LineTypes 8" hose: Novel 3:', "not known here")
+    line_with(reported, "Lines Riser: ConnectionPayoutRate 0.5:", "paid out")
+    line_with(reported, "Winches Pull:", "the pull of a winch")
 
 
 def test_the_tension_at_rest_is_the_catenarys(tmp_path: Path) -> None:
@@ -152,7 +152,7 @@ def test_raos_in_signs_units_and_the_other_half_circle(tmp_path: Path) -> None:
     radians = changed(("ResponseUnits: degrees", "ResponseUnits: radians"), ("Starboard: down", "Starboard: up"))
     there, here = rao_of(tmp_path, data_text()), rao_of(tmp_path, radians)
     assert [round(math.degrees(each)) for each in there.direction] == [0, 45, 90, 135, 180, 225, 270, 315]
-    assert there.frequency == pytest.approx((2.0 * math.pi / 40.0, 2.0 * math.pi / 2.0))
+    assert there.frequency[:2] == pytest.approx((2.0 * math.pi / 40.0, 2.0 * math.pi / 2.0))
     for n, mode in enumerate(MODES):
         left, right = there.response[mode][1][0], there.response[mode][7][0]
         assert right == pytest.approx(left * (-1.0) ** n, abs=1e-9)  # sway, roll and yaw change signs
@@ -169,13 +169,12 @@ def test_raos_in_signs_units_and_the_other_half_circle(tmp_path: Path) -> None:
         ("Draught: Laden", "Draught: Empty", "there is no draught Empty"),
         ("- [2, ~]", "- [Infinity, ~]", "clamped in a direction of its own"),
         ("0, 170, 0]", "30, 170, 0]", "out of the riser's plane"),
-        ("Cd: [1.2, ~, 0.01]", "Cd: [Table, ~, 0.01]", "Cd by a table"),
         ("PoissonRatio: 0.5", "PoissonRatio: 0.3", "PoissonRatio 0.3"),
         ("OuterContactDiameter: ~", "OuterContactDiameter: 0.4", "OD touches here"),
         ("SeabedAxialFrictionCoefficient: ~", "SeabedAxialFrictionCoefficient: 0", "neither may be 0"),
         ("SeabedShearStiffness: ~", "SeabedShearStiffness: 50", "over D/30"),
         ("Wheeler stretching", "Extrapolation stretching", "KinematicStretchingMethod Extrapolation"),
-        ("WaveType: Airy", "WaveType: Cnoidal", "WaveType Cnoidal"),
+        ("WaveType: Airy", "WaveType: Ochi-Hubble", "WaveType Ochi-Hubble"),
         ("ContentsPressure: 0", "ContentsPressure: 900", "ContentsPressureRefZ"),
         ("VariationMethod: Interpolated", "VariationMethod: Power law", "current by Power law"),
     ],
@@ -244,12 +243,16 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
         ("UnitsSystem: SI", "UnitsSystem: US", r"riser.yml:5: General: UnitsSystem: is US; save it in SI units"),
         ("Lines:", "BaseFile: other.yml\nLines:", r"riser.yml:\d+: BaseFile: takes from another file"),
         ("General:", "Universal:", "has no General and Lines"),
-        ("OD: 0.30", "OD: wide", r"riser.yml:\d+: LineTypes 8\" hose: OD: is 'wide', not a number"),
-        ("OD: 0.30", "OD: Infinity", r"riser.yml:\d+: .* OD: is 'Infinity', not a finite number"),
-        ("    EA: 4.0e5\n", "", r"riser.yml:\d+: .* EA: is None"),
-        ("EI: [50, ~]", "EI: [Bending, ~]", r"riser.yml:\d+: .* EI: is 'Bending', not a number"),
+        ("OD: 0.30", "OD: wide", r"riser.yml:\d+: LineTypes 8\" hose: OD: is 'wide', neither a number nor the name"),
+        ("OD: 0.30", "OD: Infinity", r"riser.yml:\d+: .* OD: is Infinity, not a finite number"),
+        ("OD: 0.30", "OD: 0", r"riser.yml:\d+: .* OD: is 0; give a number above 0"),
+        ("WavePeriod: 8", "WavePeriod: 0", r"riser.yml:\d+: .* WavePeriod: is 0; give a number above 0"),
+        ("WaterDepth: 100", "SeabedOriginDepth: 100\n  WaterDepth: 90", r"OriginDepth: tells of a depth of 100 m"),
+        ("    EA: 4.0e5\n", "", r"riser.yml:\d+: .* EA: is missing"),
+        ("Cd: [1.2, ~, 0.01]", "Cd: [Table, ~, 0.01]", r"riser.yml:\d+: .* Cd: is 'Table', neither a number"),
+        ("EI: [50, ~]", "EI: [Bending, ~]", r"riser.yml:\d+: .* EI: is 'Bending': a stiffness by a table"),
         ("SeabedSlope: 0", "SeabedSlope: 3", r"riser.yml:\d+: Environment: SeabedSlope: is 3: only a level"),
-        ("SeabedModel: Elastic", "SeabedModel: Nonlinear soil model", r"SeabedModel: only Elastic"),
+        ("SeabedModel: Elastic", "SeabedModel: Gravel", r"riser.yml:\d+: .* SeabedModel: is Gravel; give Elastic"),
         ("[Ship, -20", "[Buoy, -20", r"riser.yml:\d+: Lines Riser: Connection: is Buoy, which is no vessel"),
         ("Orientation: [0, 0, 180]", "Orientation: [0, 5, 180]", r"heel 0 and trim 5"),
         ("VesselType: Barge", "VesselType: Tug", r"Vessels Ship: VesselType: Tug is not among the VesselTypes"),
@@ -261,7 +264,8 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
 def test_a_file_that_gives_no_scene_has_one_line(old: str, new: str, reported: str, tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=reported) as found:
         imported(tmp_path, changed((old, new)))
-    assert "\n" not in str(found.value)
+    refused = [line for line in str(found.value).splitlines() if "not carried over" not in line]
+    assert len(refused) == 1
 
 
 def test_no_such_line(tmp_path: Path) -> None:
