@@ -53,13 +53,13 @@ class DataFile:
 
     def find(self, section: str, name: str) -> Item | None:
         """The object of this name in a section; None where there is none."""
-        return next((each for each in self.objects(section) if folded(each.word("Name")) == folded(name)), None)
+        return next((each for each in self.objects(section) if folded(each.title) == folded(name)), None)
 
     def named(self, section: str, name: str, asking: Item, key: str) -> Item | None:
         """The object of this name, for which another one asks by a key; refused where there is none."""
         found = self.find(section, name)
         if found is None:
-            known = ", ".join(each.word("Name") for each in self.objects(section)) or "none"
+            known = ", ".join(each.title for each in self.objects(section)) or "none"
             asking.refuse(key, f"{name} is not among the {section} ({known}); correct the name")
         return found
 
@@ -84,6 +84,11 @@ class Item:
     file: DataFile
     name: str
     values: Mapping[str, tuple[Keys, Any]]
+
+    @property
+    def title(self) -> str:
+        """The object's own name; to ask for it does not count as reading the object."""
+        return str(self.values.get("name", ((), ""))[1] or "")
 
     def has(self, key: str) -> bool:
         """Whether a value is given; ~ is none."""

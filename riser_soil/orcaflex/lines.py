@@ -112,7 +112,7 @@ def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe
         whole = sum(length for length, _ in found)
         for length, pipe in found:
             step = "" if len(found) == 1 else f" {pipe.outer:.6g} x {pipe.inner:.6g}"
-            yield {"line_type": f"{item.word('Name')}{step}", "length": length} | _elements(row, length, whole), pipe
+            yield {"line_type": f"{item.title}{step}", "length": length} | _elements(row, length, whole), pipe
 
 
 def _elements(row: Item, length: float, whole: float) -> dict[str, Any]:

@@ -46,14 +46,13 @@ def _chosen(file: DataFile, name: str | None) -> list[Item]:
     lines = file.objects("Lines")
     if name == ALL and lines:
         return lines
-    found = [each for each in lines if name is None or each.choice("Name") == folded(name)]
+    found = [each for each in lines if name is None or folded(each.title) == folded(name)]
     if not found:
-        known = ", ".join(each.word("Name") for each in lines) or "none"
+        known = ", ".join(each.title for each in lines) or "none"
         raise SceneError(f"{file.document.name}: there is no line {name or 'at all'}; it has {known}")
     for n, each in enumerate(lines):
         if each.values is not found[0].values:
-            name = each.word("Name")
-            each.left("Name", f"a scene has one riser; --line {name!r} imports this one, --line all all lines")
+            each.left("Name", f"a scene has one riser; --line {each.title!r} imports this one, --line all all lines")
             file.read.add((_section(file, "Lines"), n))
     return found[:1]
 
@@ -70,7 +69,7 @@ def _title(file: DataFile, chosen: list[Item]) -> str:
 def _as_riser_or_lines(lines: list[Line], several: bool) -> dict[str, Any]:
     """Part of the scene; empty where the line was refused."""
     if several:
-        return {"lines": {each.item.word("Name"): each.data for each in lines}}
+        return {"lines": {each.item.title: each.data for each in lines}}
     return {"riser": lines[0].data} if lines else {}
 
 
@@ -88,7 +87,7 @@ def _stages(
     files, moved = dict[str, str](), dict[str, dict[str, Any]]()
     for line in lines:
         if ends := _driven(file, line, stem, files):
-            moved[line.item.word("Name")] = {"motion": ends}
+            moved[line.item.title] = {"motion": ends}
     storm = {"name": "waves", "kind": "dynamic", "duration": sum(durations), "time_step": _time_step(general)}
     if several:
         return [hang, storm | ({"lines": moved} if moved else {})], files
@@ -104,7 +103,7 @@ def _driven(file: DataFile, line: Line, stem: str, files: dict[str, str]) -> dic
 def _on_vessel(file: DataFile, end: LineEnd, stem: str, files: dict[str, str]) -> dict[str, Any] | None:
     if end.vessel is None:
         return None
-    vessel = re.sub(r"\W+", "_", end.vessel.word("Name")).strip("_") or "vessel"
+    vessel = re.sub(r"\W+", "_", end.vessel.title).strip("_") or "vessel"
     found = motion(file, end.vessel, f"{stem}_{vessel}_rao.csv")
     if found is None:
         return None

@@ -33,9 +33,9 @@ def ground_of(environment: Item, pipes: list[Pipe], g: float) -> dict[str, Any]:
     contact, reported = friction(*friction_of(first.item))
     if reported:
         first.item.left("SeabedAxialFrictionCoefficient", reported)
+    as_first = (first.contact_diameter, friction_of(first.item))
     for each in pipes:
-        alike = each.contact_diameter == first.contact_diameter and friction_of(each.item) == friction_of(first.item)
-        if not alike and each.item.name != first.item.name:
+        if (each.contact_diameter, friction_of(each.item)) != as_first and each.item.name != first.item.name:
             text = f"on the seabed it counts as {first.item.name}: one contact diameter and friction for all"
             each.item.left("OD", text)
     return {"seabed": _seabed(environment, first.contact_diameter, g)} | contact

@@ -23,7 +23,7 @@ def table_of(item: Item, key: str, name: str) -> Item | None:
     """The table of this name, of any kind, for which an object asks by a key; refused where there is none."""
     for kind in item.file.section("VariableData").values:
         for each in item.file.section("VariableData").items(kind):
-            if folded(each.word("Name")) == folded(name):
+            if folded(each.title) == folded(name):
                 return each
     item.refuse(key, f"is {name!r}, neither a number nor the name of a table of VariableData; correct it")
     return None

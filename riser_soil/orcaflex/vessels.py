@@ -67,7 +67,7 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
     kind = file.named("VesselTypes", vessel.word("VesselType"), vessel, "VesselType")
     if kind is None:
         return None
-    draughts = [each for each in kind.items("Draughts") if each.choice("Name") == vessel.choice("Draught")]
+    draughts = [each for each in kind.items("Draughts") if folded(each.title) == vessel.choice("Draught")]
     raos = draughts[0].part("DisplacementRAOs") if draughts else None
     if raos is None:
         vessel.left("Draught", f"there is no draught {vessel.word('Draught')}: the vessel rests here")

@@ -36,6 +36,8 @@ def waves(environment: Item, build_up: float, g: float, depth: float) -> dict[st
     kinds = found[0] if len(found) == 1 else alone[0] if alone else {"trains": found}
     for _ in found[1:] if alone else []:
         environment.left("WaveTrains", "a wave of finite height is alone here; the other trains are left out")
+    if any(kind in train for train in found for kind in _PEAKED.values()):
+        environment.get("WaveFrequencySpectrumDiscretisationMethod")
     ramp = {"ramp": build_up} if build_up else {}
     return kinds | ramp | ({} if "regular" in kinds else _stretching(environment))
 
