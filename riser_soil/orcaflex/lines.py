@@ -12,8 +12,10 @@ from riser_soil.orcaflex.environment import surface_level, water_depth
 from riser_soil.orcaflex.line_types import Pipe, line_type, pieces
 from riser_soil.orcaflex.variable_data import is_name, points_of
 from riser_soil.orcaflex.vessels import place_on
+from riser_soil.scene.problem import Path as KeyPath
 
 _OUT_OF_PLANE = 1e-6  # of a neutral direction that a flex joint in the riser's plane can have
+_ROUNDING = 1e-6  # m: of a height that is added up
 _LEVEL = 1e-9  # horizontal distance of the ends [m] below which there is no such plane
 
 
@@ -34,13 +36,16 @@ class LineEnd:
 
 @dataclass
 class Line:
-    """A line from its lower end to its upper one: as a scene has it, its ends, and what lies at its lower end."""
+    """A line from its lower end to its upper one: as a scene has it, its ends, the pipes at both, its line types by
+    name, and by a value's path within the line the file's line that it comes from.
+    """
 
     item: Item
     data: dict[str, Any]
     ends: list[LineEnd]
-    lowest: Pipe
-    types: dict[str, Pipe] = field(default_factory=dict)
+    at_ends: tuple[Pipe, Pipe]
+    types: dict[str, Pipe]
+    origins: dict[KeyPath, int] = field(default_factory=dict)
 
 
 def line_of(file: DataFile, item: Item) -> Line | None:
@@ -48,17 +53,32 @@ def line_of(file: DataFile, item: Item) -> Line | None:
     both, parts = _ends(file, item), list(_segments(file, item))
     if not (both and parts):
         return None
-    length = sum(segment["length"] for segment, _ in parts)
+    length = sum(segment["length"] for segment, *_ in parts)
     hung = _attachments(item, length)
     if both[0].height > both[1].height:
         both, parts = both[::-1], parts[::-1]
         hung = [each | {"at": [length - at for at in each["at"]][::-1]} for each in hung]
     supports = {key: _support(end, *both) for key, end in zip(("start", "end"), both, strict=True)}
-    data = {"segments": [segment for segment, _ in parts]} | ({"attachments": hung} if hung else {}) | supports
+    data = {"segments": [segment for segment, *_ in parts]} | ({"attachments": hung} if hung else {}) | supports
     data |= {"contents": filled} if (filled := _contents(item)) else {}
-    types = {segment["line_type"]: pipe for segment, pipe in parts}
+    types = {segment["line_type"]: pipe for segment, pipe, _ in parts}
+    origins: dict[KeyPath, int] = {(): item.line("Name")}
+    origins |= {("segments", n): line for n, (*_, line) in enumerate(parts)}
+    origins |= {(key,): end.connection.line("Connection") for key, end in zip(("start", "end"), both, strict=True)}
     _tell_of_torsion(item, data)
-    return Line(item, data, both, parts[0][1], types)
+    return Line(item, data, both, (parts[0][1], parts[-1][1]), types, origins)
+
+
+def lay(line: Line, level: float) -> None:
+    """Lifts ends that lie below where the line rests on a seabed at this level [m], and says so."""
+    for key, end, pipe in zip(("start", "end"), line.ends, line.at_ends, strict=True):
+        rest = level + 0.5 * pipe.outermost
+        if end.position is not None and end.position[2] < rest:
+            depth = rest - end.position[2]
+            line.data[key]["position"] = end.position = [*end.position[:2], rest]
+            if depth > _ROUNDING:
+                text = f"an end {depth:.4g} m below where the line rests on the seabed: it is laid from z = {rest:g} m"
+                end.connection.left("ConnectionZ", text)
 
 
 def line_types_of(lines: list[Line]) -> dict[str, Any]:
@@ -97,8 +117,8 @@ def _end(file: DataFile, connection: Item, stiffness: Item | None) -> LineEnd:
     return LineEnd(connection, stiffness, local if vessel is None else place_on(vessel, local), vessel)
 
 
-def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe]]:
-    """The scene's segments, from end A, each with its pipe."""
+def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe, int]]:
+    """The scene's segments, from end A, each with its pipe and the file's line."""
     rows = line.rows("LineType")
     if not rows:
         line.refuse("LineType", "there is no table LineType, Length, ...; give the line's sections")
@@ -112,7 +132,8 @@ def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe
         whole = sum(length for length, _ in found)
         for length, pipe in found:
             step = "" if len(found) == 1 else f" {pipe.outer:.6g} x {pipe.inner:.6g}"
-            yield {"line_type": f"{item.title}{step}", "length": length} | _elements(row, length, whole), pipe
+            segment = {"line_type": f"{item.title}{step}", "length": length} | _elements(row, length, whole)
+            yield segment, pipe, row.line("LineType")
 
 
 def _elements(row: Item, length: float, whole: float) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
@@ -10,10 +11,11 @@ from riser_soil.imported_scene import ImportedScene
 from riser_soil.orcaflex.data_file import DataFile, Item, folded
 from riser_soil.orcaflex.environment import water
 from riser_soil.orcaflex.left_out import left_out
-from riser_soil.orcaflex.lines import Line, LineEnd, line_of, line_types_of
+from riser_soil.orcaflex.lines import Line, LineEnd, lay, line_of, line_types_of
 from riser_soil.orcaflex.seabed import ground_of
 from riser_soil.orcaflex.vessels import motion
 from riser_soil.orcaflex.waves import waves
+from riser_soil.scene.problem import Path as KeyPath
 
 GRAVITY = 9.80665  # m/s2, of the SI system
 ALL = "all"
@@ -33,10 +35,12 @@ def scene_of(file: DataFile, line: str | None = None, stem: str = "scene") -> Im
     data["water"] = water(environment, any("by_reynolds" in each.get("drag", {}) for each in types.values()))
     data |= {"line_types": types} | _as_riser_or_lines(lines, line == ALL)
     if lines:
-        pipes = [lines[0].lowest, *(pipe for each in lines for pipe in each.types.values())]
+        pipes = [lines[0].at_ends[0], *(pipe for each in lines for pipe in each.types.values())]
         data |= ground_of(environment, pipes, GRAVITY)
+    for each in lines:
+        lay(each, data["seabed"].get("level", -math.inf))
     stages, files = _stages(file, lines, data["water"], stem, line == ALL)
-    found = ImportedScene(data | {"stages": stages}, left_out(file), files)
+    found = ImportedScene(data | {"stages": stages}, left_out(file), files, _origins(file, lines, line == ALL))
     file.end_if_refused(found.remarks)
     return found
 
@@ -71,6 +75,20 @@ def _as_riser_or_lines(lines: list[Line], several: bool) -> dict[str, Any]:
     if several:
         return {"lines": {each.item.title: each.data for each in lines}}
     return {"riser": lines[0].data} if lines else {}
+
+
+def _origins(file: DataFile, lines: list[Line], several: bool) -> dict[KeyPath, int]:
+    """The file's lines by what of the scene comes from them."""
+    environment, found = file.section("Environment"), dict[KeyPath, int]()
+    asked = {("water",): "Density", ("water", "waves"): "WaveTrains", ("water", "current"): "RefCurrentSpeed",
+             ("seabed",): "SeabedModel"}  # fmt: skip
+    found |= {path: environment.line(key) for path, key in asked.items()}
+    found["stages",] = file.section("General").line("StageDuration")
+    for line in lines:
+        whole: KeyPath = ("lines", line.item.title) if several else ("riser",)
+        found |= {(*whole, *path): number for path, number in line.origins.items()}
+        found |= {("line_types", name): pipe.item.line("Name") for name, pipe in line.types.items()}
+    return found
 
 
 def _stages(

@@ -310,6 +310,30 @@ def test_all_lines(tmp_path: Path) -> None:
     assert alone["riser"]["end"]["position"] == [10.0, 30.0, -2.0]
 
 
+@pytest.mark.parametrize(("z", "depth"), [("0", "0.15 m"), ("-2.5", "2.65 m")])
+def test_an_end_in_the_seabed_is_laid_from_it(z: str, depth: str, tmp_path: Path) -> None:
+    """The pipe's axis rests half its diameter of 0.3 m above the bed at -100 m."""
+    found = imported(tmp_path, changed(("[Anchored, 80, 0, 0.15", f"[Anchored, 80, 0, {z}")))
+    assert found.data["riser"]["start"]["position"] == [80.0, 0.0, -99.85]
+    line_with([text for _, text in found.remarks], "Lines Riser:", depth, "z = -99.85 m")
+    resting = imported(tmp_path, data_text())
+    assert not lines_with([text for _, text in resting.remarks], "laid from")
+
+
+def test_values_have_the_lines_they_come_from(tmp_path: Path) -> None:
+    """So that what a check finds wrong with the scene is said of the file."""
+    text = changed(('[8" hose, 110, 2]', '[8" hose, 110, 20]'))
+    found = imported(tmp_path, text)
+    lines = text.splitlines()
+    expected = {
+        ("riser",): "- Name: Riser", ("riser", "segments", 1): "110, 20", ("riser", "start"): "Anchored",
+        ("riser", "end"): "[Ship", ("line_types", '8" hose'): '- Name: 8" hose', ("water", "waves"): "WaveTrains:",
+        ("seabed",): "SeabedModel", ("stages",): "StageDuration",
+    }  # fmt: skip
+    for path, words in expected.items():
+        assert words in lines[found.origins[path] - 1]
+
+
 def test_what_cannot_change_an_answer_is_not_reported(tmp_path: Path) -> None:
     """Names, pens, logs and OrcaFlex's own numerics; but not what only looks like them."""
     text = changed(
