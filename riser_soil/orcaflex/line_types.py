@@ -23,7 +23,7 @@ _LEAST_REYNOLDS = 1.0  # in place of 0, which has no logarithm
 
 
 @dataclass(frozen=True)
-class Pipe:
+class PipeOfType:
     """A line type where its wall has an outer and an inner diameter [m]. coats, linings: outside, and inside of it,
     thickness [m] and density [te/m3] from the wall on.
     """
@@ -54,7 +54,7 @@ class Pipe:
         return self.item.number("OuterContactDiameter", self.item.number("ContactDiameter", self.outermost))
 
 
-def pieces(item: Item, length: float) -> list[tuple[float, Pipe]]:
+def pieces(item: Item, length: float) -> list[tuple[float, PipeOfType]]:
     """Lengths and diameters of a section, from its end towards end A: one, or the steps of a taper.
 
     A taper's steps have the diameters of their middles, so that what a step lacks at one end it has too much at the
@@ -70,8 +70,8 @@ def pieces(item: Item, length: float) -> list[tuple[float, Pipe]]:
             return value_at(tables[key], s)
         return item.positive(key) if default is None else item.number(key, default)
 
-    def pipe(s: float) -> Pipe:
-        return Pipe(item, diameter("OD", s, None), diameter("ID", s, 0.0), coats, linings)
+    def pipe(s: float) -> PipeOfType:
+        return PipeOfType(item, diameter("OD", s, None), diameter("ID", s, 0.0), coats, linings)
 
     if not tables:
         return [(length, pipe(0.0))]
@@ -85,7 +85,7 @@ def pieces(item: Item, length: float) -> list[tuple[float, Pipe]]:
     return found
 
 
-def _cuts(a: float, b: float, pipe: Callable[[float], Pipe]) -> Iterator[float]:
+def _cuts(a: float, b: float, pipe: Callable[[float], PipeOfType]) -> Iterator[float]:
     """Where the steps of a straight taper from a to b begin."""
     first, last = _bending(pipe(a)), _bending(pipe(b))
     if not (first > 0.0 and last > 0.0):
@@ -95,12 +95,14 @@ def _cuts(a: float, b: float, pipe: Callable[[float], Pipe]) -> Iterator[float]:
     yield from (a + (b - a) * n / count for n in range(count))
 
 
-def _bending(pipe: Pipe) -> float:
+def _bending(pipe: PipeOfType) -> float:
     """What the bending stiffness of a homogeneous pipe goes with [m4]; of another the outer diameter counts alone."""
     return pipe.outer**4 - pipe.inner**4 if pipe.inner < pipe.outer else 0.0
 
 
-def _tell_of_steps(item: Item, tables: dict[str, list[Point]], found: list[tuple[float, Pipe]], at: list[Pipe]) -> None:
+def _tell_of_steps(
+    item: Item, tables: dict[str, list[Point]], found: list[tuple[float, PipeOfType]], at: list[PipeOfType]
+) -> None:
     ends = [(pipe, end) for n, (_, pipe) in enumerate(found) for end in at[n : n + 2]]
     key = next(iter(tables))
     off = max(abs(pipe.outer - end.outer) / end.outer for pipe, end in ends)
@@ -111,7 +113,7 @@ def _tell_of_steps(item: Item, tables: dict[str, list[Point]], found: list[tuple
     item.left(key, f"{names}: {text}")
 
 
-def line_type(pipe: Pipe) -> dict[str, Any]:
+def line_type(pipe: PipeOfType) -> dict[str, Any]:
     """A scene's line type."""
     item = pipe.item
     found = {"outer_diameter": pipe.outermost, "inner_diameter": pipe.innermost} | _section(pipe)
@@ -128,7 +130,7 @@ def friction_of(item: Item) -> tuple[float, float]:
     return item.number("SeabedAxialFrictionCoefficient", across), across
 
 
-def _section(pipe: Pipe) -> dict[str, Any]:
+def _section(pipe: PipeOfType) -> dict[str, Any]:
     item = pipe.item
     if pipe.homogeneous:
         return _homogeneous(pipe)
@@ -162,7 +164,7 @@ def _plain_stiffness(item: Item, key: str, value: Any) -> float:
     return float(value)
 
 
-def _twisting(pipe: Pipe, found: dict[str, float]) -> float:
+def _twisting(pipe: PipeOfType, found: dict[str, float]) -> float:
     """GJ [N m2]; of a line that does not twist one that bears no torque while an end is free to spin."""
     value = pipe.item.get("GJ")
     given = _plain_stiffness(pipe.item, "GJ", value)
@@ -175,7 +177,7 @@ def _twisting(pipe: Pipe, found: dict[str, float]) -> float:
     return size
 
 
-def _homogeneous(pipe: Pipe) -> dict[str, Any]:
+def _homogeneous(pipe: PipeOfType) -> dict[str, Any]:
     """Of an elastic pipe: E A, E I, G 2 I; coats have mass alone."""
     item, E = pipe.item, pipe.item.number("E") * FORCE
     area, inertia = _ring(pipe.outer, pipe.inner), math.pi / 64.0 * (pipe.outer**4 - pipe.inner**4)
@@ -212,7 +214,7 @@ def _number(item: Item, key: str, value: Any) -> float:
     return item.refuse(key, f"is {value!r}, not a number; correct it") if is_name(value) else float(value)
 
 
-def _drag(pipe: Pipe) -> dict[str, Any]:
+def _drag(pipe: PipeOfType) -> dict[str, Any]:
     """Drag; what refers to another diameter does so to the outer one here."""
     item = pipe.item
     (key, across), (key_y, y), (key_z, along) = _coefficients(item, "Cd")
@@ -235,7 +237,7 @@ def _drag(pipe: Pipe) -> dict[str, Any]:
     return {"drag": found} if points else {}
 
 
-def _added_mass(pipe: Pipe) -> dict[str, Any]:
+def _added_mass(pipe: PipeOfType) -> dict[str, Any]:
     (key, across), (key_y, y), (key_z, along) = _coefficients(pipe.item, "Ca")
     if y is not None and y != across:
         pipe.item.left(key_y, f"Ca of {y} in y: it is that in x here")
@@ -245,7 +247,7 @@ def _added_mass(pipe: Pipe) -> dict[str, Any]:
     return {"added_mass": {"normal": normal, "tangential": axial}}
 
 
-def _tell(pipe: Pipe) -> None:
+def _tell(pipe: PipeOfType) -> None:
     item = pipe.item
     for key, what in _LEFT.items():
         if item.choice(key) not in ("", "0", "0.0", "no", "none"):

@@ -9,7 +9,7 @@ from typing import Any
 
 from riser_soil.orcaflex.data_file import FORCE, MASS, DataFile, Item, folded, unit_vector
 from riser_soil.orcaflex.environment import surface_level, water_depth
-from riser_soil.orcaflex.line_types import Pipe, line_type, pieces
+from riser_soil.orcaflex.line_types import PipeOfType, line_type, pieces
 from riser_soil.orcaflex.variable_data import is_name, points_of
 from riser_soil.orcaflex.vessels import place_on
 from riser_soil.scene.problem import Path as KeyPath
@@ -35,7 +35,7 @@ class LineEnd:
 
 
 @dataclass
-class Line:
+class LineWithEnds:
     """A line from its lower end to its upper one: as a scene has it, its ends, the pipes at both, its line types by
     name, and by a value's path within the line the file's line that it comes from.
     """
@@ -43,12 +43,12 @@ class Line:
     item: Item
     data: dict[str, Any]
     ends: list[LineEnd]
-    at_ends: tuple[Pipe, Pipe]
-    types: dict[str, Pipe]
+    at_ends: tuple[PipeOfType, PipeOfType]
+    types: dict[str, PipeOfType]
     origins: dict[KeyPath, int] = field(default_factory=dict)
 
 
-def line_of(file: DataFile, item: Item) -> Line | None:
+def line_of(file: DataFile, item: Item) -> LineWithEnds | None:
     """The line; None where something of it was refused without which there is no line at all."""
     both, parts = _ends(file, item), list(_segments(file, item))
     if not (both and parts):
@@ -66,10 +66,10 @@ def line_of(file: DataFile, item: Item) -> Line | None:
     origins |= {("segments", n): line for n, (*_, line) in enumerate(parts)}
     origins |= {(key,): end.connection.line("Connection") for key, end in zip(("start", "end"), both, strict=True)}
     _tell_of_torsion(item, data)
-    return Line(item, data, both, (parts[0][1], parts[-1][1]), types, origins)
+    return LineWithEnds(item, data, both, (parts[0][1], parts[-1][1]), types, origins)
 
 
-def lay(line: Line, level: float) -> None:
+def lay(line: LineWithEnds, level: float) -> None:
     """Lifts ends that lie below where the line rests on a seabed at this level [m], and says so."""
     for key, end, pipe in zip(("start", "end"), line.ends, line.at_ends, strict=True):
         rest = level + 0.5 * pipe.outermost
@@ -81,7 +81,7 @@ def lay(line: Line, level: float) -> None:
                 end.connection.left("ConnectionZ", text)
 
 
-def line_types_of(lines: list[Line]) -> dict[str, Any]:
+def line_types_of(lines: list[LineWithEnds]) -> dict[str, Any]:
     """The scene's line types, by name."""
     return {name: line_type(pipe) for line in lines for name, pipe in line.types.items()}
 
@@ -117,7 +117,7 @@ def _end(file: DataFile, connection: Item, stiffness: Item | None) -> LineEnd:
     return LineEnd(connection, stiffness, local if vessel is None else place_on(vessel, local), vessel)
 
 
-def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe, int]]:
+def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], PipeOfType, int]]:
     """The scene's segments, from end A, each with its pipe and the file's line."""
     rows = line.rows("LineType")
     if not rows:

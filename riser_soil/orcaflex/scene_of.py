@@ -11,7 +11,7 @@ from riser_soil.imported_scene import ImportedScene
 from riser_soil.orcaflex.data_file import DataFile, Item, folded
 from riser_soil.orcaflex.environment import water
 from riser_soil.orcaflex.left_out import left_out
-from riser_soil.orcaflex.lines import Line, LineEnd, lay, line_of, line_types_of
+from riser_soil.orcaflex.lines import LineEnd, LineWithEnds, lay, line_of, line_types_of
 from riser_soil.orcaflex.seabed import ground_of
 from riser_soil.orcaflex.vessels import motion
 from riser_soil.orcaflex.waves import waves
@@ -70,14 +70,14 @@ def _title(file: DataFile, chosen: list[Item]) -> str:
     return chosen[0].name if len(chosen) == 1 else file.document.name
 
 
-def _as_riser_or_lines(lines: list[Line], several: bool) -> dict[str, Any]:
+def _as_riser_or_lines(lines: list[LineWithEnds], several: bool) -> dict[str, Any]:
     """Part of the scene; empty where the line was refused."""
     if several:
         return {"lines": {each.item.title: each.data for each in lines}}
     return {"riser": lines[0].data} if lines else {}
 
 
-def _origins(file: DataFile, lines: list[Line], several: bool) -> dict[KeyPath, int]:
+def _origins(file: DataFile, lines: list[LineWithEnds], several: bool) -> dict[KeyPath, int]:
     """The file's lines by what of the scene comes from them."""
     environment, found = file.section("Environment"), dict[KeyPath, int]()
     asked = {("water",): "Density", ("water", "waves"): "WaveTrains", ("water", "current"): "RefCurrentSpeed",
@@ -92,7 +92,7 @@ def _origins(file: DataFile, lines: list[Line], several: bool) -> dict[KeyPath, 
 
 
 def _stages(
-    file: DataFile, lines: list[Line], water: dict[str, Any], stem: str, several: bool
+    file: DataFile, lines: list[LineWithEnds], water: dict[str, Any], stem: str, several: bool
 ) -> tuple[list[dict[str, Any]], dict[str, str]]:
     """A static stage; where there are waves, which the water gets, a dynamic one with them from their build-up on."""
     general = file.section("General")
@@ -112,7 +112,7 @@ def _stages(
     return [hang, *({**storm, **each} for each in moved.values() or [{}])], files
 
 
-def _driven(file: DataFile, line: Line, stem: str, files: dict[str, str]) -> dict[str, Any]:
+def _driven(file: DataFile, line: LineWithEnds, stem: str, files: dict[str, str]) -> dict[str, Any]:
     """Motions of a line's ends that vessels carry; files gets the RAOs, one file for each vessel."""
     driven = {key: _on_vessel(file, end, stem, files) for key, end in zip(_ENDS, line.ends, strict=True)}
     return {key: found for key, found in driven.items() if found}

@@ -8,7 +8,7 @@ from typing import Any
 from riser_soil.imported_scene import friction
 from riser_soil.orcaflex.data_file import FORCE, MASS, Item
 from riser_soil.orcaflex.environment import surface_level, water_depth
-from riser_soil.orcaflex.line_types import Pipe, friction_of
+from riser_soil.orcaflex.line_types import PipeOfType, friction_of
 
 _SPRINGS = ("elastic", "linear")
 _BY_LAW = re.compile(r"non-?linear( soil model)?")
@@ -27,7 +27,7 @@ _GRADIENT = r"(undrained)?shearstrengthgradient|(strength)?gradient|sugradient"
 _DENSITY = r"(saturated)?density"
 
 
-def ground_of(environment: Item, pipes: list[Pipe], g: float) -> dict[str, Any]:
+def ground_of(environment: Item, pipes: list[PipeOfType], g: float) -> dict[str, Any]:
     """Seabed and friction, by the lowest pipe, the first of them, where they differ. g: gravity [m/s2]."""
     first = pipes[0]
     contact, reported = friction(*friction_of(first.item))
