@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test quick lint coverage verify stress fuzz mutants bench bench-peers parts bars asked precision quality verify-fresh docs dist docker pins clean
+.PHONY: help setup demo demos test quick lint coverage verify stress fuzz mutants bench bench-peers parts bars asked precision quality figures verify-fresh docs dist docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -95,6 +95,11 @@ verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for 
 
 docs: setup ## a site of all pages, with search: build/site
 	@scripts/site.sh
+
+figures: setup ## the figures that README, tutorials and the demo's page tell, from runs of their scenes; some five minutes
+	rm -rf build/figures
+	$(PYTHON) -m demos.figures --page
+	$(PYTHON) -m demos.touchdown_clay.run --page
 
 dist: setup ## wheel and source distribution, checked: build/dist
 	$(PYTHON) scripts/dist.py

@@ -1,12 +1,21 @@
-"""Tables in Markdown, and the places in a demo's page where its scripts write them."""
+"""Tables in Markdown, and the places in pages where scripts write them.
+
+A place has a name: a block of lines between `<!-- NAME -->` and `<!-- end of NAME -->`, or figures within a sentence,
+`<!-- figure NAME -->11.1<!-- end -->`, which may stand in a page more than once.
+"""
 
 from __future__ import annotations
 
 import argparse
 import csv
 import io
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+_FIGURE = re.compile(r"(<!-- figure ([^>]+) -->)(.*?)(<!-- end -->)", re.DOTALL)
+_BLOCK = re.compile(r"^<!-- end of ([^>]+) -->$", re.MULTILINE)
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -27,12 +36,41 @@ def block(page: str, name: str) -> str:
     return page[slice(*_place(page, name))].rstrip("\n")
 
 
-def filled(page: str, blocks: Mapping[str, str]) -> str:
-    """The page with other text between its marks."""
-    for name, text in blocks.items():
-        begin, end = _place(page, name)
-        page = page[:begin] + text + "\n" + page[end:]
-    return page
+def places(page: str) -> dict[str, list[str]]:
+    """What stands at each of a page's places, by their names."""
+    found = {name: [block(page, name)] for name in _BLOCK.findall(page)}
+    for _, name, text, _ in _FIGURE.findall(page):
+        found.setdefault(name, []).append(text)
+    return found
+
+
+def plain(page: str) -> str:
+    """The page without the marks of figures."""
+    return _FIGURE.sub(r"\3", page)
+
+
+def filled(page: str, texts: Mapping[str, str]) -> str:
+    """The page with other texts at its places. Raises KeyError where it lacks one."""
+    there = places(page)
+    for name, text in texts.items():
+        if name not in there or f"<!-- {name} -->" in page:
+            begin, end = _place(page, name)
+            page = page[:begin] + text + "\n" + page[end:]
+    return _FIGURE.sub(lambda found: found[1] + texts.get(found[2], found[3]) + found[4], page)
+
+
+def all_pages() -> list[Path]:
+    """README.md, the pages in docs and those of the demos."""
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "demos").glob("*/*.md"))]
+
+
+def fill_pages(texts: Mapping[str, str]) -> None:
+    """Texts to their places in all pages that have them."""
+    for page in all_pages():
+        before = page.read_text(encoding="utf-8")
+        after = filled(before, {name: texts[name] for name in places(before).keys() & texts.keys()})
+        if after != before:
+            page.write_text(after, encoding="utf-8")
 
 
 def publish(blocks: Mapping[str, str], results: Path, page: Path | None = None) -> None:

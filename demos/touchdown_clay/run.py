@@ -2,7 +2,7 @@
 
 Usage, in the project's folder: python -m demos.touchdown_clay.run [FOLDER] [--page]
 FOLDER is by default `results` beside this file; the run's files, tables and touchdown.png are left there. --page writes
-the tables into README.md and the picture where README.md shows it.
+tables and figures into README.md and all pages that tell of this run, and the picture where README.md shows it.
 """
 
 from __future__ import annotations
@@ -10,23 +10,33 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from demos.page import publish, table
+from demos.compute import compute
+from demos.figures import Texts, found, shown
+from demos.page import fill_pages, publish, table
 from riser_soil.accuracy.chosen_run import run_as_asked
+from riser_soil.checks.check import describe
 from riser_soil.plots import picture
 from riser_soil.results import Run
 from riser_soil.results.cycles import secant_stiffness
 from riser_soil.scene.reader import read_scene
 
 HERE = Path(__file__).parent
+SCENE = HERE / "scene.yaml"
 PAGE, PICTURES = HERE / "README.md", HERE.parents[1] / "docs"
 ARCS = (22.0, 24.0, 26.0)  # m, of the stiffness
+COARSER = "soil.mesh={kind: hex, size_at_riser: {along: 1.0, across: 0.075, strip: 0.15}, size_far: 0.75}"
+AT_REST = "stages.1={name: rest, kind: static}"
 
 
 def main(folder: Path, page: bool) -> None:
-    run_as_asked(read_scene(HERE / "scene.yaml"), folder, force=True, error_bars=True)
+    run_as_asked(read_scene(SCENE), folder, force=True, error_bars=True)
     pictures, done = PICTURES if page else folder, Run(folder)
     tables = {"figures": figures(done), "bars": bars(done), "stiffness": stiffness(done)}
     publish(tables, folder, PAGE if page else None)
+    told = told_of(done, compute(SCENE, folder / "coarser", COARSER, AT_REST))
+    print(shown(told))
+    if page:
+        fill_pages(told)
     picture(folder, pictures / "touchdown.png")
     print(f"\nresults are in {folder}, touchdown.png in {pictures}; open riser.vtkhdf and soil.vtkhdf in ParaView")
 
@@ -54,6 +64,28 @@ def figures(done: Run) -> str:
     lost = motion["energy"]["dissipated_by"]["soil_plasticity"]
     rows.append(["dissipated by the clay's plasticity [J]", "", f"{lost:.1f}"])
     return table(["", "laid", "in heave and surge"], rows)
+
+
+def told_of(done: Run, coarser: Run) -> Texts:
+    """Figures that pages tell of the run, of what `check` says before it, and of one at rest on coarser cells."""
+    static, motion = done.summary["stages"]
+    energy, checked = motion["energy"], describe(read_scene(SCENE))
+    along, across = found(r"cells of ([\d.]+) m along and ([\d.]+) m across", checked)
+    return {
+        "demo laid": f"{1e3 * static['soil']['max_settlement']['value']:.1f}",
+        "demo deepest": f"{1e3 * motion['soil']['max_settlement']['value']:.1f}",
+        "demo coarser": f"{1e3 * coarser.summary['stages'][0]['soil']['max_settlement']['value']:.1f}",
+        "demo strength": f"{motion['soil']['max_strength_used']['value']:.2f}",
+        "demo iterations": f"{motion['newton_iterations'] / motion['steps']:.1f}",
+        "demo cuts": f"{motion['step_cuts']:g}",
+        "demo residual": f"{100.0 * abs(energy['residual']) / energy['turned_over']:.1g}",
+        "demo load steps": f"{static['steps']}",
+        "demo load iterations": f"{static['newton_iterations'] / static['steps']:.1f}",
+        "demo unknowns": f"{done.summary['dofs']['soil']:,}",
+        "demo along": f"{float(along):.2g}",
+        "demo across": f"{1e3 * float(across):.2g}",
+        "demo foretold": found(r"(it settles by about .* on these cells)", checked)[0],
+    }
 
 
 def bars(done: Run) -> str:

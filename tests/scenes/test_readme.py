@@ -7,22 +7,21 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from demos.figures import QUICK, Texts, quick_figures
+from demos.page import all_pages, places
+from demos.touchdown_clay.run import PAGE as DEMO
 from riser_soil.results import Run
 from tests.support.on_ranks import ROOT, SHARED_CORES, environment, finished
-from tests.support.pages import DOCS, README, blocks, flowing, text
+from tests.support.pages import DOCS, README, blocks, same_figures, text
 from tests.support.said import line_with
 
 pytestmark = pytest.mark.xdist_group("readme")
 
 PAGES = [README, *DOCS]
-EXPLAINED = ROOT / "docs/first_scene.md"
-TUTORIAL = ROOT / "docs/tutorial_riser.md"
 FIRST_SCENE = ROOT / "demos/first_scene.yaml"
-CLOSE = 1e-3
 
 COMMANDS = [line for page in PAGES for block in blocks(page, "sh") for line in block.splitlines()]
 RUNNABLE = [c for c in COMMANDS if not c.startswith(("make ", "docker "))]
@@ -98,62 +97,51 @@ def test_first_scene_is_the_file() -> None:
     assert blocks(README, "yaml") == [FIRST_SCENE.read_text(encoding="utf-8")]
 
 
-def quoted(page: Path, row: str) -> list[float]:
-    """The numbers of a row of a page's table, without error bars."""
-    line = next(line for line in text(page).splitlines() if line.startswith(f"| {row} |"))
-    return [float(number) for number in re.findall(r"(?<!± )\b\d+\.\d+", line)]
+@pytest.fixture(scope="module")
+def figures(done: object, newcomer: Path) -> Texts:
+    """Of quick scenes, from the runs that the pages' commands made, and a few more."""
+    return quick_figures(newcomer)
 
 
-@pytest.mark.parametrize(("page", "folder"), [(README, "results/first"), (TUTORIAL, "results/steel_catenary")])
-@pytest.mark.parametrize(
-    ("row", "path", "unit"),
-    [
-        ("top tension", ("end", "effective_tension"), 1e3),
-        ("touchdown arc length", ("touchdown_arc",), 1.0),
-        ("largest bending moment", ("max_bending_moment",), 1e3),
-    ],
-)
-def test_scenes_give_the_quoted_numbers(
-    done: object, newcomer: Path, page: Path, folder: str, row: str, path: tuple[str, ...], unit: float
-) -> None:
-    hang, heave = Run(newcomer / folder).summary["stages"]
-    final, extremes = below(hang["final"], path), below(heave["extremes"], path)
-    static = final["value"] if isinstance(final, dict) else final
-    at_rest, *dynamic = quoted(page, row)
-    assert at_rest == pytest.approx(static / unit, rel=CLOSE)
-    assert dynamic[-1] == pytest.approx(extremes["max"] / unit, rel=CLOSE)
-    assert len(dynamic) == 1 or dynamic[0] == pytest.approx(extremes["min"] / unit, rel=CLOSE)
+TOLD = [
+    pytest.param(page, name, id=f"{page.relative_to(ROOT)}: {name}")
+    for page in all_pages()
+    for name in places(page.read_text(encoding="utf-8"))
+    if name.startswith(QUICK)
+]
 
 
-def test_check_by_hand(first: Run) -> None:
-    """The catenary's top tension H + w h with the numbers as the page has them."""
-    found = re.search(r"With H = ([\d.]+) kN.*?h = ([\d.]+) m this gives ([\d.]+) kN", flowing(EXPLAINED))
-    weight = re.search(r"= ([\d.]+) N/m here", flowing(EXPLAINED))
-    assert found
-    assert weight
-    H, h, top = (float(number) for number in found.groups())
-    end = first.summary["stages"][0]["final"]["end"]
-    assert pytest.approx(end["force"][0] / 1e3, rel=CLOSE) == H
-    assert pytest.approx(top, rel=CLOSE) == H + float(weight[1]) * h / 1e3
-    assert end["effective_tension"] / 1e3 == pytest.approx(top, rel=CLOSE)
+@pytest.mark.parametrize(("page", "name"), TOLD)
+def test_figures_of_quick_scenes(page: Path, name: str, figures: Texts) -> None:
+    """What the pages tell is what the scenes give; `make figures` writes it anew."""
+    for told in places(page.read_text(encoding="utf-8"))[name]:
+        assert same_figures(told, figures[name]), f"{told} is told of {name}, and runs give {figures[name]}"
 
 
-def below(tree: dict[str, Any], path: tuple[str, ...]) -> Any:
-    for key in path:
-        tree = tree[key]
-    return tree
+def test_all_figures_of_quick_scenes_are_told(figures: Texts) -> None:
+    told = {name for page in all_pages() for name in places(page.read_text(encoding="utf-8")) if name.startswith(QUICK)}
+    assert told == figures.keys()
 
 
-def test_clay_under_the_first_scene(newcomer: Path) -> None:
-    (first,), (clay,) = blocks(README, "yaml"), blocks(EXPLAINED, "yaml")
-    (newcomer / "clay.yaml").write_text(first + clay, encoding="utf-8")
-    ended = bash(".venv/bin/riser-soil run clay.yaml --set stages.1.duration=0.1", newcomer)
-    assert ended.returncode == 0, ended.stderr
-    run = Run(newcomer / "clay")
-    found = re.search(r"the touchdown point moves to ([\d.]+) m", flowing(EXPLAINED))
-    assert found
-    assert run.summary["stages"][0]["final"]["touchdown_arc"] == pytest.approx(float(found[1]), rel=CLOSE)
-    assert f"{len(run.soil_frame().cells):,} hexahedra" in flowing(EXPLAINED)
+def test_check_by_hand(first: Run, figures: Texts) -> None:
+    """The catenary's top tension H + w h is the run's."""
+    tension = first.summary["stages"][0]["final"]["end"]["effective_tension"]
+    assert float(figures["first by hand"]) == pytest.approx(tension / 1e3, rel=1e-3)
+
+
+def test_figures_of_the_demo_are_those_of_its_tables() -> None:
+    """In all pages alike; its long test compares them with a run."""
+    rows = [row.split("|") for row in text(DEMO).splitlines() if row.count("|") == 4]
+    table = {row[1].strip(): [float(number) for number in re.findall(r"[\d.]+", f"{row[2]} {row[3]}")] for row in rows}
+    settled, strength = table["deepest settlement of the clay [mm]"], table["most of the strength used [-]"]
+    told: dict[str, set[str]] = {}
+    for page in all_pages():
+        for name, texts in places(page.read_text(encoding="utf-8")).items():
+            told.setdefault(name, set()).update(texts)
+    shown = [float(each) for name in ("demo laid", "demo deepest") for each in told[name]]
+    assert shown == pytest.approx(settled, abs=0.051)
+    assert told["demo strength"] == {f"{strength[1]:.2f}"}
+    assert {name: texts for name, texts in told.items() if name.startswith("demo ") and len(texts) > 1} == {}
 
 
 def test_python(first: Run, newcomer: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from demos.page import plain
 from tests.support.on_ranks import ROOT
 
 README = ROOT / "README.md"
@@ -13,7 +14,8 @@ DEMOS = sorted((ROOT / "demos").glob("*/*.md"))
 
 
 def text(page: Path) -> str:
-    return page.read_text(encoding="utf-8")
+    """The page as it is read, without the marks around figures."""
+    return plain(page.read_text(encoding="utf-8"))
 
 
 def flowing(page: Path) -> str:
@@ -30,3 +32,19 @@ def equations(page: Path) -> list[str]:
     """The page's equations, between single and double dollars, outside of code."""
     prose = re.sub(r"^```.*?^```$|`[^`\n]*`", "", text(page), flags=re.MULTILINE | re.DOTALL)
     return [a or b for a, b in re.findall(r"\$\$(.+?)\$\$|\$([^$]+)\$", prose, re.DOTALL)]
+
+
+def same_figures(told: str, computed: str) -> bool:
+    """Equal words; equal numbers but for the last digit that is told."""
+    (words, numbers), (others, values) = (_apart(each) for each in (told, computed))
+    close = (abs(float(a) - float(b)) <= 1.01 * _last_digit(a) for a, b in zip(numbers, values, strict=False))
+    return words == others and all(close)
+
+
+def _apart(text: str) -> tuple[list[str], list[str]]:
+    pieces = re.split(r"(\d[\d,]*(?:\.\d+)?)", text)
+    return pieces[::2], [number.replace(",", "") for number in pieces[1::2]]
+
+
+def _last_digit(number: str) -> float:
+    return float(10.0 ** -len(number.partition(".")[2]))

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from demos.page import block
-from demos.touchdown_clay.run import HERE, PAGE, figures, stiffness
+from demos.compute import compute
+from demos.page import ROOT, all_pages, block, places
+from demos.touchdown_clay.run import AT_REST, COARSER, HERE, PAGE, SCENE, figures, stiffness, told_of
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene
 from tests.support.coupled_scenes import DEMO
+from tests.support.pages import same_figures, text
 from tests.support.watched_run import WatchedRun, watched_run
 
 TEXT = PAGE.read_text(encoding="utf-8")
@@ -29,6 +32,18 @@ def test_page_shows_figures_as_computed(demo: WatchedRun, name: str, computed: o
     shown, found = (re.split(r"(-?\d+\.?\d*)", text) for text in (block(TEXT, name), computed(Run(demo.folder))))
     assert shown[::2] == found[::2]
     assert [*map(float, shown[1::2])] == pytest.approx([*map(float, found[1::2])], rel=0.01, abs=0.011)
+
+
+@pytest.mark.verify
+def test_pages_tell_what_a_run_gives(demo: WatchedRun, tmp_path: Path) -> None:
+    """README.md, the tutorial and the demo's page; `make figures` writes them anew."""
+    found = told_of(Run(demo.folder), compute(SCENE, tmp_path, COARSER, AT_REST))
+    told = {page: places(page.read_text(encoding="utf-8")) for page in all_pages()}
+    assert {name for names in told.values() for name in names if name.startswith("demo ")} == found.keys()
+    assert COARSER in text(ROOT / "docs/tutorial_clay.md"), "the page has the command of the coarser run"
+    for page, names in told.items():
+        for name in names.keys() & found.keys():
+            assert all(same_figures(each, found[name]) for each in names[name]), (page, name, found[name])
 
 
 @pytest.mark.verify

@@ -2,7 +2,8 @@
 
 import pytest
 
-from demos.page import block, csv_table, filled, table
+from demos.page import block, csv_table, filled, places, plain, table
+from tests.support.pages import same_figures
 
 PAGE = "Before.\n\n<!-- one -->\n<!-- end of one -->\nBetween.\n<!-- two -->\nold\n<!-- end of two -->\n"
 
@@ -24,3 +25,24 @@ def test_blocks_are_filled_and_read() -> None:
 def test_a_page_without_the_marks_is_refused() -> None:
     with pytest.raises(KeyError, match="three"):
         filled(PAGE, {"three": "x"})
+
+
+def test_figures_within_sentences_are_filled_and_read() -> None:
+    page = PAGE + "It is <!-- figure depth -->11.1<!-- end --> m deep, <!-- figure depth -->11.1<!-- end --> m.\n"
+    assert places(page) == {"one": [""], "two": ["old"], "depth": ["11.1", "11.1"]}
+    assert places(filled(page, {"depth": "12.0", "two": "new"})) == {"one": [""], "two": ["new"], "depth": ["12.0"] * 2}
+    assert plain(page).endswith("It is 11.1 m deep, 11.1 m.\n")
+
+
+@pytest.mark.parametrize(
+    ("told", "computed", "same"),
+    [
+        ("76.48 to 100.25 kN", "76.49 to 100.25 kN", True),
+        ("76.46 to 100.25 kN", "76.48 to 100.25 kN", False),
+        ("1,680 cells", "1681 cells", True),
+        ("up to 1.0", "from 1.0", False),
+        ("2.0", "2.0 and 3.0", False),
+    ],
+)
+def test_figures_are_the_same_but_for_the_last_digit(told: str, computed: str, same: bool) -> None:
+    assert same_figures(told, computed) is same
