@@ -13,6 +13,7 @@ from riser_soil.scene.files import content
 from riser_soil.scene.problem import Path as KeyPath
 
 MOST_BYTES = 10_000_000
+_ORCAFLEX_BINARY = b"ORCAFLEX"  # near the beginning of its .dat files
 _TWIST = 1e-4  # of EA D^2: torsional stiffness of a line without bending stiffness
 
 Remark = tuple[int, str]
@@ -41,6 +42,8 @@ def text_of(file: Path) -> str:
     """The text of another program's file; SceneError where it can't be read."""
     try:
         found = content(file, MOST_BYTES)
+        if _ORCAFLEX_BINARY in found[:16]:
+            raise SceneError(f"{file}: is binary data of OrcaFlex; save it there as text data (.yml), and import that")
         in_pairs = found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         return found.decode("utf-16" if in_pairs else "utf-8-sig", errors="replace")
     except OSError as err:

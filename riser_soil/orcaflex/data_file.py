@@ -18,7 +18,7 @@ from riser_soil.scene.problem import Path as Keys
 
 MASS = 1e3  # kg in te
 FORCE = 1e3  # N in kN
-_OTHERS = ("basefile", "includefile")
+_OTHERS = ("basefile", "includefile", "restartingfrom")
 _NONE = ("", "~", "null")
 _BYTE_ORDER_MARK = "\ufeff"  # at the beginning of each file that was joined to others
 

@@ -62,10 +62,10 @@ def _current(environment: Item) -> list[list[float]]:
     speed = environment.number("RefCurrentSpeed", 0.0)
     direction, surface = environment.number("RefCurrentDirection", 0.0), surface_level(environment)
     rows = environment.rows("CurrentDepth")
+    method = environment.choice("VerticalCurrentVariationMethod", "Interpolated")
     if speed == 0.0:
         _ = [row.get(key) for row in rows for key in row.values]
         return []
-    method = environment.choice("VerticalCurrentVariationMethod", "Interpolated")
     model = environment.choice("CurrentModel", "Variation scheme")
     if method != "interpolated" or model != "variation scheme":
         given = environment.word("VerticalCurrentVariationMethod") if model == "variation scheme" else model

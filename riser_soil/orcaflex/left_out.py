@@ -59,6 +59,7 @@ _EFFECTS = (
     (r"windspeed", "wind on what is above the water"), (r"layazimuth", "the direction of laying, along the line here"),
     (r"aslaidtension", "the tension of laying"), (r"staticsseabedfrictionpolicy", "friction from laying the line"),
     (r"rayleighdamping.*", "structural damping: give `damping: {ratio, frequency}`"),
+    (r"connectiontwistingstiffness", "what keeps an end from spinning"),
     (r"connectionreleasestage", "an end let go in that stage"), (r"connectionpayoutrate", "line paid out"),
     (r"contentsflowrate", "a flow: give `contents.speed`"), (r"(statics|dynamics)viv", "vibration by vortices"),
     (r"seabeddamping", "damping by the seabed"), (r"cm", "inertia of the fluid other than 1 + Ca"),

@@ -14,6 +14,8 @@ from riser_soil.orcaflex.variable_data import is_name, points_of
 from riser_soil.orcaflex.vessels import place_on
 from riser_soil.scene.problem import Path as KeyPath
 
+_ARCS = ("Attachmentz", "AttachmentPosition", "AttachmentArcLength")  # names in version 11 and before
+_RELATIVE = ("AttachmentzRelativeTo", "AttachmentRelativeTo", "AttachmentPositionRelativeTo")
 _OUT_OF_PLANE = 1e-6  # of a neutral direction that a flex joint in the riser's plane can have
 _ROUNDING = 1e-6  # m: of a height that is added up
 _LEVEL = 1e-9  # horizontal distance of the ends [m] below which there is no such plane
@@ -171,20 +173,21 @@ def _attachments(line: Item, length: float) -> list[dict[str, Any]]:
         if clump is None:
             row.left("AttachmentType", f"attachment {kind}: only clumps are carried over, and it is none")
             continue
-        arc = row.number("Attachmentz")
-        if (relative := row.choice("AttachmentzRelativeTo", "End A")) == "end b":
-            arc = length - arc
+        arc, of = (next((key for key in keys if row.has(key)), keys[0]) for keys in (_ARCS, _RELATIVE))
+        at = row.number(arc)
+        if (relative := row.choice(of, "End A")) == "end b":
+            at = length - at
         elif relative != "end a":
-            row.refuse("AttachmentzRelativeTo", f"is {relative}; give it relative to End A or End B")
+            row.refuse(of, f"is {relative}; give it relative to End A or End B")
         if any(row.numbers(key, 1)[0] for key in ("Attachmentx", "Attachmenty")):
             row.left("Attachmentx", f"attachment {kind}, beside the line's axis: it sits on it here")
-        found.setdefault(folded(kind), _clump(clump) | {"at": []})["at"].append(arc)
+        found.setdefault(folded(kind), _clump(clump) | {"at": []})["at"].append(at)
     return [each | {"at": sorted(each["at"])} for each in found.values()]
 
 
 def _clump(item: Item) -> dict[str, Any]:
     """A clump, which has one drag area and one coefficient of added mass in all directions: those in x here."""
-    areas, drags, added = (item.numbers(key, 3) for key in ("DragArea", "Cd", "Ca"))
+    areas, drags, added = (_by_axis(item, key) for key in ("DragArea", "Cd", "Ca"))
     by_axis = [area * drag for area, drag in zip(areas, drags, strict=True)]
     for key, values in (("DragArea", by_axis), ("Ca", added)):
         if len({*values}) > 1:
@@ -194,6 +197,12 @@ def _clump(item: Item) -> dict[str, Any]:
     found = {"mass": item.number("Mass", 0.0) * MASS, "volume": item.number("Volume", 0.0), "drag_area": by_axis[0]}
     found |= {"added_mass": added[0]} if found["volume"] else {}
     return {key: value for key, value in found.items() if value != 0.0}
+
+
+def _by_axis(item: Item, key: str) -> list[float]:
+    """In x, y and z; in y as in x where it is not given."""
+    x, y, z = item.numbers(key, 3, math.nan)
+    return [each if math.isfinite(each) else other for each, other in ((x, 0.0), (y, x), (z, 0.0))]
 
 
 def _support(end: LineEnd, lower: LineEnd, upper: LineEnd) -> Any:

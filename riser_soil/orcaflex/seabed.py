@@ -59,9 +59,7 @@ def _seabed(environment: Item, diameter: float, g: float) -> dict[str, Any]:
 def _law(environment: Item, g: float) -> dict[str, Any]:
     """Randolph & Quiggin's law; what the file does not give has the law's default value."""
     parts = [environment, *(environment.part(key) for key in environment.values if "soil" in key)]
-    given = {
-        _bare(key): (part, key) for part in parts for key in part.values if part is not environment or "soil" in key
-    }
+    given = {_bare(key): (part, key) for part in parts for key in part.values if key != "density"}
 
     def number(names: str, size: float) -> float | None:
         found = next((given[name] for name in given if re.fullmatch(names, name)), None)

@@ -57,6 +57,7 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
 
     None, and remarks, where the vessel does not move by displacement RAOs alone, or by some that can't be read.
     """
+    name, draught = vessel.word("VesselType"), vessel.word("Draught")
     primary, superimposed = vessel.word("PrimaryMotion", "None"), vessel.word("SuperimposedMotion", "None")
     if folded(primary) != "none":
         vessel.left("PrimaryMotion", f"PrimaryMotion {primary}: the vessel has its superimposed motion alone here")
@@ -64,13 +65,13 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
         if folded(superimposed) != "none":
             vessel.left("SuperimposedMotion", f"SuperimposedMotion {superimposed}: the vessel rests here")
         return None
-    kind = file.named("VesselTypes", vessel.word("VesselType"), vessel, "VesselType")
+    kind = file.named("VesselTypes", name, vessel, "VesselType")
     if kind is None:
         return None
-    draughts = [each for each in kind.items("Draughts") if folded(each.title) == vessel.choice("Draught")]
+    draughts = [each for each in kind.items("Draughts") if folded(each.title) == folded(draught)]
     raos = draughts[0].part("DisplacementRAOs") if draughts else None
     if raos is None:
-        vessel.left("Draught", f"there is no draught {vessel.word('Draught')}: the vessel rests here")
+        vessel.left("Draught", f"there is no draught {draught}: the vessel rests here")
         return None
     if unlike := _unlike(kind, raos):
         item, key, why = unlike

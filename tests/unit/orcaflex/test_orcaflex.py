@@ -242,6 +242,7 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
     [
         ("UnitsSystem: SI", "UnitsSystem: US", r"riser.yml:5: General: UnitsSystem: is US; save it in SI units"),
         ("Lines:", "BaseFile: other.yml\nLines:", r"riser.yml:\d+: BaseFile: takes from another file"),
+        ("Lines:", "RestartingFrom: other.yml\nLines:", r"riser.yml:\d+: RestartingFrom: takes from another file"),
         ("General:", "Universal:", "has no General and Lines"),
         ("OD: 0.30", "OD: wide", r"riser.yml:\d+: LineTypes 8\" hose: OD: is 'wide', neither a number nor the name"),
         ("OD: 0.30", "OD: Infinity", r"riser.yml:\d+: .* OD: is Infinity, not a finite number"),

@@ -228,6 +228,7 @@ CLAY = """Nonlinear soil model
         "  SoilPowerLawParameterA: 5.5\n  SoilPowerLawParameterB: 0.3\n  SoilNormalisedMaximumStiffness: 180\n"
         "  SoilSuctionResistanceRatio: 0.5\n  SoilNormalisedSuctionDecayDistance: 0.8\n"
         "  SoilRepenetrationOffsetAfterUplift: 0.4\n  SoilBuoyancyFactor: 1.4\n",
+        "  Parameter a: 5.5\n  Parameter b: 0.3\n  Kmax: 180\n  fsuc: 0.5\n  lambda_suc: 0.8\n  lambda_rep: 0.4\n  fb: 1.4\n",
         "  SeabedSoilModelParameters:\n    a: 5.5\n    b: 0.3\n    Kmax: 180\n    fsuc: 0.5\n    lambda_suc: 0.8\n"
         "    lambda_rep: 0.4\n    fb: 1.4\n",
     ],
@@ -258,9 +259,9 @@ CLUMPS = """ClumpTypes:
   - Name: Float
     Mass: 0.4
     Volume: 0.9
-    DragArea: [2, 2, 3]
-    Cd: [0.8, 0.8, 0.9]
-    Ca: [0.5, 0.5, 0.5]
+    DragArea: [2, ~, 3]
+    Cd: [0.8, ~, 0.9]
+    Ca: [0.5, ~, 0.5]
 Environment:
 """
 HUNG = """AttachmentType, Attachmentx, Attachmenty, Attachmentz, AttachmentzRelativeTo:
@@ -332,6 +333,12 @@ def test_values_have_the_lines_they_come_from(tmp_path: Path) -> None:
     }  # fmt: skip
     for path, words in expected.items():
         assert words in lines[found.origins[path] - 1]
+
+
+def test_binary_data_are_refused_by_their_name(tmp_path: Path) -> None:
+    (tmp_path / "riser.dat").write_bytes(b"\x08ORCAFLEX\x00\x0b\x00\x00")
+    with pytest.raises(SceneError, match=r"riser.dat: is binary data of OrcaFlex; save it there as text data"):
+        read_data(tmp_path / "riser.dat")
 
 
 def test_what_cannot_change_an_answer_is_not_reported(tmp_path: Path) -> None:
