@@ -113,7 +113,7 @@ class Item:
 
     def number(self, key: str, default: float | None = None) -> float:
         """A finite number; refused, and nan, where there is none and no default."""
-        value = self._number(key, self.get(key), default)
+        value = self.number_in(key, self.get(key), default)
         return self.refuse(key, f"is {self.get(key)}, not a finite number; correct it") if math.isinf(value) else value
 
     def positive(self, key: str, default: float | None = None) -> float:
@@ -123,19 +123,19 @@ class Item:
 
     def stiffness(self, key: str, default: float | None = None) -> float:
         """A number that may be Infinity."""
-        return self._number(key, self.get(key), default)
+        return self.number_in(key, self.get(key), default)
 
     def numbers(self, key: str, count: int, default: float = 0.0) -> list[float]:
         """A list of numbers, or one number as its first; the default stands for what is not there."""
         value = self.get(key)
         given = value if isinstance(value, list) else [value]
-        return [self._number(key, each, default) for each in (given + [None] * count)[:count]]
+        return [self.number_in(key, each, default) for each in (given + [None] * count)[:count]]
 
     def all_numbers(self, key: str) -> list[float]:
         """All numbers of a list, or of one number; none where there is nothing."""
         value = self.get(key)
         given = [] if value is None else value if isinstance(value, list) else [value]
-        return [self._number(key, each, None) for each in given]
+        return [self.number_in(key, each, None) for each in given]
 
     def rows(self, first: str) -> list[Item]:
         """Rows of the table whose columns begin with one of this name: `first, second, third`."""
@@ -178,7 +178,8 @@ class Item:
         return Item(self.file, self.name, {name: ((*place, n), cell) for n, (name, cell) in
                                            enumerate(zip(columns, cells, strict=False))})  # fmt: skip
 
-    def _number(self, key: str, value: Any, default: float | None) -> float:
+    def number_in(self, key: str, value: Any, default: float | None = None) -> float:
+        """A value of a key as a number; refused, and nan, where it is none and there is no default."""
         if value is None and default is not None:
             return default
         try:

@@ -161,7 +161,7 @@ def _plain_stiffness(item: Item, key: str, value: Any) -> float:
         return math.inf
     if is_name(value):
         return item.refuse(key, f"is {value!r}: a stiffness by a table can't be carried over; give a number")
-    return float(value)
+    return item.number_in(key, value)
 
 
 def _twisting(pipe: PipeOfType, found: dict[str, float]) -> float:
@@ -188,7 +188,9 @@ def _homogeneous(pipe: PipeOfType) -> dict[str, Any]:
     for thickness, density in pipe.linings:
         mass += density * _ring(inner, inner - 2.0 * thickness)
         inner -= 2.0 * thickness
-    twist = E * inertia / (1.0 + item.number("PoissonRatio", 0.3))
+    if (ratio := item.number("PoissonRatio", 0.3)) <= -1.0:
+        ratio = item.refuse("PoissonRatio", f"is {ratio:g}; give one above -1")
+    twist = E * inertia / (1.0 + ratio)
     EI = E * inertia + item.number("AdditionalEI", 0.0) * FORCE
     return {"mass": mass * MASS, "EA": E * area, "EI": EI, "GJ": twist}
 
@@ -207,18 +209,11 @@ def _coefficients(item: Item, theirs: str) -> list[tuple[str, Any]]:
     return [(key, item.get(key)) for key in (across, f"{theirs}y", f"{theirs}z")]
 
 
-def _number(item: Item, key: str, value: Any) -> float:
-    """A coefficient; 0 where there is none."""
-    if value is None:
-        return 0.0
-    return item.refuse(key, f"is {value!r}, not a number; correct it") if is_name(value) else float(value)
-
-
 def _drag(pipe: PipeOfType) -> dict[str, Any]:
     """Drag; what refers to another diameter does so to the outer one here."""
     item = pipe.item
     (key, across), (key_y, y), (key_z, along) = _coefficients(item, "Cd")
-    normal = item.number("NormalDragLiftDiameter", pipe.outermost) / pipe.outermost
+    normal = item.positive("NormalDragLiftDiameter", pipe.outermost) / pipe.outermost
     axial = item.number("AxialDragLiftDiameter", pipe.outermost) / pipe.outermost
     if y is not None and y != across:
         item.left(key_y, f"Cd of {y} in y: it is that in x here")
@@ -228,9 +223,9 @@ def _drag(pipe: PipeOfType) -> dict[str, Any]:
         points = points_of(item, key_z, along)
         along = points[0][1] if points else 0.0
         item.left(key_z, f"axial Cd by a table: its first value, {along:g}, for all velocities")
-    found: dict[str, Any] = {"tangential": _number(item, key_z, along) * axial}
+    found: dict[str, Any] = {"tangential": item.number_in(key_z, along, 0.0) * axial}
     if not is_name(across):
-        return {"drag": {"normal": _number(item, key, across) * normal} | found}
+        return {"drag": {"normal": item.number_in(key, across, 0.0) * normal} | found}
     # A Reynolds number of OrcaFlex is that of the drag diameter, one of a scene that of the outer one.
     points = points_of(item, key, across)
     found["by_reynolds"] = [[max(Re, _LEAST_REYNOLDS) / normal, Cd * normal] for Re, Cd in points]
@@ -243,7 +238,7 @@ def _added_mass(pipe: PipeOfType) -> dict[str, Any]:
         pipe.item.left(key_y, f"Ca of {y} in y: it is that in x here")
     if across is None and along is None:
         return {}
-    normal, axial = _number(pipe.item, key, across), _number(pipe.item, key_z, along)
+    normal, axial = pipe.item.number_in(key, across, 0.0), pipe.item.number_in(key_z, along, 0.0)
     return {"added_mass": {"normal": normal, "tangential": axial}}
 
 

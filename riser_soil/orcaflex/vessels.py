@@ -45,7 +45,7 @@ _SHORTER = (1.0 / 2.0, 1.0 / 4.0, 1.0 / 8.0, 1.0 / 100.0)  # of the shortest per
 def place_on(vessel: Item, local: list[float]) -> list[float]:
     """Global position of a point in the vessel's axes [m]."""
     heel, trim, heading = _orientation(vessel)
-    if heel or trim:
+    if abs(heel) > 0.0 or abs(trim) > 0.0:
         vessel.refuse("Orientation", f"heel {heel:g} and trim {trim:g}: give what sits on the vessel as Fixed")
     c, s = unit_vector(heading)
     x, y, z = vessel.numbers("InitialPosition", 3)
