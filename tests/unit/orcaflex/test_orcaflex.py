@@ -249,8 +249,6 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
         ("OD: 0.30", "OD: 0", r"riser.yml:\d+: .* OD: is 0; give a number above 0"),
         ("NormalDragLiftDiameter: 0.36", "NormalDragLiftDiameter: 0", r"NormalDragLiftDiameter: is 0; give a number"),
         ("EI: [50, ~]", "EI: [[1, 2], ~]", r"riser.yml:\d+: .* EI: is \[1, 2\], not a number"),
-        ("Category: General", "Category: Homogeneous pipe\n    E: 2e8\n    MaterialDensity: 7.85\n    PoissonRatio: -1",
-         r"riser.yml:\d+: .* PoissonRatio: is -1; give one above -1"),
         ("WavePeriod: 8", "WavePeriod: 0", r"riser.yml:\d+: .* WavePeriod: is 0; give a number above 0"),
         ("WaterDepth: 100", "SeabedOriginDepth: 100\n  WaterDepth: 90", r"OriginDepth: tells of a depth of 100 m"),
         ("    EA: 4.0e5\n", "", r"riser.yml:\d+: .* EA: is missing"),

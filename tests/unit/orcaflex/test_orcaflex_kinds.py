@@ -195,6 +195,11 @@ def test_coats_and_linings(tmp_path: Path) -> None:
     assert pipe["EI"] == pytest.approx(2e11 * math.pi / 64.0 * (0.30**4 - 0.20**4))
 
 
+def test_a_pipe_without_stiffness_in_torsion_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="PoissonRatio: is -1; give one above -1"):
+        imported(tmp_path, changed(("Category: General", PIPE), ("PoissonRatio: 0.5", "PoissonRatio: -1")))
+
+
 def test_raos_at_no_period_and_without_end(tmp_path: Path) -> None:
     """Heave is 0.8 at 2 s and 0 at none: 0.4 at 1 s; at 40 s 0.8, 1 in endless waves: 0.9 at half the frequency."""
     none, endless = f"- [0{', 0' * 12}]", "- [Infinity, 1, 90, 0, 0, 1, 10, 0, 0, 0, 0, 0, 0]"
@@ -228,7 +233,8 @@ CLAY = """Nonlinear soil model
         "  SoilPowerLawParameterA: 5.5\n  SoilPowerLawParameterB: 0.3\n  SoilNormalisedMaximumStiffness: 180\n"
         "  SoilSuctionResistanceRatio: 0.5\n  SoilNormalisedSuctionDecayDistance: 0.8\n"
         "  SoilRepenetrationOffsetAfterUplift: 0.4\n  SoilBuoyancyFactor: 1.4\n",
-        "  Parameter a: 5.5\n  Parameter b: 0.3\n  Kmax: 180\n  fsuc: 0.5\n  lambda_suc: 0.8\n  lambda_rep: 0.4\n  fb: 1.4\n",
+        "  Parameter a: 5.5\n  Parameter b: 0.3\n  Kmax: 180\n  fsuc: 0.5\n  lambda_suc: 0.8\n"
+        "  lambda_rep: 0.4\n  fb: 1.4\n",
         "  SeabedSoilModelParameters:\n    a: 5.5\n    b: 0.3\n    Kmax: 180\n    fsuc: 0.5\n    lambda_suc: 0.8\n"
         "    lambda_rep: 0.4\n    fb: 1.4\n",
     ],
