@@ -53,7 +53,12 @@ def message(problem: Problem, data: Any) -> str:
     value = value_at(data, problem.path)
     given = "missing" if value is NOTHING else f"value {shown(value)}"
     text = f"{dotted(problem.path)}: {given}: {problem.allowed}; {problem.remedy}"
-    return " ".join(text.split())
+    return legible(" ".join(text.split()))
+
+
+def legible(text: str) -> str:
+    """The text with characters that a terminal can't show as it writes them in Python: \\x00."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:

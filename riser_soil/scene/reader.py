@@ -7,6 +7,7 @@ They are named as such instead of being called unknown. A value that switches th
 
 import copy
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -95,9 +96,11 @@ def error_of(problems: Sequence[Problem], document: Document) -> SceneError:
 
 
 def taken_out(data: Any) -> tuple[Any, list[Problem]]:
-    """A copy of the data without the keys of KEYS, and problems for what this version does not support."""
+    """A copy of the data without the keys of KEYS, and problems for what this version does not support, and for
+    characters that results can't have.
+    """
     rest = copy.deepcopy(data)
-    return rest, [*_keys(rest), *_values(rest)]
+    return rest, [*_keys(rest), *_values(rest), *_unwritable(rest)]
 
 
 def _keys(data: Any) -> Iterator[Problem]:
@@ -113,6 +116,18 @@ def _values(data: Any) -> Iterator[Problem]:
         for path, parent in _matches(data, pattern):
             if _among(parent[path[-1]], refused):
                 yield Problem(path, "not supported yet", "choose another value or leave the key out")
+
+
+def _unwritable(data: Any, path: KeyPath = ()) -> Iterator[Problem]:
+    """Texts and keys with characters that no result's file takes: NUL, other control characters, half a surrogate."""
+    entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, value in entries:
+        texts = "".join(text for text in (key, value) if isinstance(text, str))
+        found = {c for c in texts if unicodedata.category(c) in ("Cc", "Cs")} - {*"\t\n\r"}
+        if found:
+            named = ", ".join(f"U+{ord(c):04X}" for c in sorted(found))
+            yield Problem((*path, key), f"a text has no control characters, which {named} is", "leave them out")
+        yield from _unwritable(value, (*path, key))
 
 
 def _among(value: Any, values: tuple[Any, ...]) -> bool:

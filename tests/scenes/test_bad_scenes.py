@@ -146,6 +146,25 @@ def test_text_must_be_utf8(tmp_path: Path) -> None:
     line_with([line], f"{file}:2:", "not UTF-8")
 
 
+UNWRITABLE = {
+    'title: "a\\0b"\n': ('title: value "a\\u0000b": a text has no control characters, which U+0000 is', 1),
+    'title: "a\\ud800"\n': ('title: value "a\\ud800": a text has no control characters, which U+D800 is', 1),
+    'title: a\nline_types: {"b\\e\\0": {mass: 1.0}}\n': ("line_types.b\\x1b\\x00: value", 2),
+}
+
+
+@pytest.mark.parametrize("text", UNWRITABLE, ids=repr)
+def test_characters_that_results_can_not_have(text: str, tmp_path: Path) -> None:
+    says, line = UNWRITABLE[text]
+    file = write(tmp_path, text)
+    line_with(refused(tmp_path, file), f"{file}:{line}: {says}", "; leave them out")
+
+
+def test_line_ends_and_other_scripts_are_text(tmp_path: Path) -> None:
+    file = write(tmp_path, GOOD.replace("title: base", 'title: "Flexible \\t µ 管\\n second"'))
+    assert run(["check", str(file)]).exit_code == 0
+
+
 OVERRIDES = {
     "riser.segments.0.elments=3": 'riser.segments.0.elments: value 3: no such key here',
     "riser.segmets.0.elements=3": 'did you mean "segments"?',

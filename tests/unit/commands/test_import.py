@@ -10,7 +10,8 @@ from typer.testing import CliRunner, Result
 
 from riser_soil.commands import imports
 from riser_soil.commands.app import app
-from riser_soil.imported_scene import ImportedScene
+from riser_soil.errors import SceneError
+from riser_soil.imported_scene import ImportedScene, text_of
 from riser_soil.scene.problem import Path as KeyPath
 from riser_soil.scene.reader import read_scene
 from tests.support.said import line_with
@@ -62,3 +63,17 @@ def test_what_a_run_would_refuse_is_not_written(
     line_with(done.output, "line.dat:", "none is written")
     line_with(done.output, *words)
     assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_texts_of_other_programs_come_in_several_encodings(encoding: str, tmp_path: Path) -> None:
+    file = tmp_path / "deck.dat"
+    file.write_bytes("Kette für 40 m³\n".encode(encoding))
+    assert text_of(file) == "Kette für 40 m³\n"
+
+
+def test_what_is_no_text_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "deck.dat"
+    file.write_bytes(b"chain\0 0.1 120.0\n")
+    with pytest.raises(SceneError, match=r"deck\.dat: is no text, .* save it as text in UTF-8"):
+        text_of(file)
