@@ -2,7 +2,8 @@
 
 Usage, in the project's folder: python -m demos.figures [FOLDER] [--page]
 Runs that FOLDER has (by default build/figures) are taken as they are. --page writes the figures to their places in all
-pages; `make figures` does so afresh. Those of long scenes come from the demos' own scripts.
+pages, with those that sentences take from tables; `make figures` does so afresh. Those of long scenes come from the
+demos' own scripts.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from demos.from_tables import table_figures
 from demos.page import ROOT, fill_pages, table
 from riser_soil.results import Run
 
@@ -169,7 +171,7 @@ if __name__ == "__main__":
     parser.add_argument("--page", action="store_true", help="write the figures to their places in the pages, too")
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
-    texts = quick_figures(given.folder.resolve())
+    texts = {**quick_figures(given.folder.resolve()), **table_figures()}
     print(shown(texts))
     if given.page:
         fill_pages(texts)

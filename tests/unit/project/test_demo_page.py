@@ -1,10 +1,15 @@
 """Tables in Markdown and their places in a demo's page."""
 
+import re
+
 import pytest
 
-from demos.page import block, csv_table, filled, places, plain, table
+from demos.figures import QUICK
+from demos.from_tables import table_figures
+from demos.page import all_pages, block, csv_table, filled, places, plain, table
 from tests.support.pages import same_figures
 
+FIGURE = re.compile("<!-- figure ([^>]+) -->")
 PAGE = "Before.\n\n<!-- one -->\n<!-- end of one -->\nBetween.\n<!-- two -->\nold\n<!-- end of two -->\n"
 
 
@@ -46,3 +51,19 @@ def test_figures_within_sentences_are_filled_and_read() -> None:
 )
 def test_figures_are_the_same_but_for_the_last_digit(told: str, computed: str, same: bool) -> None:
     assert same_figures(told, computed) is same
+
+
+def test_sentences_of_the_demos_tell_what_their_tables_have() -> None:
+    """`make figures` writes them anew, after the tables."""
+    told: dict[str, set[str]] = {}
+    for page in all_pages():
+        for name, texts in places(page.read_text(encoding="utf-8")).items():
+            told.setdefault(name, set()).update(texts)
+    found = table_figures()
+    assert {name: told[name] for name in found} == {name: {text} for name, text in found.items()}
+
+
+def test_every_figure_in_a_sentence_has_a_script() -> None:
+    written = {name for page in all_pages() for name in FIGURE.findall(page.read_text(encoding="utf-8"))}
+    quick = {name for name in written if name.startswith((*QUICK, "demo "))}  # whose tests compare them with runs
+    assert written - quick - table_figures().keys() == set()
