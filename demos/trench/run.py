@@ -19,11 +19,13 @@ from riser_soil.results import Run
 HERE = Path(__file__).parent
 SCENE, PAGE, PICTURES = HERE / "scene.yaml", HERE / "README.md", HERE.parents[1] / "docs"
 LEVEL = "soil.block.trench=null"
+EDGE, FLOOR = (8.0, 16.0), (18.0, 23.0)  # m along the riser, around where it goes down and where the floor begins
 
 
 def main(results: Path, page: bool) -> None:
     runs = {"trench": compute(SCENE, results / "trench"), "level soil": compute(SCENE, results / "level", LEVEL)}
-    publish({"trench": comparison(runs)}, results, PAGE if page else None)
+    told = {"trench": comparison(runs), **edges(runs["trench"]), **effort(runs)}
+    publish(told, results, PAGE if page else None)
     pictures = PICTURES if page else results
     draw(pictures / "trench.png", runs)
     print(f"\nthe runs and the table are in {results}, the picture in {pictures}")
@@ -49,6 +51,33 @@ def rows(stages: list[dict[str, Any]]) -> dict[str, str]:
         shown["in heave: touchdown arc length [m]"] = f"{touchdown['min']:.2f} to {touchdown['max']:.2f}"
         shown["largest bending moment, in heave [kN m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
     return shown
+
+
+def edges(run: Run) -> dict[str, str]:
+    """At rest, what the trench's edge bears and bends the riser by, and the bend where its floor begins."""
+    force, moment = at_rest(run, "contact_force"), abs(at_rest(run, "bending_moment"))
+    edge, floor = ((run.arc > first) & (run.arc < last) for first, last in (EDGE, FLOOR))
+    return {
+        "edge force": f"{force[edge].max() / 1e3:.1f}",
+        "edge moment": f"{moment[edge].max() / 1e3:.1f}",
+        "floor moment": f"{moment[floor].max() / 1e3:.1f}",
+    }
+
+
+def effort(runs: dict[str, Run]) -> dict[str, str]:
+    """Load steps and Newton iterations of both, and the energy balance in heave."""
+    (laid, heave), (level, _) = (run.summary["stages"] for run in runs.values())
+    energy = heave["energy"]
+    return {
+        "trench load steps": f"{laid['steps']}",
+        "trench load iterations": f"{laid['newton_iterations'] / laid['steps']:.1f}",
+        "level load steps": f"{level['steps']}",
+        "level load iterations": f"{level['newton_iterations'] / level['steps']:.1f}",
+        "heave iterations": f"{heave['newton_iterations'] / heave['steps']:.1f}",
+        "heave most iterations": f"{heave['most_newton_iterations']}",
+        "heave cuts": f"{heave['step_cuts']}",
+        "heave residual": f"{100.0 * abs(energy['worst_residual']['value']) / energy['turned_over']:.2g}",
+    }
 
 
 def at_rest(run: Run, name: str) -> Array:

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from demos.compute import compute
-from demos.page import block
-from demos.trench.run import HERE, LEVEL, SCENE, rows
+from demos.page import block, places
+from demos.trench.run import HERE, LEVEL, SCENE, edges, rows
 
 TEXT = (HERE / "README.md").read_text(encoding="utf-8")
 TOUCHDOWN = "at rest: touchdown arc length [m]"
@@ -30,6 +30,14 @@ def test_page_shows_rest_as_computed(column: int, overrides: tuple[str, ...], tm
     page = {name: float(shown()[name][column]) for name in found}
     assert page.pop(TOUCHDOWN) == pytest.approx(found.pop(TOUCHDOWN), abs=0.25)
     assert page == pytest.approx(found, rel=0.005)
+
+
+@pytest.mark.verify
+def test_page_tells_what_the_edges_do(tmp_path: Path) -> None:
+    """Within what other tetrahedra change."""
+    told = places(TEXT)
+    for name, value in edges(compute(SCENE, tmp_path, STATIC)).items():
+        assert [float(each) for each in told[name]] == [pytest.approx(float(value), rel=0.15, abs=0.11)]
 
 
 def test_the_riser_touches_down_later_in_the_trench() -> None:
