@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from demos.compute import compute
-from demos.page import publish, script, table
+from demos.figures import shown
+from demos.page import fill_pages, publish, script, table
 from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import save, sheet
 from riser_soil.results import Run
@@ -24,8 +25,11 @@ EDGE, FLOOR = (8.0, 16.0), (18.0, 23.0)  # m along the riser, around where it go
 
 def main(results: Path, page: bool) -> None:
     runs = {"trench": compute(SCENE, results / "trench"), "level soil": compute(SCENE, results / "level", LEVEL)}
-    told = {"trench": comparison(runs), **edges(runs["trench"]), **effort(runs)}
-    publish(told, results, PAGE if page else None)
+    publish({"trench": comparison(runs)}, results, PAGE if page else None)
+    told = {**edges(runs["trench"]), **effort(runs)}
+    print(shown(told))
+    if page:
+        fill_pages(told)
     pictures = PICTURES if page else results
     draw(pictures / "trench.png", runs)
     print(f"\nthe runs and the table are in {results}, the picture in {pictures}")
@@ -39,7 +43,7 @@ def comparison(runs: dict[str, Run]) -> str:
 
 def rows(stages: list[dict[str, Any]]) -> dict[str, str]:
     final, moment = stages[0]["final"], stages[0]["final"]["max_bending_moment"]
-    shown = {
+    found = {
         "at rest: touchdown arc length [m]": f"{final['touchdown_arc']:.2f}",
         "stretches that touch": f"{final['touchdown_points']:.0f}",
         "largest bending moment [kN m]": f"{moment['value'] / 1e3:.3f}",
@@ -48,9 +52,9 @@ def rows(stages: list[dict[str, Any]]) -> dict[str, str]:
     }
     for stage in stages[1:]:
         touchdown, bent = (stage["extremes"][key] for key in ("touchdown_arc", "max_bending_moment"))
-        shown["in heave: touchdown arc length [m]"] = f"{touchdown['min']:.2f} to {touchdown['max']:.2f}"
-        shown["largest bending moment, in heave [kN m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
-    return shown
+        found["in heave: touchdown arc length [m]"] = f"{touchdown['min']:.2f} to {touchdown['max']:.2f}"
+        found["largest bending moment, in heave [kN m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
+    return found
 
 
 def edges(run: Run) -> dict[str, str]:
@@ -91,8 +95,8 @@ def draw(png: Path, runs: dict[str, Run]) -> None:
     for name, run in runs.items():
         near = run.arc <= 45.0
         heights = at_rest(run, "position")[:, 2] - 0.15
-        shown = (heights, at_rest(run, "contact_force"), at_rest(run, "bending_moment") / 1e3)
-        for axis, values in zip(axes, shown, strict=True):
+        curves = (heights, at_rest(run, "contact_force"), at_rest(run, "bending_moment") / 1e3)
+        for axis, values in zip(axes, curves, strict=True):
             axis.plot(run.arc[near], values[near], label=name)
     axes[0].set(ylabel="height of the underside [m]", ylim=(-0.4, 1.0))
     axes[1].set(ylabel="contact force [N/m]")
