@@ -137,7 +137,7 @@ def resting_level(scene: Scene, elements: sections.Elements, ends: Array) -> flo
         return -np.inf
     x, y, z = (float(value) for value in ends[np.argmin(ends[:, 2])])
     ground = ground_height(scene, (x, y, z)) if scene.soil is None else scene.seabed_level
-    return ground + float(contact_radius(scene, elements).min())
+    return min(ground + float(contact_radius(scene, elements).min()), z)
 
 
 def least_bend(elements: sections.Elements) -> float:

@@ -1,48 +1,48 @@
-"""A deck's text in sections of rows, each with its line number, and one riser from it: lines through free points."""
+"""A deck's text in sections of rows, each with its line number, its columns by their headings."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from riser_soil.errors import SceneError
-from riser_soil.imported_scene import text_of
+from riser_soil.imported_scene import Remark, text_of
+from riser_soil.moordyn.columns import columns_of, fits
+from riser_soil.moordyn.names import LISTS, NUMBERED, ROWS, SECTIONS, split
 
-# Words of a section's header -> the section, as MoorDyn knows it by several names.
-SECTIONS = {
-    "LINE TYPES": "line types", "LINE DICTIONARY": "line types",
-    "ROD TYPES": "rod types", "ROD DICTIONARY": "rod types",
-    "BODIES": "bodies", "BODY LIST": "bodies", "BODY PROPERTIES": "bodies",
-    "RODS": "rods", "ROD LIST": "rods", "ROD PROPERTIES": "rods",
-    "POINTS": "points", "POINT LIST": "points", "POINT PROPERTIES": "points",
-    "CONNECTION PROPERTIES": "points", "NODE PROPERTIES": "points",
-    "LINES": "lines", "LINE LIST": "lines", "LINE PROPERTIES": "lines",
-    "FAILURE": "failure", "CONTROL": "control", "EXTERNAL LOADS": "external loads",
-    "OPTIONS": "options", "SOLVER OPTIONS": "options", "OUTPUTS": "outputs",
-}  # fmt: skip
-WITH_HEADS = {*SECTIONS.values()} - {"options", "outputs"}  # they begin with a row of names and one of units
-COLUMNS = {"line types": 10, "bodies": 8, "rods": 9, "points": 9, "lines": 6, "options": 2}
-FREE = ("free", "point", "connect")
-FIXED, COUPLED = ("fix", "anchor"), ("vessel", "coupled", "cpld", "pinned")  # how their words begin
+COMMENT = re.compile(r"[#!%]")
+NEEDED = ("line types", "lines")
 
 
 @dataclass(frozen=True)
 class DeckRow:
-    """One row of a section: number of its line, and its words."""
+    """One row of a section: number of its line, its words, and those of its columns by their names."""
 
     line: int
     words: tuple[str, ...]
+    cells: dict[str, str] = field(default_factory=dict, hash=False, compare=False)
+
+    def __getitem__(self, column: str) -> str:
+        return self.cells[column]
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.cells
 
 
 @dataclass(frozen=True)
 class Deck:
-    """A deck's rows by section; a section that it lacks is empty. title: the first words before its sections."""
+    """A deck's rows by section; a section that it lacks is empty. title: the first words before its sections.
+
+    remarks: on what of its text is not understood, or by its place alone.
+    """
 
     name: str
     title: str
     rows: dict[str, list[DeckRow]] = field(default_factory=dict)
+    remarks: list[Remark] = field(default_factory=list)
 
     def of(self, section: str) -> list[DeckRow]:
         return self.rows.get(section, [])
@@ -50,133 +50,184 @@ class Deck:
     def error(self, line: int, text: str) -> SceneError:
         return SceneError(f"{self.name}:{line}: {text}")
 
-    def number(self, row: DeckRow, column: int, what: str) -> float:
-        """A finite number of a row; SceneError where it is none."""
-        try:
-            value = float(row.words[column].replace("d", "e").replace("D", "e"))
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
-            raise self.error(row.line, f"{what} is {row.words[column]!r}, not a finite number; correct it")
+    def number(self, row: DeckRow, column: str, what: str = "") -> float:
+        """A finite number of a row, by its column; SceneError where it is none."""
+        return self.parsed(row, row[column], what or column)
+
+    def numbers(self, row: DeckRow, column: str, counts: tuple[int, ...]) -> list[float]:
+        """The numbers of a word such as 1.0|2.0|3.0; SceneError where there are not as many as one of the counts."""
+        found = [self.parsed(row, word, column) for word in row[column].split("|")]
+        if len(found) not in counts:
+            allowed = " or ".join(map(str, counts))
+            raise self.error(row.line, f"{column} is {row[column]!r}, {len(found)} numbers; give {allowed}")
+        return found
+
+    def parsed(self, row: DeckRow, word: str, what: str) -> float:
+        """A word as a finite number; SceneError where it is none."""
+        value = as_number(word)
+        if value is None:
+            raise self.error(row.line, f"{what} is {word!r}, not a finite number; correct it")
         return value
+
+    def numbered(self, section: str, number: str) -> DeckRow | None:
+        """The row of a section with this ID."""
+        return next((row for row in self.of(section) if row["ID"] == number), None)
+
+
+def as_number(word: str) -> float | None:
+    """A word as a finite number, also of Fortran (1.0d6); None where it is none."""
+    try:
+        value = float(word.replace("d", "e").replace("D", "e"))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+@dataclass
+class _Block:
+    """A header's line and text, and the rows with text that follow it, each with its line number."""
+
+    line: int
+    header: str
+    rows: list[tuple[int, str]] = field(default_factory=list)
 
 
 def read_deck(file: Path) -> Deck:
-    """The deck in a file; SceneError where it can't be read, or is none of MoorDyn v2."""
-    deck = _in_sections(text_of(file).splitlines(), file.name)
-    for section in ("line types", "lines"):
+    """The deck in a file; SceneError where it can't be read, or is none of MoorDyn."""
+    first, *blocks = _blocks(text_of(file).splitlines())
+    deck = Deck(file.name, next((text.strip() for _, text in first.rows), ""))
+    known = False
+    for block in blocks:
+        section = _section_of(block, known)
+        if section in SECTIONS:
+            _read_table(deck, section, block)
+        elif section is not None:
+            rows = block.rows[2 * (section in ROWS) :]
+            deck.rows.setdefault(section, []).extend(DeckRow(n, words) for n, words in _words(rows))
+        elif not known and block.rows and not deck.title:
+            deck = Deck(deck.name, block.rows[0][1].strip(), deck.rows, deck.remarks)
+        known = known or section is not None
+    for section in NEEDED:
         if not deck.of(section):
-            raise SceneError(f"{file}: has no section {section.upper()}; give a deck of MoorDyn v2")
+            raise SceneError(f"{file}: has no section {section.upper()}; give a deck of MoorDyn")
+    _refuse_twins(deck)
     return deck
 
 
-def _in_sections(lines: list[str], name: str) -> Deck:
-    section, heads, title, rows = "", 0, "", dict[str, list[DeckRow]]()
+def _blocks(lines: list[str]) -> list[_Block]:
+    """What is before the first header, then a block for each."""
+    blocks = [_Block(0, "")]
     for number, line in enumerate(lines, start=1):
-        words = tuple(line.split("#")[0].split())
-        if line.lstrip().startswith("---"):
-            head, heads = " ".join(line.replace("-", " ").split()), 0
-            section = SECTIONS.get(head.upper(), head.lower() if section else "")
-        elif not section:
-            title = title or line.strip()
-        elif section in WITH_HEADS and heads < 2:
-            heads += 1
-            _refuse_version_1(section, line.split(), f"{name}:{number}")
-        elif words:
-            if len(words) < COLUMNS.get(section, 1):
-                reported = f"{len(words)} entries, where a row of {section.upper()} has {COLUMNS[section]} or more"
-                raise SceneError(f"{name}:{number}: {reported}; give a deck of MoorDyn v2")
-            rows.setdefault(section, []).append(DeckRow(number, words))
-    return Deck(name, title, rows)
+        if "---" in line:
+            blocks.append(_Block(number, " ".join(line.replace("-", " ").split())))
+        elif line.strip():
+            blocks[-1].rows.append((number, line))
+    return blocks
 
 
-def _refuse_version_1(section: str, names: list[str], place: str) -> None:
-    """In version 1 a line's length comes before its ends, and a point has forces."""
-    reported = [word.lower() for word in names]
-    if (section == "lines" and reported[2:3] and reported[2].startswith("unstr")) or (
-        section == "points" and "fx" in reported
-    ):
-        raise SceneError(f"{place}: the columns are those of MoorDyn v1; write the deck anew in the format of v2")
+def _section_of(block: _Block, known: bool) -> str | None:
+    """The section that a header names; None for a banner before the first section.
+
+    A header may name several, as in LINE TYPES OF ALL LINES: that one counts whose headings follow.
+    """
+    header = block.header.upper()
+    every = {name: table.headers for name, table in SECTIONS.items()} | ROWS | LISTS
+    named = [name for name, words in every.items() if any(word in header for word in words)]
+    tables = [name for name in named if name in SECTIONS]
+    fitting = [name for name in tables if fits(name, _headings(block))]
+    if fitting or len(tables) < len(named) or (known and named):
+        return (fitting or [name for name in named if name not in tables] or named)[0]
+    return block.header.lower() or "rows without a section" if known else None
 
 
-@dataclass(frozen=True)
-class Chain:
-    """Rows of the lines from start to end, and the names of what they end at, as the lines have them: one more."""
-
-    lines: tuple[DeckRow, ...]
-    joints: tuple[str, ...]
-
-    def reversed(self) -> Chain:
-        return Chain(self.lines[::-1], self.joints[::-1])
+def _headings(block: _Block) -> list[str]:
+    """Words of the row of headings; MoorDyn's first versions have a row with the number of entries before it."""
+    while block.rows and as_number(block.rows[0][1].split()[0]) is not None and _counts(block.rows[0][1]):
+        del block.rows[0]
+    return block.rows[0][1].split() if block.rows else []
 
 
-def chain_with(deck: Deck, number: str | None) -> Chain:
-    """The chain of a line, by default of the deck's first."""
-    rows = deck.of("lines")
-    chosen = [row for row in rows if number is None or row.words[0] == number]
-    if not chosen:
-        known = ", ".join(row.words[0] for row in rows)
-        raise SceneError(f"{deck.name}: has no line {number}; it has {known}")
-    first = chosen[0]
-    before, after = (_followed(deck, first, joint) for joint in first.words[2:4])
-    lines = (*(row for row, _ in reversed(before)), first, *(row for row, _ in after))
-    joints = (*(joint for _, joint in reversed(before)), *first.words[2:4], *(joint for _, joint in after))
-    return Chain(lines, joints)
+def _counts(row: str) -> bool:
+    """Whether a row is one such as `4 NLines - number of line objects`."""
+    words = row.split()
+    return len(words) > 1 and words[1].lower().startswith("n") and words[1][1:].isalpha()
 
 
-def _followed(deck: Deck, row: DeckRow, joint: str) -> list[tuple[DeckRow, str]]:
-    """Lines from a joint of a line on, each with the joint at its far end."""
-    found, seen = list[tuple[DeckRow, str]](), {row.line}
-    while is_free(deck, joint):
-        others = [each for each in deck.of("lines") if joint in each.words[2:4] and each.line not in seen]
-        if not others:
-            break
-        if len(others) > 1:
-            raise deck.error(others[1].line, f"a third line at point {joint}; a scene has one riser, without branches")
-        row = others[0]
-        seen.add(row.line)
-        joint = row.words[3] if row.words[2] == joint else row.words[2]
-        found.append((row, joint))
-    return found
+def _read_table(deck: Deck, section: str, block: _Block) -> None:
+    headings = _headings(block)
+    if not block.rows:
+        return
+    line = block.rows[0][0]
+    found = columns_of(section, headings)
+    if found is None:
+        order = " ".join(SECTIONS[section].orders[0])
+        reported = f"headings {' '.join(headings)} are not those of {section.upper()}"
+        raise deck.error(line, f"{reported}; correct them: MoorDyn has {order}")
+    names, remarks = found
+    deck.remarks.extend((line, remark) for remark in remarks)
+    if [name for name in names if name] not in [[*order[: len(names)]] for order in SECTIONS[section].orders]:
+        deck.remarks.append((line, f"the columns of {section.upper()} are in an order that no MoorDyn has"))
+    if len(block.rows) > 1 and _is_data(names, block.rows[1][1]):
+        reported = f"an entry of {section.upper()} in the place of the units, which MoorDyn skips"
+        raise deck.error(block.rows[1][0], f"{reported}; write a row of units under the headings")
+    for number, words in _words(block.rows[2:]):
+        deck.rows.setdefault(section, []).append(_row(deck, section, names, headings, number, words))
 
 
-def point(deck: Deck, name: str) -> DeckRow | None:
-    """The row of a point; None for a rod's end."""
-    return next((row for row in deck.of("points") if row.words[0] == name), None)
+def _is_data(names: list[str | None], text: str) -> bool:
+    """Whether a row has a number in the column of a quantity."""
+    quantities = {"Diam", "X", "X0", "Xa", "UnstrLen"}
+    cells = zip(names, text.split(), strict=False)
+    return any(name in quantities and as_number(word) is not None for name, word in cells)
 
 
-def is_free(deck: Deck, name: str) -> bool:
-    row = point(deck, name)
-    return row is not None and row.words[1].lower() in FREE
+def _words(rows: list[tuple[int, str]]) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Words of each row before its comment, but for rows that have none."""
+    for number, text in rows:
+        if words := tuple(COMMENT.split(text)[0].split()):
+            yield number, words
 
 
-def place(deck: Deck, name: str, line: DeckRow) -> tuple[float, float, float]:
-    """Where a point or a rod's end is [m]; SceneError where that can't be known."""
-    row = point(deck, name)
-    if row is not None:
-        return _in_global(deck, row, row.words[1].lower(), 2)
-    if name[:1] in "Rr" and name[-1:] in "ABab":
-        rod = next((each for each in deck.of("rods") if each.words[0] == name[1:-1]), None)
-        if rod is not None:
-            return _in_global(deck, rod, rod.words[2].lower(), 3 if name[-1] in "Aa" else 6)
-    raise deck.error(line.line, f"line {line.words[0]} ends at {name}, which the deck does not have; correct it")
+def _row(
+    deck: Deck, section: str, names: list[str | None], headings: list[str], line: int, words: tuple[str, ...]
+) -> DeckRow:
+    table = SECTIONS[section]
+    cells = {name: word for name, word in zip(names, words, strict=False) if name is not None}
+    lacking = [name for name in names[len(words) :] if name is not None and name not in table.optional]
+    if lacking:
+        reported = f"{len(words)} entries, where a row of {section.upper()} has {len(names)}"
+        raise deck.error(line, f"{reported}; give {', '.join(lacking)}")
+    for name, heading, word in zip(names, headings, words, strict=False):
+        if name is None and as_number(word) != 0.0:
+            deck.remarks.append((line, f"{word} under {heading}, which is no column of {section.upper()}"))
+    if beyond := words[len(names) :]:
+        _beyond_the_columns(deck, section, line, words, beyond)
+    if "ID" in cells:
+        cells["ID"] = _plain_number(cells["ID"])
+    return DeckRow(line, words, cells)
 
 
-def _in_global(deck: Deck, row: DeckRow, kind: str, first: int) -> tuple[float, float, float]:
-    x, y, z = (deck.number(row, first + n, "a coordinate") for n in range(3))
-    if kind.startswith((*FIXED, *COUPLED, *FREE)):
-        return x, y, z
-    body = next((each for each in deck.of("bodies") if kind.removesuffix("pinned") == f"body{each.words[0]}"), None)
-    if body is None:
-        raise deck.error(row.line, f"{row.words[0]} is attached to {kind}, whose place is unknown; give it as Coupled")
-    turned = [deck.number(body, n, "an angle") for n in range(5, 8)]
-    if any(turned):
-        raise deck.error(body.line, f"body {body.words[0]} is turned; give what sits on it as Coupled, in global axes")
-    at = [deck.number(body, 2 + n, "a coordinate") for n in range(3)]
-    return at[0] + x, at[1] + y, at[2] + z
+def _beyond_the_columns(deck: Deck, section: str, line: int, words: tuple[str, ...], beyond: tuple[str, ...]) -> None:
+    """Entries without a heading are reported; MoorDyn takes those of a point for forces."""
+    first = len(words) - len(beyond)
+    numbers = [value for word in words[7:] if (value := as_number(word))]
+    if section == "points" and first == 9 and len(words) >= 12 and numbers and as_number(beyond[0]) is not None:
+        reported = f"{len(words)} entries under {first} headings, of which MoorDyn takes the 8th to 10th for forces"
+        raise deck.error(line, f"{reported}; name the columns FX FY FZ, or leave out what is too much")
+    deck.remarks.append((line, f"{' '.join(beyond)}: entries without a heading"))
 
 
-def elsewhere(deck: Deck, chain: Chain) -> Iterator[DeckRow]:
-    """Lines that the chain does not have."""
-    own = {row.line for row in chain.lines}
-    yield from (row for row in deck.of("lines") if row.line not in own)
+def _plain_number(word: str) -> str:
+    """An ID as what refers to it has it: without letters before it, or zeros."""
+    number = split(word)[1]
+    return str(int(number)) if number else word
+
+
+def _refuse_twins(deck: Deck) -> None:
+    for section, key in (("line types", "Name"), ("rod types", "Name"), *((name, "ID") for name in NUMBERED)):
+        seen = dict[str, int]()
+        for row in deck.of(section):
+            if row[key] in seen:
+                reported = f"{key} {row[key]} of {section.upper()} is that of line {seen[row[key]]}, too"
+                raise deck.error(row.line, f"{reported}; give it another")
+            seen[row[key]] = row.line

@@ -1,4 +1,4 @@
-"""A scene of all lines, points and free bodies of a deck, and what of the deck it does not have, line by line."""
+"""A scene of all lines, points, rods and free bodies of a deck, and what of the deck it does not have, line by line."""
 
 from __future__ import annotations
 
@@ -7,136 +7,179 @@ from itertools import pairwise
 from typing import Any
 
 from riser_soil.imported_scene import ImportedScene, Remark
-from riser_soil.moordyn.deck import COUPLED, FREE, Chain, Deck, DeckRow, is_free, place, point
-from riser_soil.moordyn.scene_of import held_at, left_of_sections, line_types, options_of, seabed_of
+from riser_soil.moordyn.chains import Chain, all_chains
+from riser_soil.moordyn.deck import Deck, DeckRow
+from riser_soil.moordyn.loads import SteadyForce, forces_of
+from riser_soil.moordyn.names import FREE
+from riser_soil.moordyn.nodes import HELD, Node, body_of, free_body, has_length, held_at, is_free, is_point, kind, place
+from riser_soil.moordyn.properties import line_types
+from riser_soil.moordyn.riser_of import ImportedRiser, about_free, about_held, free_shape, riser_of
+from riser_soil.moordyn.scene_of import head_of, left_of_sections
+from riser_soil.moordyn.settings import Options, options_of, seabed_of
+from riser_soil.scene.problem import Path
 
 TWIST = 1e-4  # of EA D^2: torsional stiffness of a line without bending stiffness
 LEAST_MASS = 1e-3  # of the water that it displaces: of a point that has a volume and no mass
 
 
 def whole_scene_of(deck: Deck) -> ImportedScene:
-    """The whole deck; SceneError for rods, and for bodies that are turned."""
-    if deck.of("rods"):
-        raise deck.error(deck.of("rods")[0].line, "rods are not there yet; import one of the lines, --line NAME")
-    chain = Chain(tuple(deck.of("lines")), ())
+    """The whole deck. Lines that free points or rods join by twos are one line, so that its shape is found from its
+    own ends. SceneError for bodies that are turned.
+    """
     options, reported = options_of(deck)
-    seabed, about_seabed = seabed_of(deck, chain, options)
-    types, about_types = line_types(deck, chain)
+    chains = [_upward(deck, chain, options) for chain in all_chains(deck)]
+    seabed, about_seabed, origins = seabed_of(deck, chains, options)
+    types, about_types, type_lines = line_types(deck, (piece for chain in chains for piece in chain.pieces))
     for each in types.values():
         each["GJ"] = each["EI"] or TWIST * each["EA"] * each["outer_diameter"] ** 2
-    bodies, about_bodies = _bodies(deck, options["rho"])
-    joints = {name: joint for n, name in enumerate(_shared(deck)) for name, joint in _joints(deck, name, bodies, n)}
-    data: dict[str, Any] = {"title": deck.title.strip("- ") or deck.name, "gravity": options["g"]}
-    data |= {"water": {"density": options["rho"], "surface_level": 0.0}, "line_types": types}
-    data |= {"lines": {_name(row): _line(deck, row) for row in deck.of("lines")}}
+    forces, about_forces = forces_of(deck)
+    ends = _ends_by_node(chains)
+    level = seabed.get("seabed", {}).get("level")
+    risers = {chain.name: _riser(deck, chain, forces, ends, options, level) for chain in chains}
+    bodies, about_bodies, body_lines = _bodies(deck, ends, options["rho"])
+    joints = {name: joint for node in ends.values() for name, joint in _joints(deck, *node, bodies, level)}
+    stage = {"name": "hang", "kind": "static"} | _loads(deck, risers, forces, bodies, ends)
+    data = head_of(deck, options, types) | {"lines": {name: riser.data for name, riser in risers.items()}}
     data |= ({"bodies": bodies} if bodies else {}) | ({"joints": joints} if joints else {}) | seabed
-    data |= {"stages": [{"name": "hang", "kind": "static"}]}
+    data |= {"stages": [stage]}
     twisted = (deck.of("line types")[0].line, "GJ, which MoorDyn does not know: as EI, or small where there is none")
-    remarks = [*reported, *about_seabed, *about_types, *about_bodies, twisted]
-    return ImportedScene(data, sorted([*remarks, *_driven(deck), *left_of_sections(deck, ("rods",))]))
+    remarks = {*deck.remarks, *reported, *about_seabed, *about_types, *about_forces, *about_bodies, twisted}
+    remarks |= {remark for riser in risers.values() for remark in riser.remarks}
+    remarks |= {*_about_nodes(deck, ends, forces), *_unused(deck, chains), *left_of_sections(deck)}
+    origins |= type_lines | body_lines
+    origins |= {("lines", name, *path): line for name, riser in risers.items() for path, line in riser.origins.items()}
+    return ImportedScene(data, sorted(remarks), {}, origins)
 
 
-def _name(row: DeckRow) -> str:
-    return f"line{row.words[0]}"
+Ends = dict[str, tuple[Node, list[tuple[Chain, str]]]]
+"""Nodes by their names, with the chains that end there, and with which of their ends."""
 
 
-def _line(deck: Deck, row: DeckRow) -> dict[str, Any]:
-    """From its lower end on, as far as both have a place of their own."""
-    length, elements = deck.number(row, 4, "UnstrLen"), int(deck.number(row, 5, "NumSegs"))
-    ends = [_end(deck, name, row) for name in _ends(deck, row)]
-    segments = [{"line_type": row.words[1], "length": length, "elements": elements}]
-    return {"segments": segments, "start": ends[0], "end": ends[1]}
+def _ends_by_node(chains: list[Chain]) -> Ends:
+    found: Ends = {}
+    for chain in chains:
+        for key, node in zip(("start", "end"), chain.ends, strict=True):
+            found.setdefault(node.name, (node, []))[1].append((chain, key))
+    return found
 
 
-def _ends(deck: Deck, row: DeckRow) -> tuple[str, str]:
-    """Names of what a line ends at, the lower one first."""
-    first, last = row.words[2:4]
-    return (last, first) if place(deck, first, row)[2] > place(deck, last, row)[2] else (first, last)
+def _upward(deck: Deck, chain: Chain, options: Options) -> Chain:
+    """From its lower end on."""
+    depth = options["WtrDpth"]
+    first, last = (place(deck, node, -depth if depth > 0.0 else None)[2] for node in chain.ends)
+    return chain.reversed() if first > last else chain
 
 
-def _end(deck: Deck, name: str, line: DeckRow) -> Any:
-    return "free" if is_free(deck, name) or _body_of(deck, name) else {"position": list(place(deck, name, line))}
+def _riser(
+    deck: Deck, chain: Chain, forces: dict[str, list[SteadyForce]], ends: Ends, options: Options, level: float | None
+) -> ImportedRiser:
+    """A line whose ends are held, shared with others or with a body, or free."""
+    riser = riser_of(deck, chain, forces, [node for node in chain.ends if _is_shared(deck, *ends[node.name])])
+    rows = [chain.pieces[n].row for n in (0, -1)]
+    for key, node, row in zip(("start", "end"), chain.ends, rows, strict=True):
+        riser.origins[(key,)] = row.line if node.section == "rods" else node.row.line
+        if is_free(deck, node) or free_body(deck, node) is not None:
+            riser.data[key] = "free"
+        else:
+            riser.data[key] = {"position": [*place(deck, node, level)]}
+            riser.remarks += about_held(deck, node, row.line)
+    loose = [node for node in chain.ends if is_free(deck, node) and not _is_shared(deck, *ends[node.name])]
+    if loose:
+        held = [node for node in chain.ends if node not in loose]
+        if not held:
+            raise deck.error(chain.pieces[0].row.line, "no end of it is held or joined; fix or couple one of them")
+        points = free_shape(deck, chain, place(deck, held[0], level), options["rho"], level)
+        riser.data["initial"] = {"points": points[::-1] if loose[0] == chain.ends[0] else points}
+    return riser
 
 
-def _body_of(deck: Deck, name: str) -> DeckRow | None:
-    """The free body that a point sits on."""
-    row = point(deck, name)
-    word = "" if row is None else row.words[1].lower().removesuffix("pinned")
-    return next((b for b in deck.of("bodies") if word == f"body{b.words[0]}" and b.words[1].lower() in FREE), None)
+def _is_shared(deck: Deck, node: Node, at_it: list[tuple[Chain, str]]) -> bool:
+    """Whether a node is a joint of lines, or of a line and a body."""
+    return (is_free(deck, node) and len(at_it) > 1) or free_body(deck, node) is not None
 
 
-def _shared(deck: Deck) -> list[str]:
-    """Names of the points that hold ends and move with them."""
-    ends = (name for row in deck.of("lines") for name in row.words[2:4])
-    return [name for name in dict.fromkeys(ends) if is_free(deck, name) or _body_of(deck, name)]
-
-
-def _joints(deck: Deck, name: str, bodies: dict[str, Any], n: int) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Of all ends at a point: with its body where it has one, else with each other."""
-    rows = [row for row in deck.of("lines") if name in row.words[2:4]]
-    ends: list[dict[str, Any]] = [
-        {"line": _name(row), "at": ("start", "end")[_ends(deck, row).index(name)]} for row in rows
-    ]
-    at = point(deck, name)
-    assert at is not None
-    if (body := _body_of(deck, name)) is not None:
-        offset = [deck.number(at, 2 + i, "a coordinate") for i in range(3)]
-        ends.insert(0, {"body": f"body{body.words[0]}", "offset": offset})
-    elif f"point{name}" in bodies:
-        ends.insert(0, {"body": f"point{name}"})
+def _joints(
+    deck: Deck, node: Node, at_it: list[tuple[Chain, str]], bodies: dict[str, Any], level: float | None
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Of all ends at a node: with its body where it has one, else with each other."""
+    if not _is_shared(deck, node, at_it):
+        return
+    ends: list[dict[str, Any]] = [{"line": chain.name, "at": key} for chain, key in at_it]
+    if (body := free_body(deck, node)) is not None:
+        columns = ("X", "Y", "Z") if node.section == "points" else tuple(f"{axis}{node.end.lower()}" for axis in "XYZ")
+        offset = [deck.number(node.row, column) for column in columns]
+        ends.insert(0, {"body": _body_name(body), "offset": offset})
+    elif _node_body(node) in bodies:
+        ends.insert(0, {"body": _node_body(node)})
     first, *others = ends
     if "body" in first:
         pairs, place_of = [(first, each) for each in others], {}
     else:
-        pairs, place_of = [*pairwise(ends)], {"position": list(place(deck, name, rows[0]))}
+        pairs, place_of = [*pairwise(ends)], {"position": list(place(deck, node, level))}
     for m, pair in enumerate(pairs, start=1):
         number = f"_{m}" if len(pairs) > 1 else ""
-        yield f"at{name}{number}", {"kind": "pinned", "between": list(pair), **place_of}
+        yield f"at{_short(node)}{number}", {"kind": "pinned", "between": list(pair), **place_of}
 
 
-def _bodies(deck: Deck, rho: float) -> tuple[dict[str, Any], list[Remark]]:
-    """Free points that have something of their own, and free bodies."""
-    found, remarks = dict[str, Any](), list[Remark]()
-    for row in deck.of("points"):
-        held = held_at(deck, row.words[0])
-        if not is_free(deck, row.words[0]) or not held:
+def _short(node: Node) -> str:
+    """Of a point its number, else R or B before it, and of a rod its end."""
+    return {"points": "", "rods": "R", "bodies": "B"}[node.section] + node.name.split()[1]
+
+
+def _node_body(node: Node) -> str:
+    """Name of the point body at a node."""
+    return f"{node.section.removesuffix('s')}{node.row['ID']}" if node.section == "points" else _body_name(node.row)
+
+
+def _body_name(row: DeckRow) -> str:
+    return f"body{row['ID']}"
+
+
+def _bodies(deck: Deck, ends: Ends, rho: float) -> tuple[dict[str, Any], list[Remark], dict[Path, int]]:
+    """Free nodes that lines share and that have something of their own, and free bodies."""
+    found, remarks, origins = dict[str, Any](), list[Remark](), dict[Path, int]()
+    for node, at_it in ends.values():
+        held = held_at(deck, node)
+        if not is_free(deck, node) or not _is_shared(deck, node, at_it) or not held:
             continue
-        if "mass" not in held:
-            held["mass"] = LEAST_MASS * rho * held.get("volume", 0.0) or 1.0
-            remarks.append((row.line, f"point {row.words[0]} has no mass; it gets {held['mass']:g} kg"))
-        where = [deck.number(row, 2 + n, "a coordinate") for n in range(3)]
-        found[f"point{row.words[0]}"] = {"kind": "point", "position": where} | held
+        name = _node_body(node)
+        remarks += [(node.row.line, about) for about in _with_mass(held, node.name, rho)]
+        found[name] = {"kind": "point", "position": [*place(deck, node)]} | held
+        origins[("bodies", name)] = node.row.line
     for row in deck.of("bodies"):
-        if row.words[1].lower() in FREE:
-            found[f"body{row.words[0]}"] = _rigid(deck, row)
-    return found, remarks
+        if kind(deck, "bodies", row)[0] == FREE and not is_point(deck, row):
+            found[_body_name(row)], about = _rigid(deck, row, rho)
+            remarks += [(row.line, each) for each in about]
+            origins[("bodies", _body_name(row))] = row.line
+    return found, remarks, origins
 
 
-def _rigid(deck: Deck, row: DeckRow) -> dict[str, Any]:
-    x, angles = ([deck.number(row, first + n, "a coordinate") for n in range(3)] for first in (2, 5))
-    if any(angles):
-        raise deck.error(row.line, f"body {row.words[0]} is turned; give its points in axes that are not")
-    if len(row.words) < 14:
-        raise deck.error(row.line, f"body {row.words[0]} has {len(row.words)} entries of 14; give all of them")
-    centre = _centre(_numbers(deck, row, 9, "CG"))
-    drag, added = (_numbers(deck, row, n, key) for n, key in ((12, "CdA"), (13, "Ca")))
-    J = _numbers(deck, row, 10, "I")
+def _with_mass(held: dict[str, float], name: str, rho: float) -> Iterator[str]:
+    """Give what has none the least mass."""
+    if "mass" not in held:
+        held["mass"] = LEAST_MASS * rho * held.get("volume", 0.0) or 1.0
+        yield f"{name} has no mass; it gets {held['mass']:g} kg"
+
+
+def _rigid(deck: Deck, row: DeckRow, rho: float) -> tuple[dict[str, Any], list[str]]:
+    name = f"body {row['ID']}"
+    if any(deck.number(row, column) for column in ("r0", "p0", "y0")):
+        raise deck.error(row.line, f"{name} is turned; give its points in axes that are not")
+    J = deck.numbers(row, "I", (1, 3))
+    if not any(J):
+        raise deck.error(row.line, f"{name} has no inertia, and what is on it is not all at its origin; give I")
+    centre = deck.numbers(row, "CG", (1, 3))
+    centre = centre if len(centre) == 3 else [0.0, 0.0, centre[0]]
+    drag, added = deck.numbers(row, "CdA", (1, 2, 3, 6)), deck.numbers(row, "Ca", (1, 3))
+    mass_and_volume = (deck.number(row, column) for column in ("Mass", "Volume"))
+    weight = {key: value for key, value in zip(HELD, mass_and_volume, strict=False) if value}
+    about = [*_with_mass(weight, name, rho)]
     return {
-        "kind": "rigid", "position": x, "mass": deck.number(row, 8, "Mass"), "inertia": _three(J),
-        "centre_of_gravity": centre, "volume": deck.number(row, 11, "Volume"),
+        "kind": "rigid", "position": [deck.number(row, column) for column in ("X0", "Y0", "Z0")], **weight,
+        "inertia": _three(J), "centre_of_gravity": centre,
         "centre_of_buoyancy": centre,  # MoorDyn lets both act at CG
         "drag_area": _three(drag), "added_mass": _three(added), "rotational_drag": _turning(drag),
-    }  # fmt: skip
-
-
-def _numbers(deck: Deck, row: DeckRow, column: int, what: str) -> list[float]:
-    """Of a word such as 1.0|2.0|3.0."""
-    words = row.words[column].split("|")
-    return [deck.number(DeckRow(row.line, tuple(words)), n, what) for n in range(len(words))]
-
-
-def _centre(values: list[float]) -> list[float]:
-    return values if len(values) == 3 else [0.0, 0.0, values[0]]
+    }, about  # fmt: skip
 
 
 def _three(values: list[float]) -> list[float]:
@@ -145,13 +188,56 @@ def _three(values: list[float]) -> list[float]:
 
 
 def _turning(values: list[float]) -> list[float]:
-    """Those for rotations; zero where there are none."""
-    return {2: values[1:] * 3, 6: values[3:]}.get(len(values), [0.0, 0.0, 0.0])
+    """Those for rotations: MoorDyn takes those along the axes where a deck has no others."""
+    return {1: values * 3, 2: values[1:] * 3, 3: values, 6: values[3:]}[len(values)]
 
 
-def _driven(deck: Deck) -> Iterator[Remark]:
-    """What moves from outside."""
-    for row in [*deck.of("points"), *deck.of("bodies")]:
-        word = row.words[1].lower()
-        if word.startswith(COUPLED):
-            yield row.line, f"the motion of {row.words[0]} ({row.words[1]}), which comes from outside: it stays there"
+def _loads(
+    deck: Deck,
+    risers: dict[str, ImportedRiser],
+    forces: dict[str, list[SteadyForce]],
+    bodies: dict[str, Any],
+    ends: Ends,
+) -> dict[str, Any]:
+    """Loads of the stage, by line and by body."""
+    by_line = {name: [*riser.loads] for name, riser in risers.items()}
+    free = {f"body {row['ID']}": name for row in deck.of("bodies") if (name := _body_name(row)) in bodies}
+    by_body = {name: [each.load for each in forces.get(body, ())] for body, name in free.items()}
+    for node, at_it in ends.values():
+        if not is_free(deck, node) or not _is_shared(deck, node, at_it) or node.name not in forces:
+            continue
+        if (name := _node_body(node)) in bodies:
+            by_body[name] = [each.load for each in forces[node.name]]
+        else:
+            chain, key = at_it[0]
+            by_line[chain.name] += [{"at": key} | each.load for each in forces[node.name]]
+    loads = dict[str, Any]()
+    for part, by_name in (("lines", by_line), ("bodies", by_body)):
+        if on_it := {name: {"loads": several} for name, several in by_name.items() if several}:
+            loads[part] = on_it
+    return loads
+
+
+def _about_nodes(deck: Deck, ends: Ends, forces: dict[str, list[SteadyForce]]) -> Iterator[Remark]:
+    """What is lost at nodes that lines share, and forces on what is held."""
+    on_bodies = {f"body {row['ID']}" for row in deck.of("bodies") if kind(deck, "bodies", row)[0] == FREE}
+    for node, at_it in ends.values():
+        if _is_shared(deck, node, at_it):
+            yield from about_free(deck, node)
+        if node.section == "rods" and (len(at_it) > 1 or free_body(deck, node) is not None):
+            yield node.row.line, f"the lines at {node.name} are clamped to it; they are free to turn here"
+        if not is_free(deck, node) and node.name in forces:
+            yield from ((each.line, f"force on {node.name}, which is held") for each in forces[node.name])
+    for name, several in forces.items():
+        if name.startswith("body") and name not in on_bodies:
+            yield from ((each.line, f"force on {name}, which is held") for each in several)
+
+
+def _unused(deck: Deck, chains: list[Chain]) -> Iterator[Remark]:
+    """Rods that are held, or on bodies: their mass, buoyancy and drag; coupled bodies."""
+    own = {piece.row.line for chain in chains for piece in chain.pieces}
+    for row in deck.of("rods"):
+        if row.line in own or not has_length(deck, row):
+            continue
+        where = "on a body" if body_of(deck, "rods", row) is not None else "held"
+        yield row.line, f"rod {row['ID']} is {where}: its weight, buoyancy and drag"
