@@ -131,13 +131,15 @@ def catenary_between(
 
 def resting_level(scene: Scene, elements: sections.Elements, ends: Array) -> float:
     """Height z [m] of the axis where the thinnest of the riser rests, below the lower of its ends (2, 3) [m]; -inf
-    where there is nothing to rest on. A trench in soil doesn't count.
+    where there is nothing to rest on. A trench in soil doesn't count. An end below springs counts as on them: the first
+    shape is laid from there, and the springs raise it.
     """
     if scene.contact is None:
         return -np.inf
     x, y, z = (float(value) for value in ends[np.argmin(ends[:, 2])])
     ground = ground_height(scene, (x, y, z)) if scene.soil is None else scene.seabed_level
-    return min(ground + float(contact_radius(scene, elements).min()), z)
+    level = ground + float(contact_radius(scene, elements).min())
+    return min(level, z) if scene.laid_from_below else level
 
 
 def least_bend(elements: sections.Elements) -> float:

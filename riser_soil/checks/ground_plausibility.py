@@ -14,7 +14,10 @@ from riser_soil.checks.bending_plausibility import nodes_on_ground
 from riser_soil.checks.mesh_plausibility import mesh_warnings, reported_size
 from riser_soil.checks.motion_plausibility import farthest_move, top_speed
 from riser_soil.core.arrays import Array
+from riser_soil.scene.bathymetry import ground_height
+from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import SpringSeabed
 from riser_soil.scene.soil import GeneratedMesh
 from riser_soil.scene.stages import DynamicStage, varying_in
 
@@ -26,6 +29,7 @@ CORNER = 20.0
 # water.
 LOWERED, DRIVEN = 5.0, 0.1
 MANY_CYCLES = 10
+LEAST_SUNK = 1e-6  # m: an end no deeper in the seabed lies on it
 # Points of each element that are looked at, and the part of a mesh's height by which its top may miss the seabed.
 POINTS, OFF_LEVEL = 20, 1e-3
 # Weight over what clay bears at its surface from which small strain is told of: V/(su D) = 1.3, an embedment of D/25.
@@ -37,6 +41,7 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
     yield from _penalty_against_soil(assembly)
     yield from _corner_against_weight(assembly)
     yield from _beyond_the_grid(assembly)
+    yield from _ends_below(assembly.scene)
     if assembly.soil is not None:
         from riser_soil.checks.soil_edge import edge_warnings
         from riser_soil.checks.soil_mesh import quality_warnings
@@ -80,6 +85,19 @@ def _beyond_the_grid(assembly: Assembly) -> Iterator[str]:
             f"{beyond[-1]:.4g} m, lie beyond the grid, {heights.extent}, where the seabed goes straight on: take a "
             "grid that reaches farther"
         )
+
+
+def _ends_below(scene: Scene) -> Iterator[str]:
+    """Ends below a seabed of springs."""
+    ends = (("start", scene.line.start), ("end", scene.line.end))
+    for key, end in ends if isinstance(scene.seabed, SpringSeabed) and scene.contact is not None else ():
+        sunk = ground_height(scene, end.position) - end.position[2] if isinstance(end, Support) else 0.0
+        if sunk > LEAST_SUNK:
+            yield (
+                f"riser.{key}.position: lies {sunk:.4g} m below the seabed: the riser is laid from there, and the "
+                f"seabed's springs push it up by {1e-3 * scene.seabed.stiffness * sunk:.4g} kN/m at the end; if that "
+                "is not meant, correct the end's z or the seabed's level"
+            )
 
 
 def _nothing_below(assembly: Assembly) -> Iterator[str]:

@@ -15,11 +15,14 @@ def columns_of(section: str, headings: Sequence[str]) -> tuple[list[str | None],
     None where MoorDyn's columns are not among the headings.
     """
     table = SECTIONS[section]
-    for names in (_named(table, headings, 1), _named(table, headings, MOST_WORDS)):
-        unknown = names.count(None)
-        if unknown and (order := _order_with(table, names)) is not None:
-            by_place = [(h, name) for h, known, name in zip(headings, names, order, strict=False) if known is None]
-            return [*order], [f"heading {heading} is read as {name}, by its place" for heading, name in by_place]
+    readings = [_named(table, headings, words) for words in (1, MOST_WORDS)]
+    for names in readings:
+        if None not in names and not missing(table, names):
+            return names, []
+    for names in readings:
+        if (order := _order_with(table, names)) is not None:
+            by_place = [(h, name) for h, known, name in zip(headings, names, order, strict=False) if known != name]
+            return order, [f"heading {heading} is read as {name}, by its place" for heading, name in by_place]
         if not missing(table, names):
             return names, []
     return None
@@ -52,13 +55,17 @@ def _read(table: Section, headings: list[str], most: int, used: set[str]) -> Ite
                 break
 
 
-def _order_with(table: Section, names: list[str | None]) -> tuple[str, ...] | None:
-    """An order of MoorDyn's in which the known columns are where they are here, and the others are not known."""
+def _order_with(table: Section, names: list[str | None]) -> list[str | None] | None:
+    """Names by an order of MoorDyn's in which the known columns are where they are here; what is unknown after the last
+    of these is left so, unless a column is missing.
+    """
     for order in table.orders:
         some = order[: len(names)]
         at_their_places = len(some) == len(names) and all(
             known in (None, name) for known, name in zip(names, some, strict=True)
         )
-        if at_their_places and not missing(table, some) and 2 * names.count(None) <= len(names):
-            return some
+        if not at_their_places or missing(table, some) or 2 * names.count(None) > len(names):
+            continue
+        last = len(names) if missing(table, names) else max(n for n, name in enumerate(names) if name is not None)
+        return [*some[:last], *names[last:]]
     return None

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from riser_soil.errors import SceneError
 from riser_soil.imported_scene import Remark, text_of
 from riser_soil.moordyn.columns import columns_of, fits
-from riser_soil.moordyn.names import LISTS, NUMBERED, ROWS, SECTIONS, split
+from riser_soil.moordyn.names import LISTS, NUMBERED, ROWS, SECTIONS, plain, split
 
 COMMENT = re.compile(r"[#!%]")
+OF_MAP = "cb"  # a column of MAP++: friction on the seabed
 NEEDED = ("line types", "lines")
 
 
@@ -107,9 +108,11 @@ def read_deck(file: Path) -> Deck:
         elif not known and block.rows and not deck.title:
             deck = Deck(deck.name, block.rows[0][1].strip(), deck.rows, deck.remarks)
         known = known or section is not None
+    if not deck.rows.keys() & {*SECTIONS}:
+        raise SceneError(f"{file}: is no deck of MoorDyn: no header (---) names a section such as LINE TYPES or LINES")
     for section in NEEDED:
         if not deck.of(section):
-            raise SceneError(f"{file}: has no section {section.upper()}; give a deck of MoorDyn")
+            raise SceneError(f"{file}: has no {section.upper()}, and so no riser; give a deck with lines")
     _refuse_twins(deck)
     return deck
 
@@ -158,6 +161,8 @@ def _read_table(deck: Deck, section: str, block: _Block) -> None:
     if not block.rows:
         return
     line = block.rows[0][0]
+    if section == "line types" and OF_MAP in map(plain, headings):
+        raise deck.error(line, f"{' '.join(headings)} are headings of MAP++; give a deck of MoorDyn")
     found = columns_of(section, headings)
     if found is None:
         order = " ".join(SECTIONS[section].orders[0])
@@ -170,8 +175,29 @@ def _read_table(deck: Deck, section: str, block: _Block) -> None:
     if len(block.rows) > 1 and _is_data(names, block.rows[1][1]):
         reported = f"an entry of {section.upper()} in the place of the units, which MoorDyn skips"
         raise deck.error(block.rows[1][0], f"{reported}; write a row of units under the headings")
-    for number, words in _words(block.rows[2:]):
+    rows = [*_words(block.rows[2:])]
+    if section == "lines" and (order := _other_order(names, [words for _, words in rows])) is not None:
+        names = [*order]
+        deck.remarks.append((line, f"entries of LINES are in the order {' '.join(order)}, unlike their headings"))
+    for number, words in rows:
         deck.rows.setdefault(section, []).append(_row(deck, section, names, headings, number, words))
+
+
+def _other_order(names: list[str | None], rows: list[tuple[str, ...]]) -> tuple[str, ...] | None:
+    """MoorDyn's order of LINES that the entries are in where they can't be in that of their headings."""
+    if all(_can_be_lines(names, words) for words in rows):
+        return None
+    orders = (order[: len(names)] for order in SECTIONS["lines"].orders)
+    return next((order for order in orders if all(_can_be_lines(order, words) for words in rows)), None)
+
+
+def _can_be_lines(names: Sequence[str | None], words: tuple[str, ...]) -> bool:
+    """Whether the number of segments is one, and the ends have numbers without a fraction."""
+    cells = dict(zip(names, words, strict=False))
+    segments = as_number(cells.get("NumSegs", ""))
+    ends = [cells.get(name, "") for name in ("AttachA", "AttachB")]
+    whole = segments is not None and segments == int(segments)
+    return whole and all(split(end)[1] and "." not in end for end in ends)
 
 
 def _is_data(names: list[str | None], text: str) -> bool:
@@ -193,7 +219,12 @@ def _row(
 ) -> DeckRow:
     table = SECTIONS[section]
     cells = {name: word for name, word in zip(names, words, strict=False) if name is not None}
-    lacking = [name for name in names[len(words) :] if name is not None and name not in table.optional]
+    newest = table.orders[0]
+    if len(names) > len(words) == len(newest) and not any(
+        as_number(word) != 0.0 for known, name, word in zip(names, newest, words, strict=False) if known != name
+    ):
+        cells = dict(zip(newest, words, strict=True))  # what other columns would have is 0 anyway
+    lacking = [name for name in names[len(words) :] if name is not None and name not in {*table.optional, *cells}]
     if lacking:
         reported = f"{len(words)} entries, where a row of {section.upper()} has {len(names)}"
         raise deck.error(line, f"{reported}; give {', '.join(lacking)}")

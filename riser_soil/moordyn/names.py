@@ -170,19 +170,23 @@ LISTS = {"options": ("OPTIONS",), "outputs": ("OUTPUT",)}
 KNOWN = (*SECTIONS, *LISTS)
 """Sections that are read; rows of all others are reported."""
 
-FREE, FIXED, COUPLED, PINNED, COUPLED_PINNED, BODY = "free", "fixed", "coupled", "pinned", "coupled pinned", "body"
+FREE, FIXED, COUPLED, PINNED, COUPLED_PINNED = "free", "fixed", "coupled", "pinned", "coupled pinned"
+BODY, TURBINE = "body", "turbine"  # by a number
 
-_FIXED, _COUPLED = ("FIXED", "FIX", "ANCHOR"), ("COUPLED", "CPLD", "VESSEL", "VES", "TURBINE", "T")
+_FIXED, _COUPLED = ("FIXED", "FIX", "ANCHOR"), ("COUPLED", "CPLD", "VESSEL", "VES")
+_TURBINE = ("TURBINE", "T")
 _COUPLED_PINNED = ("COUPLEDPINNED", "CPLDPIN", "VESSELPINNED", "VESPIN")
 KINDS = {
     "points": {
         FIXED: _FIXED, COUPLED: (*_COUPLED, "FAIRLEAD"), FREE: ("FREE", "POINT", "P", "CONNECT", "CON"),
-        BODY: ("BODY",),
+        BODY: ("BODY",), TURBINE: _TURBINE,
     },
-    "bodies": {FIXED: _FIXED, COUPLED: _COUPLED, COUPLED_PINNED: _COUPLED_PINNED, FREE: ("FREE",)},
+    "bodies": {
+        FIXED: _FIXED, COUPLED: _COUPLED, COUPLED_PINNED: _COUPLED_PINNED, FREE: ("FREE",), TURBINE: _TURBINE,
+    },
     "rods": {
         FIXED: _FIXED, PINNED: ("PINNED", "PIN"), COUPLED: _COUPLED, COUPLED_PINNED: _COUPLED_PINNED,
-        FREE: ("FREE", "POINT", "P", "CON"), BODY: ("BODY",),
+        FREE: ("FREE", "POINT", "P", "CON"), BODY: ("BODY",), TURBINE: _TURBINE,
     },
 }  # fmt: skip
 """Kinds of attachment by their words, before a number if they have one."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from riser_soil.core.quantities import Vector
@@ -16,6 +17,7 @@ from riser_soil.moordyn.names import (
     KINDS,
     ON_THE_SEABED,
     PINNED,
+    TURBINE,
     split,
 )
 
@@ -168,13 +170,34 @@ def place(deck: Deck, node: Node, seabed: float | None = None) -> Vector:
             raise deck.error(row.line, f"{node.name} is on the {row[columns[2]]}, and no depth is given; give WtrDpth")
         x, y = (deck.number(row, column) for column in columns[:2])
         return x, y, seabed
+    _refuse_turbine(deck, row, section)
     x, y, z = _own(deck, row, columns)
     if (body := body_of(deck, section, row)) is None:
         return x, y, z
-    if any(_own(deck, body, ("r0", "p0", "y0"))):
-        raise deck.error(body.line, f"body {body['ID']} is turned; give what sits on it as Coupled, in global axes")
-    at = _own(deck, body, ("X0", "Y0", "Z0"))
+    _refuse_turbine(deck, body, "bodies")
+    at, (x, y, z) = _own(deck, body, ("X0", "Y0", "Z0")), turned(deck, body, (x, y, z))
     return at[0] + x, at[1] + y, at[2] + z
+
+
+def _refuse_turbine(deck: Deck, row: DeckRow, section: str) -> None:
+    if kind(deck, section, row)[0] == TURBINE:
+        reported = f"{section[:-1]} {row['ID']} is on {row['Attachment']}, whose place is in another file"
+        raise deck.error(row.line, f"{reported}; write Coupled, with its place in global axes")
+
+
+def turned(deck: Deck, body: DeckRow, arm: Vector) -> Vector:
+    """A place on a body that is turned about one axis; SceneError about several, whose order differs by version."""
+    angles = _own(deck, body, ("r0", "p0", "y0"))
+    axes = [n for n, angle in enumerate(angles) if angle]
+    if len(axes) > 1:
+        reported = f"body {body['ID']} is turned about {len(axes)} axes, in an order that MoorDyn's versions differ in"
+        raise deck.error(body.line, f"{reported}; give what sits on it as Coupled, in global axes")
+    out = [*arm]
+    for n in axes:
+        a, b = (n + 1) % 3, (n + 2) % 3
+        c, s = math.cos(math.radians(angles[n])), math.sin(math.radians(angles[n]))
+        out[a], out[b] = c * arm[a] - s * arm[b], s * arm[a] + c * arm[b]
+    return out[0], out[1], out[2]
 
 
 def _own(deck: Deck, row: DeckRow, columns: tuple[str, ...] | str) -> Vector:

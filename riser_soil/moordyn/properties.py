@@ -11,6 +11,7 @@ from riser_soil.moordyn.deck import Deck, DeckRow, as_number
 from riser_soil.moordyn.nodes import Piece
 from riser_soil.scene.problem import Path
 
+TWIST = 1e-4  # of EA D^2: torsional stiffness of a line without bending stiffness
 STEEL = 2.1e11  # Pa: Young's modulus of the bar that stands for a rod
 STIFFER = 10.0  # over the stiffest line's: the least of a rod
 
@@ -53,10 +54,20 @@ def line_types(deck: Deck, pieces: Iterable[Piece]) -> tuple[dict[str, Any], lis
     return types, remarks, origins
 
 
+def stiffen_in_torsion(deck: Deck, types: dict[str, Any]) -> Remark:
+    """Give all types GJ, which lines in space need."""
+    for each in types.values():
+        each["GJ"] = each["EI"] or TWIST * each["EA"] * each["outer_diameter"] ** 2
+    line = deck.of("line types")[0].line
+    return line, "GJ, which MoorDyn does not know: as EI, or small where there is none"
+
+
 def _line_type(deck: Deck, row: DeckRow) -> dict[str, Any]:
     stiffness = {"EA": row["EA"].split("|")[0], "EI": row.cells.get("EI", "0")}
-    EA, EI = (deck.parsed(row, word, f"{key} (curves from files can't be carried over)")
-              for key, word in stiffness.items())  # fmt: skip
+    for key, word in stiffness.items():
+        if as_number(word) is None:
+            raise deck.error(row.line, f"{key} of {row['Name']} is {word!r}, a curve from a file; give one number")
+    EA, EI = (deck.parsed(row, word, key) for key, word in stiffness.items())
     return {
         "outer_diameter": deck.number(row, "Diam"), "mass": deck.number(row, "Mass/m"), "EA": EA, "EI": EI,
         "drag": {"normal": deck.number(row, "Cd"), "tangential": deck.number(row, "CdAx")},

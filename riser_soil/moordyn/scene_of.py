@@ -11,10 +11,12 @@ from riser_soil.moordyn.deck import Deck
 from riser_soil.moordyn.loads import SteadyForce, forces_of
 from riser_soil.moordyn.names import KNOWN
 from riser_soil.moordyn.nodes import is_free, place
-from riser_soil.moordyn.properties import line_types
+from riser_soil.moordyn.properties import line_types, stiffen_in_torsion
 from riser_soil.moordyn.riser_of import ImportedRiser, about_held, free_shape, riser_of, weighs
 from riser_soil.moordyn.settings import Options, options_of, seabed_of
 from riser_soil.scene.problem import Path
+
+IN_WATER = ("drag", "added_mass")
 
 
 def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
@@ -26,9 +28,11 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
     forces, about_forces = forces_of(deck)
     riser = riser_of(deck, chain, forces)
     _hold(deck, chain, riser, options, seabed.get("seabed", {}).get("level"))
+    aside = len(riser.data.get("initial", {}).get("points", ())) > 2
+    twisted = [stiffen_in_torsion(deck, types)] if riser.loads or aside else []
     stage = {"name": "hang", "kind": "static"} | ({"loads": riser.loads} if riser.loads else {})
     data = head_of(deck, options, types) | {"riser": riser.data} | seabed | {"stages": [stage]}
-    remarks = [*deck.remarks, *reported, *about_seabed, *about_types, *about_forces, *riser.remarks]
+    remarks = [*deck.remarks, *reported, *about_seabed, *about_types, *about_forces, *twisted, *riser.remarks]
     remarks += [*_left_out(deck, chain), *_unused(deck, chain, forces), *left_of_sections(deck)]
     own: dict[Path, int] = {("riser",): chain.lines[0].line}
     of_riser: dict[Path, int] = {("riser", *path): number for path, number in riser.origins.items()}
@@ -38,7 +42,10 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
 def head_of(deck: Deck, options: Options, types: dict[str, Any]) -> dict[str, Any]:
     """What a scene begins with."""
     data: dict[str, Any] = {"title": deck.title.strip("- ") or deck.name, "gravity": options["g"]}
-    return data | {"water": {"density": options["rho"], "surface_level": 0.0}, "line_types": types}
+    if options["rho"] > 0.0:
+        return data | {"water": {"density": options["rho"], "surface_level": 0.0}, "line_types": types}
+    dry = {name: {key: kind[key] for key in kind if key not in IN_WATER} for name, kind in types.items()}
+    return data | {"line_types": dry}
 
 
 def _upward(deck: Deck, chain: Chain, options: Options) -> Chain:

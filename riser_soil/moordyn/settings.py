@@ -16,6 +16,7 @@ from riser_soil.moordyn.properties import diameter
 from riser_soil.scene.problem import Path
 
 ROUND_OFF = 1e-6  # m: what is no more below an anchor is as deep as it
+NEAR = 0.8  # of 1: how alike an unknown option is to one that may be meant
 SOME_DEPTH = 1e-6  # m: an anchor that is no more below the seabed lies on it
 
 
@@ -56,7 +57,7 @@ def _about_option(row: DeckRow) -> Iterator[str]:
     lost = lost_option(word)
     if lost is None:
         known = [*(name for names in (*ALIASES.values(), *LOST) for name in names), *HARMLESS]
-        near = difflib.get_close_matches(word.lower(), known, 1)
+        near = difflib.get_close_matches(word.lower(), known, 1, NEAR)
         meant = f"; {near[0]} is, if that is meant" if near else ""
         yield f"{word} {value}: no option of MoorDyn{meant}"
     elif lost[0] is None or as_number(value) != lost[0]:

@@ -12,13 +12,12 @@ from riser_soil.moordyn.deck import Deck, DeckRow
 from riser_soil.moordyn.loads import SteadyForce, forces_of
 from riser_soil.moordyn.names import FREE
 from riser_soil.moordyn.nodes import HELD, Node, body_of, free_body, has_length, held_at, is_free, is_point, kind, place
-from riser_soil.moordyn.properties import line_types
+from riser_soil.moordyn.properties import line_types, stiffen_in_torsion
 from riser_soil.moordyn.riser_of import ImportedRiser, about_free, about_held, free_shape, riser_of
 from riser_soil.moordyn.scene_of import head_of, left_of_sections
 from riser_soil.moordyn.settings import Options, options_of, seabed_of
 from riser_soil.scene.problem import Path
 
-TWIST = 1e-4  # of EA D^2: torsional stiffness of a line without bending stiffness
 LEAST_MASS = 1e-3  # of the water that it displaces: of a point that has a volume and no mass
 
 
@@ -30,8 +29,7 @@ def whole_scene_of(deck: Deck) -> ImportedScene:
     chains = [_upward(deck, chain, options) for chain in all_chains(deck)]
     seabed, about_seabed, origins = seabed_of(deck, chains, options)
     types, about_types, type_lines = line_types(deck, (piece for chain in chains for piece in chain.pieces))
-    for each in types.values():
-        each["GJ"] = each["EI"] or TWIST * each["EA"] * each["outer_diameter"] ** 2
+    twisted = stiffen_in_torsion(deck, types)
     forces, about_forces = forces_of(deck)
     ends = _ends_by_node(chains)
     level = seabed.get("seabed", {}).get("level")
@@ -42,7 +40,6 @@ def whole_scene_of(deck: Deck) -> ImportedScene:
     data = head_of(deck, options, types) | {"lines": {name: riser.data for name, riser in risers.items()}}
     data |= ({"bodies": bodies} if bodies else {}) | ({"joints": joints} if joints else {}) | seabed
     data |= {"stages": [stage]}
-    twisted = (deck.of("line types")[0].line, "GJ, which MoorDyn does not know: as EI, or small where there is none")
     remarks = {*deck.remarks, *reported, *about_seabed, *about_types, *about_forces, *about_bodies, twisted}
     remarks |= {remark for riser in risers.values() for remark in riser.remarks}
     remarks |= {*_about_nodes(deck, ends, forces), *_unused(deck, chains), *left_of_sections(deck)}

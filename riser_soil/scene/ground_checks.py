@@ -7,7 +7,7 @@ from riser_soil.scene.plane import positions, vertical_plane
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, SpringSeabed
+from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
 from riser_soil.scene.seabed_features import Trench
 from riser_soil.scene.soil import Block
 from riser_soil.seabed.bearing import Strength
@@ -122,7 +122,7 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
         ground = ground_height(scene, end.position)
         sunk = ground - end.position[2]
         radius = 0.5 * (line.outer_diameter or 0.0) if scene.contact_at == "outer" else 0.0
-        if sunk > _ROUND_OFF and not isinstance(scene.seabed, SpringSeabed):
+        if sunk > _ROUND_OFF and not scene.laid_from_below:
             allowed = f"must not lie below the seabed (z = {ground:g} m)"
             yield Problem(("riser", key, "position"), allowed, "raise the position or lower the seabed")
         elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:

@@ -15,7 +15,7 @@ from riser_soil.scene.joints import Joint
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
 from riser_soil.scene.riser import Riser, Support
-from riser_soil.scene.seabed import ContactAt, Seabed, profile_height
+from riser_soil.scene.seabed import ContactAt, Seabed, SpringSeabed, profile_height
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.stages import Stage
 from riser_soil.scene.water import Water
@@ -194,6 +194,11 @@ class Scene(BaseModel):
     def largest_diameter(self) -> float:
         """Of the riser's line types [m], 0 where none has one."""
         return max((line.outer_diameter or 0.0 for line in self.used_line_types.values()), default=0.0)
+
+    @property
+    def laid_from_below(self) -> bool:
+        """Whether an end may lie below the ground: springs bear at any depth, and know no history."""
+        return isinstance(self.seabed, SpringSeabed) and self.soil is None
 
     @property
     def used_line_types(self) -> dict[str, LineType]:

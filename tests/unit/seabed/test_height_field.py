@@ -21,7 +21,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.seabed.grounds import Plane
 from riser_soil.seabed.height_field import HeightField, Profile
 from tests.support.riser_scenes import prescribed, riser_scene, static
-from tests.support.said import lines_with
+from tests.support.said import line_with, lines_with
 
 X = np.random.default_rng(7).uniform(-3.0, 12.0, size=(60, 3))
 XS, YS = np.array([-2.0, 0.5, 2.0, 5.0, 9.0]), np.array([-1.0, 2.0, 4.5, 10.0])
@@ -104,7 +104,8 @@ ROWS = "0, -5, -1\n0, 5, 1\n30, -5, 2\n30, 5, 4\n"
 
 def scene(folder: Path, text: str, **more: Any) -> Scene:
     grid_file(folder, text)
-    seabed = {"kind": "spring", "stiffness": 1e5, "grid": "seabed.csv"} | more.pop("seabed", {})
+    given = more.pop("seabed", {})
+    seabed = ({} if "kind" in given else {"kind": "spring", "stiffness": 1e5}) | {"grid": "seabed.csv"} | given
     ends = {"start": prescribed(0.0, 0.0, 2.0), "end": prescribed(24.0, 0.0, 20.0)} | more.pop("ends", {})
     mapping = riser_scene(static(), pipe=PIPE, length=30.0, elements=3, **ends, seabed=seabed, **more)
     return scene_from_mapping(mapping | {"contact": {}}, folder)
@@ -132,6 +133,15 @@ def test_a_free_end_beyond_the_grid_is_reported(reach: str, reported: int, tmp_p
     assert lines_with(warnings, "1 nodes", "first shape", "arc 30 to 30 m") == warnings
 
 
+def test_an_end_below_the_ground(tmp_path: Path) -> None:
+    """Springs bear at any depth: the end may lie there, and a warning says how deep. Other seabeds refuse it."""
+    sunk = scene(tmp_path, HEADER + ROWS, ends=SUNK)
+    line_with(ground_warnings(build(sunk, MPI.COMM_SELF)), "riser.start.position:", "0.1 m below", "10 kN/m")
+    clay = {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 2e3}}
+    with pytest.raises(SceneError, match=r"riser.start.position: .* must not lie below the seabed"):
+        scene(tmp_path, HEADER + ROWS, ends=SUNK, seabed=clay)
+
+
 @pytest.mark.parametrize(
     ("text", "more", "says"),
     [
@@ -144,7 +154,6 @@ def test_a_free_end_beyond_the_grid_is_reported(reach: str, reported: int, tmp_p
         ("x [m], z [m]\n0, 0\n", {}, "there is no column y"),
         (HEADER + ROWS.replace("30", "20"), {}, "riser.end.position, x = 24, y = 0 m, lies beyond the grid: x from 0"),
         (HEADER + ROWS, {"seabed": {"level": 1.0}}, "is given beside level, slope_deg or profile; give one of them"),
-        (HEADER + ROWS, {"ends": SUNK}, "riser.start.position: value [0.0, 0.0, -0.1]: must not lie below the seabed"),
     ],
 )
 def test_refused_grids(text: str, more: dict[str, Any], says: str, tmp_path: Path) -> None:
