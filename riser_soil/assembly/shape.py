@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 # needs to bend under its own weight: sharper than elements and pipe can follow.
 SHARPEST_IN_ELEMENTS = 0.5
 SHARPEST_BEND = 0.4
+DIP = 5.0  # over the depth of an end below springs: the length over which the first shape goes down to it
 ROUND_OFF = 1e-12  # strain of a line as long as its ends are apart
 
 
@@ -65,7 +66,7 @@ def initial_shape(
             tension = tensions_of_taut(elements, start, end)
             if catenary.slack > 0.0 and tension is not None:  # so steep that no cable's bend counts
                 return None, _pulled_straight(elements, tension, start, end)
-            return catenary, catenary.curve
+            return catenary, _down_to(catenary.curve, elements, start, end)
         case PointsShape(points=points):
             return None, shapes.through(elements.arc, points)
         case "straight":
@@ -113,33 +114,49 @@ def catenary_between(
     end: Array,
     near: Catenary | None = None,
 ) -> Catenary:
-    """The riser as a catenary between two points (3,) [m], on the ground where there is one; near: as of `catenary`."""
+    """The riser as a catenary between two points (3,) [m], on the ground where there is one, from its surface where one
+    of them lies below springs; near: as of `catenary`.
+    """
     from riser_soil.riser.catenary import catenary
 
+    ends, level = np.array([start, end]), resting_level(scene, elements, np.array([start, end]))
+    if scene.laid_from_below:
+        ends[:, 2] = np.maximum(ends[:, 2], level)
     return catenary(
         elements.arc,
-        start,
-        end,
+        ends[0],
+        ends[1],
         elements.weight,
         elements.EA,
-        level=resting_level(scene, elements, np.array([start, end])),
+        level=level,
         points=np.array([(attachment.arc, attachment.net_weight) for attachment in attachments]).reshape(-1, 2),
         least_H=_least_tension(elements),
         near=near,
     )
 
 
+def _down_to(curve: shapes.Curve, elements: sections.Elements, start: Array, end: Array) -> shapes.Curve:
+    """A curve whose ends are brought down to places below them, over some times how deep they are."""
+    position, arc = curve.position.copy(), elements.arc
+    for node, place, away in ((0, start, arc), (-1, end, arc[-1] - arc)):
+        sunk = position[node, 2] - place[2]
+        if sunk > 0.0:
+            position[:, 2] -= sunk * np.maximum(0.0, 1.0 - away / min(DIP * sunk, arc[-1])) ** 2
+            position[node] = place
+    if np.array_equal(position, curve.position):
+        return curve
+    return shapes.from_nodes(position, shapes.nodal_tangents(position))
+
+
 def resting_level(scene: Scene, elements: sections.Elements, ends: Array) -> float:
     """Height z [m] of the axis where the thinnest of the riser rests, below the lower of its ends (2, 3) [m]; -inf
-    where there is nothing to rest on. A trench in soil doesn't count. An end below springs counts as on them: the first
-    shape is laid from there, and the springs raise it.
+    where there is nothing to rest on. A trench in soil doesn't count.
     """
     if scene.contact is None:
         return -np.inf
     x, y, z = (float(value) for value in ends[np.argmin(ends[:, 2])])
     ground = ground_height(scene, (x, y, z)) if scene.soil is None else scene.seabed_level
-    level = ground + float(contact_radius(scene, elements).min())
-    return min(level, z) if scene.laid_from_below else level
+    return ground + float(contact_radius(scene, elements).min())
 
 
 def least_bend(elements: sections.Elements) -> float:

@@ -89,8 +89,9 @@ def _beyond_the_grid(assembly: Assembly) -> Iterator[str]:
 
 def _ends_below(scene: Scene) -> Iterator[str]:
     """Ends below a seabed of springs."""
-    ends = (("start", scene.line.start), ("end", scene.line.end))
-    for key, end in ends if isinstance(scene.seabed, SpringSeabed) and scene.contact is not None else ():
+    if not isinstance(scene.seabed, SpringSeabed) or scene.contact is None:
+        return
+    for key, end in (("start", scene.line.start), ("end", scene.line.end)):
         sunk = ground_height(scene, end.position) - end.position[2] if isinstance(end, Support) else 0.0
         if sunk > LEAST_SUNK:
             yield (

@@ -1,1 +1,1 @@
-"""Decks of MoorDyn v2 (Hall and others; moordyn.readthedocs.io, "The V2 Input File"), read into scenes."""
+"""Decks of MoorDyn v1, v2 and MoorDyn-F (Hall and others; moordyn.readthedocs.io, "Input Files"), read into scenes."""

@@ -255,7 +255,8 @@ def _plain_number(word: str) -> str:
 
 
 def _refuse_twins(deck: Deck) -> None:
-    for section, key in (("line types", "Name"), ("rod types", "Name"), *((name, "ID") for name in NUMBERED)):
+    keys = {"line types": "Name", "rod types": "Name"} | dict.fromkeys(NUMBERED, "ID")
+    for section, key in keys.items():
         seen = dict[str, int]()
         for row in deck.of(section):
             if row[key] in seen:

@@ -94,9 +94,9 @@ def kind(deck: Deck, section: str, row: DeckRow) -> tuple[str, str]:
         if (letters if number else letters + pinned) in words and (number or name != BODY):
             on = str(int(number)) if name == BODY else ""
             return (PINNED if on and pinned in KINDS["rods"][PINNED] else name), on
-    words = ", ".join(KINDS[section][name][0].capitalize() for name in KINDS[section])
+    known = ", ".join(KINDS[section][name][0].capitalize() for name in KINDS[section])
     reported = f"{row['Attachment']} is no attachment of {section}"
-    raise deck.error(row.line, f"{reported}; give one of {words}{' with a number' * (BODY in KINDS[section])}")
+    raise deck.error(row.line, f"{reported}; give one of {known}{' with a number' * (BODY in KINDS[section])}")
 
 
 def body_of(deck: Deck, section: str, row: DeckRow) -> DeckRow | None:

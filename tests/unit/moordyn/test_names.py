@@ -95,7 +95,7 @@ def headers() -> Iterator[tuple[str, str]]:
     yield "OPTIONS", "OPTIONS"
 
 
-@pytest.mark.parametrize(("usual", "words"), headers())
+@pytest.mark.parametrize(("usual", "words"), [*headers()])
 def test_each_section_by_each_of_its_headers(usual: str, words: str, tmp_path: Path) -> None:
     """With more words around, in any case, also names of other sections."""
     want = imported(tmp_path)
