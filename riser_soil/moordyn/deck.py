@@ -176,9 +176,9 @@ def _read_table(deck: Deck, section: str, block: _Block) -> None:
         reported = f"an entry of {section.upper()} in the place of the units, which MoorDyn skips"
         raise deck.error(block.rows[1][0], f"{reported}; write a row of units under the headings")
     rows = [*_words(block.rows[2:])]
-    if section == "lines" and (order := _other_order(names, [words for _, words in rows])) is not None:
-        names = [*order]
-        deck.remarks.append((line, f"entries of LINES are in the order {' '.join(order)}, unlike their headings"))
+    if section == "lines" and (other := _other_order(names, [words for _, words in rows])) is not None:
+        names = [*other]
+        deck.remarks.append((line, f"entries of LINES are in the order {' '.join(other)}, unlike their headings"))
     for number, words in rows:
         deck.rows.setdefault(section, []).append(_row(deck, section, names, headings, number, words))
 

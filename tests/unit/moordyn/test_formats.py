@@ -95,7 +95,8 @@ def test_forces_without_headings_are_refused(tmp_path: Path) -> None:
 )
 def test_entries_beyond_the_columns_are_reported(part: str, old: str, new: str, said: str, tmp_path: Path) -> None:
     rows = {"lines": LINES, "line_types": TYPES, "points": POINTS}[part]
-    data, remarks = imported(tmp_path, text_of_deck({part.replace("_", " ").upper(): [row.replace(old, new) for row in rows]}))
+    more = {part.replace("_", " ").upper(): [row.replace(old, new) for row in rows]}
+    data, remarks = imported(tmp_path, text_of_deck(more))
     assert data == imported(tmp_path, text_of_deck())[0]
     assert said in remarks
 
