@@ -1,7 +1,7 @@
 """Tables in Markdown, and the places in pages where scripts write them.
 
 A place has a name: a block of lines between `<!-- NAME -->` and `<!-- end of NAME -->`, or figures within a sentence,
-`<!-- figure NAME -->11.1<!-- end -->`, which may stand in a page more than once.
+`<!-- figure NAME -->11.1<!-- end -->`, which may stand in a page more than once, but not where a line begins.
 """
 
 from __future__ import annotations

@@ -1,12 +1,13 @@
 """Tables in Markdown and their places in a demo's page."""
 
 import re
+from pathlib import Path
 
 import pytest
 
 from demos.figures import QUICK
 from demos.from_tables import table_figures
-from demos.page import all_pages, block, csv_table, filled, places, plain, table
+from demos.page import ROOT, all_pages, block, csv_table, filled, places, plain, table
 from tests.support.pages import same_figures
 
 FIGURE = re.compile("<!-- figure ([^>]+) -->")
@@ -70,3 +71,9 @@ def test_every_figure_in_a_sentence_has_a_script() -> None:
         for name in FIGURE.findall(page.read_text(encoding="utf-8")):
             known = name in table_figures() or name.startswith((*QUICK, "demo "))  # whose tests compare them with runs
             assert known or f'"{name}"' in own, f"{page}: {name} is written by no script"
+
+
+@pytest.mark.parametrize("page", all_pages(), ids=lambda page: str(page.relative_to(ROOT)))
+def test_no_line_begins_with_the_mark_of_a_figure(page: Path) -> None:
+    """Markdown would take the line for HTML, and end the paragraph there."""
+    assert re.findall(r"^[ >*-]*<!-- figure .*$", page.read_text(encoding="utf-8"), re.MULTILINE) == []
