@@ -17,6 +17,7 @@ from riser_soil.scene.problem import Path as KeyPath
 _ARCS = ("Attachmentz", "AttachmentPosition", "AttachmentArcLength")  # names in version 11 and before
 _RELATIVE = ("AttachmentzRelativeTo", "AttachmentRelativeTo", "AttachmentPositionRelativeTo")
 _OUT_OF_PLANE = 1e-6  # of a neutral direction that a flex joint in the riser's plane can have
+_CLAMPED = 1e4  # of EI over the length of the last element: stiffness of a joint that hardly gives
 _ROUNDING = 1e-6  # m: of a height that is added up
 _LEVEL = 1e-9  # horizontal distance of the ends [m] below which there is no such plane
 
@@ -60,7 +61,10 @@ def line_of(file: DataFile, item: Item) -> LineWithEnds | None:
     if both[0].height > both[1].height:
         both, parts = both[::-1], parts[::-1]
         hung = [each | {"at": [length - at for at in each["at"]][::-1]} for each in hung]
-    supports = {key: _support(end, *both) for key, end in zip(("start", "end"), both, strict=True)}
+    clamps = [_clamping(*parts[n][:2]) for n in (0, -1)]
+    supports = {
+        key: _support(end, *both, clamp) for key, end, clamp in zip(("start", "end"), both, clamps, strict=True)
+    }
     data = {"segments": [segment for segment, *_ in parts]} | ({"attachments": hung} if hung else {}) | supports
     data |= {"contents": filled} if (filled := _contents(item)) else {}
     types = {segment["line_type"]: pipe for segment, pipe, _ in parts}
@@ -205,15 +209,23 @@ def _by_axis(item: Item, key: str) -> list[float]:
     return [each if math.isfinite(each) else other for each, other in ((x, 0.0), (y, x), (z, 0.0))]
 
 
-def _support(end: LineEnd, lower: LineEnd, upper: LineEnd) -> Any:
-    """An end as a scene has it: free, or its position and how it turns."""
+def _clamping(segment: dict[str, Any], pipe: PipeOfType) -> float:
+    """Stiffness of a joint that hardly gives beside the line's last element [kN.m/deg]; 0 of a chain's, which may."""
+    length = segment.get("element_length") or segment["length"] / segment.get("elements", 1)
+    return math.radians(_CLAMPED * line_type(pipe).get("EI", math.nan) / length) / FORCE
+
+
+def _support(end: LineEnd, lower: LineEnd, upper: LineEnd, clamp: float) -> Any:
+    """An end as a scene has it: free, or its position and how it turns. clamp: as of `_clamping`."""
     if end.position is None:
         return "free"
-    return {"position": end.position} | _rotation(end, lower, upper)
+    return {"position": end.position} | _rotation(end, lower, upper, clamp)
 
 
-def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd) -> dict[str, Any]:
-    """Of a hinge nothing; of a flex joint in the riser's plane its stiffness and neutral angle."""
+def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd, clamp: float) -> dict[str, Any]:
+    """Of a hinge nothing; of a flex joint in the riser's plane its stiffness and neutral angle. A clamped end is a very
+    stiff one, as a scene's own clamp has the direction of the initial shape.
+    """
     row = end.stiffness
     for key in ("ConnectionAzimuth", "ConnectionDeclination", "ConnectionGamma"):
         end.connection.get(key)  # of no effect on a hinge
@@ -223,8 +235,11 @@ def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd) -> dict[str, Any]:
     if size == 0.0:
         return {}
     if math.isinf(size):
-        row.left("ConnectionxBendingStiffness", "clamped in a direction of its own: the end is free to turn here")
-        return {}
+        size = clamp
+        if size == 0.0:
+            return {}
+        text = f"clamped: a joint of {size:.4g} kN.m/deg here, {_CLAMPED:g} times EI over the last element's length"
+        row.left("ConnectionxBendingStiffness", text)
     angle = _neutral_angle(end, lower, upper)
     if angle is None:
         end.connection.left("ConnectionAzimuth", "a joint out of the riser's plane: the end is free to turn here")

@@ -9,6 +9,7 @@ from riser_soil.imported_scene import friction
 from riser_soil.orcaflex.data_file import FORCE, MASS, Item
 from riser_soil.orcaflex.environment import surface_level, water_depth
 from riser_soil.orcaflex.line_types import PipeOfType, friction_of
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
 
 _SPRINGS = ("elastic", "linear")
 _BY_LAW = re.compile(r"non-?linear( soil model)?")
@@ -47,6 +48,9 @@ def _seabed(environment: Item, diameter: float, g: float) -> dict[str, Any]:
     kind = environment.choice("SeabedModel", "Elastic")
     if environment.word("SeabedShearStiffness"):
         environment.left("SeabedShearStiffness", "SeabedShearStiffness: friction takes effect over D/30 here")
+    other = [key for key in environment.values if "soil" in key] if kind in _SPRINGS else ["SeabedNormalStiffness"]
+    for key in other:
+        environment.get(key)  # of the other model, without effect
     if _BY_LAW.fullmatch(kind):
         return {"kind": "hysteretic", "law": _law(environment, g)} | place
     if kind not in _SPRINGS:
@@ -72,9 +76,10 @@ def _law(environment: Item, g: float) -> dict[str, Any]:
     if density is not None:
         found["unit_weight"] = max(0.0, density - environment.number("Density") * MASS) * g
     values = {key: value for key, names in _LAW.items() if (value := number(names, 1.0)) is not None}
-    if missing := [key for key in _LAW if key not in values]:
-        text = f"nonlinear soil model: {', '.join(missing)} not given; they are the law's defaults here"
-        environment.left("SeabedModel", text)
+    defaults = {key: RandolphQuiggin.model_fields[key].default for key in _LAW if key not in values}
+    if defaults:
+        shown = ", ".join(f"{key} {value:g}" for key, value in defaults.items())
+        environment.left("SeabedModel", f"nonlinear soil model: what is not given is the law's default here: {shown}")
     return found | values
 
 

@@ -94,7 +94,11 @@ def test_all_that_stands_against_a_scene_is_told_at_once(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("model", ["Linear", "elastic", "LINEAR"])
 def test_a_bed_of_springs_by_its_names(model: str, tmp_path: Path) -> None:
-    assert data_of(tmp_path, ("SeabedModel: Elastic", f"SeabedModel: {model}"))["seabed"]["kind"] == "spring"
+    """What only the other model takes is nothing to report."""
+    bed = f"SeabedModel: {model}\n  SoilDensity: 1.6"
+    found = imported(tmp_path, changed(("SeabedModel: Elastic", bed)))
+    assert found.data["seabed"]["kind"] == "spring"
+    assert not lines_with([text for _, text in found.remarks], "SoilDensity")
 
 
 @pytest.mark.parametrize(
@@ -255,7 +259,7 @@ def test_clay_by_defaults_says_so_and_needs_its_strength(tmp_path: Path) -> None
     found = imported(tmp_path, changed(("SeabedModel: Elastic\n", f"SeabedModel: {CLAY.lower()}  SoilNovel: 3\n")))
     assert "K_max" not in found.data["seabed"]["law"]
     remarks = [text for _, text in found.remarks]
-    line_with(remarks, "a, b, K_max, f_suc, lambda_suc, lambda_rep, f_b not given")
+    line_with(remarks, "law's default here", "a 6", "K_max 200", "f_b 1.5")
     line_with(remarks, "SoilNovel 3:", "not known here")
     with pytest.raises(SceneError, match="SoilShearStrengthAtMudline: is missing"):
         imported(tmp_path, changed(("SeabedModel: Elastic", "SeabedModel: Non-linear soil model")))
@@ -292,6 +296,19 @@ def test_a_joint_by_a_table(tmp_path: Path) -> None:
     found = imported(tmp_path, changed(table, ("- [2, ~]", "- [Flex, ~]")))
     assert found.data["riser"]["end"]["rotation"]["stiffness"] == pytest.approx(math.degrees(8.0e3))
     line_with([text for _, text in found.remarks], "table Flex", "8 kN.m/deg", "10 deg", "30 kN.m")
+
+
+def test_a_clamped_end_keeps_its_direction(tmp_path: Path) -> None:
+    """End A's axis points 170 deg down from z: upwards the line leans by 10 deg, so that it is 80 deg steep."""
+    clamp = ("- [2, ~]", "- [Infinity, ~]")
+    found = imported(tmp_path, changed(clamp, ("StageDuration: [8, 16]\n", "LogEnd: 1\n"), ("Speed: 0.4", "Speed: 0")))
+    joint = found.data["riser"]["end"]["rotation"]
+    assert joint == {"stiffness": pytest.approx(1e4 * 5.0e4 / 2.0), "neutral_angle": pytest.approx(10.0)}
+    done = run(Scene.from_dict(found.data), tmp_path / "out", quiet=True)
+    assert done.summary["stages"][-1]["final"]["end"]["angle_deg"] == pytest.approx(80.0, abs=0.02)
+    chain = imported(tmp_path, changed(clamp, ("EI: [50, ~]", "EI: [0, ~]")))
+    assert "rotation" not in chain.data["riser"]["end"]
+    assert not lines_with([text for _, text in chain.remarks], "clamped")
 
 
 OTHER = """- Name: Other
