@@ -62,8 +62,10 @@ def line_of(file: DataFile, item: Item) -> LineWithEnds | None:
         both, parts = both[::-1], parts[::-1]
         hung = [each | {"at": [length - at for at in each["at"]][::-1]} for each in hung]
     clamps = [_clamping(*parts[n][:2]) for n in (0, -1)]
+    lower, upper = both
     supports = {
-        key: _support(end, *both, clamp) for key, end, clamp in zip(("start", "end"), both, clamps, strict=True)
+        key: _support(end, lower, upper, clamp)
+        for key, end, clamp in zip(("start", "end"), both, clamps, strict=True)
     }
     data = {"segments": [segment for segment, *_ in parts]} | ({"attachments": hung} if hung else {}) | supports
     data |= {"contents": filled} if (filled := _contents(item)) else {}
