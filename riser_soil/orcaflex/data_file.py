@@ -64,13 +64,14 @@ class DataFile:
         return found
 
     def end_if_refused(self, remarks: list[Remark]) -> None:
-        """SceneError with all that was refused, and with the remarks, a line for each, if anything was."""
+        """SceneError with the remarks and all that was refused, a line for each, if anything was."""
         if not self.refused:
             return
         name = self.document.name
-        lines = [f"{name}:{line}: {text}" for line, text in sorted(set(self.refused))]
-        lines += [f"{name}:{line}: not carried over: {text}" for line, text in remarks]
-        raise SceneError("\n".join(lines))
+        refused = [f"{name}:{line}: {text}" for line, text in sorted(set(self.refused))]
+        head = [f"{name}:{line}: not carried over: {text}" for line, text in remarks]
+        head.append(f"{name}: gives no scene, and none is written; entries that stand against it: {len(refused)}")
+        raise SceneError("\n".join([*head, *refused]))
 
     def _found(self, section: str) -> tuple[str, Any]:
         return next(((key, each) for key, each in self.document.data.items() if folded(key) == folded(section)),
