@@ -15,11 +15,11 @@ _NOTHING = (None, "", 0, "no", "none", "(none)", "(no damping)")
 # Names of data, in lower case, that can't change an answer, whatever their values are.
 _WITHOUT_EFFECT = re.compile(
     # names, pictures, views
-    r"name|notes|comments?|tags|.*pen|.*colou?r|draw.*|.*drawing.*|shaded.*|default.*|selected.*|north.*|view.*"
+    r"name|notes|comments?|tags|.*(?<!o)pen|.*colou?r|draw.*|.*drawing.*|shaded.*|default.*|selected.*|north.*|view.*"
     # logs, warnings, restarts, results that are asked for
     r"|log.*|targetlog.*|.*warn.*|restart.*|timehistoryimport.*|results.*|outputs?.*"
     # how OrcaFlex solves
-    r"|jacobian.*|implicit.*|explicit.*|innertimestep|outertimestep|dynamicssolutionmethod|numericaldamping.*"
+    r"|jacobian.*|implicit.*|explicit.*|innertimestep|outertimestep|numericaldamping.*"
     r"|statics(step[12]|min|max|damping|tol).*|linestaticsstep[12]policy|wholesystemstatics.*|buoysincludedinstatics"
     r"|wavecalculation(time|spatial)interval"
     # of which end lines are told; the wind beside its speed; water where no drag goes by Reynolds's number
@@ -32,6 +32,7 @@ _WITHOUT_EFFECT = re.compile(
 )
 # Values, in lower case, that say what a scene has in any case.
 _ALIKE: dict[str, tuple[Any, ...]] = {
+    "dynamicssolutionmethod": ("implicit time domain", "explicit time domain", None),
     "representation": ("finite element",), "lengthandendorientations": ("explicit",),
     "prebendspecifiedby": ("curvature", "bend angle"), "dragformulation": ("standard",),
     "seabedmodel": ("elastic", "linear"), "wavekinematicscutoffdepth": ("infinity", None),
@@ -60,6 +61,7 @@ _EFFECTS = (
     (r"aslaidtension", "the tension of laying"), (r"staticsseabedfrictionpolicy", "friction from laying the line"),
     (r"rayleighdamping.*", "structural damping: give `damping: {ratio, frequency}`"),
     (r"connectiontwistingstiffness", "what keeps an end from spinning"),
+    (r"connection", "what it is connected to"), (r"dynamicssolutionmethod", "another kind of solution"),
     (r"connectionreleasestage", "an end let go in that stage"), (r"connectionpayoutrate", "line paid out"),
     (r"contentsflowrate", "a flow: give `contents.speed`"), (r"(statics|dynamics)viv", "vibration by vortices"),
     (r"seabeddamping", "damping by the seabed"), (r"cm", "inertia of the fluid other than 1 + Ca"),

@@ -369,9 +369,11 @@ def test_what_cannot_change_an_answer_is_not_reported(tmp_path: Path) -> None:
     text = changed(
         ("    Cl: 0\n", "    Cl: 0\n    ContactPen: [5, Solid, White]\n    TensionTorqueCoupling: 4\n"),
         ("LogPrecision: Single", "LogPrecision: Single\n  ImplicitTolerance: 1e-5\n  RampStartTime: -4"),
-        ("WindSpeed: 12", "WindDirection: 30\n  WaveKinematicsCutoffDepth: 20"),
+        ("WindSpeed: 12", "WindDirection: 30\n  WaveKinematicsCutoffDepth: 20\n  MoonpoolOpen: 4"),
+        ("Method: Implicit time domain", "Method: Frequency domain"),
     )  # fmt: skip
     remarks = [text for _, text in imported(tmp_path, text).remarks]
     assert not [each for each in remarks if "Pen" in each or "Tolerance" in each or "WindDirection" in each]
-    for name in ("TensionTorqueCoupling 4:", "RampStartTime -4:", "WaveKinematicsCutoffDepth 20:"):
+    told = ("TensionTorqueCoupling 4:", "RampStartTime -4:", "WaveKinematicsCutoffDepth 20:", "MoonpoolOpen 4:")
+    for name in (*told, "DynamicsSolutionMethod Frequency domain:"):
         line_with(remarks, name)
