@@ -1,13 +1,43 @@
 """Errors that a user can meet, each with the exit status of the command line."""
 
 import errno
+import re
 import signal
+
+LONGEST = 1200  # characters of a line of a message
+_FEW = 8  # of a long list that are named
+_LIST = re.compile(rf"(?:[^,;:()]{{1,80}}, ){{{_FEW + 2},}}[^,;:()]{{1,80}}")
+
+
+def in_short(message: str) -> str:
+    """A message whose lines are readable: of a long one each list has its first items and their number, and what is
+    still too long lacks its middle.
+    """
+    return "\n".join(map(_line_in_short, message.split("\n")))
+
+
+def _line_in_short(line: str) -> str:
+    if len(line) <= LONGEST:
+        return line
+    line = _LIST.sub(_first_items, line)
+    if len(line) <= LONGEST:
+        return line
+    head, tail = line[: LONGEST // 2], line[-LONGEST // 3 :]
+    return f"{head} ... ({len(line) - len(head) - len(tail)} characters left out) ... {tail}"
+
+
+def _first_items(found: re.Match[str]) -> str:
+    items = found[0].split(", ")
+    return f"{', '.join(items[:_FEW])}, ... ({len(items)} in all)"
 
 
 class RiserSoilError(Exception):
     """Base of the errors that end a run with a message of one line per problem and no traceback."""
 
     exit_status = 1
+
+    def __str__(self) -> str:
+        return in_short(super().__str__())
 
 
 class SceneError(RiserSoilError):

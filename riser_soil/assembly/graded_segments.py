@@ -8,7 +8,9 @@ from itertools import pairwise
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.scene.riser import Segment
+from riser_soil.core.quantities import MOST_ELEMENTS
+from riser_soil.errors import SceneError
+from riser_soil.scene.riser import Segment, graded_count
 from riser_soil.scene.scene import Scene
 
 FEWEST = 12  # elements along the whole riser
@@ -45,7 +47,7 @@ def graded(segments: Sequence[Segment], arc: Array, lengths: Array) -> tuple[Seg
     """The segments, each in stretches of steadily growing elements.
 
     lengths: (nn,) m, of elements at most, at the arc lengths (nn,) [m], from 0 to the segments' end; inf where any will
-    do.
+    do. Raises SceneError where they ask for more elements than a riser may have.
     """
     arc, lengths = growing(arc, lengths)
     stretches, begin = list[Segment](), 0.0
@@ -69,11 +71,15 @@ def _stretches(segment: Segment, begin: float, arc: Array, lengths: Array) -> li
     at = np.concatenate([[begin], inner, [end]])
     h = np.minimum(np.interp(at, arc, lengths), 0.5 * segment.length)
     corners = _long_enough(at, h, _corners(at, np.log(h)))
-    given = segment.model_dump(exclude={"length", "elements", "element_length"})
-    return [
-        Segment(**given, length=float(at[j] - at[i]), element_length=(_reported(h[i]), _reported(h[j])))
-        for i, j in pairwise(corners)
-    ]
+    return [_stretch(segment, float(at[j] - at[i]), (_reported(h[i]), _reported(h[j]))) for i, j in pairwise(corners)]
+
+
+def _stretch(segment: Segment, length: float, elements: tuple[float, float]) -> Segment:
+    if (count := graded_count(length, *elements)) > MOST_ELEMENTS:
+        asked = f"the bend of {length:.4g} m asks for {count:.4g} elements, of {min(elements):.3g} m at least"
+        remedy = f"check EI of line type {segment.line_type}, or give 0 to a chain"
+        raise SceneError(f"riser.segments: {asked}, more than {MOST_ELEMENTS}; {remedy}")
+    return segment.model_copy(update={"length": length, "elements": None, "element_length": elements})
 
 
 def _corners(x: Array, y: Array) -> list[int]:

@@ -31,7 +31,7 @@ from riser_soil.core.quantities import FROZEN, Instant, Text
 from riser_soil.errors import SceneError
 from riser_soil.results.folder import CHECKPOINT
 from riser_soil.scene.columns import lines_of
-from riser_soil.scene.document import Document, parse, read_text
+from riser_soil.scene.document import Document, parse, read_text, refuse_others
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.files import NamedFile, wrong_file
@@ -144,7 +144,7 @@ class Cases(BaseModel):
 
 def read_case_file(file: Path) -> Cases:
     """The case file; SceneError has one line per problem found. Plain YAML: nothing in it is ever executed."""
-    document = parse(read_text(file), str(file), _NEEDS)
+    document = refuse_others(parse(read_text(file), str(file), _NEEDS), "case file")
     try:
         cases = Cases.model_validate(document.data, context={"folder": file.parent})
     except ValidationError as err:

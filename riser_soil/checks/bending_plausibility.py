@@ -132,7 +132,10 @@ def proposal(assembly: Assembly, path: str) -> str:
     asked, given = asked_lengths(assembly), assembly.scene.line.segments
     if asked is None:
         return ""
-    segments = segments_for(assembly.scene, *asked)
+    try:
+        segments = segments_for(assembly.scene, *asked)
+    except SceneError as err:  # more elements than a riser may have
+        return f"elements graded as the riser's bend asks for: none, {str(err).partition(': ')[2]}"
     few, many = (sum(segment.element_count for segment in each) for each in (segments, given))
     if many < MANY * few and _excess(assembly.line.arc, *asked) < LONG:
         return ""

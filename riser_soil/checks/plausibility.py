@@ -14,11 +14,13 @@ from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.line_checks import path_of_line
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.sizes import doubts
 from riser_soil.scene.stages import DynamicStage, Load, OfBody, Stage, StaticStage, VaryingLoad
 
 
 def physical_warnings(assembly: Assembly) -> Iterator[str]:
     """All plausibility warnings, each with its numbers, those of several lines behind their names; collective."""
+    yield from (f"{dotted(path)}: {text}" for path, text in doubts(assembly.scene.model_dump(by_alias=True)))
     if not assembly.scene.lines:
         yield from _of_one(assembly)
         return
@@ -64,12 +66,21 @@ def _moves(scene: Scene) -> bool:
 def _light_pipes(assembly: Assembly) -> Iterator[str]:
     """Pipes that float though nobody says that they should; see `_meant_to_float`."""
     weight, arc = assembly.elements.weight, assembly.line.arc
-    light = np.flatnonzero((weight < 0.0) & ~_meant_to_float(assembly))
+    light = np.flatnonzero((weight < 0.0) & ~_meant_to_float(assembly) & ~_in_air(assembly))
     if light.size:
         yield (
             f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the "
             "pipe floats; check mass, contents and diameters, or give submerged_weight"
         )
+
+
+def _in_air(assembly: Assembly) -> BoolArray:
+    """Elements (ne,) above the water's surface in the first shape, whose buoyancy does not act."""
+    water, line = assembly.scene.water, assembly.line
+    if water is None or water.surface_level is None:
+        return np.zeros(line.length.size, dtype=bool)
+    dry = line.to_global(line.x)[:, 2] > water.surface_level
+    return np.asarray(dry[1:] & dry[:-1])
 
 
 def _meant_to_float(assembly: Assembly) -> BoolArray:

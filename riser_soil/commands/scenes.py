@@ -110,9 +110,18 @@ def placed_in(document: "Callable[[], Document]") -> Iterator[None]:
     try:
         yield
     except (SceneError, MeshError) as err:
-        from riser_soil.scene.reader import with_place_in
+        from riser_soil.scene.reader import with_doubts, with_place_in
 
-        raise type(err)(with_place_in(document(), str(err))) from err
+        found = document()
+        raise with_doubts(type(err)(with_place_in(found, str(err))), found) from err
+    except ValueError as err:
+        from pydantic import ValidationError
+
+        from riser_soil.scene.reader import impossible, with_doubts
+
+        if not isinstance(err, ValidationError):
+            raise
+        raise with_doubts(impossible(err), document()) from err
 
 
 def positive(name: str, value: float | None) -> None:

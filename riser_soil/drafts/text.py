@@ -9,7 +9,8 @@ from dataclasses import replace
 
 from riser_soil.drafts.layout import Cut, LineLayout, Place, layout_of
 from riser_soil.drafts.pipes import NU_STEEL, WATER, CrossSection
-from riser_soil.drafts.wishes import CLAY, SeaState, Wishes, kind_of, pipe_of, refuse, sea_of
+from riser_soil.drafts.wishes import CLAY, SeaState, Wishes, doubts_of, kind_of, pipe_of, refuse, sea_of
+from riser_soil.errors import SceneError
 
 RESPONSE = 0.25  # amplitude of the floater over Hs, where its RAOs are not known
 WAVES, STEPS = 10, 40  # periods that the dynamic stage lasts, steps in one
@@ -166,9 +167,12 @@ def draft(name: str, wishes: Wishes, call: str) -> str:
 
     call: the command, for the file's first line.
     """
-    kind = kind_of(name)
-    refuse(wishes, kind)
-    if wishes.angle is not None:
-        kind = replace(kind, angle=math.radians(wishes.angle))
-    sea = sea_of(kind, wishes)
-    return text(kind.title, call, layout_of(kind, pipe_of(kind, wishes), sea.depth), sea, wishes)
+    try:
+        kind = kind_of(name)
+        refuse(wishes, kind)
+        if wishes.angle is not None:
+            kind = replace(kind, angle=math.radians(wishes.angle))
+        sea = sea_of(kind, wishes)
+        return text(kind.title, call, layout_of(kind, pipe_of(kind, wishes), sea.depth), sea, wishes)
+    except SceneError as err:
+        raise SceneError("\n".join([*doubts_of(wishes), str(err)])) from err

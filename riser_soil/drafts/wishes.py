@@ -9,7 +9,11 @@ from typing import Any, NamedTuple
 
 from riser_soil.drafts.pipes import CrossSection, chain, flexible, steel
 from riser_soil.errors import SceneError
+from riser_soil.scene.pipe_sizes import DIAMETER
+from riser_soil.scene.size import Size, number_of
+from riser_soil.scene.sizes import KEYS
 
+WALL = Size(1e-4, 0.25, "m", DIAMETER.others)
 GROUNDS = ("spring", "rigid", "hysteretic")
 CLAY = GROUNDS[2]
 VERTICAL = 80.0  # deg: the largest angle at the top; a line that hangs flatter is pulled taut
@@ -123,6 +127,19 @@ def _positive(wishes: Wishes) -> dict[str, float | None]:
     allowed["min-bend-radius"] = wishes.min_bend_radius
     others = {"tp": wishes.Tp, "angle": wishes.angle, "su": wishes.su, "gradient": wishes.gradient}
     return of_line | allowed | others
+
+
+def doubts_of(wishes: Wishes) -> list[str]:
+    """Options whose numbers look like those of another unit, each with the likely one: a refusal may follow from it."""
+    sizes = {
+        "depth": (wishes.depth, KEYS["water", "depth"]),
+        "diameter": (wishes.diameter, DIAMETER),
+        "wall": (wishes.wall, WALL),
+        "hs": (wishes.Hs, KEYS["water", "waves", "jonswap", "Hs"]),
+        "tp": (wishes.Tp, KEYS["water", "waves", "jonswap", "Tp"]),
+        "angle": (wishes.angle, KEYS["riser", "end", "hang_off", "angle"]),
+    }
+    return [f"--{name} {text}" for name, (value, size) in sizes.items() if (text := size.doubt(number_of(value)))]
 
 
 def _refuse_ground(wishes: Wishes, kind: Kind) -> None:

@@ -25,7 +25,7 @@ from riser_soil.core.quantities import (
 from riser_soil.errors import SceneError
 from riser_soil.fatigue.sn_curve import REFERENCE_THICKNESS, CurveClass, Environment, SNCurve, curve_through, dnv_curve
 from riser_soil.results.read import Run
-from riser_soil.scene.document import parse, read_text
+from riser_soil.scene.document import parse, read_text, refuse_others
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.reader import error_of
 
@@ -164,7 +164,7 @@ class Fatigue(BaseModel):
 
 def read_fatigue_file(file: Path) -> Fatigue:
     """The fatigue file; SceneError has one line per problem found."""
-    document = parse(read_text(file), str(file), _NEEDS)
+    document = refuse_others(parse(read_text(file), str(file), _NEEDS), "fatigue file")
     try:
         return Fatigue.model_validate(document.data)
     except ValidationError as err:

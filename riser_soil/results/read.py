@@ -53,6 +53,10 @@ class Run:
         folder is that line's, too.
         """
         self.folder = Path(folder)
+        if self.folder.is_file():
+            kind = "an input file" if self.folder.suffix in (".yaml", ".yml") else "a file"
+            wanted = "and the folder of a run is wanted here; riser-soil run makes it from a scene"
+            raise ResultsError(f"{self.folder}: is {kind}, {wanted}")
         if line is None and not self._is_run(self.folder) and self._is_run(self.folder.parent):
             self.folder, line = self.folder.parent, self.folder.name
         if not self._is_run(self.folder):

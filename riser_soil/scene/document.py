@@ -31,6 +31,20 @@ _NUMBER = r"-?[0-9][0-9.eE+-]*"
 _ROW = rf"- +(?:{_NUMBER}|\[ *{_NUMBER}(?: *, *{_NUMBER})* *\])(?: +#.*)?[ \r]*(?:\n|\Z)"
 _ROWS = rf"(?P<indent>^ *){_ROW}(?:(?P=indent){_ROW}){{49,}}"
 _LIST = re.compile(rf"{_ROWS}|\[[\[\s]*{_NUMBER}[-+.,\[\]\s0-9eE]{{{_LONG},}}", re.MULTILINE)
+_EXCERPT = 80  # characters of a line that a message shows
+TAB = re.compile(r" *\t\s*\S")
+UNSPACED = re.compile(r"([A-Za-z_]\w*):(?=[^\s/:\\])")  # a key with its value right after the colon
+# Keys that only one kind of file has at its top, and the commands that read it.
+FILE_KINDS = {
+    "scene": {"line_types", "riser", "lines", "stages"},
+    "fatigue file": {"curve", "stress_concentration", "design_life"},
+    "case file": {"base", "product", "table"},
+}
+READERS = {
+    "scene": "riser-soil run and check read",
+    "fatigue file": "riser-soil fatigue reads",
+    "case file": "riser-soil cases reads",
+}
 _OPEN_POINT = re.compile(r"(?<=[0-9])\.(?![0-9])")
 _TOKEN = re.compile(r"[\[\],\n]|[^\[\],\s]+")
 
@@ -124,13 +138,20 @@ def _emptied(match: re.Match[str], numbers: KernelData) -> str:
 class Document:
     """Plain data (dict, list, str, int, float, bool, None) and where each value was written.
 
-    overrides: by the path of a value that was replaced, what replaced it, as messages name it.
+    overrides: by the path of a value that was replaced, what replaced it, as messages name it. text: of the file.
     """
 
     name: str
     data: Any
     lines: dict[Path, int] = field(default_factory=dict)
     overrides: dict[Path, str] = field(default_factory=dict)
+    text: str = ""
+
+    def line_of(self, path: Path) -> str:
+        """The line of the file where a value was written; "" where it was not."""
+        if path in self.overrides or path not in self.lines:
+            return ""
+        return excerpt(self.text, self.lines[path] - 1)
 
     def where(self, path: Path) -> tuple[int, str]:
         """Sorting number and text of the place of a value, or of the nearest value around it."""
@@ -145,7 +166,7 @@ class Document:
 def read_text(file: FilePath) -> str:
     """The text of a scene file; SceneError when it can't be read."""
     if file.is_dir():
-        raise SceneError(f"{file}: is a folder; give the name of a scene file (.yaml)")
+        raise SceneError(f"{file}: is a folder, and a file (.yaml) is wanted here; give its name")
     try:
         return content(file, _MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError as err:
@@ -173,20 +194,52 @@ def parse(text: str, name: str, needs: str = NEEDS) -> Document:
     try:
         built = _Builder(YAML(typ="safe", pure=True), name, lists)
         document = built.document(short, needs)
-        return document if built.found_all else _Builder(YAML(typ="safe", pure=True), name, {}).document(text, needs)
+        if not built.found_all:
+            document = _Builder(YAML(typ="safe", pure=True), name, {}).document(text, needs)
+        document.text = text
+        return document
     except MarkedYAMLError as err:
-        raise SceneError(_broken(err, name)) from err
+        raise SceneError(_broken(err, name, text)) from err
     except YAMLError as err:
         raise SceneError(f"{name}: not valid YAML: {' '.join(str(err).split())}; correct the file") from err
     except RecursionError as err:
         raise SceneError(f"{name}: nested too deeply; a scene is at most some ten levels deep") from err
 
 
-def _broken(err: MarkedYAMLError, name: str) -> str:
-    mark = err.problem_mark or err.context_mark
-    line = f":{mark.line + 1}" if mark else ""
-    reason = " ".join(str(part) for part in (err.context, err.problem) if part)
-    return f"{name}{line}: not valid YAML: {' '.join(reason.split())}; correct indentation or quotes here"
+def _broken(err: MarkedYAMLError, name: str, text: str) -> str:
+    """Place and cause of an error of YAML: a tab, a blank that is missing, else what the YAML reader says."""
+    marks = [mark for mark in (err.context_mark, err.problem_mark) if mark]
+    reason = " ".join(" ".join(str(part) for part in (err.context, err.problem) if part).split())
+    if not marks:
+        return f"{name}: not valid YAML: {reason}; correct the file"
+    lines, first, last = text.splitlines(), marks[0].line, marks[-1].line
+    for n, line in enumerate(lines[: last + 1]):
+        if TAB.match(line):
+            tab = f"not valid YAML: line {n + 1} is indented by a tab; use spaces"
+            return f'{name}:{n + 1}: {tab}; the line is "{excerpt(text, n)}"'
+    for n in range(max(first - 1, 0), min(last + 1, len(lines))):
+        if joined := UNSPACED.match(lines[n].lstrip(" -")):
+            blank = f"a blank is missing after the colon of {joined[1]}"
+            remedy = f"write {joined[1]}: and the value after a blank"
+            return f'{name}:{n + 1}: {blank}; {remedy}; the line is "{excerpt(text, n)}"'
+    cause = f"not valid YAML, column {marks[-1].column + 1}: {reason}; correct indentation or quotes here"
+    return f'{name}:{last + 1}: {cause}; the line is "{excerpt(text, last)}"'
+
+
+def excerpt(text: str, n: int) -> str:
+    """The line with a number, counted from 0, without indentation, of a long one the beginning; "" beyond the text."""
+    line = next(iter(text.splitlines()[n : n + 1]), "").strip()
+    return line if len(line) <= _EXCERPT else f"{line[:_EXCERPT]}..."
+
+
+def refuse_others(document: Document, wanted: str) -> Document:
+    """The document, if it is not another kind of file; SceneError where a command was given the wrong one."""
+    keys = set(document.data) if isinstance(document.data, dict) else set()
+    found = next((kind for kind, own in FILE_KINDS.items() if keys & own), wanted)
+    if found != wanted:
+        what = f"is a {found}, and a {wanted} is wanted here: {READERS[found]} it"
+        raise SceneError(f"{document.name}: {what}")
+    return document
 
 
 class _Builder:

@@ -10,6 +10,8 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from riser_soil.core.quantities import OneOf
+from riser_soil.scene.aliases import meant_by
+from riser_soil.scene.document import UNSPACED
 from riser_soil.scene.problem import NOTHING, Path, Problem, did_you_mean, hint, value_at
 from riser_soil.scene.scene import Scene
 
@@ -157,7 +159,10 @@ def _follows_from_items(detail: ErrorDetails) -> bool:
 
 def _meant(failure: Failure) -> Path:
     """The key that an unknown one was probably meant to be."""
-    return (*failure.path[:-1], did_you_mean(str(failure.path[-1]), failure.around.keys) or "")
+    key, keys = str(failure.path[-1]), failure.around.keys
+    joined = UNSPACED.match(key)
+    meant = joined[1] if joined else meant_by(key, keys).partition(":")[0]
+    return (*failure.path[:-1], meant or did_you_mean(key, keys) or "")
 
 
 def _as_it_is(failure: Failure) -> Problem:
@@ -196,6 +201,8 @@ def _text(failure: Failure) -> Problem:
 
 def _mapping(failure: Failure) -> Problem:
     keys = failure.here.keys
+    if isinstance(failure.value, str) and (joined := UNSPACED.match(failure.value)):
+        return replace(failure.problem(*_unspaced(joined[1])), shows_line=True)
     return failure.problem(
         f"must be a mapping with the keys {', '.join(keys)}" if keys else "must be a mapping"
     )
@@ -214,9 +221,15 @@ def _word(failure: Failure) -> Problem:
 
 def _unknown_key(failure: Failure) -> Problem:
     keys, key = failure.around.keys, failure.path[-1]
-    return failure.problem(
-        f"no such key here, known are {', '.join(keys)}", "correct or remove it" + hint(key, keys)
-    )
+    if joined := UNSPACED.match(str(key)):
+        return replace(failure.problem(*_unspaced(joined[1])), shows_line=True)
+    if written := meant_by(str(key), keys):
+        return replace(failure.problem("no such key here", f'did you mean "{written}"?'), shows_line=True)
+    return failure.problem(f"no such key here, known are {', '.join(keys)}", "correct or remove it" + hint(key, keys))
+
+
+def _unspaced(key: str) -> tuple[str, str]:
+    return f"a blank is missing after the colon of {key}", f"write {key}: and the value after a blank"
 
 
 def _choice(failure: Failure) -> Problem:
@@ -227,6 +240,8 @@ def _kind(failure: Failure) -> Problem:
     words, value = failure.context["text"], failure.value
     if not isinstance(value, dict):
         return failure.problem(f"must be a mapping with kind: {words}")
+    if joined := next((joined for key in value if (joined := UNSPACED.match(str(key)))), None):
+        return replace(failure.problem(*_unspaced(joined[1])), shows_line=True)
     near = hint(value["kind"], words.split(", ")) if "kind" in value else _misspelt_kind(failure)
     return Problem((*failure.path, "kind"), f"must be one of {words}", f"choose one{near}")
 

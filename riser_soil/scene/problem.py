@@ -20,11 +20,15 @@ NOTHING = Missing()
 
 @dataclass(frozen=True)
 class Problem:
-    """What is wrong at a path of the scene: what is allowed there, and what to do."""
+    """What is wrong at a path of the scene: what is allowed there, and what to do.
+
+    shows_line: whether the line of the file makes it plain.
+    """
 
     path: Path
     allowed: str
     remedy: str
+    shows_line: bool = False
 
 
 def dotted(path: Path) -> str:
@@ -42,10 +46,36 @@ def value_at(data: Any, path: Path) -> Any:
     return data
 
 
-def shown(value: Any) -> str:
-    """A value as YAML would write it in one short line."""
+def matching(data: Any, pattern: tuple[str, ...], path: Path = ()) -> list[tuple[Path, Any]]:
+    """Values of plain data whose paths fit a pattern, in which `*` stands for any key or number, each with its path."""
+    if not pattern:
+        return [(path, data)]
+    entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list | tuple) else ()
+    within = ((key, value) for key, value in entries if pattern[0] in ("*", str(key)))
+    return [found for key, value in within for found in matching(value, pattern[1:], (*path, key))]
+
+
+def shown(value: Any, width: int = _WIDTH) -> str:
+    """A value as YAML would write it in one short line; of a long one the first items, or letters."""
     text = json.dumps(value, ensure_ascii=False, default=str)
-    return text if len(text) <= _WIDTH else text[: _WIDTH - 3] + "..."
+    if len(text) <= width:
+        return text
+    if isinstance(value, dict):
+        keys = ((json.dumps(str(key), ensure_ascii=False), item) for key, item in value.items())
+        return "{" + _first((f"{key}: {shown(item, width // 2)}" for key, item in keys), len(value), width) + "}"
+    if isinstance(value, list | tuple):
+        return "[" + _first((shown(item, width // 2) for item in value), len(value), width) + "]"
+    return json.dumps(f"{value[: width - 5]}...", ensure_ascii=False) if isinstance(value, str) else text
+
+
+def _first(items: Iterable[str], count: int, width: int) -> str:
+    """Those that have room, and how many there are in all."""
+    found, rest = list[str](), f"... ({count} in all)"
+    for item in items:
+        if len(", ".join([*found, item, rest])) > width - 2:
+            break
+        found.append(item)
+    return ", ".join([*found, rest])
 
 
 def message(problem: Problem, data: Any) -> str:

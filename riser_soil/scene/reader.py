@@ -14,14 +14,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from riser_soil.errors import SceneError
-from riser_soil.scene.document import Document, parse, read_text
+from riser_soil.errors import RiserSoilError, SceneError
+from riser_soil.scene.document import Document, parse, read_text, refuse_others
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.line_checks import all_conflicts
 from riser_soil.scene.overrides import override
-from riser_soil.scene.problem import Path as KeyPath
-from riser_soil.scene.problem import Problem, message
+from riser_soil.scene.problem import Problem, dotted, matching, message, shown, value_at
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.sizes import doubts
 
 _MOST_LINES = 20
 # key -> values that mean "off"; the key itself is not part of the models. `*` stands for any name or number.
@@ -41,8 +41,8 @@ def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
 
 
 def read_document(file: str | Path) -> Document:
-    """The content of a scene file, as yet unchecked."""
-    return parse(read_text(Path(file)), str(file))
+    """The content of a scene file, as yet unchecked; SceneError where it is another kind of file."""
+    return refuse_others(parse(read_text(Path(file)), str(file)), "scene")
 
 
 def overridden_document(file: str | Path, overrides: Sequence[str] = ()) -> Document:
@@ -73,11 +73,26 @@ def checked(document: Document, folder: Path) -> Scene:
         scene = Scene.model_validate(data, context={"folder": folder})
     except ValidationError as err:
         others = [p for p in problems_in(err, data) if not _beside(p, unsupported)]
-        raise error_of([*unsupported, *others], document) from err
+        raise with_doubts(error_of([*unsupported, *others], document), document) from err
     found = unsupported or all_conflicts(scene)
     if found:
-        raise error_of(found, document)
+        raise with_doubts(error_of(found, document), document)
     return scene
+
+
+def with_doubts(error: RiserSoilError, document: Document) -> RiserSoilError:
+    """The error after other numbers of the scene that look like those of another unit: it may follow from them."""
+    found = [each for each in doubts(document.data) if each.names_a_unit]
+    others = [each for each in found if f" {dotted(each.path)}: " not in str(error)]
+    lines = [f"{document.where(path)[1]}: {dotted(path)}: {text}" for path, text in others]
+    return type(error)("\n".join([*lines, str(error)]))
+
+
+def impossible(error: ValidationError) -> SceneError:
+    """What the program makes of a scene, such as elements or cells, breaks a bound of the scene language."""
+    first = error.errors(include_url=False)[0]
+    made = f"{error.title}: {dotted(first['loc'])}: value {shown(first['input'])}" if first["loc"] else error.title
+    return SceneError(f"{made}: {first['msg']}: the scene's numbers lead to this; check the sizes that it follows from")
 
 
 def _beside(problem: Problem, others: Iterable[Problem]) -> bool:
@@ -87,12 +102,18 @@ def _beside(problem: Problem, others: Iterable[Problem]) -> bool:
 
 def error_of(problems: Sequence[Problem], document: Document) -> SceneError:
     """One line for each problem, with its place in the file."""
-    placed = sorted((*document.where(problem.path), message(problem, document.data)) for problem in problems)
+    placed = sorted((*document.where(problem.path), _with_line(problem, document)) for problem in problems)
     lines = [f"{place}: {text}" for _, place, text in placed]
     more = len(lines) - _MOST_LINES
     return SceneError(
         "\n".join([*lines[:_MOST_LINES], *([f"... and {more} more problems"] if more > 0 else [])])
     )
+
+
+def _with_line(problem: Problem, document: Document) -> str:
+    """The problem in words, with the line of the file where that makes it plain."""
+    line = document.line_of(problem.path) if problem.shows_line else ""
+    return message(problem, document.data) + (f'; the line is "{line}"' if line else "")
 
 
 def taken_out(data: Any) -> tuple[Any, list[Problem]]:
@@ -105,16 +126,16 @@ def taken_out(data: Any) -> tuple[Any, list[Problem]]:
 
 def _keys(data: Any) -> Iterator[Problem]:
     for pattern, off in KEYS.items():
-        for path, parent in _matches(data, pattern):
-            value = parent.pop(path[-1])
+        for path, value in matching(data, pattern):
+            del value_at(data, path[:-1])[path[-1]]
             if not _among(value, off):
                 yield Problem(path, "not supported yet", "leave the key out")
 
 
 def _values(data: Any) -> Iterator[Problem]:
     for pattern, refused in VALUES.items():
-        for path, parent in _matches(data, pattern):
-            if _among(parent[path[-1]], refused):
+        for path, value in matching(data, pattern):
+            if _among(value, refused):
                 yield Problem(path, "not supported yet", "choose another value or leave the key out")
 
 
@@ -133,16 +154,3 @@ def _unwritable(data: Any, path: KeyPath = ()) -> Iterator[Problem]:
 def _among(value: Any, values: tuple[Any, ...]) -> bool:
     """Membership that tells true from 1."""
     return any(type(value) is type(other) and value == other for other in values)
-
-
-def _matches(data: Any, pattern: tuple[str, ...], path: KeyPath = ()) -> Iterator[tuple[KeyPath, dict[Any, Any]]]:
-    """Paths present in the data that fit a pattern, each with the mapping that holds its last key."""
-    word, rest = pattern[0], pattern[1:]
-    if not rest:
-        if isinstance(data, dict) and word in data:
-            yield (*path, word), data
-        return
-    entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-    for key, value in list(entries):
-        if word in ("*", key):
-            yield from _matches(value, rest, (*path, key))

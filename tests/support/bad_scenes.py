@@ -289,7 +289,7 @@ CONFLICTS = [
     ),
     Bad("    mass: 120.0\n", "", 5, "line_types.pipe.mass", "missing", "a dynamic stage needs the mass"),
     Bad("    outer_diameter: 0.3\n", "", 5, "line_types.pipe.outer_diameter", "missing", "buoyancy follows"),
-    Bad("    EI: 5", "    EI_y: 1.0\n    EI: 5", 11, "line_types.pipe.EI", "50000.0", "given twice"),
+    Bad("    EI: 5", "    EI_y: 5.0e4\n    EI: 5", 11, "line_types.pipe.EI", "50000.0", "given twice"),
     Bad("water: {density: 1025.0}\n", "", 11, "line_types.pipe.drag", '{"normal"', "the scene has no water"),
     Bad(
         "    inner_diameter: 0.2\n",

@@ -15,6 +15,9 @@ from riser_soil.accuracy.key_results import key_results
 from riser_soil.assembly import build
 from riser_soil.checks.bending_plausibility import asked_lengths, proposal, segments_for
 from riser_soil.checks.check import describe
+from riser_soil.commands.scenes import placed_in
+from riser_soil.errors import SceneError
+from riser_soil.scene.document import parse
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
@@ -149,3 +152,20 @@ def test_lengths_scale_with_the_unit_of_length() -> None:
         assert segments is not None
         counts.append([each.element_count for each in segments])
     assert counts[0] == counts[1] == counts[2]
+
+
+def test_a_bend_that_no_riser_has_elements_for_is_told() -> None:
+    """EI of 1e-9 N.m2, clamped: layers of 3e-7 m; check ends as ever, and says why it proposes nothing."""
+    thin = hung(line={"EI": 1e-9}, start={"position": [0.0, 0.0, 0.0], "rotation": "fixed"})
+    line_with(describe(thin), "elements graded as the riser's bend asks for: none", "more than 1000000", "check EI")
+    with pytest.raises(SceneError, match=r"^riser\.segments: .* more than 1000000"):
+        of(thin)
+
+
+def test_a_model_that_the_program_makes_out_of_bounds_is_an_error_of_a_line() -> None:
+    document = parse("title: a", "scene.yaml")
+    with pytest.raises(SceneError) as told, placed_in(lambda: document):
+        Segment(line_type="pipe", length=-1.0, elements=3)
+    line_with([str(told.value)], "Segment: length: value -1.0", "check the sizes that it follows from")
+    with pytest.raises(ValueError, match="another"), placed_in(lambda: document):
+        raise ValueError("another")

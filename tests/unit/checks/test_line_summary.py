@@ -116,6 +116,17 @@ def test_meant_buoyancy_is_not_warned_of() -> None:
     assert len(floating(scene(part(30.0), part(100.0, "float"), part(20.0)))) == 1, "the whole riser floats"
 
 
+def test_a_line_in_air_does_not_float() -> None:
+    """A light line between two decks above the surface; with an end in the water that end is told of."""
+    for level, told in ((-1.0, 0), (150.0, 1), (50.0, 1)):
+        made = riser_scene(
+            static(), pipe=FLOAT, length=128.5, elements=20, start=prescribed(0.0, 0.0, 10.0),
+            end=prescribed(80.0, 0.0, 110.0), gravity=9.81, water={"density": 1000.0, "surface_level": level},
+        )  # fmt: skip
+        made["line_types"]["pipe"]["mass"] = 100.0
+        assert len(floating(scene_from_mapping(made))) == told, level
+
+
 def test_a_row_of_attachments() -> None:
     row = {"from": 10.0, "to": 10.7, "spacing": 0.1, "mass": 5.0}
     given = scene(attachments=[row])

@@ -178,7 +178,6 @@ REFUSED = {
     "--current inf": ("new", "flexible", "--current", "inf"),
     "Hs": ("new", "flexible", "--hs", "30", "--tp", "4"),
     "--angle 90: must be at most": ("new", "flexible", "--angle", "90"),
-    "out of reach": ("new", "flexible", "--angle", "0.5"),
     "--angle 10: a top-tensioned riser stands upright": ("new", "top-tensioned", "--angle", "10"),
     "--su 3000: a top-tensioned riser": ("new", "top-tensioned", "--su", "3e3"),
     "--su 0: must be greater": ("new", "flexible", "--su", "0"),
