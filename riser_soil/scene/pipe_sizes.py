@@ -39,7 +39,7 @@ WEIGHTS = {"kN/m": 1e3, "kg/m": GRAVITY, "t/m": 1e3 * GRAVITY}
 def doubts_of_pipes(data: Any, doubted: Collection[Path]) -> Iterator[Doubt]:
     """Numbers of line types, and forces on lines, that don't fit the others. doubted: paths that are doubtful alone."""
     places = [(path, given) for path, given in matching(data, ("line_types", "*")) if isinstance(given, dict)]
-    given = {path[1]: Pipe(path, pipe) for path, pipe in places}
+    given = {path[1]: GivenPipe(path, pipe) for path, pipe in places}
     found = [each for pipe in given.values() for each in _of_diameters(pipe)]
     doubtful = {each.path[1] for each in found} | {path[1] for path in doubted if path[0] == "line_types"}
     pipes = {name: pipe for name, pipe in given.items() if name not in doubtful}
@@ -48,7 +48,7 @@ def doubts_of_pipes(data: Any, doubted: Collection[Path]) -> Iterator[Doubt]:
     water = first_number(data, ("water", "density"))
     for path, line in (place for pattern in LINES for place in matching(data, pattern)):
         if isinstance(line, dict):
-            found += _of_line(Line(path, line, pipes, water))
+            found += _of_line(GivenLine(path, line, pipes, water))
     yield from {each.path: each for each in reversed(found)}.values()
 
 
@@ -78,7 +78,7 @@ def _over(divisor: float) -> Callable[[float], float]:
     return lambda number: number / divisor
 
 
-class Pipe(NamedTuple):
+class GivenPipe(NamedTuple):
     """A line type of plain data, at its path."""
 
     path: Path
@@ -118,7 +118,7 @@ def area_of(outer: float, inner: float) -> float:
     return 0.25 * math.pi * (outer**2 - inner**2)
 
 
-def _of_diameters(pipe: Pipe) -> Iterator[Doubt]:
+def _of_diameters(pipe: GivenPipe) -> Iterator[Doubt]:
     """Diameters in another unit, by which the mass has a plausible density; a wide pipe may float."""
     diameters = dict(zip(("outer_diameter", "inner_diameter"), pipe.diameters, strict=True))
     if all(map(DIAMETER.holds, pipe.diameters)) or _dense(pipe, 1.0, FLOAT) is True:
@@ -130,14 +130,14 @@ def _of_diameters(pipe: Pipe) -> Iterator[Doubt]:
             yield Doubt((*pipe.path, key), text)
 
 
-def _dense(pipe: Pipe, factor: float, size: Size) -> bool | None:
+def _dense(pipe: GivenPipe, factor: float, size: Size) -> bool | None:
     """Whether the mass has a plausible density with implausible diameters in another unit; None where it has none."""
     outer, inner = (value if DIAMETER.holds(value) else factor * value for value in pipe.diameters)
     mass, area = pipe.number("mass"), area_of(outer, inner)
     return size.holds(mass / area) if mass > 0.0 and area > 0.0 else None
 
 
-def _of_section(pipe: Pipe) -> Iterator[Doubt]:
+def _of_section(pipe: GivenPipe) -> Iterator[Doubt]:
     """Of a pipe whose diameters are known."""
     (outer, inner), area, whole = pipe.wall, area_of(*pipe.wall), area_of(*pipe.diameters)
     if area <= 0.0 or whole <= 0.0:
@@ -166,12 +166,12 @@ def _of_body(path: Path, body: Any) -> Iterator[Doubt]:
         yield from doubt((*path, "mass"), mass, "kg", {"t": 1e3}, _over(volume), BODY_DENSITY, "a density")
 
 
-class Line(NamedTuple):
+class GivenLine(NamedTuple):
     """A line of plain data, at its path, with its pipes by name, in water of a density [kg/m3]."""
 
     path: Path
     given: Mapping[str, Any]
-    pipes: Mapping[Any, Pipe]
+    pipes: Mapping[Any, GivenPipe]
     water: float
 
     @property
@@ -200,7 +200,7 @@ class Line(NamedTuple):
         return abs(math.fsum(weights)) * min(1.0, self.height / length) if length > 0.0 else 0.0
 
 
-def _of_line(line: Line) -> Iterator[Doubt]:
+def _of_line(line: GivenLine) -> Iterator[Doubt]:
     """Forces and stiffnesses by the weight of what hangs, and given weights by masses."""
     for name, length in line.lengths.items():
         pipe = line.pipes[name]
@@ -214,18 +214,18 @@ def _of_line(line: Line) -> Iterator[Doubt]:
             yield from _of_pull(line, (*line.path, *path), first_number(line.given, path))
 
 
-def _of_strain(pipe: Pipe, hung: float) -> Iterator[Doubt]:
+def _of_strain(pipe: GivenPipe, hung: float) -> Iterator[Doubt]:
     path, EA, what = (*pipe.path, "EA"), pipe.number("EA"), "by the weight of what hangs a strain"
     yield from doubt(path, EA, "N", FORCES, lambda EA: hung / EA, STRAIN, what)
 
 
-def _of_pull(line: Line, path: Path, tension: float) -> Iterator[Doubt]:
+def _of_pull(line: GivenLine, path: Path, tension: float) -> Iterator[Doubt]:
     if (hung := line.hung) > 0.0:
         what = "over the weight of a piece as long as the line is high a share"
         yield from doubt(path, tension, "N", FORCES, _over(hung), PULL, what)
 
 
-def _of_given_weight(line: Line, pipe: Pipe) -> Iterator[Doubt]:
+def _of_given_weight(line: GivenLine, pipe: GivenPipe) -> Iterator[Doubt]:
     """A submerged_weight that would be that of mass and diameters in another unit."""
     given, mass, outer = number_of(pipe.given.get("submerged_weight")), pipe.number("mass"), pipe.diameters[0]
     if not (given and mass and outer):

@@ -19,6 +19,7 @@ from riser_soil.scene.document import Document, parse, read_text, refuse_others
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.line_checks import all_conflicts
 from riser_soil.scene.overrides import override
+from riser_soil.scene.problem import Path as KeyPath
 from riser_soil.scene.problem import Problem, dotted, matching, message, shown, value_at
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.sizes import doubts
