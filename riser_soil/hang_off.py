@@ -166,8 +166,10 @@ class _HangOffSearch:
 
 
 def _reached(ends: Sequence[HungEnd], scene: Scene, comm: Communicator) -> Array:
-    """The lines' own angles [deg] or tensions [N] (ends,) at the end of the first stage; collective."""
-    assembly, clock = build(sized(scene), comm), Timer.new()
+    """The lines' own angles [deg] or tensions [N] (ends,) at the end of the first stage, the vessel at no offset;
+    collective.
+    """
+    assembly, clock = build(sized(scene.model_copy(update={"vessel": None})), comm), Timer.new()
     last = _LastStep(assembly, ends)
     with agreeing(comm):
         before, _ = lay(assembly, clock)

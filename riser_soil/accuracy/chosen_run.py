@@ -1,4 +1,5 @@
-"""How a scene is run: its hang-off solved first, as it is, with error bars, or to the accuracy asked.
+"""How a scene is run: its hang-off solved and its vessel displaced first, then as it is, with error bars, or to the
+accuracy asked.
 
 What isn't needed isn't imported.
 """
@@ -13,6 +14,7 @@ from typing import Any
 from riser_soil.errors import Interruption, MemoryShortageError, SceneError, SolveError
 from riser_soil.scene.lines import risers
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.variants import at_offset, displacement
 
 
 def run_as_asked(
@@ -24,7 +26,7 @@ def run_as_asked(
     if restart and force:
         raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
     scene, more = in_numbers(scene)
-    more = more or (_solved_before(folder) if restart else {})
+    more = (_solved_before(folder) if restart else {}) | more
     with _telling(more, folder, scene):
         _run(scene, folder, force, error_bars, restart)
 
@@ -46,12 +48,12 @@ def _run(scene: Scene, folder: Path, force: bool, error_bars: bool, restart: boo
 
 
 def _solved_before(folder: Path) -> dict[str, Any]:
-    """What the summary of a run that goes on tells of its hang-offs."""
+    """What the summary of a run that goes on tells of its hang-offs and its vessel's offset."""
     from riser_soil.results.folder import SUMMARY
     from riser_soil.results.read import Run
 
     known = Run(folder).summary if Run.is_there(folder) and (folder / SUMMARY).is_file() else {}
-    return {"hang_off": known["hang_off"]} if "hang_off" in known else {}
+    return {key: known[key] for key in ("hang_off", "vessel") if key in known}
 
 
 @contextmanager
@@ -86,7 +88,21 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
 
 
 def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
-    """The scene with its hang-offs solved, where it asks for some, and what its summary tells of that; collective."""
+    """The scene with its hang-offs solved, where it asks for some, and then its vessel at its offset; and what its
+    summary tells of both. Collective.
+    """
+    scene, more = _hung(scene)
+    if scene.vessel is None:
+        return scene, more
+    from riser_soil.assembly.packages import communicator_of
+
+    displaced = displacement(scene)
+    if communicator_of(scene).rank == 0:
+        print(displaced.reported)
+    return at_offset(scene), more | {"vessel": displaced.summary}
+
+
+def _hung(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     if not any(line.hangs_off for line in risers(scene).values()):
         return scene, {}
     from riser_soil.assembly.packages import communicator_of

@@ -364,6 +364,8 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
         raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")
     for asking in hung_ends(scene):
         raise SceneError(f"{asking.path}: is to be solved first, by riser_soil.hang_off")
+    if scene.vessel is not None:
+        raise SceneError("vessel.offset: is to be put into the stages first, by riser_soil.scene.variants.at_offset")
     scene = sized(scene)
     spins = spinning(scene)
     assembly = Assembly(scene, comm, {})

@@ -46,7 +46,18 @@ def read(scene: str, overrides: list[str] | None) -> "Scene":
 
 
 def guessed(scene: "Scene") -> "Scene":
-    """The scene with its hang-offs as a cable would have them, where it asks for some; SceneError begins with a key."""
+    """The scene with its hang-offs as a cable would have them, and its vessel at its offset, where it asks for them;
+    SceneError begins with a key.
+    """
+    from riser_soil.scene.variants import at_offset, displacement
+
+    found = _hung_as_cable(scene)
+    if found.vessel is not None and rank() == 0:
+        print(displacement(found).reported)
+    return at_offset(found)
+
+
+def _hung_as_cable(scene: "Scene") -> "Scene":
     from riser_soil.scene.lines import risers
 
     if not any(line.hangs_off for line in risers(scene).values()):
@@ -70,12 +81,14 @@ def read_start(scene: str, overrides: list[str] | None) -> "Scene":
 
     if rank() == 0:
         print(f"accuracy {checked.accuracy:.2%}: a run chooses elements and steps; here are those that it begins with")
+    from riser_soil.scene.variants import at_offset
+
     with placed(scene, overrides):
-        return first_setting(checked)
+        return first_setting(at_offset(checked))
 
 
 def read_solved(scene: str, overrides: list[str] | None) -> "Scene":
-    """As `read_start`, with the hang-off solved that the scene asks for."""
+    """As `read_start`, with the hang-off solved and the vessel at the offset that the scene asks for."""
     checked = read_start(scene, overrides)
     from riser_soil.accuracy.chosen_run import in_numbers
 

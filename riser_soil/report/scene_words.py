@@ -52,7 +52,7 @@ def read(run: Run) -> Scene | None:
 
 def prose(scene: Scene, run: Run) -> list[str]:
     """Sentences: the riser, its ends, the ground, the water, the stages."""
-    reported = (_riser(scene, run), _hang_off(run), _ground(scene), _water(scene), _stages(scene))
+    reported = (_riser(scene, run), _hang_off(run), _vessel(run), _ground(scene), _water(scene), _stages(scene))
     return [sentence for sentence in reported if sentence]
 
 
@@ -163,6 +163,15 @@ def _hang_off(run: Run) -> str:
     angle, tension = (reported["asked"].get(key) for key in ("angle_deg", "tension"))
     asked = f"at {number(angle)}° from the vertical" if angle is not None else f"with {number(1e-3 * tension)} kN"
     return f"Its {reported['end']} hangs off {asked}, as asked, by a {reported['by']} of {number(reported['value'])} m."
+
+
+def _vessel(run: Run) -> str:
+    """The offset of the vessel."""
+    reported = run.summary.get("vessel")
+    if reported is None:
+        return ""
+    moved = (f"{name} from {text(each['from'])} m to {text(each['to'])} m" for name, each in reported["ends"].items())
+    return f"The vessel is at an offset of {text(reported['offset'])} m, which moves {', '.join(moved)}."
 
 
 def _ground(scene: Scene) -> str:

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.joints import Joint, JointPoint
-from riser_soil.scene.lines import ENDS, acts_on, apart_from_joints, arc_of, axis_across, by_line, first_place
-from riser_soil.scene.motions import Vessel, VesselHistory
+from riser_soil.scene.lines import ENDS, apart_from_joints, arc_of, axis_across, by_line, first_place, risers
 from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.plane import VerticalPlane, leaving_the_plane, positions
-from riser_soil.scene.problem import Path, Problem, hint
+from riser_soil.scene.problem import Path, Problem, dotted, hint, shown, value_at
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import OfBody, StaticStage
+from riser_soil.scene.variants import at_offset
+from riser_soil.scene.vessel_checks import vessel_conflicts, vessels_of_end
 
 _FILES = ("soil", "results")  # other files of a run
 # At the root of results.nc, beside what steps have, and of modes.nc.
@@ -30,7 +31,22 @@ _ALONG = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0))  # a plane, by the axis across it
 
 
 def all_conflicts(scene: Scene) -> list[Problem]:
-    """All conflicts of a scene, whether it has one line or several."""
+    """All conflicts of a scene, whether it has one line or several, with its vessel at its offset, too."""
+    return _conflicts(scene) or [*vessel_conflicts(scene)] or [*_at_offset(scene)]
+
+
+def _at_offset(scene: Scene) -> Iterator[Problem]:
+    """Of a scene without other conflicts: those that the vessel's offset brings; none before hang-offs are found."""
+    if scene.vessel is None or any(line.hangs_off for line in risers(scene).values()):
+        return
+    moved = at_offset(scene)
+    for problem in _conflicts(moved):
+        given = value_at(moved.model_dump(by_alias=True), problem.path)
+        allowed = f"then {dotted(problem.path)}, {shown(given)}, {problem.allowed}"
+        yield Problem(("vessel", "offset"), allowed, problem.remedy)
+
+
+def _conflicts(scene: Scene) -> list[Problem]:
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
     checks = (_names, _joints, _stages, _clearances, _soil, _seabed, _for_nothing, _hang_offs, _plane, _water)
@@ -213,9 +229,9 @@ def _hang_offs(scene: Scene) -> Iterator[Problem]:
         for end in ENDS:
             asked = getattr(getattr(line, end), "hang_off", None)
             moved = {"layback": end, "anchor": "start" if end == "end" else "end"}.get(asked.by) if asked else None
-            mine = _vessels(scene, name, moved) if moved else []
+            mine = vessels_of_end(scene, name, moved) if moved else []
             others = [key for key in _moved_ends(scene) if key != (name, moved)]
-            if any(vessel in _vessels(scene, *key) for vessel in mine for key in others):
+            if any(vessel in vessels_of_end(scene, *key) for vessel in mine for key in others):
                 allowed = "another end hangs on the same vessel, which would come along with this one alone"
                 remedy = "take by: length, or move the other end"
                 yield Problem(("lines", name, end, "hang_off"), allowed, remedy)
@@ -223,13 +239,6 @@ def _hang_offs(scene: Scene) -> Iterator[Problem]:
 
 def _moved_ends(scene: Scene) -> Iterator[tuple[str, str]]:
     return ((name, end) for name in scene.lines for end in ENDS)
-
-
-def _vessels(scene: Scene, line: str, end: str) -> list[Vessel | VesselHistory]:
-    """Those that an end is part of, stage by stage."""
-    motions = (getattr(acts_on(stage, line), "motion", None) for stage in scene.stages)
-    given = (motion.by_end[end] for motion in motions if motion is not None and end in motion.by_end)
-    return [way for each in given for way in each.ways.values() if isinstance(way, Vessel | VesselHistory)]
 
 
 def _jointed(scene: Scene, name: str, end: str) -> bool:

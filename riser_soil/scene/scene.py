@@ -18,6 +18,7 @@ from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.seabed import ContactAt, Seabed, SpringSeabed, profile_height
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.stages import Stage
+from riser_soil.scene.vessel_offset import OffsetVessel
 from riser_soil.scene.water import Water
 
 
@@ -101,6 +102,9 @@ class Scene(BaseModel):
     )
     bodies: dict[str, Body] = Field(default={}, description="bodies that lines hang on, by name")
     joints: dict[str, Joint] = Field(default={}, description="joints between lines and bodies, by name")
+    vessel: OffsetVessel | None = Field(
+        default=None, description="the vessel's offset, {offset, ends}, after hang-offs are found; none by default"
+    )
     seabed: Seabed | None = Field(default=None, description="seabed; with soil it acts outside the block")
     soil: SoilScene | None = Field(default=None, description="continuum of soil under the touchdown zone")
     contact: Contact | None = Field(

@@ -1,19 +1,23 @@
-"""A scene with an end at another place, or with a segment of another length, and with it all that belongs there."""
+"""A scene with an end at another place, a segment of another length, or its vessel at an offset, and with it all that
+belongs there.
+"""
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.attachments import Attachment
 from riser_soil.scene.joints import Joint, JointPoint
-from riser_soil.scene.lines import acts_on, risers, with_acts, with_risers
+from riser_soil.scene.lines import ENDS, acts_on, by_line, risers, with_acts, with_risers
 from riser_soil.scene.motions import ArcMotion, Motion, MotionKind, Vessel, VesselHistory
-from riser_soil.scene.riser import Segment
+from riser_soil.scene.riser import Segment, Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import Load, Stage, StaticStage
+from riser_soil.scene.stages import Load, MovedEnds, Stage, StaticStage
 from riser_soil.scene.vectors import minus, plus
 
 ArcMap = Callable[[float], float]
+LineEnd = tuple[str, str]
+"""A line's name, "" of the only one, and start or end."""
 
 
 def with_end_at(scene: Scene, line: str, name: str, place: Vector) -> Scene:
@@ -53,6 +57,91 @@ def _beside(way: MotionKind, by: Vector) -> MotionKind:
             return way.model_copy(update={"reference": plus(way.reference, by)})
         case _:
             return way
+
+
+def vessel_ends(scene: Scene) -> list[LineEnd]:
+    """Lines ("" of the only one) and names of the ends that hang from the vessel whose offset a scene gives: those that
+    it names, else the upper one of each line, unless a joint holds that one.
+    """
+    assert scene.vessel is not None
+    if scene.vessel.ends is not None:
+        return [end_named(name) for name in scene.vessel.ends]
+    upper = ((line, upper_end(view)) for line, view in by_line(scene).items())
+    return [(line, name) for line, name in upper if name is not None]
+
+
+def end_named(name: str) -> LineEnd:
+    """Line and name of an end as `vessel.ends` names it: end, or of several lines west.end."""
+    line, _, end = name.rpartition(".")
+    return line, end
+
+
+def end_name(key: LineEnd) -> str:
+    """An end as `vessel.ends` names it."""
+    return ".".join(each for each in key if each)
+
+
+def upper_end(scene: Scene) -> str | None:
+    """The higher one of a line's ends that have a place; None where a joint holds it, or they are level."""
+    given = [(name, getattr(scene.line, name)) for name in ENDS]
+    heights = {name: end.position[2] for name, end in given if isinstance(end, Support)}
+    if not heights or (len(heights) == 2 and heights["start"] == heights["end"]):
+        return None
+    highest = max(heights, key=lambda name: heights[name])
+    return None if getattr(scene.line, highest).jointed else highest
+
+
+class Displacement(NamedTuple):
+    """A vessel's offset [m], and by name where its ends are without it and with it [m]."""
+
+    offset: Vector
+    ends: dict[str, tuple[Vector, Vector]]
+
+    @property
+    def reported(self) -> str:
+        """In words."""
+        moved = (f"{name} from {_shown(before)} to {_shown(after)}" for name, (before, after) in self.ends.items())
+        return f"vessel at the offset {_shown(self.offset)} m: {', '.join(moved)} m"
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """In block `vessel` of summary.json."""
+        ends = {name: {"from": before, "to": after} for name, (before, after) in self.ends.items()}
+        return {"offset": self.offset, "ends": ends}
+
+
+def _shown(place: Vector) -> str:
+    return "[" + ", ".join(f"{x:.6g}" for x in place) + "]"
+
+
+def displacement(scene: Scene) -> Displacement:
+    """What a vessel's offset does to the ends that hang from it, of a scene that has one."""
+    assert scene.vessel is not None
+    by, ends = scene.vessel.offset, dict[str, tuple[Vector, Vector]]()
+    for line, name in vessel_ends(scene):
+        place = getattr(risers(scene)[line], name).position
+        ends[end_name((line, name))] = place, plus(place, by)
+    return Displacement(by, ends)
+
+
+def at_offset(scene: Scene) -> Scene:
+    """The scene with its vessel's offset in its stages, and no offset any more: the first stage, a static one, moves
+    the vessel's ends by it, and hubs and references of later motions come along.
+    """
+    plain = scene.model_copy(update={"vessel": None})
+    if scene.vessel is None or not any(scene.vessel.offset):
+        return plain
+    for line, name in vessel_ends(scene):
+        plain = _with_end_moved_at_first(plain, line, name, scene.vessel.offset)
+    return plain
+
+
+def _with_end_moved_at_first(scene: Scene, line: str, name: str, by: Vector) -> Scene:
+    first, *later = _stages(scene, line, name, by)
+    move = acts_on(first, line).move or MovedEnds()
+    target = plus(getattr(risers(scene)[line], name).position, by)
+    first = with_acts(first, line, move=move.model_copy(update={name: target}))
+    return scene.model_copy(update={"stages": (first, *later)})
 
 
 def with_segment_as_long(scene: Scene, line: str, number: int, length: float) -> Scene:
