@@ -10,7 +10,7 @@ from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.check import reported_waves, resolution
 from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
-from riser_soil.checks.plausibility import physical_warnings
+from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import Timer
@@ -46,6 +46,7 @@ def run(
         size = size_that_fits(scene, folder, comm)
         tell(size, comm)
         of_size = [*tight(size, comm), *too_long(size)]
+        refuse_impossible(scene)
         assembly = build(scene, comm)
         if saved is None:
             refuse_unfit(assembly)

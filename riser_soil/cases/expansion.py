@@ -36,7 +36,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.files import NamedFile, wrong_file
 from riser_soil.scene.identity import paths_in
-from riser_soil.scene.overrides import override, put
+from riser_soil.scene.overrides import override, put_once
 from riser_soil.scene.problem import shown
 from riser_soil.scene.reader import checked, error_of, read_document
 from riser_soil.scene.scene import Scene
@@ -259,11 +259,13 @@ def _ends(path: str, words: list[str]) -> bool:
 
 def _put(document: Document, values: Overrides, place: str) -> None:
     for path, value in values.items():
-        put(document, path, deepcopy(value), f"{place} {path}={shown(value)}")
+        put_once(document, path, deepcopy(value), f"{place} {path}={shown(value)}")
 
 
 def _resolved(case: Case, document: Document, folder: Path) -> Case:
     """The case with its scene; its results have their place among the cases, whatever the scene says."""
+    if reported := document.overrides.get(("output", "directory")):
+        raise SceneError(f"{reported}: a case has its results in a folder of its own; leave this out")
     scene = checked(document, folder)
     scene = scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
     text = dump_scene(scene)

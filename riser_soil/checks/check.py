@@ -16,7 +16,7 @@ from riser_soil.assembly.soil_block import why_all, why_whole
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth
 from riser_soil.checks.inventory import built, left_out, no_new_mesh, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
-from riser_soil.checks.plausibility import physical_warnings
+from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
 from riser_soil.core.arrays import Array
 from riser_soil.riser.catenary import Catenary
 from riser_soil.riser.sections import Elements
@@ -40,6 +40,7 @@ def describe(scene: Scene, place: Callable[[str], str] = str) -> str:
     size = size_that_fits(scene, Path(), comm)
     tell(size, comm)
     of_size = [*tight(size, comm), *too_long(size)]
+    refuse_impossible(scene)
     assembly = build(scene, comm)
     lines = [*_parts(assembly)]
     for name, line in assembly.by_line.items():

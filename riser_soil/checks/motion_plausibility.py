@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple
@@ -10,9 +11,15 @@ import numpy as np
 
 from riser_soil.assembly.motions import LOOKS, end_places, instants, periods_of, set_motion, vessels_of
 from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
 from riser_soil.riser.line_ends import End
+from riser_soil.scene.bathymetry import ground_height
+from riser_soil.scene.line_checks import path_of_line
+from riser_soil.scene.lines import by_line
+from riser_soil.scene.problem import dotted
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.stage_checks import DEEPEST, GREATEST_STRAIN, meant_as_displacement, moves_of
 from riser_soil.scene.stages import DynamicStage, StaticStage
 
 # Part of the top speed by which an end's velocity may jump.
@@ -21,6 +28,7 @@ JUMP = 0.02
 LONGEST_STEP = 0.1
 # Strain of a riser pulled straight between its ends from which they are too far apart for most pipes.
 STRETCHED = 0.01
+ROUND_OFF = 1e-9  # of the riser's length: by which an end may lie below where it may be
 
 
 class EndVelocities(NamedTuple):
@@ -42,6 +50,7 @@ def motion_warnings(scene: Scene) -> Iterator[str]:
     for name, support in (("start", scene.line.start), ("end", scene.line.end)):
         if isinstance(support, Support):
             yield from _shocks(scene, name, support)
+    yield from _displaced(scene)
     yield from _stretched(scene)
     for n, stage in enumerate(scene.stages):
         if isinstance(stage, DynamicStage):
@@ -62,6 +71,48 @@ def top_speed(scene: Scene) -> float:
     moving = zip(scene.stages, *courses, strict=True)
     found = [each["m/s"].top for stage, *course in moving if isinstance(stage, DynamicStage) for each in course]
     return max(found, default=0.0)
+
+
+def refuse_unreachable(scene: Scene) -> None:
+    """Raises SceneError where motions take ends farther apart than the lines reach, or below the ground."""
+    for name, view in by_line(scene).items():
+        for n, (stage, place) in enumerate(zip(view.stages, end_places(view), strict=True)):
+            if not isinstance(stage, StaticStage) and stage.motion is not None:
+                path = dotted(path_of_line(("stages", n, "motion"), name) if name else ("stages", n, "motion"))
+                times = instants(view, stage)
+                _refuse_far(view, path, place, times)
+                _refuse_deep(view, path, place, times)
+
+
+def _refuse_far(scene: Scene, path: str, place: dict[str, Array], times: Array) -> None:
+    held = (isinstance(end, Support) and not end.jointed for end in (scene.line.start, scene.line.end))
+    if not all(held):
+        return
+    apart, length = np.linalg.norm(place["end"] - place["start"], axis=1), scene.line.length
+    at = int(apart.argmax())
+    if apart[at] > (1.0 + GREATEST_STRAIN) * length:
+        raise SceneError(
+            f"{path}: takes the ends {apart[at]:.6g} m apart at {times[at]:.4g} s, but the riser is only {length:.6g} "
+            "m long; make the motion smaller, or lengthen the segments; check the units of its amplitude or table"
+        )
+
+
+def _refuse_deep(scene: Scene, path: str, place: dict[str, Array], times: Array) -> None:
+    for name, x in place.items() if scene.contact is not None else ():
+        at = int(x[:, 2].argmin())
+        ground = ground_height(scene, (float(x[at, 0]), float(x[at, 1]), float(x[at, 2])))
+        if x[at, 2] < ground - DEEPEST * scene.largest_diameter - ROUND_OFF * scene.line.length:
+            raise SceneError(
+                f"{path}: takes the {name} to z = {x[at, 2]:.6g} m at {times[at]:.4g} s, below the ground at "
+                f"{ground:.6g} m; make the motion smaller; check the units of its amplitude or table"
+            )
+
+
+def _displaced(scene: Scene) -> Iterator[str]:
+    """New places that were probably meant as displacements."""
+    for path, before, place in moves_of(scene):
+        if meant := meant_as_displacement(scene, str(path[-1]), before, place):
+            yield f"{dotted(path)}: moves the {path[-1]} by {math.dist(before, place):.6g} m: {meant}"
 
 
 def _stretched(scene: Scene) -> Iterator[str]:

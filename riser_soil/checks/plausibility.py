@@ -31,6 +31,14 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
     yield from _body_loads_that_end(assembly.scene)
 
 
+def refuse_impossible(scene: Scene) -> None:
+    """Raises SceneError where motions take ends to where their lines can't be."""
+    if any(not isinstance(stage, StaticStage) for stage in scene.stages):
+        from riser_soil.checks.motion_plausibility import refuse_unreachable
+
+        refuse_unreachable(scene)
+
+
 def _placed(warning: str, line: str) -> str:
     """A warning of one of several lines, that begins with the path that its key has in the whole scene."""
     path, colon, words = warning.partition(":")

@@ -139,6 +139,7 @@ class Document:
     """Plain data (dict, list, str, int, float, bool, None) and where each value was written.
 
     overrides: by the path of a value that was replaced, what replaced it, as messages name it. text: of the file.
+    replaced: by the same path the value that was there at first.
     """
 
     name: str
@@ -146,6 +147,7 @@ class Document:
     lines: dict[Path, int] = field(default_factory=dict)
     overrides: dict[Path, str] = field(default_factory=dict)
     text: str = ""
+    replaced: dict[Path, Any] = field(default_factory=dict)
 
     def line_of(self, path: Path) -> str:
         """The line of the file where a value was written; "" where it was not."""

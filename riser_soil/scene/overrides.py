@@ -1,11 +1,12 @@
 """Overrides of scene values on the command line: `--set riser.segments.0.elements=70`."""
 
 from collections.abc import Sequence
+from copy import deepcopy
 from typing import Any
 
 from riser_soil.errors import SceneError
 from riser_soil.scene.document import Document, parse
-from riser_soil.scene.problem import Path, dotted, shown
+from riser_soil.scene.problem import NOTHING, Path, dotted, shown
 
 
 def override(document: Document, assignments: Sequence[str]) -> None:
@@ -21,7 +22,20 @@ def _override(document: Document, assignment: str) -> None:
         raise SceneError(
             f"--set {assignment}: must be path=value; write for example --set riser.segments.0.elements=70"
         )
-    put(document, dots.strip(), _value(text, assignment), f"--set {assignment}")
+    put_once(document, dots.strip(), _value(text, assignment), f"--set {assignment}")
+
+
+def put_once(document: Document, dots: str, value: Any, reported: str) -> None:
+    """As `put`; SceneError where that would undo another override without a word."""
+    undone = next((each for path, each in document.overrides.items() if _is_below(path, dots.split("."))), None)
+    if undone is not None:
+        raise SceneError(f"{reported}: {dots}: undoes {undone}; leave one of the two out")
+    put(document, dots, value, reported)
+
+
+def _is_below(path: Path, words: list[str]) -> bool:
+    """Whether a path is the one of these words, or leads on from there."""
+    return [str(item) for item in path[: len(words)]] == words
 
 
 def put(document: Document, dots: str, value: Any, reported: str) -> None:
@@ -48,6 +62,8 @@ def _store(document: Document, words: list[str], value: Any, reported: str) -> P
         key = _key(data, word, path, reported)
         path = (*path, key)
         if n == len(words) - 1:
+            before = data[key] if isinstance(data, list) else data.get(key, NOTHING)
+            document.replaced.setdefault(path, deepcopy(before))
             data[key] = value
         elif isinstance(data, dict) and data.get(key) is None:
             data[key] = {}

@@ -23,6 +23,7 @@ from riser_soil.scene.problem import Path as KeyPath
 from riser_soil.scene.problem import Problem, dotted, matching, message, shown, value_at
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.sizes import doubts
+from riser_soil.scene.void_overrides import void_overrides
 
 _MOST_LINES = 20
 # key -> values that mean "off"; the key itself is not part of the models. `*` stands for any name or number.
@@ -75,7 +76,7 @@ def checked(document: Document, folder: Path) -> Scene:
     except ValidationError as err:
         others = [p for p in problems_in(err, data) if not _beside(p, unsupported)]
         raise with_doubts(error_of([*unsupported, *others], document), document) from err
-    found = unsupported or all_conflicts(scene)
+    found = unsupported or all_conflicts(scene) or [*void_overrides(document, scene)]
     if found:
         raise with_doubts(error_of(found, document), document)
     return scene

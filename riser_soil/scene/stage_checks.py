@@ -11,11 +11,15 @@ from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import End, Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Load, MidpointScheme, StaticStage, TimedStage
-from riser_soil.scene.vectors import cross, minus
+from riser_soil.scene.vectors import cross, minus, plus
 
-# Strain of a riser pulled straight beyond which a new position must be a mistake.
-_GREATEST_STRAIN = 0.1
-_DEEPEST = 1.5  # diameters that an axis may sink into soil
+GREATEST_STRAIN = 0.1
+"""Strain of a riser pulled straight beyond which a new position must be a mistake."""
+DEEPEST = 1.5
+"""Diameters that an axis may sink into soil."""
+# Part of the way to a place within which its coordinates would do as a displacement, and part of the riser's length
+# that such a way has at least.
+_SHORT, _FAR = 0.2, 0.25
 # What round-off may leave of a displacement [m] or an angle [rad] where the motion is to begin at its middle.
 _AT_ZERO = 1e-9
 # Part of the stage's duration by which its last step may miss its end.
@@ -40,6 +44,7 @@ def stage_conflicts(scene: Scene) -> Iterator[Problem]:
             yield from _moves(scene, n, stage)
         else:
             yield from _motions(scene, n, stage)
+    yield from _moves_to_the_ground(scene)
     yield from _reachable_moves(scene)
 
 
@@ -100,24 +105,63 @@ def _at_rest(scene: Scene, n: int) -> Iterator[Problem]:
         )
 
 
+def moves_of(scene: Scene) -> Iterator[tuple[Path, Vector, Vector]]:
+    """Paths of the new places of a line's ends, where the end was at first or last moved to, and the place [m]."""
+    ends = {"start": scene.line.start, "end": scene.line.end}
+    places = {key: end.position for key, end in ends.items() if isinstance(end, Support)}
+    for n, stage in enumerate(scene.stages):
+        for key in places if isinstance(stage, StaticStage) and stage.move else ():
+            target = getattr(stage.move, key)
+            if target is not None:
+                yield ("stages", n, "move", key), places[key], target
+                places[key] = target
+
+
+def meant_as_displacement(scene: Scene, name: str, before: Vector, place: Vector) -> str:
+    """What to write where a new place of a line's end was probably meant as a displacement; empty where it was not."""
+    way = minus(place, before)
+    for by in (place, (place[0], place[1], way[2])):
+        height = 1.0 if by is place else 0.0
+        given, apart = (math.hypot(x, y, height * z) for x, y, z in (place, way))
+        if apart > _FAR * scene.line.length and 0.0 < given < _SHORT * apart:
+            end = getattr(scene.line, name)
+            found = isinstance(end, Support) and end.hang_off is not None and end.hang_off.by == "layback"
+            write = f"give vessel: {{offset: {_written(by)}}}" if found else f"write {_written(plus(before, by))}"
+            return f"move gives the place that an end goes to, not a displacement: to move it by {_written(by)} {write}"
+    return ""
+
+
+def _written(place: Vector) -> str:
+    return "[" + ", ".join(f"{x:.6g}" for x in place) + "]"
+
+
 def _moves(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
+    """New places of ends that can't be moved, or that lie below the ground."""
     ends = {"start": scene.line.start, "end": scene.line.end}
     if stage.move:
-        targets = {"start": stage.move.start, "end": stage.move.end}
-        yield from _prescribed(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
-        for key, target in targets.items():
-            if scene.contact and target is not None and target[2] < (lowest := _lowest(scene, target)):
-                allowed = f"must not lie below {_of_ground(scene)} (z = {lowest:g} m)"
-                yield Problem(("stages", n, "move", key), allowed, "move the end to a higher place")
+        given = [key for key in ends if getattr(stage.move, key) is not None]
+        yield from _prescribed(ends, {("stages", n, "move", key): key for key in given})
+
+
+def _moves_to_the_ground(scene: Scene) -> Iterator[Problem]:
+    for path, before, target in moves_of(scene) if scene.contact else ():
+        lowest = _lowest(scene, target)
+        meant = meant_as_displacement(scene, str(path[-1]), before, target)
+        resting = lowest + (0.5 * scene.largest_diameter if scene.contact_at == "outer" else 0.0)
+        if target[2] < lowest:
+            allowed = f"must not lie below {_of_ground(scene)} (z = {lowest:g} m)"
+            yield Problem(path, allowed, meant or "move the end to a higher place")
+        elif meant and target[2] <= resting and before[2] - resting > _SHORT * scene.line.length:
+            yield Problem(path, f"brings the {path[-1]} from z = {before[2]:g} m down to {_of_ground(scene)}", meant)
 
 
 def _lowest(scene: Scene, target: Vector) -> float:
     """Height [m] below which an end's axis can't go: that of the ground, or within soil that moves aside."""
-    return ground_height(scene, target) - (_DEEPEST * scene.largest_diameter if scene.soil_moves else 0.0)
+    return ground_height(scene, target) - (DEEPEST * scene.largest_diameter if scene.soil_moves else 0.0)
 
 
 def _of_ground(scene: Scene) -> str:
-    return f"{_DEEPEST:g} diameters below the seabed" if scene.soil_moves else "the seabed"
+    return f"{DEEPEST:g} diameters below the seabed" if scene.soil_moves else "the seabed"
 
 
 def _swings_freely(scene: Scene) -> bool:
@@ -172,21 +216,20 @@ def _reachable_moves(scene: Scene) -> Iterator[Problem]:
     start, end = scene.line.start, scene.line.end
     if not isinstance(start, Support) or not isinstance(end, Support):
         return
-    a, b, length = start.position, end.position, scene.line.length
-    for n, stage in enumerate(scene.stages):
-        if isinstance(stage, StaticStage) and stage.move:
-            a, b = stage.move.start or a, stage.move.end or b
-            if _strained(a, b, length):
-                allowed = (
-                    f"pulls the ends {math.dist(a, b):.6g} m apart, but the riser is only {length:.6g} m long"
-                )
-                yield Problem(
-                    ("stages", n, "move"), allowed, "bring the ends together or lengthen the segments"
-                )
+    places, length = {"start": start.position, "end": end.position}, scene.line.length
+    moves = [*moves_of(scene)]
+    for n in range(len(scene.stages)):
+        moved = [(str(path[-1]), before, place) for path, before, place in moves if path[1] == n]
+        places |= {name: place for name, _, place in moved}
+        if moved and _strained(*places.values(), length):
+            apart = f"{math.dist(*places.values()):.6g} m apart"
+            allowed = f"pulls the ends {apart}, but the riser is only {length:.6g} m long"
+            meant = next(filter(None, (meant_as_displacement(scene, *each) for each in moved)), "")
+            yield Problem(("stages", n, "move"), allowed, meant or "bring the ends together or lengthen the segments")
 
 
 def _strained(a: Vector, b: Vector, length: float) -> bool:
-    return math.dist(a, b) > (1.0 + _GREATEST_STRAIN) * length
+    return math.dist(a, b) > (1.0 + GREATEST_STRAIN) * length
 
 
 def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, stage: TimedStage) -> Iterator[Problem]:
