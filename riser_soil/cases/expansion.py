@@ -264,8 +264,6 @@ def _put(document: Document, values: Overrides, place: str) -> None:
 
 def _resolved(case: Case, document: Document, folder: Path) -> Case:
     """The case with its scene; its results have their place among the cases, whatever the scene says."""
-    if reported := document.overrides.get(("output", "directory")):
-        raise SceneError(f"{reported}: a case has its results in a folder of its own; leave this out")
     scene = checked(document, folder)
     scene = scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
     text = dump_scene(scene)

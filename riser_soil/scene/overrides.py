@@ -6,7 +6,7 @@ from typing import Any
 
 from riser_soil.errors import SceneError
 from riser_soil.scene.document import Document, parse
-from riser_soil.scene.problem import NOTHING, Path, dotted, shown
+from riser_soil.scene.problem import Path, dotted, shown, value_at
 
 
 def override(document: Document, assignments: Sequence[str]) -> None:
@@ -62,8 +62,7 @@ def _store(document: Document, words: list[str], value: Any, reported: str) -> P
         key = _key(data, word, path, reported)
         path = (*path, key)
         if n == len(words) - 1:
-            before = data[key] if isinstance(data, list) else data.get(key, NOTHING)
-            document.replaced.setdefault(path, deepcopy(before))
+            document.replaced.setdefault(path, deepcopy(value_at(document.data, path)))
             data[key] = value
         elif isinstance(data, dict) and data.get(key) is None:
             data[key] = {}

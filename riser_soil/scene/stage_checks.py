@@ -110,8 +110,8 @@ def moves_of(scene: Scene) -> Iterator[tuple[Path, Vector, Vector]]:
     ends = {"start": scene.line.start, "end": scene.line.end}
     places = {key: end.position for key, end in ends.items() if isinstance(end, Support)}
     for n, stage in enumerate(scene.stages):
-        for key in places if isinstance(stage, StaticStage) and stage.move else ():
-            target = getattr(stage.move, key)
+        for key in places:
+            target = getattr(stage.move, key, None) if isinstance(stage, StaticStage) else None
             if target is not None:
                 yield ("stages", n, "move", key), places[key], target
                 places[key] = target
@@ -221,15 +221,11 @@ def _reachable_moves(scene: Scene) -> Iterator[Problem]:
     for n in range(len(scene.stages)):
         moved = [(str(path[-1]), before, place) for path, before, place in moves if path[1] == n]
         places |= {name: place for name, _, place in moved}
-        if moved and _strained(*places.values(), length):
-            apart = f"{math.dist(*places.values()):.6g} m apart"
-            allowed = f"pulls the ends {apart}, but the riser is only {length:.6g} m long"
+        apart = math.dist(places["start"], places["end"])
+        if moved and apart > (1.0 + GREATEST_STRAIN) * length:
+            allowed = f"pulls the ends {apart:.6g} m apart, but the riser is only {length:.6g} m long"
             meant = next(filter(None, (meant_as_displacement(scene, *each) for each in moved)), "")
             yield Problem(("stages", n, "move"), allowed, meant or "bring the ends together or lengthen the segments")
-
-
-def _strained(a: Vector, b: Vector, length: float) -> bool:
-    return math.dist(a, b) > (1.0 + GREATEST_STRAIN) * length
 
 
 def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, stage: TimedStage) -> Iterator[Problem]:

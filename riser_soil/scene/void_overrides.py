@@ -1,4 +1,4 @@
-"""Overrides that a run would not see: of places and lengths that are solved for, so that the scene's are first guesses."""
+"""Overrides that a run would not see: of places and lengths that are solved for, as the scene's are first guesses."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,0 +1,88 @@
+"""A steel catenary riser with its vessel near, mean and far: by its offset, by a stage that moves it, by hand.
+
+Usage, in the project's folder: python -m demos.offsets.run [--results FOLDER] [--page]
+Leaves runs and a table (offsets.md) in `results` beside this file; --page writes it where docs/cases.md shows it.
+"""
+
+from __future__ import annotations
+
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import NamedTuple
+
+from demos.offsets.by_hand import LaidCable, cable_of
+from demos.page import publish, script, table
+from riser_soil.accuracy.chosen_run import in_numbers, run_as_asked
+from riser_soil.results import Run
+from riser_soil.scene.motions import EndMotion, Motion
+from riser_soil.scene.reader import read_scene
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import MovedEnds, StaticStage
+
+HERE = Path(__file__).parent
+SCENE, PAGE = HERE / "scene.yaml", HERE.parents[1] / "docs" / "cases.md"
+OFFSETS = {"near": -60.0, "mean": 0.0, "far": 60.0}  # m
+HEAD = ("vessel", "top tension kN", "by hand", "touchdown arc m", "by hand", "moment at rest kN m", "by hand",
+        "by `move` kN m", "in waves kN m", "by `move` kN m")  # fmt: skip
+
+
+class Found(NamedTuple):
+    """At rest: top tension [N], arc length of the touchdown point [m], largest moment [N.m]; that in waves."""
+
+    tension: float
+    touchdown: float
+    moment: float
+    in_waves: float
+
+
+def main(results: Path, write_page: bool) -> None:
+    scene = read_scene(SCENE)
+    cable = cable_of(scene)
+    mean = cable.layback(cable.at_angle(12.0))
+    hung, _ = in_numbers(scene)
+    rows = []
+    for name, offset in OFFSETS.items():
+        found = computed(read_scene(SCENE, [f"vessel.offset.0={offset}"]), results / name)
+        moved = computed(by_move(hung, offset), results / f"{name}_by_move")
+        rows.append(_row(name, found, moved, cable, cable.at_layback(mean + offset)))
+    publish({"offsets": table(HEAD, rows)}, results, PAGE if write_page else None)
+
+
+def computed(scene: Scene, folder: Path) -> Found:
+    """What a run of the scene has at the end of its last static stage, and in its waves."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "said.txt").open("w", encoding="utf-8") as said, redirect_stdout(said):
+        run_as_asked(scene, folder, force=True)
+    *_, rest, waves = Run(folder).summary["stages"]
+    final = rest["final"]
+    tension, moment = final["end"]["effective_tension"], final["max_bending_moment"]["value"]
+    return Found(tension, final["touchdown_arc"], moment, waves["extremes"]["max_bending_moment"]["max"])
+
+
+def by_move(hung: Scene, offset: float) -> Scene:
+    """The scene, its hang-off found, with a stage that moves the end and a reference point where the vessel then is."""
+    x, y, z = hung.line.end.position
+    rest, waves = hung.stages
+    (vessel,) = waves.motion.end.ways.values()
+    ahead, aside, up = vessel.reference
+    there = EndMotion(vessel=vessel.model_copy(update={"reference": (ahead + offset, aside, up)}))
+    tow = StaticStage(name="tow", kind="static", move=MovedEnds(end=(x + offset, y, z)))
+    return hung.model_copy(
+        update={"stages": (rest, tow, waves.model_copy(update={"motion": Motion(end=there)}))}
+    )
+
+
+def _row(name: str, found: Found, moved: Found, cable: LaidCable, H: float) -> list[str]:
+    return [
+        f"{name}, {OFFSETS[name]:+.0f} m",
+        f"{1e-3 * found.tension:.1f}",
+        f"{1e-3 * cable.top_tension(H):.1f}",
+        f"{found.touchdown:.1f}",
+        f"{cable.touchdown(H):.1f}",
+        *(f"{1e-3 * moment:.2f}" for moment in (found.moment, cable.moment(H), moved.moment)),
+        *(f"{1e-3 * moment:.2f}" for moment in (found.in_waves, moved.in_waves)),
+    ]
+
+
+if __name__ == "__main__":
+    script(main, __doc__, HERE)
