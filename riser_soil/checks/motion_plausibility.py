@@ -80,8 +80,8 @@ def refuse_unreachable(scene: Scene) -> None:
             if not isinstance(stage, StaticStage) and stage.motion is not None:
                 path = dotted(path_of_line(("stages", n, "motion"), name) if name else ("stages", n, "motion"))
                 times = instants(view, stage)
-                _refuse_far(view, path, place, times)
                 _refuse_deep(view, path, place, times)
+                _refuse_far(view, path, place, times)
 
 
 def _refuse_far(scene: Scene, path: str, place: dict[str, Array], times: Array) -> None:

@@ -1,11 +1,11 @@
 """Overrides that a run would not see: of places and lengths that are solved for, as the scene's are first guesses."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from riser_soil.scene.document import Document
 from riser_soil.scene.lines import ENDS, risers
-from riser_soil.scene.problem import NOTHING, Path, Problem, value_at
+from riser_soil.scene.problem import Missing, Path, Problem, value_at
 from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.scene import Scene
 
@@ -20,13 +20,18 @@ class Guess(NamedTuple):
 
 def void_overrides(document: Document, scene: Scene) -> Iterator[Problem]:
     """Overrides of the document that change nothing but a first guess of its scene."""
-    for guess in _guesses(scene):
-        for path, before in document.replaced.items():
-            if path not in (guess.path, guess.path[:-1]) or before is NOTHING:
-                continue
-            if value_at(before, guess.path[len(path) :]) != value_at(document.data, guess.path):
-                yield Problem(path, f"is a first guess: {guess.found}", guess.remedy)
-                break
+    guesses = [*_guesses(scene)] if document.replaced else []
+    for path, before in document.replaced.items():
+        changed = (guess for guess in guesses if _is_changed(document, guess, path, before))
+        if (guess := next(changed, None)) is not None:
+            yield Problem(path, f"is a first guess: {guess.found}", guess.remedy)
+
+
+def _is_changed(document: Document, guess: Guess, path: Path, before: Any) -> bool:
+    """Whether an override at a path changed a guess that the scene had: the value alone, or the list in which it is."""
+    if path not in (guess.path, guess.path[:-1]) or isinstance(before, Missing):
+        return False
+    return bool(value_at(before, guess.path[len(path) :]) != value_at(document.data, guess.path))
 
 
 def _guesses(scene: Scene) -> Iterator[Guess]:
