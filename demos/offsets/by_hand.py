@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 
 
@@ -63,9 +64,15 @@ def cable_of(scene: Scene) -> LaidCable:
     """The cable of the demo's riser."""
     riser, water = scene.line, scene.water
     pipe = scene.line_types[riser.segments[0].line_type]
-    D, d = pipe.outer_diameter, pipe.inner_diameter
-    assert riser.contents is not None
+    outer, inner, contents = pipe.outer_diameter, pipe.inner_diameter, riser.contents
+    assert outer is not None
+    assert inner is not None
+    assert pipe.mass is not None
+    assert contents is not None
     assert water is not None
-    mass = pipe.mass + riser.contents.density * 0.25 * np.pi * d**2 - water.density * 0.25 * np.pi * D**2
-    height = riser.end.position[2] - riser.start.position[2]
+    mass = pipe.mass + 0.25 * np.pi * (contents.density * inner**2 - water.density * outer**2)
+    start, end = riser.start, riser.end
+    assert isinstance(start, Support)
+    assert isinstance(end, Support)
+    height = end.position[2] - start.position[2]
     return LaidCable(float(mass * scene.gravity), riser.length, height, max(pipe.bending_stiffness))

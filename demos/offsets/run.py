@@ -14,10 +14,8 @@ from demos.offsets.by_hand import LaidCable, cable_of
 from demos.page import publish, script, table
 from riser_soil.accuracy.chosen_run import in_numbers, run_as_asked
 from riser_soil.results import Run
-from riser_soil.scene.motions import EndMotion, Motion
-from riser_soil.scene.reader import read_scene
+from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import MovedEnds, StaticStage
 
 HERE = Path(__file__).parent
 SCENE, PAGE = HERE / "scene.yaml", HERE.parents[1] / "docs" / "cases.md"
@@ -61,15 +59,12 @@ def computed(scene: Scene, folder: Path) -> Found:
 
 def by_move(hung: Scene, offset: float) -> Scene:
     """The scene, its hang-off found, with a stage that moves the end and a reference point where the vessel then is."""
-    x, y, z = hung.line.end.position
-    rest, waves = hung.stages
-    (vessel,) = waves.motion.end.ways.values()
-    ahead, aside, up = vessel.reference
-    there = EndMotion(vessel=vessel.model_copy(update={"reference": (ahead + offset, aside, up)}))
-    tow = StaticStage(name="tow", kind="static", move=MovedEnds(end=(x + offset, y, z)))
-    return hung.model_copy(
-        update={"stages": (rest, tow, waves.model_copy(update={"motion": Motion(end=there)}))}
-    )
+    data = hung.model_dump(mode="json", by_alias=True)
+    x, y, z = data["riser"]["end"]["position"]
+    rest, waves = data["stages"]
+    waves["motion"]["end"]["vessel"]["reference"][0] += offset
+    tow = {"name": "tow", "kind": "static", "move": {"end": [x + offset, y, z]}}
+    return scene_from_mapping(data | {"stages": [rest, tow, waves]})
 
 
 def _row(name: str, found: Found, moved: Found, cable: LaidCable, H: float) -> list[str]:

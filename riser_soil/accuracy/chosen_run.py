@@ -1,5 +1,4 @@
-"""How a scene is run: its hang-off solved and its vessel displaced first, then as it is, with error bars, or to the
-accuracy asked.
+"""How a scene is run: hang-offs and the vessel's offset first, then as it is, with error bars, or to an accuracy.
 
 What isn't needed isn't imported.
 """

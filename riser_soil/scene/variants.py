@@ -1,6 +1,4 @@
-"""A scene with an end at another place, a segment of another length, or its vessel at an offset, and with it all that
-belongs there.
-"""
+"""A scene with an end elsewhere, a segment of another length, or its vessel at an offset, and what belongs there."""
 
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple

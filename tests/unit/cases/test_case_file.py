@@ -103,15 +103,20 @@ def test_a_case_is_another_one_where_the_run_that_it_begins_with_has_changed(tmp
     assert len({*keys}) == 3
 
 
-def test_the_example_of_the_page_is_that_of_the_waves() -> None:
-    example = ROOT / "demos/waves/cases.yaml"
-    assert blocks(ROOT / "docs/cases.md", "yml") == [example.read_text(encoding="utf-8")]
+def test_the_examples_of_the_page_are_those_of_the_demos() -> None:
+    example, offsets = (ROOT / "demos" / name / "cases.yaml" for name in ("waves", "offsets"))
+    assert blocks(ROOT / "docs/cases.md", "yml") == [each.read_text(encoding="utf-8") for each in (example, offsets)]
     reported, found = read_cases(example)
     assert (len(found), reported.statistics.since) == (36, 52.0)
     assert found[-1].name == "storm-direction_deg=195-seed=3-far"
 
 
 MISTAKES = [
+    ("set: {gravity: 9.7}\nproduct: {gravity: [9.8]}", "case gravity=9.8: gravity=9.8: gravity: undoes"),
+    (
+        "product: {riser.end.position.0: [8.0], riser.end.position: [[8.0, 0.0, 5.0]]}",
+        "riser.end.position: undoes",
+    ),
     ("bas: other.yaml\nproduct: {gravity: [9.8]}", ':2: bas: value "other.yaml": no such key here, known are base,'),
     ("", ": has neither table nor product; add one of them"),
     ("table: [{name: a/b, set: {gravity: 9.8}}]", ":2: table.0.name: value \"a/b\": must be a name of at most 100"),
