@@ -35,6 +35,7 @@ demos: demo ## that demo and the others (demos/*/README.md), with their tables a
 	$(PYTHON) -m demos.catenary.run
 	$(PYTHON) -m demos.tank.run
 	$(PYTHON) -m demos.waves.run
+	$(PYTHON) -m demos.offsets.run
 	$(PYTHON) -m demos.pipe_segment.run
 	$(PYTHON) -m demos.trench.run
 	$(PYTHON) -m demos.lines.run
@@ -100,6 +101,7 @@ docs: setup ## a site of all pages, with search: build/site
 figures: setup ## the figures that README, tutorials and the demo's page tell, from runs of their scenes; some five minutes
 	rm -rf build/figures
 	$(PYTHON) -m demos.figures --page
+	$(PYTHON) -m demos.offsets.run --page
 	$(PYTHON) -m demos.touchdown_clay.run --page
 
 dist: setup ## wheel and source distribution, checked: build/dist
