@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass
 
 from riser_soil.errors import SceneError
 from riser_soil.moordyn.deck import Deck, DeckRow
-from riser_soil.moordyn.nodes import Node, Piece, is_free, pieces_of
+from riser_soil.moordyn.nodes import Node, Piece, held_at, is_free, pieces_of
+from riser_soil.moordyn.properties import bends
 
 
 @dataclass(frozen=True)
@@ -52,30 +53,47 @@ def chain_with(deck: Deck, number: str | None) -> Chain:
     return chain
 
 
-def all_chains(deck: Deck) -> list[Chain]:
-    """Chains of all lines; they end where nodes are held, or where there are not two of them."""
+def all_chains(deck: Deck, loaded: Container[str]) -> list[Chain]:
+    """Chains of all lines; they end where nodes are held, where there are not two of them, and at some points.
+
+    loaded: names of the nodes at which a force acts. There, or where something sits, cables have a kink; and between
+    lines that bend MoorDyn's points are hinges.
+    """
     every, found = pieces_of(deck), list[Chain]()
+
+    def kinked(node: Node) -> bool:
+        return node.name in loaded or bool(held_at(deck, node)) or is_hinge(deck, node, _at(every, node))
+
     for piece in every:
         if not any(piece in chain.pieces for chain in found):
-            found.append(_through(deck, every, piece))
+            found.append(_through(deck, every, piece, kinked))
     return found
+
+
+def is_hinge(deck: Deck, node: Node, pieces: list[Piece]) -> bool:
+    """Whether a node is a point, or a body that is one, between pieces all of which bend."""
+    return node.section != "rods" and all(bends(deck, piece) for piece in pieces)
 
 
 def _at(every: list[Piece], node: Node) -> list[Piece]:
     return [each for each in every if node.name in (each.ends[0].name, each.ends[1].name)]
 
 
-def _through(deck: Deck, every: list[Piece], piece: Piece) -> Chain:
+def _through(
+    deck: Deck, every: list[Piece], piece: Piece, ends_at: Callable[[Node], bool] = lambda node: False
+) -> Chain:
     seen = {piece}
-    before, after = ([*_followed(deck, every, node, seen)] for node in piece.ends)
+    before, after = ([*_followed(deck, every, node, seen, ends_at)] for node in piece.ends)
     pieces = (*(each for each, _ in reversed(before)), piece, *(each for each, _ in after))
     nodes = (*(node for _, node in reversed(before)), *piece.ends, *(node for _, node in after))
     return Chain(pieces, nodes)
 
 
-def _followed(deck: Deck, every: list[Piece], node: Node, seen: set[Piece]) -> Iterator[tuple[Piece, Node]]:
+def _followed(
+    deck: Deck, every: list[Piece], node: Node, seen: set[Piece], ends_at: Callable[[Node], bool]
+) -> Iterator[tuple[Piece, Node]]:
     """Pieces from a node on, each with the node at its far end, as long as there is one alone that goes on."""
-    while is_free(deck, node) and len(there := _at(every, node)) == 2:
+    while is_free(deck, node) and not ends_at(node) and len(there := _at(every, node)) == 2:
         others = [each for each in there if each not in seen]
         if len(others) != 1:
             return

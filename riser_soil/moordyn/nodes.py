@@ -59,6 +59,10 @@ class Piece:
 def pieces_of(deck: Deck) -> list[Piece]:
     """All lines, then the rods that move and have a length."""
     lines = [Piece("lines", row, (_end(deck, row, "AttachA"), _end(deck, row, "AttachB"))) for row in deck.of("lines")]
+    for each in lines:
+        if each.ends[0].name == each.ends[1].name:
+            both = f"{each.name} has both its ends at {each.ends[0].name}"
+            raise deck.error(each.row.line, f"{both}; correct one of them")
     moving = (rod for rod in deck.of("rods") if has_length(deck, rod) and kind(deck, "rods", rod)[0] in _MOVE)
     rods = [Piece("rods", rod, (node_at(deck, rod, "rods", "A"), node_at(deck, rod, "rods", "B"))) for rod in moving]
     return [*lines, *rods]

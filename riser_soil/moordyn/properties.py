@@ -37,6 +37,12 @@ def diameter(deck: Deck, line: DeckRow) -> float:
     return deck.number(type_of(deck, line), "Diam")
 
 
+def bends(deck: Deck, piece: Piece) -> bool:
+    """Whether a rod, or a line with a bending stiffness."""
+    row = type_of(deck, piece.row)
+    return "EA" not in row or ("EI" in row and as_number(row["EI"]) != 0.0)
+
+
 def net_weight(deck: Deck, piece: Piece, rho: float) -> float:
     """Mass per length less that of the water displaced [kg/m]."""
     row = type_of(deck, piece.row)

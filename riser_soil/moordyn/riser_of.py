@@ -9,7 +9,7 @@ from typing import Any
 
 from riser_soil.core.quantities import Vector
 from riser_soil.imported_scene import Remark
-from riser_soil.moordyn.chains import Chain
+from riser_soil.moordyn.chains import Chain, is_hinge
 from riser_soil.moordyn.deck import Deck, as_number
 from riser_soil.moordyn.loads import SteadyForce
 from riser_soil.moordyn.nodes import COLUMNS, Node, Piece, free_body, has_length, held_at, is_driven, is_free, place
@@ -39,6 +39,9 @@ def riser_of(
         if not is_free(deck, node) or node in shared:
             continue
         riser.remarks += [*about_free(deck, node)]
+        if 0 < n < len(chain.pieces) and is_hinge(deck, node, [*chain.pieces[n - 1 : n + 1]]):
+            hinge = f"{node.name} is a hinge between lines that bend; bending goes on here"
+            riser.remarks.append((node.row.line, hinge))
         if held := held_at(deck, node):
             riser.origins[("attachments", len(attachments))] = node.row.line
             attachments.append({"at": arc} | held)

@@ -35,6 +35,7 @@ def options_of(deck: Deck) -> tuple[Options, list[Remark]]:
     """The options, and a remark on each that is not carried over, but for those that can't change an answer."""
     found, remarks = Options(dict(DEFAULTS), {}), list[Remark]()
     for row in deck.of("options"):
+        _refuse_swapped(deck, row)
         if len(row.words) < 2:
             remarks.append((row.line, f"{row.words[0]}: an option has a value and a name, and MoorDyn skips this one"))
         elif (name := option_of(row.words[1])) is None:
@@ -46,8 +47,19 @@ def options_of(deck: Deck) -> tuple[Options, list[Remark]]:
                 again = f"{row.words[1]} {row.words[0]} counts, and not the value of line {found.lines[name]}"
                 remarks.append((row.line, again))
             found.values[name] = deck.parsed(row, row.words[0], row.words[1])
+            if found.values[name] < 0.0:
+                raise deck.error(row.line, f"{row.words[1]} is {row.words[0]}, less than 0; give its size")
             found.lines[name] = row.line
     return found, remarks
+
+
+def _refuse_swapped(deck: Deck, row: DeckRow) -> None:
+    """An option's name before its value, which MoorDyn does not read."""
+    first, second, *_ = (*row.words, "", "")
+    known = option_of(first) or lost_option(first) or first.lower() in HARMLESS
+    if known and not (option_of(second) or lost_option(second) or second.lower() in HARMLESS):
+        right = f"{second or 'VALUE'} {first}"
+        raise deck.error(row.line, f"{first} {second}: an option has its value first; write {right}")
 
 
 def _about_option(row: DeckRow) -> Iterator[str]:

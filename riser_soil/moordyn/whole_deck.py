@@ -6,9 +6,14 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.quantities import Vector
 from riser_soil.imported_scene import ImportedScene, Remark
 from riser_soil.moordyn.chains import Chain, all_chains
 from riser_soil.moordyn.deck import Deck, DeckRow
+from riser_soil.moordyn.joint_places import at_rest, cable_of
 from riser_soil.moordyn.loads import SteadyForce, forces_of
 from riser_soil.moordyn.names import FREE
 from riser_soil.moordyn.nodes import HELD, Node, body_of, free_body, has_length, held_at, is_free, is_point, kind, place
@@ -22,30 +27,39 @@ LEAST_MASS = 1e-3  # of the water that it displaces: of a point that has a volum
 
 
 def whole_scene_of(deck: Deck) -> ImportedScene:
-    """The whole deck. Lines that free points or rods join by twos are one line, so that its shape is found from its
-    own ends. SceneError for bodies that are turned.
+    """The whole deck. Lines that free rods, or points without anything, join by twos are one line; other free points
+    are joints, placed where they come to rest. SceneError for bodies that are turned.
     """
     options, reported = options_of(deck)
-    chains = [_upward(deck, chain, options) for chain in all_chains(deck)]
+    forces, about_forces = forces_of(deck)
+    every, alone = all_chains(deck, forces), list[Remark]()
+    alone += [(piece.row.line, f"{piece.name}: no line ends at it") for chain in every if not chain.lines
+              for piece in chain.pieces if not _meets(chain, every)]  # fmt: skip
+    chains = [_upward(deck, chain, options) for chain in every if chain.lines or _meets(chain, every)]
     seabed, about_seabed, origins = seabed_of(deck, chains, options)
     types, about_types, type_lines = line_types(deck, (piece for chain in chains for piece in chain.pieces))
     twisted = stiffen_in_torsion(deck, types)
-    forces, about_forces = forces_of(deck)
-    ends = _ends_by_node(chains)
-    level = seabed.get("seabed", {}).get("level")
-    risers = {chain.name: _riser(deck, chain, forces, ends, options, level) for chain in chains}
-    bodies, about_bodies, body_lines = _bodies(deck, ends, options["rho"])
-    joints = {name: joint for node in ends.values() for name, joint in _joints(deck, *node, bodies, level)}
+    ends, level = _ends_by_node(chains), seabed.get("seabed", {}).get("level")
+    places, about_places = _places(deck, chains, ends, options, forces, level)
+    risers = {chain.name: _riser(deck, chain, forces, ends, options, level, places) for chain in chains}
+    bodies, about_bodies, body_lines = _bodies(deck, ends, options["rho"], places)
+    joints = {name: joint for node in ends.values() for name, joint in _joints(deck, *node, bodies, places)}
     stage = {"name": "hang", "kind": "static"} | _loads(deck, risers, forces, bodies, ends)
     data = head_of(deck, options, types) | {"lines": {name: riser.data for name, riser in risers.items()}}
     data |= ({"bodies": bodies} if bodies else {}) | ({"joints": joints} if joints else {}) | seabed
     data |= {"stages": [stage]}
     remarks = {*deck.remarks, *reported, *about_seabed, *about_types, *about_forces, *about_bodies, twisted}
-    remarks |= {remark for riser in risers.values() for remark in riser.remarks}
+    remarks |= {*about_places, *alone} | {remark for riser in risers.values() for remark in riser.remarks}
     remarks |= {*_about_nodes(deck, ends, forces), *_unused(deck, chains), *left_of_sections(deck)}
     origins |= type_lines | body_lines
     origins |= {("lines", name, *path): line for name, riser in risers.items() for path, line in riser.origins.items()}
     return ImportedScene(data, sorted(remarks), {}, origins)
+
+
+def _meets(chain: Chain, others: list[Chain]) -> bool:
+    """Whether others end where a chain does."""
+    names = {node.name for node in chain.ends}
+    return any(names & {node.name for node in other.ends} for other in others if other is not chain)
 
 
 Ends = dict[str, tuple[Node, list[tuple[Chain, str]]]]
@@ -68,8 +82,9 @@ def _upward(deck: Deck, chain: Chain, options: Options) -> Chain:
 
 
 def _riser(
-    deck: Deck, chain: Chain, forces: dict[str, list[SteadyForce]], ends: Ends, options: Options, level: float | None
-) -> ImportedRiser:
+    deck: Deck, chain: Chain, forces: dict[str, list[SteadyForce]], ends: Ends, options: Options, level: float | None,
+    places: dict[str, Vector],
+) -> ImportedRiser:  # fmt: skip
     """A line whose ends are held, shared with others or with a body, or free."""
     riser = riser_of(deck, chain, forces, [node for node in chain.ends if _is_shared(deck, *ends[node.name])])
     rows = [chain.pieces[n].row for n in (0, -1)]
@@ -78,16 +93,41 @@ def _riser(
         if is_free(deck, node) or free_body(deck, node) is not None:
             riser.data[key] = "free"
         else:
-            riser.data[key] = {"position": [*place(deck, node, level)]}
+            riser.data[key] = {"position": [*places[node.name]]}
             riser.remarks += about_held(deck, node, row.line)
     loose = [node for node in chain.ends if is_free(deck, node) and not _is_shared(deck, *ends[node.name])]
     if loose:
         held = [node for node in chain.ends if node not in loose]
         if not held:
             raise deck.error(chain.pieces[0].row.line, "no end of it is held or joined; fix or couple one of them")
-        points = free_shape(deck, chain, place(deck, held[0], level), options["rho"], level)
+        points = free_shape(deck, chain, places[held[0].name], options["rho"], level)
         riser.data["initial"] = {"points": points[::-1] if loose[0] == chain.ends[0] else points}
     return riser
+
+
+def _places(
+    deck: Deck, chains: list[Chain], ends: Ends, options: Options, forces: dict[str, list[SteadyForce]],
+    level: float | None,
+) -> tuple[dict[str, Vector], list[Remark]]:  # fmt: skip
+    """Where all nodes are; those that lines share where they come to rest, bodies being where the deck has them."""
+    places = {name: place(deck, node, level) for name, (node, _) in ends.items()}
+    loads, g, rho = dict[str, Array](), options["g"], options["rho"]
+    for name, (node, at_it) in ends.items():
+        if is_free(deck, node) and _is_shared(deck, node, at_it):
+            held = held_at(deck, node)
+            weight = g * (held.get("mass", 0.0) - rho * held.get("volume", 0.0))
+            loads[name] = np.sum([[0.0, 0.0, -weight], *(each.force for each in forces.get(name, ()))], axis=0)
+    if not loads:
+        return places, []
+    touched = [chain for chain in chains if loads.keys() & {node.name for node in chain.ends}]
+    joined = [chain for chain in touched if all(len(ends[node.name][1]) > 1 or not is_free(deck, node)
+                                                for node in chain.ends)]  # fmt: skip
+    found = at_rest([cable_of(deck, chain, rho, g, level) for chain in joined], places, loads)
+    if found is None:
+        rows = {ends[name][0].row.line for name in loads}
+        reported = "its place at rest is not found; the search begins where the deck has it"
+        return places, [(line, reported) for line in rows]
+    return places | found, []
 
 
 def _is_shared(deck: Deck, node: Node, at_it: list[tuple[Chain, str]]) -> bool:
@@ -96,7 +136,7 @@ def _is_shared(deck: Deck, node: Node, at_it: list[tuple[Chain, str]]) -> bool:
 
 
 def _joints(
-    deck: Deck, node: Node, at_it: list[tuple[Chain, str]], bodies: dict[str, Any], level: float | None
+    deck: Deck, node: Node, at_it: list[tuple[Chain, str]], bodies: dict[str, Any], places: dict[str, Vector]
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Of all ends at a node: with its body where it has one, else with each other."""
     if not _is_shared(deck, node, at_it):
@@ -112,7 +152,7 @@ def _joints(
     if "body" in first:
         pairs, place_of = [(first, each) for each in others], {}
     else:
-        pairs, place_of = [*pairwise(ends)], {"position": list(place(deck, node, level))}
+        pairs, place_of = [*pairwise(ends)], {"position": [*places[node.name]]}
     for m, pair in enumerate(pairs, start=1):
         number = f"_{m}" if len(pairs) > 1 else ""
         yield f"at{_short(node)}{number}", {"kind": "pinned", "between": list(pair), **place_of}
@@ -132,7 +172,9 @@ def _body_name(row: DeckRow) -> str:
     return f"body{row['ID']}"
 
 
-def _bodies(deck: Deck, ends: Ends, rho: float) -> tuple[dict[str, Any], list[Remark], dict[Path, int]]:
+def _bodies(
+    deck: Deck, ends: Ends, rho: float, places: dict[str, Vector]
+) -> tuple[dict[str, Any], list[Remark], dict[Path, int]]:
     """Free nodes that lines share and that have something of their own, and free bodies."""
     found, remarks, origins = dict[str, Any](), list[Remark](), dict[Path, int]()
     for node, at_it in ends.values():
@@ -141,7 +183,7 @@ def _bodies(deck: Deck, ends: Ends, rho: float) -> tuple[dict[str, Any], list[Re
             continue
         name = _node_body(node)
         remarks += [(node.row.line, about) for about in _with_mass(held, node.name, rho)]
-        found[name] = {"kind": "point", "position": [*place(deck, node)]} | held
+        found[name] = {"kind": "point", "position": [*places[node.name]]} | held
         origins[("bodies", name)] = node.row.line
     for row in deck.of("bodies"):
         if kind(deck, "bodies", row)[0] == FREE and not is_point(deck, row):

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from riser_soil.moordyn.scene_of import scene_of
+from riser_soil.moordyn.whole_deck import whole_scene_of
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -106,3 +107,23 @@ def test_lengths_spliced_by_rods_of_no_length(folder: Path) -> None:
         options=["75 WtrDpth", "3e5 kBot", "1020 rho", "9.81 g"],
     )  # fmt: skip
     assert top_tension(spliced) == pytest.approx(SPLICED, rel=0.02)
+
+
+@pytest.mark.parametrize(("mass", "volume"), [(0.0, 0.0), (2000.0, 0.5), (500.0, 3.0)])
+def test_a_bridle_whose_node_is_guessed_far_away(mass: float, volume: float, folder: Path) -> None:
+    """The scene has it where it comes to rest: a run moves it by less than the elements are short of cables."""
+    text = text_of_deck(
+        line_types=[*CHAIN, "rope 0.12 11.5 4.2e7 -0.9 0 1.3 1.1 0.04 0.02"], options=OPTIONS,
+        points=[*ANCHORED[:3], "2 Coupled 0 10 -6 0 0 0 0", "3 Coupled 0 -10 -6 0 0 0 0",
+                f"4 Free -200 40 -10 {mass} {volume} 0 0", "5 Free -90 0 -70 0 0 0 0"],
+        lines=[*LINES[:2], "1 chain 1 5 160 20 -", "2 rope 5 4 70 10 -", "3 rope 4 2 43 10 -", "4 rope 4 3 43 10 -"],
+    )  # fmt: skip
+    data = whole_scene_of(deck_of_text(folder, text)).data
+    assert [*data["lines"]] == ["line1_2", "line3", "line4"]
+    results = Path(mkdtemp(dir=folder))
+    run(scene_from_mapping(data), results)
+    stage = Run(results).summary["stages"][0]
+    guessed = data["bodies"]["point4"]["position"] if mass else data["joints"]["at4_1"]["position"]
+    assert stage["lines"]["line1_2"]["final"]["end"]["position"] == pytest.approx(guessed, abs=0.05)
+    assert guessed[1] == pytest.approx(0.0, abs=1e-3), "midway between the two fairleads"
+    assert stage["newton_iterations"] <= 10

@@ -63,24 +63,24 @@ def imported(tmp_path: Path, text: str = DECK) -> tuple[dict[str, Any], list[str
 def test_a_whole_deck(tmp_path: Path) -> None:
     data, remarks = imported(tmp_path)
     scene = scene_from_mapping(data)
-    assert [*scene.lines] == ["line1_2", "line3", "line4_5"]
-    assert [line.length for line in scene.lines.values()] == [215.0, 212.0, 230.0]
+    assert [*scene.lines] == ["line1_2", "line3", "line4", "line5"]
+    assert [line.length for line in scene.lines.values()] == [215.0, 212.0, 130.0, 100.0]
     anchor = scene.lines["line3"].start
     assert isinstance(anchor, Support)
     assert anchor.position == (-100.0, 173.2, -100.0)
-    (body,), (point,) = scene.bodies.values(), scene.lines["line4_5"].attachments
+    point, body = scene.bodies["point8"], scene.bodies["body1"]
     assert (body.kind, body.position, body.mass, body.volume) == ("rigid", (0.0, 0.0, -30.0), 2.0e4, 80.0)
     assert isinstance(body, SolidBody)
     assert body.centre_of_gravity == body.centre_of_buoyancy == (0.0, 0.0, -2.0), "MoorDyn lets both act there"
     assert body.drag_area == (20.0, 20.0, 20.0)
     assert body.rotational_drag == (300.0, 300.0, 300.0)
     assert body.added_mass == (0.6, 0.6, 0.3)
-    assert (point.at, point.mass, point.volume) == (130.0, 500.0, 2.0)
+    assert (point.kind, point.mass, point.volume) == ("point", 500.0, 2.0)
     between = {name: joint.model_dump(exclude_none=True)["between"] for name, joint in scene.joints.items()}
-    assert [*between] == ["at4", "at5", "at6"], "lines joined by twos are one"
+    assert [*between] == ["at4", "at5", "at8_1", "at8_2", "at6"], "chain and rope are one where nothing sits"
     assert between["at4"][0] == {"body": "body1", "offset": (2.0, 0.0, -3.0)}
     assert [(each[1]["line"], each[1]["at"]) for each in between.values()] == [
-        ("line1_2", "end"), ("line3", "end"), ("line4_5", "end"),
+        ("line1_2", "end"), ("line3", "end"), ("line4", "end"), ("line5", "start"), ("line5", "end"),
     ]  # fmt: skip
     assert [each for each in remarks if "GJ" in each] != []
     assert scene.seabed is not None
@@ -105,4 +105,4 @@ def test_the_command_writes_the_whole_deck(tmp_path: Path, monkeypatch: pytest.M
     Path("deck.dat").write_text(DECK)
     result = CliRunner().invoke(app, ["import", "deck.dat", "--line", "all", "-o", "all.yaml"])
     assert result.exit_code == 0, result.output
-    assert len(read_scene("all.yaml").joints) == 3
+    assert len(read_scene("all.yaml").joints) == 5

@@ -76,6 +76,20 @@ def test_options_with_a_word_too_few_are_remarks(tmp_path: Path) -> None:
     line_with(imported(tmp_path, options=[*OPTIONS, "1003"])[1], "20: 1003:", "skips")
 
 
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("WtrDpth 75.0", "WtrDpth 75.0: an option has its value first; write 75.0 WtrDpth"),
+        ("dtM 0.001", "dtM 0.001: an option has its value first"),
+        ("-75 WtrDpth", "WtrDpth is -75, less than 0; give its size"),
+        ("nan kb", "kb is 'nan', not a finite number"),
+    ],
+)
+def test_options_that_are_refused(row: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=f"deck.dat:20: {said}"):
+        imported(tmp_path, options=[*OPTIONS, row])
+
+
 def test_no_name_has_two_meanings() -> None:
     words = [*chain(*names.ALIASES.values()), *chain(*names.LOST), *names.HARMLESS]
     assert len(words) == len({*words})
@@ -201,6 +215,8 @@ def test_kinds_that_are_none(tmp_path: Path) -> None:
 
 
 def test_ends_that_are_none(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"deck.dat:14: line 1 has both its ends at point 2"):
+        imported(tmp_path, lines=[*LINES[:2], LINES[2].replace("1 2 258", "2 2 258")])
     for word in ("R1A", "9", "X2", "R1"):
         with pytest.raises(SceneError, match=f"deck.dat:14: line 1 ends at {word}"):
             imported(tmp_path, lines=[*LINES[:2], LINES[2].replace("1 2 258", f"1 {word} 258")])
