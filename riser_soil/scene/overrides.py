@@ -10,7 +10,7 @@ from riser_soil.scene.problem import Path, dotted, shown, value_at
 
 
 def override(document: Document, assignments: Sequence[str]) -> None:
-    """Replace values of the document by `path=value`, the value read as YAML."""
+    """Replace values of the document by `path=value`, the value read as YAML; of one path the last one counts."""
     for assignment in assignments:
         _override(document, assignment)
 
@@ -22,20 +22,16 @@ def _override(document: Document, assignment: str) -> None:
         raise SceneError(
             f"--set {assignment}: must be path=value; write for example --set riser.segments.0.elements=70"
         )
-    put_once(document, dots.strip(), _value(text, assignment), f"--set {assignment}")
+    put_once(document, dots.strip(), _value(text, assignment), f"--set {assignment}", again=True)
 
 
-def put_once(document: Document, dots: str, value: Any, reported: str) -> None:
-    """As `put`; SceneError where that would undo another override without a word."""
-    undone = next((each for path, each in document.overrides.items() if _is_below(path, dots.split("."))), None)
-    if undone is not None:
-        raise SceneError(f"{reported}: {dots}: undoes {undone}; leave one of the two out")
+def put_once(document: Document, dots: str, value: Any, reported: str, again: bool = False) -> None:
+    """As `put`; SceneError where that would undo another override without a word. again: of the same path it may."""
+    words = dots.split(".")
+    for path, earlier in document.overrides.items():
+        if [str(item) for item in path[: len(words)]] == words and not (again and len(path) == len(words)):
+            raise SceneError(f"{reported}: {dots}: undoes {earlier}; leave one of the two out")
     put(document, dots, value, reported)
-
-
-def _is_below(path: Path, words: list[str]) -> bool:
-    """Whether a path is the one of these words, or leads on from there."""
-    return [str(item) for item in path[: len(words)]] == words
 
 
 def put(document: Document, dots: str, value: Any, reported: str) -> None:

@@ -85,7 +85,6 @@ def test_what_a_run_feels_is_one(scene: Mapping, overrides: list[str], tmp_path:
 
 
 UNDONE = [
-    ["gravity=9.8", "gravity=9.7"],
     ["riser.end.position.0=25.0", "riser.end.position=[24.0, 0.0, 40.0]"],
     ["line_types.pipe.mass=3.0", "line_types.pipe={EA: 1.0e9, EI: 1.0e3, submerged_weight: 200.0}"],
 ]
@@ -98,6 +97,10 @@ def test_no_override_undoes_another(overrides: list[str], tmp_path: Path) -> Non
         read_scene(file, overrides)
     assert all(f"--set {override}" in str(refused.value) for override in overrides)
     assert read_scene(file, overrides[::-1][:1])
+
+
+def test_of_one_path_the_last_override_counts(tmp_path: Path) -> None:
+    assert read_scene(written(hanging(), tmp_path), ["gravity=9.8", "gravity=9.7"]).gravity == 9.7
 
 
 def test_an_override_within_another_changes_it(tmp_path: Path) -> None:
