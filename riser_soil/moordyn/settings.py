@@ -50,6 +50,8 @@ def options_of(deck: Deck) -> tuple[Options, list[Remark]]:
             if found.values[name] < 0.0:
                 raise deck.error(row.line, f"{row.words[1]} is {row.words[0]}, less than 0; give its size")
             found.lines[name] = row.line
+    if found["g"] == 0.0:
+        raise deck.error(found.lines["g"], "g is 0: without gravity no line hangs, and the deck gives no scene; give 9.81")
     return found, remarks
 
 

@@ -82,6 +82,7 @@ def test_options_with_a_word_too_few_are_remarks(tmp_path: Path) -> None:
         ("WtrDpth 75.0", "WtrDpth 75.0: an option has its value first; write 75.0 WtrDpth"),
         ("dtM 0.001", "dtM 0.001: an option has its value first"),
         ("-75 WtrDpth", "WtrDpth is -75, less than 0; give its size"),
+        ("0 g", "g is 0: without gravity no line hangs"),
         ("nan kb", "kb is 'nan', not a finite number"),
     ],
 )
