@@ -51,7 +51,7 @@ def options_of(deck: Deck) -> tuple[Options, list[Remark]]:
                 raise deck.error(row.line, f"{row.words[1]} is {row.words[0]}, less than 0; give its size")
             found.lines[name] = row.line
     if found["g"] == 0.0:
-        raise deck.error(found.lines["g"], "g is 0: without gravity no line hangs, and the deck gives no scene; give 9.81")
+        raise deck.error(found.lines["g"], "g is 0: without gravity no line hangs; give 9.81")
     return found, remarks
 
 
