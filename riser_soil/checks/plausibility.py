@@ -19,7 +19,9 @@ from riser_soil.scene.stages import DynamicStage, Load, OfBody, Stage, StaticSta
 
 
 def physical_warnings(assembly: Assembly) -> Iterator[str]:
-    """All plausibility warnings, each with its numbers, those of several lines behind their names; collective."""
+    """All plausibility warnings, each with its numbers, those of several lines behind their names, unless they begin
+    with a key of that line; collective.
+    """
     yield from (f"{dotted(path)}: {text}" for path, text in doubts(assembly.scene.model_dump(by_alias=True)))
     if not assembly.scene.lines:
         yield from _of_one(assembly)
@@ -27,7 +29,8 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
     found = {name: [_placed(each, name) for each in _of_one(line)] for name, line in assembly.by_line.items()}
     for warning in dict.fromkeys(each for of_line in found.values() for each in of_line):
         names = [name for name, of_line in found.items() if warning in of_line]
-        yield f"{', '.join(names)}: {warning}"
+        of_its_own = names[0] in warning.partition(":")[0].split(".")
+        yield warning if of_its_own else f"{', '.join(names)}: {warning}"
     yield from _body_loads_that_end(assembly.scene)
 
 

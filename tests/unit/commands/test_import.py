@@ -44,6 +44,19 @@ def test_it_ends_with_what_check_says(tmp_path: Path, monkeypatch: pytest.Monkey
     assert read_scene("line.yaml").stages[0].name == "hang"
 
 
+def test_a_warning_about_one_of_several_lines_has_its_line_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = {"east": BASE["riser"]}
+    stages = [{"name": "hang", "kind": "static", "lines": {"east": {"loads": LOADED["loads"]}}},
+              {"name": "hold", "kind": "static"}]  # fmt: skip
+    given = ImportedScene({**BASE, "lines": own, "stages": stages}, [], {}, LINES)
+    del given.data["riser"]
+    monkeypatch.setattr(imports, "_imported", lambda *_: given)
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["import", "line.dat"])
+    assert done.exit_code == 0, done.output
+    line_with(done.output, "warning:", "line.dat:30:", "stages.0.lines.east.loads.0:", "ends with its stage")
+
+
 @pytest.mark.parametrize(
     ("piece", "words"),
     [
