@@ -23,10 +23,12 @@ from riser_soil.core.part import State
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.moving_nodes import MovingNodes, out_of_plane
+from riser_soil.riser.rotations import moment_stiffness
 from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
+    cross,
     matadd,
     matmul,
     matrix,
@@ -241,6 +243,21 @@ def add_blocks(K: Array, weight: float, xx: Mat, xt: Mat, tx: Mat, tt: Mat) -> N
             K[i, 3 + j] += weight * xt[i][j]
             K[3 + i, j] += weight * tx[i][j]
             K[3 + i, 3 + j] += weight * tt[i][j]
+
+
+@njit
+def add_tangent_at(
+    K: Array, weight: float, at: Posture, Rn: Mat, Theta: Vec, arm: Vec, force: Vec, by_place: Mat
+) -> None:
+    """Add weight times the derivative of a force in global axes at an arm, and of its moment, to K (6, 6).
+
+    by_place: derivative of the force by the place of the arm's end. Rn, Theta: frame at the step's start and rotation.
+    """
+    moved = matscale(-1.0, matmul(skew(arm), at.H))  # the arm's end, by the rotation dofs
+    back, by_turn = transpose(moved), matmul(by_place, moved)
+    own = matmul(transpose(at.H), matmul(matmul(skew(force), skew(arm)), at.H))
+    turning = matadd(matmul(back, by_turn), matadd(own, moment_stiffness(Rn, Theta, cross(arm, force))))
+    add_blocks(K, weight, by_place, by_turn, matmul(back, by_place), turning)
 
 
 @njit

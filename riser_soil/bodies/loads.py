@@ -13,6 +13,7 @@ from riser_soil.bodies.body import (
     MovingBody,
     Posture,
     add_blocks,
+    add_tangent_at,
     add_to_dofs,
     posture,
     wet,
@@ -35,9 +36,7 @@ from riser_soil.riser.vectors import (
     matrix,
     matscale,
     matvec,
-    outer,
     scale,
-    skew,
     sub,
     transpose,
     vecmat,
@@ -80,15 +79,10 @@ def _add_weight(part: WeightData, at: SpatialConfiguration, out: LineForces) -> 
 def _add_tangent_of_weight(
     part: WeightData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
 ) -> None:
-    here = posture(at)
+    here, Rn, Theta = posture(at), matrix(at.Rn[0]), vector(at.Theta[0])
     for arm, force, slope in _lifts(part, here):
-        upward, height = (0.0, 0.0, force), (0.0, 0.0, 1.0)
-        risen = scale(-1.0, matmul(skew(arm), here.H)[2])
-        own = matmul(transpose(here.H), matmul(matmul(skew(upward), skew(arm)), here.H))
-        lever = moment_stiffness(matrix(at.Rn[0]), vector(at.Theta[0]), cross(arm, upward))
-        turning = matadd(matscale(slope, outer(risen, risen)), matadd(own, lever))
-        across = matscale(slope, outer(height, risen))
-        add_blocks(K[0], weights.force, matscale(slope, outer(height, height)), across, transpose(across), turning)
+        rising = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, slope))
+        add_tangent_at(K[0], weights.force, here, Rn, Theta, arm, (0.0, 0.0, force), rising)
 
 
 @add_energy.of(WeightData)

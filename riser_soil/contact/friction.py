@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -16,7 +16,8 @@ from riser_soil.contact.coulomb import Adhesion, Pair, adhesion_at, limits, retu
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.seabed_kernels import SeabedData
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.bound import Bound, Packed, bound
+from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
@@ -25,6 +26,7 @@ from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import BoundPart, CompiledPart
+from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import (
     Mat,
@@ -131,37 +133,86 @@ class FrictionData(NamedTuple):
     resistance: Array
 
 
-AT_START = "position", "along", "traction"  # of `FrictionData`: what a step starts from
+AT_START = "position", "along", "traction"  # of friction's kernel data: what a step starts from
 
 
-class CoulombFriction(CompiledPart):
-    """Part "friction": friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
+@by_type
+def write_start(part: Any, at: Configuration) -> Any:
+    """Write the places and directions from which a step starts, where the contact's forces have been found."""
 
-    axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2], see
-    `mobilised_within`. adhesion: what clay holds the pipe by at most. The force acts on the axis. Directions are those
-    of the start of the step; the traction is kept in the line's constant axes.
+
+class GroundContact(Protocol):
+    """The contact whose normal forces friction reads."""
+
+    def find(self, state: State) -> None: ...
+
+
+class SeabedFriction(CompiledPart):
+    """Base of the parts of friction at the points of a contact with a seabed, whose normal forces they read; group E.
+
+    mu (2,): coefficients; slid: the way that each point has slid [m]. Kernel data have what AT_START names. Directions
+    are those of the start of the step; the traction is kept in constant axes.
     """
 
-    line: Line
-
-    name = "friction"
     traits = Traits("E", symmetric=False, path_dependent=True, gradual=True, roles=(Stateful,))
     after_forces = True
 
-    def __init__(
-        self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array, adhesion: Adhesion | None = None
-    ) -> None:
-        super().__init__(contact.line)
-        self.contact = contact
-        self._mu = np.array([axial, lateral if self.line.dimension == 3 else axial])
-        self._stiffness, self._adhesion = stiffness, adhesion or Adhesion()
-        self._slid: Array = np.zeros(contact.share.shape)
+    def __init__(self, field: MovingNodes, contact: GroundContact, mu: Array, slid: Array) -> None:
+        super().__init__(field)
+        self._contact, self._mu, self._slid = contact, mu, slid
         self._begun = False  # whether it is known what a step starts from
 
     def stick(self) -> None:
         """From now on nothing slides, as in small vibrations about rest."""
         self._mu[:] = np.inf
         self._trials.forget()
+
+    @cached_property
+    def _write_start(self) -> Bound:
+        return bound(write_start, self._data, Packed(self._trials.now.at))
+
+    def renew_kernel_data(self, start: float, end: float) -> None:
+        if not self._begun:
+            self._contact.find(State.at_rest(end, self.line.offset + self.line.size))
+            self._write_start()
+            self._begun = True
+
+    def _go_to(self, state: State) -> BoundPart:
+        """The contact's forces come first."""
+        self.renew_kernel_data(state.t, state.t)
+        self._contact.find(state)
+        return super()._go_to(state)
+
+    def state(self) -> Saved:
+        """What the next step starts from, if there was one, and the slip of the points."""
+        known = {name: getattr(self._data, name).copy() for name in AT_START} if self._begun else {}
+        return {"slid": self._slid.copy()} | known
+
+    def restore(self, saved: Saved) -> None:
+        self._slid[...], self._begun = saved["slid"], "position" in saved
+        for name in AT_START if self._begun else ():
+            getattr(self._data, name)[...] = saved[name]
+        self._trials.forget()
+
+
+class CoulombFriction(SeabedFriction):
+    """Part "friction": friction at the stations of a `SeabedContact`.
+
+    axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2], see
+    `mobilised_within`. adhesion: what clay holds the pipe by at most. The force acts on the axis.
+    """
+
+    line: Line
+
+    name = "friction"
+
+    def __init__(
+        self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array, adhesion: Adhesion | None = None
+    ) -> None:
+        mu = np.array([axial, lateral if contact.line.dimension == 3 else axial])
+        super().__init__(contact.line, contact, mu, np.zeros(contact.share.shape))
+        self.contact = contact
+        self._stiffness, self._adhesion = stiffness, adhesion or Adhesion()
 
     def make_kernel_data(self) -> FrictionData:
         d, shape = self.line.dimension, self.contact.share.shape
@@ -172,22 +223,6 @@ class CoulombFriction(CompiledPart):
     def kernel_data(self) -> FrictionData:
         found: FrictionData = self._data
         return found
-
-    @cached_property
-    def _write_start(self) -> Bound:
-        return Bound(write_start, Packed(self._data), Packed(self._trials.now.at))
-
-    def renew_kernel_data(self, start: float, end: float) -> None:
-        if not self._begun:
-            self.contact.find(State.at_rest(end, self.line.offset + self.line.size))
-            self._write_start()
-            self._begun = True
-
-    def _go_to(self, state: State) -> BoundPart:
-        """The contact's forces come first."""
-        self.renew_kernel_data(state.t, state.t)
-        self.contact.find(state)
-        return super()._go_to(state)
 
     def slip(self) -> Array:
         """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
@@ -206,17 +241,6 @@ class CoulombFriction(CompiledPart):
         if not self.line.active:
             return np.zeros(3)
         return np.asarray(-self.line.basis @ self._found(state).forces.end_q[:, ::2].sum(axis=(0, 1)))
-
-    def state(self) -> Saved:
-        """What the next step starts from, if there was one, and the slip of the stations."""
-        known = {name: getattr(self._data, name).copy() for name in AT_START} if self._begun else {}
-        return {"slid": self._slid.copy()} | known
-
-    def restore(self, saved: Saved) -> None:
-        self._slid[...], self._begun = saved["slid"], "position" in saved
-        for name in AT_START if self._begun else ():
-            getattr(self._data, name)[...] = saved[name]
-        self._trials.forget()
 
 
 def mobilised_within(
@@ -324,9 +348,8 @@ def _keep_traction(part: FrictionData, at: Configuration) -> None:
     write_start(part, at)
 
 
-@njit
-def write_start(part: FrictionData, at: Configuration) -> None:
-    """Write the places and directions from which a step starts, where the contact's forces have been found."""
+@write_start.of(FrictionData)
+def _write_start(part: FrictionData, at: Configuration) -> None:
     contact = part.contact
     for e in range(part.stiffness.size):
         for g in range(part.slid.shape[1]):
