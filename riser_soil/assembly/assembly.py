@@ -178,7 +178,8 @@ class Assembly:
     def lasting_parts(self) -> list[Part]:
         """Those that act in all stages."""
         parts = [part for own in self.lines.values() for part in own.parts]
-        return [*parts, *self.contacts, *self.frictions, *self.soil_parts]
+        hung = [] if self.hung is None else self.hung.lasting
+        return [*parts, *self.contacts, *self.frictions, *self.soil_parts, *hung]
 
     def recovered_soil(self) -> Soil | None:
         """The whole soil as of the last accepted step, for results."""

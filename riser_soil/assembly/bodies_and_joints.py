@@ -8,6 +8,7 @@ from typing import assert_never
 
 import numpy as np
 
+from riser_soil.assembly.bodies_on_seabed import on_seabed
 from riser_soil.assembly.line_assembly import LineAssembly
 from riser_soil.assembly.sea import water_of
 from riser_soil.assembly.stage import loads_of_body
@@ -16,6 +17,8 @@ from riser_soil.bodies.drag import BodyDrag
 from riser_soil.bodies.inertia import BodyInertia, MidpointBodyInertia
 from riser_soil.bodies.joints import STIFF, JointOf, Joints, Side
 from riser_soil.bodies.loads import BodyWeight, Release
+from riser_soil.bodies.seabed_contact import BodyContact
+from riser_soil.bodies.seabed_friction import BodyFriction
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.scene.bodies import Body as BodyScene
@@ -34,7 +37,8 @@ CLOSED = 1e-6  # of a line's length: a first gap of a joint that needs no stage 
 class Hung:
     """Bodies by name, and all joints; None without any.
 
-    given, weights: what each body is, and its weight and buoyancy.
+    given, weights: what each body is, and its weight and buoyancy. contacts, frictions: of those that may touch the
+    seabed.
     """
 
     bodies: dict[str, MovingBody]
@@ -42,10 +46,14 @@ class Hung:
     given: dict[str, BodyProperties]
     weights: dict[str, BodyWeight]
     joints_are_open: bool
+    contacts: dict[str, BodyContact]
+    frictions: dict[str, BodyFriction]
 
     @property
-    def _lasting(self) -> list[Part]:
-        return [*self.weights.values(), *([] if self.joints is None else [self.joints])]
+    def lasting(self) -> list[Part]:
+        """Parts in all stages."""
+        joints = [] if self.joints is None else [self.joints]
+        return [*self.weights.values(), *self.contacts.values(), *self.frictions.values(), *joints]
 
     def _hold(self, held: bool) -> None:
         for body in self.bodies.values():
@@ -56,12 +64,12 @@ class Hung:
     def close(self) -> list[Part]:
         """Hold the bodies while joints close; the parts in that stage."""
         self._hold(True)
-        return self._lasting
+        return self.lasting
 
     def let_go(self, reactions: Mapping[str, Array]) -> list[Part]:
         """The same of the stage in which bodies are let go; reactions: on what held them, by name."""
         self._hold(False)
-        return [*self._lasting, *(Release(self.bodies[name], reaction) for name, reaction in reactions.items())]
+        return [*self.lasting, *(Release(self.bodies[name], reaction) for name, reaction in reactions.items())]
 
     @property
     def loads(self) -> dict[MovingBody, float]:
@@ -72,7 +80,7 @@ class Hung:
     def parts_in(self, scene: Scene, stage: Stage) -> list[Part]:
         """The same of a stage of the scene."""
         self._hold(False)
-        parts = self._lasting
+        parts = self.lasting
         for name, body in self.bodies.items():
             if isinstance(stage, DynamicStage):
                 inertia = MidpointBodyInertia if isinstance(stage.scheme, MidpointScheme) else BodyInertia
@@ -113,7 +121,8 @@ def hung_of(scene: Scene, lines: Mapping[str, LineAssembly], active: bool) -> Hu
     closed = CLOSED * min(float(own.line.arc[-1]) for own in lines.values())
     is_open = joints is not None and bool((joints.first_gap > closed).any() or (joints.first_turn > TURNED).any())
     weights = {name: _weight(scene, body, given[name]) for name, body in bodies.items()}
-    return Hung(bodies, joints, given, weights, is_open)
+    touching = on_seabed(scene, lines, bodies, given, weights)
+    return Hung(bodies, joints, given, weights, is_open, *touching)
 
 
 def _properties(scene: Scene, given: BodyScene) -> BodyProperties:

@@ -37,21 +37,21 @@ def friction_of(
     from riser_soil.contact.friction import CoulombFriction, mobilised_within
 
     given, scales = settings.friction, scales_of(elements)
-    mu, slide = _coefficients(given, scales)
-    adhesion = _seabed_adhesion(scene.seabed, given.adhesion, elements)
+    mu, slide = coefficients(given, scales)
+    adhesion = seabed_adhesion(scene.seabed, given.adhesion, mean_diameter(elements))
     most, _ = adhesion_at(adhesion, 0.5 * adhesion.diameter)
     stiffness = mobilised_within(slide, *mu, np.abs(elements.weight), most)
     return CoulombFriction(seabed, *mu, stiffness, adhesion)
 
 
-def _seabed_adhesion(seabed: Seabed | None, share: float | None, elements: Elements) -> Adhesion:
-    """Of clay; without a limit on ground that has no strength."""
+def seabed_adhesion(seabed: Seabed | None, share: float | None, diameter: float) -> Adhesion:
+    """Adhesion of clay to a pipe of a diameter [m]; without a limit on ground that has no strength."""
     from riser_soil.contact.coulomb import Adhesion
 
     strength = seabed.undrained_strength if seabed is not None else None
     if share is None or strength is None:
         return Adhesion()
-    return Adhesion(share, strength, mean_diameter(elements))
+    return Adhesion(share, strength, diameter)
 
 
 def soil_friction_of(
@@ -70,7 +70,7 @@ def soil_friction_of(
     assert isinstance(contact, SurfaceContact)
     assert soil is not None
     scales = scales_of(elements)
-    mu, slide = _coefficients(given, scales)
+    mu, slide = coefficients(given, scales)
     width = contact_width(scales, soil.top_law.surface_modulus(scales.diameter))
     strength = soil.top_law.undrained_strength(0.5 * scales.diameter)
     most = np.inf if given.adhesion is None or strength is None else given.adhesion * strength * width
@@ -88,7 +88,7 @@ def _soil_adhesion(
     return lambda facet, z: share * strength(volume[facet], np.maximum(level - z, 0.0))
 
 
-def _coefficients(given: Friction, scales: Scales) -> tuple[tuple[float, float], float]:
+def coefficients(given: Friction, scales: Scales) -> tuple[tuple[float, float], float]:
     """Axial and lateral coefficient of friction, and the slide that mobilises it [m]."""
     axial = given.axial if given.axial is not None else (given.adhesion or 0.0) / FULL_AT
     mu = axial, axial if given.lateral is None else given.lateral

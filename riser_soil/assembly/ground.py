@@ -175,7 +175,7 @@ def seabed_contact_of(
     return SeabedContact(
         line,
         contact_radius(scene, elements),
-        _ground(scene, scene.seabed),
+        ground_of(scene, scene.seabed),
         law,
         ENDS if settings.at_nodes else gauss(GAUSS_POINTS),
         covering=None if beside is None else beside.covering,
@@ -205,13 +205,15 @@ def cushion_of(
     )
 
 
-def seabed_law(seabed: Seabed, settings: ContactScene, elements: Elements, stiffness: dict[str, float]) -> NormalLaw:
-    """How the seabed answers to penetration by the line of its mean diameter. stiffness [N/m2]: of penalties."""
+def seabed_law(
+    seabed: Seabed, settings: ContactScene, scales: Scales, diameter: float, stiffness: dict[str, float]
+) -> NormalLaw:
+    """How the seabed answers to penetration by a pipe of a diameter [m]. stiffness [N/m2]: of penalties."""
     match seabed:
         case HystereticSeabed():
-            return seabed.law.of_pipe(mean_diameter(elements))
+            return seabed.law.of_pipe(diameter)
         case RigidSeabed() | SpringSeabed():
-            return _penalty(settings, scales_of(elements), stiffness["seabed"])
+            return _penalty(settings, scales, stiffness["seabed"])
         case _:
             assert_never(seabed)
 
@@ -241,7 +243,7 @@ def _with_suction(penalty: Penalty, given: Suction, ground: str, width: float = 
     return SuctionLaw(penalty, cap, reach)
 
 
-def _ground(scene: Scene, seabed: Seabed) -> Ground:
+def ground_of(scene: Scene, seabed: Seabed) -> Ground:
     """The seabed's shape."""
     from riser_soil.seabed.grounds import Plane
 

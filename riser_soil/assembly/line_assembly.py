@@ -235,6 +235,7 @@ def add_seabed(own: LineAssembly) -> None:
     scene, line, elements = own.scene, own.line, own.elements
     assert scene.seabed is not None
     assert scene.contact is not None
-    law = ground.seabed_law(scene.seabed, scene.contact, elements, own.contact_stiffness)
+    diameter = ground.mean_diameter(elements)
+    law = ground.seabed_law(scene.seabed, scene.contact, own.scales, diameter, own.contact_stiffness)
     own.seabed = ground.seabed_contact_of(scene, scene.contact, line, elements, law, own.soil_contact)
     own.friction = friction.friction_of(scene, scene.contact, own.seabed, elements)

@@ -112,6 +112,11 @@ class BodyWeight(CompiledPart):
         """The larger of weight and buoyancy [N]."""
         return max(self._weight, self._buoyancy)
 
+    @property
+    def net(self) -> float:
+        """Weight less the buoyancy of the whole volume [N]."""
+        return self._weight - self._buoyancy
+
     def make_kernel_data(self) -> WeightData:
         given, forces = self._given, (float(self._weight), float(self._buoyancy))
         return WeightData(*forces, float(self._level), given.radius, given.gravity_centre, given.buoyancy_centre)

@@ -151,6 +151,11 @@ class BodyFriction(SeabedFriction):
         super().__init__(contact.line, contact, np.full(2, mu), np.zeros(len(contact.points)))
         self.contact, self._stiffness, self._adhesion = contact, stiffness, adhesion
 
+    @property
+    def coefficient(self) -> float:
+        """The friction coefficient, infinite where nothing slides."""
+        return float(self._mu[0])
+
     def make_kernel_data(self) -> BodyFrictionData:
         n = len(self.contact.points)
         given = self.contact.kernel_data(), self._mu, self._adhesion, float(self._stiffness)

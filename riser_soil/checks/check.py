@@ -11,6 +11,7 @@ import numpy as np
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.packages import communicator_of
+from riser_soil.assembly.seabed_reach import why_apart
 from riser_soil.assembly.shape import tensions_of_taut
 from riser_soil.assembly.soil_block import why_all, why_whole
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth
@@ -24,6 +25,7 @@ from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
+    from riser_soil.assembly.bodies_and_joints import Hung
     from riser_soil.soil.soil import Soil
 
 HEADS = ("line type", "from m", "to m", "OD m", "ID m", "empty kg/m", "filled kg/m", "in air N/m", "in water N/m")
@@ -85,9 +87,23 @@ def _hung(assembly: Assembly) -> Iterator[str]:
         buoyancy = assembly.scene.water.density * given.volume if assembly.scene.water is not None else 0.0
         net = assembly.scene.gravity * (given.mass - buoyancy)
         yield f"body {name}: {unknowns(assembly.comm, body)} unknowns, weight less buoyancy {net:.4g} N"
+        if hung is not None and assembly.scene.seabed is not None:
+            yield f"body {name}: {_touches(hung, name) or why_apart(assembly.scene, name)}"
     for joint in () if hung is None or hung.joints is None else hung.joints.joints:
         turns = f" and {joint.rotation:.4g} N.m/rad" if joint.rotation else ""
         yield f"joint {joint.name}: {joint.translation:.4g} N/m{turns}"
+
+
+def _touches(hung: Hung, name: str) -> str:
+    """How a body touches the seabed; empty where it doesn't."""
+    if name not in hung.contacts:
+        return ""
+    contact = hung.contacts[name]
+    where = "a point" if len(contact.points) == 1 else f"{len(contact.points)} points"
+    friction = f", friction coefficient {hung.frictions[name].coefficient:.4g}" if name in hung.frictions else ""
+    sizes = f"radius {contact.radius:.4g} m, width {contact.length:.4g} m"
+    sunk = f"sinks in by {contact.sunk_by(hung.weights[name].net):.4g} m under its weight less buoyancy"
+    return f"touches the seabed at {where}, {sizes}{friction}; {sunk}"
 
 
 def _unknowns(assembly: Assembly, name: str) -> Iterator[str]:

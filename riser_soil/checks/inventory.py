@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from riser_soil.assembly.riser import no_wall_tension
+from riser_soil.assembly.seabed_reach import why_apart
 from riser_soil.assembly.soil_block import why_all
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
@@ -38,7 +39,28 @@ def _reasons(scene: Scene) -> dict[str, str]:
     drag = "" if scene.bodies and scene.water is not None else "no body is in water"
     bodies = "" if scene.bodies else "the scene has no bodies"
     joints = "" if scene.joints else "the scene has no joints"
-    return found | {"bodies": bodies, "body drag": drag, "joints": joints}
+    contact, friction = _on_seabed(scene)
+    return found | {
+        "bodies": bodies,
+        "body drag": drag,
+        "body contact": contact,
+        "body friction": friction,
+        "joints": joints,
+    }
+
+
+def _on_seabed(scene: Scene) -> tuple[str, str]:
+    """Why bodies have no contact with the seabed, and no friction on it; empty where they have."""
+    if not scene.bodies:
+        return ("the scene has no bodies",) * 2
+    if scene.seabed is None:
+        return ("the scene has no seabed",) * 2
+    apart = {name: why_apart(scene, name) for name in scene.bodies}
+    if all(apart.values()):
+        return ("; ".join(f"{name}: {reason}" for name, reason in apart.items()),) * 2
+    asked = scene.contact is not None and scene.contact.friction is not None
+    rubs = [body.contact.friction if body.contact is not None else None for body in scene.bodies.values()]
+    return "", "" if any(asked if own is None else own > 0.0 for own in rubs) else "no friction is asked for"
 
 
 def _why_all(reasons: Sequence[str]) -> str:
@@ -76,13 +98,14 @@ def _reasons_of_line(scene: Scene) -> dict[str, str]:
 
 DISSIPATING = (
     *("morison", "structural damping", "contact", "seabed", "friction"),
-    *("soil friction", "soil", "new mesh", "cushion", "body drag"),
+    *("soil friction", "soil", "new mesh", "cushion", "body drag", "body contact", "body friction"),
 )
 #: Accounts of a part that tells what is its own and what is the time scheme's.
 SPLIT = {
     "soil": ("soil_plasticity", "soil_time_scheme"),
     "seabed": ("seabed", "seabed_time_scheme"),
     "contact": ("contact", "contact_time_scheme"),
+    "body_contact": ("body_contact", "body_contact_time_scheme"),
 }
 WORKING = ("loads", "contents", "morison", "vortices", "vortices in line", "buoyancy", "body drag")
 

@@ -277,7 +277,8 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
         before, _ = lay(assembly, clock)
         for each in stages:
             before = run_stage(assembly, each, before, LayingCounter(), clock)
-    for friction in assembly.frictions:
+    of_bodies = [] if assembly.hung is None else assembly.hung.frictions.values()
+    for friction in (*assembly.frictions, *of_bodies):
         friction.stick()
     if assembly.soil is not None:
         assembly.soil.mix_elastic(1.0)

@@ -29,6 +29,10 @@ _OF_BODY = {
     "rotation": ("rad", "rotation vector from the axes at first, no longer than pi"),
     "velocity": ("m/s", "velocity of the origin of the body's axes"),
 }
+_ON_SEABED = {
+    "contact_force": ("N", "force of the seabed on the body, friction included, positive upwards"),
+    "penetration": ("m", "how deep the body's lowest side is in the seabed"),
+}
 _OF_JOINT = {
     "force": ("N", "force of the first point on the second"),
     "moment": ("N m", "moment of the first point on the second, at the second"),
@@ -48,6 +52,8 @@ class HungReader:
         self._assembly, hung = assembly, assembly.hung
         self._bodies: dict[str, MovingBody] = {} if hung is None else hung.bodies
         self._joints = None if hung is None else hung.joints
+        self._contacts = {} if hung is None else hung.contacts
+        self._frictions = {} if hung is None else hung.frictions
         self._pairs = [_Pair(assembly, given) for given in assembly.scene.output.clearance]
 
     @property
@@ -57,6 +63,10 @@ class HungReader:
         for name, body in self._bodies.items():
             known = _OF_BODY if body.turns else {key: _OF_BODY[key] for key in ("position", "velocity")}
             found |= {f"bodies/{name}/{key}": _vector(*texts) for key, texts in known.items()}
+        for name in self._contacts:
+            force, depth = _ON_SEABED.items()
+            found |= {f"bodies/{name}/{force[0]}": _vector(*force[1])}
+            found |= {f"bodies/{name}/{depth[0]}": Variable(("time",), *depth[1])}
         for joint in self._assembly.scene.joints:
             found |= {f"joints/{joint}/{key}": _vector(*texts) for key, texts in _OF_JOINT.items()}
         for pair in self._pairs:
@@ -71,6 +81,11 @@ class HungReader:
             found[f"bodies/{name}/velocity"] = body.nodal(state.v)[0, :3].copy()
             if body.turns:
                 found[f"bodies/{name}/rotation"] = np.array(rotations.log(matrix(body.frames.R[0])))
+        for name, contact in self._contacts.items():
+            friction = self._frictions.get(name)
+            rubbed = np.zeros(3) if friction is None else friction.force_on_body(state)
+            found[f"bodies/{name}/contact_force"] = contact.force_on_body(state) + rubbed
+            found[f"bodies/{name}/penetration"] = np.array(contact.penetration(state))
         if self._joints is not None:
             for key, values in zip(_OF_JOINT, self._joints.acting(state), strict=True):
                 of_each = zip(self._assembly.scene.joints, values, strict=True)

@@ -13,6 +13,8 @@ from riser_soil.core.quantities import (
     Area,
     Bounds,
     Coefficient,
+    Length,
+    LengthOrNone,
     NonNegative,
     OneOf,
     Position,
@@ -25,7 +27,45 @@ from riser_soil.core.quantities import (
 BodyMass = Annotated[Positive, Bounds(1e-30, 1e30, "kg")]
 BodyInertia = Annotated[NonNegative, Bounds(1e-42, 1e42, "kg.m2", zero=True)]
 RotationalDrag = Annotated[NonNegative, Bounds(1e-60, 1e60, "m5", zero=True)]
+ContactStiffness = Annotated[Positive, Bounds(1e-30, 1e36, "N/m")]
 AXES = "by body axis [x, y, z]"
+
+
+class BodyContact(BaseModel):
+    """How a body touches the seabed: with spheres about points fixed to it, as a pipe as long as it is wide."""
+
+    model_config = FROZEN
+
+    radius: LengthOrNone | None = Field(
+        default=None,
+        description="radius of the spheres [m], 0 for the points themselves; by default that of a sphere of its volume, "
+        "where it displaces nothing the radius of the lines joined to it; 0 of points, and with contact_at: axis",
+    )
+    points: Annotated[tuple[Position, ...], Field(min_length=1)] | None = Field(
+        default=None,
+        description="of a rigid body: where it touches, in its axes [m]; by default at its centre of buoyancy",
+    )
+    width: Length | None = Field(
+        default=None,
+        description="diameter and length of the pipe as which it presses on the seabed [m], all points together; by "
+        "default the diameter of a sphere of its volume, or of as much water as it has mass where it displaces nothing",
+    )
+    stiffness: ContactStiffness | None = Field(
+        default=None,
+        description="force per penetration of all points together [N/m], of a rigid or spring seabed; by default that "
+        "of a spring seabed times width, and on a rigid one contact.stiffness times width, or with auto what its "
+        "larger of weight and buoyancy presses in by a thousandth of width",
+    )
+    friction: Coefficient | None = Field(
+        default=None,
+        description="friction coefficient in all directions [-]; by default contact.friction's across a pipe, if any",
+    )
+
+
+Touch = Annotated[
+    BodyContact | None,
+    Field(description="how it touches the seabed, where there is one; by default with the sphere of its volume"),
+]
 
 
 class PointBody(BaseModel):
@@ -42,6 +82,7 @@ class PointBody(BaseModel):
     added_mass: Coefficient = Field(
         default=0.0, description="added mass coefficient, on the mass of the water displaced, in all directions [-]"
     )
+    contact: Touch = None
 
 
 class SolidBody(BaseModel):
@@ -75,6 +116,7 @@ class SolidBody(BaseModel):
     added_inertia: tuple[BodyInertia, BodyInertia, BodyInertia] = Field(
         default=(0.0, 0.0, 0.0), description=f"added moments of inertia about the centre of buoyancy, {AXES} [kg.m2]"
     )
+    contact: Touch = None
 
     @model_validator(mode="after")
     def _has_inertia(self) -> Self:

@@ -11,6 +11,7 @@ from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.plane import VerticalPlane, leaving_the_plane, positions
 from riser_soil.scene.problem import Path, Problem, dotted, hint, shown, value_at
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import HystereticSeabed
 from riser_soil.scene.stages import OfBody, StaticStage
 from riser_soil.scene.variants import at_offset
 from riser_soil.scene.vessel_checks import vessel_conflicts, vessels_of_end
@@ -49,7 +50,7 @@ def _at_offset(scene: Scene) -> Iterator[Problem]:
 def _conflicts(scene: Scene) -> list[Problem]:
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
-    checks = (_names, _joints, _stages, _clearances, _soil, _seabed, _for_nothing, _hang_offs, _plane, _water)
+    checks = (_names, _joints, _bodies, _stages, _clearances, _soil, _seabed, _for_nothing, _hang_offs, _plane, _water)
     own = [problem for check in checks for problem in check(scene)]
     if own:
         return own
@@ -132,6 +133,21 @@ def _point(scene: Scene, path: Path, joint: Joint, point: JointPoint) -> Iterato
         types = (scene.line_types.get(segment.line_type) for segment in line.segments)
         if turns and not max((max(each.bending_stiffness) for each in types if each is not None), default=1.0):
             yield Problem((*path, "line"), "a line without bending stiffness (EI: 0) bears no moment", "pin the joint")
+
+
+def _bodies(scene: Scene) -> Iterator[Problem]:
+    """How bodies touch the seabed."""
+    for name, body in scene.bodies.items():
+        given, path = body.contact, ("bodies", name, "contact")
+        if given is None:
+            continue
+        if scene.seabed is None:
+            yield Problem(path, "is that with a seabed, and the scene has none", "add seabed, or leave it out")
+        if given.points is not None and not body.turns:
+            yield Problem((*path, "points"), "a point has none beside its own place", "leave it out, or make it rigid")
+        if given.stiffness is not None and isinstance(scene.seabed, HystereticSeabed):
+            remedy = "give width, or leave it out"
+            yield Problem((*path, "stiffness"), "a hysteretic seabed has its own, in seabed.law", remedy)
 
 
 def _free_end(scene: Scene, point: JointPoint) -> bool:

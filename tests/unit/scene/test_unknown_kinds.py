@@ -85,10 +85,9 @@ def test_another_hysteretic_law_is_refused() -> None:
     allowed = "must be one of randolph-quiggin, aubeny-biscontin;"
     with pytest.raises(SceneError, match=rf'seabed.law.kind: value "bridge": {allowed}'):
         scene_from_mapping(given)
-    whole = scene()
     law = another(RandolphQuiggin(kind="randolph-quiggin", su=2.0e3))
     with pytest.raises(AttributeError, match="of_pipe"):
-        seabed_law(HystereticSeabed.model_construct(law=law), Contact(), elements_of(whole), {})
+        seabed_law(HystereticSeabed.model_construct(law=law), Contact(), Scales(700.0, 0.3, 0.0), 0.3, {})
 
 
 def test_another_seabed_is_refused() -> None:
