@@ -15,8 +15,8 @@ import numpy as np
 from riser_soil.assembly import ground
 from riser_soil.assembly.friction import coefficients, seabed_adhesion
 from riser_soil.assembly.line_assembly import LineAssembly
-from riser_soil.assembly.seabed_reach import why_apart
 from riser_soil.assembly.scales import Scales, contact_radius
+from riser_soil.assembly.seabed_reach import why_apart
 from riser_soil.bodies.body import BodyProperties, MovingBody, radius_of
 from riser_soil.bodies.loads import BodyWeight
 from riser_soil.bodies.seabed_contact import BodyContact
@@ -68,7 +68,8 @@ def on_seabed(
     found = OnSeabed({}, {})
     if scene.seabed is None or scene.contact is None:
         return found
-    shape = ground.ground_of(scene, scene.seabed)
+    any_line = next(iter(lines.values())).scene  # all see the same ground
+    shape = ground.ground_of(any_line, scene.seabed)
     for name, field in bodies.items():
         if why_apart(scene, name):
             continue
@@ -129,7 +130,8 @@ def _friction(seabed: Seabed, settings: Contact, body: _Body, contact: BodyConta
 
     asked, own = settings.friction, body.given.friction
     if own is not None:
-        asked = None if own == 0.0 else (asked or Friction.model_construct()).model_copy(update={"axial": own, "lateral": own})
+        given = {"axial": own, "lateral": own}
+        asked = None if own == 0.0 else (asked or Friction.model_construct()).model_copy(update=given)
     if asked is None:
         return None
     (_, mu), slide = coefficients(asked, body.scales)

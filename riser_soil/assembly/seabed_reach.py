@@ -20,16 +20,15 @@ def why_apart(scene: Scene, name: str) -> str:
     """Why a body can't get to the seabed, empty where it can: it floats whatever hangs on it, or the lines are too
     short.
     """
-    body, views, ground_level = scene.bodies[name], by_line(scene).values(), _highest(scene)
-    reach = _farthest(scene, body)
+    body, views, reach = scene.bodies[name], [*by_line(scene).values()], _farthest(scene.bodies[name])
     hanging = sum(_wet_weight(view) for view in views)
     hanging += sum(max(_net(scene, other), 0.0) for key, other in scene.bodies.items() if key != name)
-    if -_net(scene, body) > hanging and body.position[2] - reach > ground_height(scene, body.position):
+    if -_net(scene, body) > hanging and body.position[2] - reach > ground_height(views[0], body.position):
         return f"it floats with all that hangs on it ({-_net(scene, body):.4g} N over {hanging:.4g} N)"
     ends = (end for view in views for end in (view.line.start, view.line.end))
     supports = [end.position[2] for end in ends if isinstance(end, Support) and not end.jointed]
     lowest = min([body.position[2], *supports]) - STRETCHED * sum(view.line.length for view in views) - reach
-    return f"the lines are too short, it hangs above z = {lowest:.4g} m" if lowest > ground_level else ""
+    return f"the lines are too short, it hangs above z = {lowest:.4g} m" if lowest > _highest(scene) else ""
 
 
 def _highest(scene: Scene) -> float:
@@ -40,7 +39,7 @@ def _highest(scene: Scene) -> float:
     return seabed.level if seabed.grid is None else max(max(row) for row in seabed.grid.heights.z)
 
 
-def _farthest(scene: Scene, body: Body) -> float:
+def _farthest(body: Body) -> float:
     """Distance from a body's place to its farthest side that may touch, at most [m]."""
     given, radius = body.contact or BodyContact(), _radius_of(body.volume)
     points = given.points or (getattr(body, "centre_of_buoyancy", (0.0, 0.0, 0.0)),)

@@ -38,8 +38,9 @@ class BodyContact(BaseModel):
 
     radius: LengthOrNone | None = Field(
         default=None,
-        description="radius of the spheres [m], 0 for the points themselves; by default that of a sphere of its volume, "
-        "where it displaces nothing the radius of the lines joined to it; 0 of points, and with contact_at: axis",
+        description="radius of the spheres [m], 0 for the points themselves; by default that of a sphere of its "
+        "volume, where it displaces nothing the radius of the lines joined to it; 0 of points, and with contact_at: "
+        "axis",
     )
     points: Annotated[tuple[Position, ...], Field(min_length=1)] | None = Field(
         default=None,
