@@ -32,6 +32,10 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
         of_its_own = names[0] in warning.partition(":")[0].split(".")
         yield warning if of_its_own else f"{', '.join(names)}: {warning}"
     yield from _body_loads_that_end(assembly.scene)
+    if assembly.hung is not None and assembly.hung.contacts:
+        from riser_soil.checks.body_plausibility import body_warnings
+
+        yield from body_warnings(assembly.hung)
 
 
 def refuse_impossible(scene: Scene) -> None:

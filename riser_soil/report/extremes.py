@@ -26,7 +26,11 @@ _NOTE = "Times are those of the run, arc lengths count from the riser's start. "
 _LEFT_OUT = "Components that stay 0 are left out. "
 _SPOKEN = {"bodies": "body", "joints": "joint", "clearance": "clearance"}
 _OF_HUNG = {  # of bodies, joints and clearances
-    "bodies": {"position": Row("position", "m"), "rotation": Row("rotation", "°", math.degrees(1.0))},
+    "bodies": {
+        "position": Row("position", "m"),
+        "rotation": Row("rotation", "°", math.degrees(1.0)),
+        "contact_force": Row("force of the seabed", "kN", 1e-3),
+    },
     "joints": {"force": Row("force", "kN", 1e-3), "moment": Row("moment", "kN m", 1e-3)},
     "clearance": {"distance": Row("least distance", "m")},
 }

@@ -7,7 +7,7 @@ in turn, each held within its segment (Ericson, Real-Time Collision Detection, 2
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from riser_soil.core.part import State
 from riser_soil.results.netcdf import Variable
 from riser_soil.riser import rotations
 from riser_soil.riser.vectors import add, dot, matrix, norm, scale, sub, vector
+from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.lines import apart_from_joints
 from riser_soil.scene.output import Clearance
 
@@ -109,7 +110,19 @@ class HungReader:
                     f"joint {joint.name} gapes by up to {largest:.3g} m (told above {GAPES:g} diameters): it gives as "
                     "the elements beside it do, which stretch as much; take shorter ones there, and check what pulls"
                 )
-        return told
+        return [*told, *self._sunk(found)]
+
+    def _sunk(self, found: Mapping[str, Any]) -> Iterator[str]:
+        """Of bodies below ground that they have no contact with."""
+        scene = self._assembly.scene
+        view = next(iter(self._assembly.lines.values())).scene
+        for name in self._bodies if scene.has_ground else ():
+            x, y, z = map(float, found["bodies"][name]["position"]["final"])
+            if name not in self._contacts and z < (level := ground_height(view, (x, y, z))):
+                yield (
+                    f"body {name} is at z = {z:.4g} m, {level - z:.4g} m below the ground, and has no contact with it: "
+                    "bodies touch a seabed, not soil, and those that float with all that hangs on them touch none"
+                )
 
 
 class _Pair:

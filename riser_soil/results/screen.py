@@ -89,6 +89,9 @@ def _hung_rows(stage: dict[str, Any]) -> Iterator[Row]:
     """Where bodies are, forces of joints and clearances."""
     for name, body in stage.get("bodies", {}).items():
         yield f"body {name}", _place(body["position"]["final"], "m", 1.0)
+        if "contact_force" in body:
+            sides = {side: body["contact_force"][side][2] for side in ("min", "max")}
+            yield f"seabed under body {name}", _span(body["contact_force"]["final"][2], sides, "kN", 1e-3)
     for name, joint in stage.get("joints", {}).items():
         yield f"force in joint {name}", _number(float(np.linalg.norm(joint["force"]["final"])), "kN", 1e-3)
     for name, pair in stage.get("clearance", {}).items():

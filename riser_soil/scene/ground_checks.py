@@ -15,7 +15,7 @@ from riser_soil.seabed.bearing import Strength
 # Part of its radius by which a prescribed end may lie in a rigid seabed.
 _SUNK = 0.02
 # How far an end may lie below the seabed for the round-off of its height [m].
-_ROUND_OFF = 1e-9
+ROUND_OFF = 1e-9
 # Component of the riser's direction in plan across an axis that it may have to run along it.
 _ASKEW = 1e-6
 
@@ -117,17 +117,22 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
     types = [scene.line_types[scene.line.segments[n].line_type] for n in (0, -1)]
     ends = {"start": scene.line.start, "end": scene.line.end}
     for (key, end), line in zip(ends.items(), types, strict=True):
-        if not isinstance(end, Support):
+        if not isinstance(end, Support) or end.jointed:  # where a joint is, `line_checks` looks
             continue
         ground = ground_height(scene, end.position)
         sunk = ground - end.position[2]
         radius = 0.5 * (line.outer_diameter or 0.0) if scene.contact_at == "outer" else 0.0
-        if sunk > _ROUND_OFF and not scene.laid_from_below:
-            allowed = f"must not lie below the seabed (z = {ground:g} m)"
-            yield Problem(("riser", key, "position"), allowed, "raise the position or lower the seabed")
+        if sunk > ROUND_OFF and not scene.laid_from_below:
+            yield below_seabed(("riser", key, "position"), ground)
         elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:
             allowed = f"would press the pipe {sunk + radius:.3g} m into the rigid seabed"
             yield Problem(("riser", key, "position"), allowed, f"raise it to z = {ground + radius:g} m")
+
+
+def below_seabed(path: Path, ground: float) -> Problem:
+    """Of a position below the seabed, whose height is z = ground [m]."""
+    allowed = f"must not lie below the seabed (z = {ground:g} m)"
+    return Problem(path, allowed, "raise the position or lower the seabed")
 
 
 def feature_conflicts(scene: Scene) -> Iterator[Problem]:

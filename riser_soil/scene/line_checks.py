@@ -3,8 +3,11 @@
 import math
 from collections.abc import Iterator
 
+from riser_soil.core.quantities import Vector
 from riser_soil.core.step_outputs import OF_STEP
+from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.cross_checks import conflicts
+from riser_soil.scene.ground_checks import ROUND_OFF, below_seabed
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import ENDS, apart_from_joints, arc_of, axis_across, by_line, first_place, risers
 from riser_soil.scene.output import SettlementSections
@@ -51,7 +54,7 @@ def _conflicts(scene: Scene) -> list[Problem]:
     if not scene.lines:
         return [*conflicts(scene), *_without_lines(scene)]
     checks = (_names, _joints, _bodies, _stages, _clearances, _soil, _seabed, _for_nothing, _hang_offs, _plane, _water)
-    own = [problem for check in checks for problem in check(scene)]
+    own = [problem for check in checks for problem in check(scene)] or [*_above_seabed(scene)]
     if own:
         return own
     found = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
@@ -148,6 +151,20 @@ def _bodies(scene: Scene) -> Iterator[Problem]:
         if given.stiffness is not None and isinstance(scene.seabed, HystereticSeabed):
             remedy = "give width, or leave it out"
             yield Problem((*path, "stiffness"), "a hysteretic seabed has its own, in seabed.law", remedy)
+
+
+def _above_seabed(scene: Scene) -> Iterator[Problem]:
+    """Where bodies and joints are at first; of a scene without other conflicts of its lines."""
+    if not scene.contact:
+        return
+    view = next(iter(by_line(scene).values()))
+    places: list[tuple[Path, Vector | None]] = [
+        (("bodies", name, "position"), body.position) for name, body in scene.bodies.items()
+    ]
+    places += [(("joints", name, "position"), joint.position) for name, joint in scene.joints.items()]
+    for path, place in places:
+        if place is not None and place[2] < (ground := ground_height(view, place)) - ROUND_OFF:
+            yield below_seabed(path, ground)
 
 
 def _free_end(scene: Scene, point: JointPoint) -> bool:

@@ -1,0 +1,21 @@
+"""Plausibility warnings of bodies that may touch the seabed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from riser_soil.assembly.bodies_and_joints import Hung
+
+SUNK = 0.5  # of a body's width, by which its own weight may press it in
+
+
+def body_warnings(hung: Hung) -> Iterator[str]:
+    """Of bodies that the seabed hardly bears."""
+    for name, contact in hung.contacts.items():
+        net = hung.weights[name].net
+        sunk = contact.sunk_by(net)
+        if sunk > SUNK * contact.length:
+            yield (
+                f"bodies.{name}.contact: the seabed lets it sink in by {sunk:.4g} m under its weight less buoyancy of "
+                f"{net:.4g} N, and it is taken to be {contact.length:.4g} m wide; give its width, or its stiffness"
+            )
