@@ -160,8 +160,9 @@ class BodyContact(CompiledPart):
 
     def make_kernel_data(self) -> BodyContactData:
         n, memory = len(self.points), self.memory
-        vectors, numbers = (np.zeros((n, 3)) for _ in range(3)), (np.zeros(n) for _ in range(4))
-        found = FoundAtPoints(np.zeros(n, dtype=np.bool_), *vectors, *numbers, np.zeros(memory.shape))
+        arm, place, normal = (np.zeros((n, 3)) for _ in range(3))
+        answered = (np.zeros(n) for _ in range(4))
+        found = FoundAtPoints(np.zeros(n, dtype=np.bool_), arm, place, normal, *answered, np.zeros(memory.shape))
         sizes = float(self.radius), float(self.length_of_point)
         known = self.ground.kernel_data, self.law.kernel_data, float(self.law.reach)
         return BodyContactData(self.points, *sizes, memory, *known, found, np.zeros(memory.shape[1]))

@@ -12,6 +12,7 @@ from mpi4py import MPI
 from scipy.optimize import brentq
 
 from riser_soil.assembly import build
+from riser_soil.bodies.seabed_contact import BodyContact
 from riser_soil.checks.check import describe
 from riser_soil.checks.inventory import left_out
 from riser_soil.checks.plausibility import physical_warnings
@@ -26,7 +27,8 @@ from tests.support.said import line_with
 from tests.support.seabed_bodies import BED, CHAIN, DEPTH, LIES, NET, WET, G, between_chains, let_go
 
 LONG = 59.5  # of chains that lift the clump in part, m
-BALL = {"kind": "point", "mass": 200.0, "volume": 0.1}
+HEAVY = 200.0  # kg
+BALL: dict[str, Any] = {"kind": "point", "mass": HEAVY, "volume": 0.1}
 
 
 def ran(scene: dict[str, Any], folder: Path) -> Run:
@@ -87,7 +89,7 @@ def test_friction_holds_a_body_on_a_slope_below_its_angle(tmp_path: Path) -> Non
 
     def ball(y: float, mu: float) -> dict[str, Any]:
         """At the depth to which its weight presses it in."""
-        touch = {"radius": 0.5, "width": 1.0, "stiffness": 1.0e3 * BALL["mass"] * G, "friction": mu}
+        touch = {"radius": 0.5, "width": 1.0, "stiffness": 1.0e3 * HEAVY * G, "friction": mu}
         place = (0.5 - sunk) * up + [0.0, y, 0.0]
         return BALL | {"position": place.tolist(), "contact": touch}
 
@@ -102,7 +104,7 @@ def test_friction_holds_a_body_on_a_slope_below_its_angle(tmp_path: Path) -> Non
         slid = 0.5 * G * (math.sin(angle) - mu * math.cos(angle)) * duration**2
         assert float(np.linalg.norm(way)) == pytest.approx(slid, rel=0.03), name
         along = force_under(found, name) @ [math.cos(angle), 0.0, math.sin(angle)]
-        assert along == pytest.approx(mu * BALL["mass"] * G * math.cos(angle), rel=0.01, abs=1.0)
+        assert along == pytest.approx(mu * HEAVY * G * math.cos(angle), rel=0.01, abs=1.0)
     held = found["bodies/held/position"]
     assert float(np.linalg.norm(held[-1] - held[0])) < 2.0e-6
     energy = found.summary["stages"][0]["energy"]
@@ -128,7 +130,7 @@ def test_bodies_that_fall_onto_the_bed_come_to_rest_and_no_energy_is_made(tmp_pa
         assert force_under(found, name)[2] == pytest.approx(mass * G, rel=1e-3), name
         assert np.abs(found[f"bodies/{name}/velocity"][-1]).max() < 1e-3
     assert np.abs(found["bodies/sled/rotation"][-1]).max() > 0.02  # it stands on the step
-    total = sum(found[f"{kind}_energy"] for kind in ("kinetic", "strain", "potential"))
+    total = found["kinetic_energy"] + found["strain_energy"] + found["potential_energy"]
     start = float(total[0])
     assert (total - np.minimum.accumulate(total)).max() < 1e-5 * start  # the scheme's own, of the rope that swings
     energy = found.summary["stages"][0]["energy"]
@@ -166,24 +168,30 @@ def test_two_ranks_find_the_same(tmp_path: Path) -> None:
         assert other[path][-1] == pytest.approx(one[path][-1], rel=1e-5, abs=least), key
 
 
+def contacts_of(scene: dict[str, Any]) -> dict[str, BodyContact]:
+    hung = build(scene_from_mapping(scene), MPI.COMM_SELF).hung
+    assert hung is not None
+    return hung.contacts
+
+
 def test_nothing_is_built_for_bodies_that_can_not_get_to_the_bed() -> None:
     """A buoy that bears more than all lines weigh, and a clump that hangs on lines that are too short."""
     bed = {"seabed": {"kind": "rigid", "level": -100.5}, "contact": {}}
+    assert contacts_of(mooring() | bed) == {}
     floats = scene_from_mapping(mooring() | bed)
-    assert build(floats, MPI.COMM_SELF).hung.contacts == {}
     assert "floats" in left_out(floats)["body contact"]
     assert "body contact" not in line_with(describe(floats).splitlines(), "built:")
     hangs = between_chains(span=50.0, length=LONG) | {"seabed": {"kind": "rigid", "level": -400.0}}
     assert "too short" in left_out(scene_from_mapping(hangs))["body contact"]
-    assert build(scene_from_mapping(hangs), MPI.COMM_SELF).hung.contacts == {}
+    assert contacts_of(hangs) == {}
+    assert [*contacts_of(between_chains(span=50.0, length=LONG))] == ["clump"]
     touches = scene_from_mapping(between_chains(span=50.0, length=LONG))
-    assert [*build(touches, MPI.COMM_SELF).hung.contacts] == ["clump"]
     assert "body contact" not in left_out(touches)
     assert left_out(touches)["body friction"] == "no friction is asked for"
 
 
-def contact_of(scene: dict[str, Any]) -> Any:
-    (contact,) = build(scene_from_mapping(scene), MPI.COMM_SELF).hung.contacts.values()
+def contact_of(scene: dict[str, Any]) -> BodyContact:
+    (contact,) = contacts_of(scene).values()
     return contact
 
 
