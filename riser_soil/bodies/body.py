@@ -28,6 +28,7 @@ from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
+    add,
     cross,
     matadd,
     matmul,
@@ -36,6 +37,7 @@ from riser_soil.riser.vectors import (
     matvec,
     scale,
     skew,
+    sub,
     transpose,
     vecmat,
     vector,
@@ -258,6 +260,16 @@ def add_tangent_at(
     own = matmul(transpose(at.H), matmul(matmul(skew(force), skew(arm)), at.H))
     turning = matadd(matmul(back, by_turn), matadd(own, moment_stiffness(Rn, Theta, cross(arm, force))))
     add_blocks(K, weight, by_place, by_turn, matmul(back, by_place), turning)
+
+
+@njit
+def way_by_increments(first: SpatialConfiguration, last: SpatialConfiguration, arm: Vec) -> Vec:
+    """What a force at the end of an arm is multiplied by in the work of a step's increments [m].
+
+    It is the way of the arm's end but for terms of second order in the rotation of the step.
+    """
+    turned = matvec(matrix(last.H[0]), vector(last.Theta[0]))
+    return add(sub(vector(last.x[0]), vector(first.x[0])), cross(turned, arm))
 
 
 @njit

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.bodies.body import MovingBody, add_tangent_at, add_to_dofs, posture
+from riser_soil.bodies.body import MovingBody, add_tangent_at, add_to_dofs, posture, way_by_increments
 from riser_soil.contact.along_step import work_at
 from riser_soil.contact.seabed_kernels import by_position
 from riser_soil.core.arrays import Array, BoolArray
@@ -21,7 +21,7 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
-from riser_soil.riser.vectors import add, cross, dot, matrix, matscale, matvec, scale, sub, vecmat, vector, write
+from riser_soil.riser.vectors import add, cross, dot, matrix, matscale, matvec, scale, vecmat, vector, write
 from riser_soil.seabed.compiled_law import answer, may_act
 from riser_soil.seabed.grounds import Ground, distance_at
 from riser_soil.seabed.law import NormalLaw
@@ -103,7 +103,8 @@ def _add_stored(part: BodyContactData, at: SpatialConfiguration, energy: Array) 
 @add_work.of(BodyContactData)
 def _add_lost(part: BodyContactData, first: SpatialConfiguration, last: SpatialConfiguration, work: Array) -> None:
     """Dissipated is the work of the force at the end of the step less the change of the energy stored, as of
-    `SeabedContact`; what that force takes beyond the work of the law along the step is the time scheme's.
+    `SeabedContact`; what that force takes beyond the work of the law along the step is the time scheme's. Its work is
+    that of the increments, as in the equations of motion.
     """
     began, found = posture(first), part.found
     for p in range(part.points.shape[0]):
@@ -114,7 +115,7 @@ def _add_lost(part: BodyContactData, first: SpatialConfiguration, last: SpatialC
         if not (touched or found.touches[p]):
             continue
         stored = answer(part.law, before, part.memory[p], part.after)[2] if touched else 0.0
-        way = sub(vector(found.place[p]), place)
+        way = way_by_increments(first, last, vector(found.arm[p]))
         taken, gained = -found.force[p] * dot(vector(found.normal[p]), way), found.stored[p] - stored
         by_law = gained
         if part.memory.shape[1] > 0:
@@ -161,8 +162,9 @@ class BodyContact(CompiledPart):
     def make_kernel_data(self) -> BodyContactData:
         n, memory = len(self.points), self.memory
         arm, place, normal = (np.zeros((n, 3)) for _ in range(3))
-        answered = (np.zeros(n) for _ in range(4))
-        found = FoundAtPoints(np.zeros(n, dtype=np.bool_), arm, place, normal, *answered, np.zeros(memory.shape))
+        penetration, force, slope, stored = (np.zeros(n) for _ in range(4))
+        answered = penetration, force, slope, stored, np.zeros(memory.shape)
+        found = FoundAtPoints(np.zeros(n, dtype=np.bool_), arm, place, normal, *answered)
         sizes = float(self.radius), float(self.length_of_point)
         known = self.ground.kernel_data, self.law.kernel_data, float(self.law.reach)
         return BodyContactData(self.points, *sizes, memory, *known, found, np.zeros(memory.shape[1]))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.bodies.body import add_tangent_at, add_to_dofs, posture
+from riser_soil.bodies.body import add_tangent_at, add_to_dofs, posture, way_by_increments
 from riser_soil.bodies.seabed_contact import BodyContact, BodyContactData
 from riser_soil.contact.coulomb import Adhesion, Pair, adhesion_at, limits, return_map
 from riser_soil.contact.friction import (
@@ -107,14 +107,15 @@ def _add_stored(part: BodyFrictionData, at: SpatialConfiguration, energy: Array)
 
 @add_work.of(BodyFrictionData)
 def _add_lost(part: BodyFrictionData, first: SpatialConfiguration, last: SpatialConfiguration, work: Array) -> None:
-    """Dissipated is the work of friction less the change of the energy stored; never negative."""
+    """Dissipated is the work of friction less the change of the energy stored."""
     length, softness = part.contact.length, 0.5 / part.stiffness
     for p in range(part.slid.size):
         before = vector(part.traction[p])
         work[0] += length * softness * dot(before, before)
         if part.contact.found.touches[p]:
             t = vector(part.resistance[p])
-            work[0] += length * (dot(t, _moved(part, p)) - softness * dot(t, t))
+            way = way_by_increments(first, last, vector(part.contact.found.arm[p]))
+            work[0] += length * (dot(t, way) - softness * dot(t, t))
 
 
 @keep.of(BodyFrictionData)
