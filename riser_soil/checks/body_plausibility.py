@@ -5,15 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from riser_soil.assembly.bodies_and_joints import Hung
+from riser_soil.core.part import State
 
 SUNK = 0.5  # of a body's width, by which its own weight may press it in
 
 
 def body_warnings(hung: Hung) -> Iterator[str]:
-    """Of bodies that the seabed hardly bears."""
+    """Of bodies that begin below the seabed, and of those that it hardly bears."""
     for name, contact in hung.contacts.items():
         net = hung.weights[name].net
         sunk = contact.sunk_by(net)
+        begun = contact.penetration(State.at_rest(0.0, hung.bodies[name].offset + hung.bodies[name].size))
+        if begun > sunk + SUNK * contact.length:
+            yield (
+                f"bodies.{name}.position: begins {begun:.4g} m below the seabed, which its weight less buoyancy of "
+                f"{net:.4g} N presses in by {sunk:.4g} m; raise it, or lower the seabed"
+            )
         if sunk > SUNK * contact.length:
             yield (
                 f"bodies.{name}.contact: the seabed lets it sink in by {sunk:.4g} m under its weight less buoyancy of "

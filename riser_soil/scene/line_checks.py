@@ -155,9 +155,9 @@ def _bodies(scene: Scene) -> Iterator[Problem]:
 
 def _above_seabed(scene: Scene) -> Iterator[Problem]:
     """Where bodies and joints are at first; of a scene without other conflicts of its lines."""
-    if not scene.contact:
-        return
     view = next(iter(by_line(scene).values()))
+    if not scene.contact or view.laid_from_below:
+        return
     places: list[tuple[Path, Vector | None]] = [
         (("bodies", name, "position"), body.position) for name, body in scene.bodies.items()
     ]

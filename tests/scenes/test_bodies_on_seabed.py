@@ -69,8 +69,13 @@ def test_a_clump_between_two_chains_that_lie_on_the_bed(tmp_path: Path) -> None:
 
 
 def test_a_clump_that_taut_chains_lift_in_part(tmp_path: Path) -> None:
-    """Its reaction is its weight less what elastic catenaries from its place pull up; it sinks in by that over k D."""
-    found = ran(between_chains(span=50.0, length=LONG), tmp_path)
+    """Its reaction is its weight less what elastic catenaries from its place pull up; it sinks in by that over k D.
+
+    It begins below the bed.
+    """
+    scene = between_chains(span=50.0, length=LONG)
+    scene["bodies"]["clump"]["position"] = [0.0, 0.0, -DEPTH - 0.3]
+    found = ran(scene, tmp_path)
     place, pressed = found["bodies/clump/position"][-1], force_under(found, "clump")
     _, top = pulls(np.array([0.0, place[2]]), np.array([50.0, 0.0]), WET, CHAIN["EA"], LONG)
     lifted = WET * LONG + top[1]  # what the top does not bear
@@ -222,6 +227,9 @@ def test_check_says_how_bodies_touch_and_warns_of_those_that_sink() -> None:
 def test_what_begins_below_the_seabed_is_refused_by_its_own_key() -> None:
     scene = between_chains(span=50.0, length=LONG)
     scene["bodies"]["clump"]["position"] = [0.0, 0.0, -DEPTH - 1.0]
+    warned = line_with(physical_warnings(build(scene_from_mapping(scene), MPI.COMM_SELF)), "bodies.clump.position")
+    assert "begins 1.492 m below" in warned  # springs bear at any depth
+    scene["seabed"] = {"kind": "rigid", "level": -DEPTH}
     with pytest.raises(SceneError, match=r"bodies.clump.position: .*must not lie below the seabed \(z = -30 m\)"):
         scene_from_mapping(scene)
     (left, right), scene["bodies"] = (joint["between"][0] for joint in scene["joints"].values()), {}
