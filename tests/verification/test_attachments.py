@@ -222,3 +222,44 @@ def test_the_support_moves_what_sits_at_its_end(dimension: int) -> None:
     a = -amplitude * omega**2 * np.sin(omega * t)
     assert laden.end_force - bare.end_force == pytest.approx([0.0, 0.0, mass * (G + a)], abs=1e-3)
     assert laden.effective_tension == pytest.approx(bare.effective_tension, rel=1e-6)
+
+
+def pressed_in(count: int, EI: float, clump: float) -> tuple[float, float]:
+    """A pipe of so many elements lies on springs with a clump at its middle: how deep it is there, and the bed's force.
+    """
+    bed, pipe = 1.0e5, PIPE | {"EI": EI, "outer_diameter": 0.2, "submerged_weight": 500.0, "mass": 90.0}
+    height = 0.1 - 500.0 / bed
+    assembly = built(
+        scene(
+            static(),
+            attachments=[{"at": 20.0, "mass": clump / G}],
+            pipe=pipe,
+            length=40.0,
+            elements=count,
+            start=prescribed(0.0, 0.0, height),
+            end=prescribed(40.0, 0.0, height),
+            seabed={"kind": "spring", "level": 0.0, "stiffness": bed},
+            contact={},
+        )
+    )
+    state = take(assembly, assembly.scene.stages[0])
+    at, seabed = State.at_rest(1.0, state.u.size), assembly.seabed
+    assert seabed is not None
+    return float(seabed.penetration(at)[count // 2]), float(seabed.force_on_riser(at)[2])
+
+
+def test_a_clump_on_a_lying_pipe_sinks_in_as_a_beam_on_springs_does() -> None:
+    """By W lambda/(2 k) beyond the pipe's own w/k, with lambda^4 = k/(4 EI): elements must resolve 1/lambda = 2.5 m.
+
+    Its weight is all borne by the bed, however long the elements are.
+    """
+    EI, clump, bed = 1.0e6, 5.0e3, 1.0e5
+    wave = (bed / (4.0 * EI)) ** 0.25
+    expected = 500.0 / bed + clump * wave / (2.0 * bed)
+    errors = []
+    for count in (8, 16, 32):
+        deepest, borne = pressed_in(count, EI, clump)
+        assert borne == pytest.approx(500.0 * 40.0 + clump, rel=0.01)
+        errors.append(abs(deepest / expected - 1.0))
+    assert errors[-1] < 2e-3
+    assert all(finer < 0.5 * coarse for coarse, finer in pairwise(errors))
