@@ -22,7 +22,7 @@ from riser_soil.bodies.loads import BodyWeight
 from riser_soil.bodies.seabed_contact import BodyContact
 from riser_soil.bodies.seabed_friction import BodyFriction
 from riser_soil.core.arrays import Array
-from riser_soil.scene.bodies import BodyContact as ContactScene
+from riser_soil.scene.bodies import BodyTouch
 from riser_soil.scene.contact import Contact, Friction
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import Seabed
@@ -43,7 +43,7 @@ class OnSeabed(NamedTuple):
 class _Body:
     """A body as the scene has it: how it touches, where, and what it weighs."""
 
-    given: ContactScene
+    given: BodyTouch
     field: MovingBody
     properties: BodyProperties
     weight: BodyWeight
@@ -88,7 +88,7 @@ def _body(
     weight: BodyWeight,
     lines: Mapping[str, LineAssembly],
 ) -> _Body:
-    given = scene.bodies[name].contact or ContactScene()
+    given = scene.bodies[name].contact or BodyTouch()
     points = properties.buoyancy_centre[None] if given.points is None else np.array(given.points)
     radius = _radius(scene, name, given, properties, lines) if given.radius is None else given.radius
     width = _width(scene, properties) if given.width is None else given.width
@@ -96,7 +96,7 @@ def _body(
 
 
 def _radius(
-    scene: Scene, name: str, given: ContactScene, properties: BodyProperties, lines: Mapping[str, LineAssembly]
+    scene: Scene, name: str, given: BodyTouch, properties: BodyProperties, lines: Mapping[str, LineAssembly]
 ) -> float:
     """Of its volume as a sphere, else of the lines that it is joined to; 0 of points given, and where axes touch [m].
     """

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.assembly.riser import attachments_of, elements_of
 from riser_soil.scene.bathymetry import ground_height
-from riser_soil.scene.bodies import Body, BodyContact
+from riser_soil.scene.bodies import Body, BodyTouch
 from riser_soil.scene.lines import by_line
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
@@ -41,7 +41,7 @@ def _highest(scene: Scene) -> float:
 
 def _farthest(body: Body) -> float:
     """Distance from a body's place to its farthest side that may touch, at most [m]."""
-    given, radius = body.contact or BodyContact(), _radius_of(body.volume)
+    given, radius = body.contact or BodyTouch(), _radius_of(body.volume)
     points = given.points or (getattr(body, "centre_of_buoyancy", (0.0, 0.0, 0.0)),)
     return max(math.hypot(*point) for point in points) + (radius if given.radius is None else given.radius)
 

@@ -31,7 +31,7 @@ ContactStiffness = Annotated[Positive, Bounds(1e-30, 1e36, "N/m")]
 AXES = "by body axis [x, y, z]"
 
 
-class BodyContact(BaseModel):
+class BodyTouch(BaseModel):
     """How a body touches the seabed: with spheres about points fixed to it, as a pipe as long as it is wide."""
 
     model_config = FROZEN
@@ -64,7 +64,7 @@ class BodyContact(BaseModel):
 
 
 Touch = Annotated[
-    BodyContact | None,
+    BodyTouch | None,
     Field(description="how it touches the seabed, where there is one; by default with the sphere of its volume"),
 ]
 
