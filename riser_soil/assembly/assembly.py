@@ -349,7 +349,13 @@ class Assembly:
 
 
 def sized(scene: Scene) -> Scene:
-    """The scene with the sizes of its soil in numbers; SceneError where none can be chosen."""
+    """The scene with the sizes of its soil in numbers, slack chain cut where it bends sharply; SceneError where no size
+    can be chosen.
+    """
+    if any(not max(each.bending_stiffness) for each in scene.line_types.values()):
+        from riser_soil.assembly.sharp_bends import cut_at_sharp_bends
+
+        scene = cut_at_sharp_bends(scene)
     if scene.soil is None or "auto" not in (scene.soil.block, scene.soil.mesh):
         return scene
     from riser_soil.assembly.soil_sizes import with_sizes

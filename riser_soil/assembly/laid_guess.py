@@ -51,6 +51,8 @@ def laid_guess(
     depth = depth_at_rest(seabed.law, weight, scales_of(elements).diameter)
     bed = LevelBed(seabed.line, elements, resting_level(scene, elements, cable.curve.position[[0, -1]]), depth)
     placed = bed.in_plane(cable)
+    if cable.heaped:
+        return _increments(seabed.line, placed, bed.sunk(placed))
     if (bent := bed.bent(placed, cable.H)) is None:
         return None
     start, end = bed.moved(cable, _missed(bent, placed))
@@ -96,6 +98,14 @@ class LevelBed:
         along, up = (curve.position - curve.position[0]) @ direction, curve.position[:, 2]
         hangs = up - self.level > HANGS * self.line.arc[-1]
         return ShapeInPlane(np.stack([along, up], axis=1), np.arctan2(tangent @ UP, tangent @ direction), hangs)
+
+    def sunk(self, heap: ShapeInPlane) -> ShapeInPlane:
+        """A heap that has sunk in as deep as bears it."""
+        depth = np.minimum(np.append(self.depth, np.inf), np.append(np.inf, self.depth))
+        lies = ~heap.hangs & np.isfinite(depth)
+        lies[[0, -1]] = False
+        place = heap.place - np.stack([np.zeros(depth.size), np.where(lies, depth, 0.0)], axis=1)
+        return ShapeInPlane(place, heap.angle, heap.hangs)
 
     def bent(self, cable: ShapeInPlane, H: float) -> ShapeInPlane | None:
         """A cable's shape with the pipe's bends, its elements as long as they are; None where there are none."""

@@ -131,6 +131,8 @@ def catenary_between(
         level=level,
         points=np.array([(attachment.arc, attachment.net_weight) for attachment in attachments]).reshape(-1, 2),
         least_H=_least_tension(elements),
+        heaps=not elements.bends.any(),
+        surface=_surface(scene),
         near=near,
     )
 
@@ -146,6 +148,12 @@ def _down_to(curve: shapes.Curve, elements: sections.Elements, start: Array, end
     if np.array_equal(position, curve.position):
         return curve
     return shapes.from_nodes(position, shapes.nodal_tangents(position))
+
+
+def _surface(scene: Scene) -> float:
+    """Height z [m] of the water's surface; inf where it is not known."""
+    level = None if scene.water is None else scene.water.surface_level
+    return np.inf if level is None else level
 
 
 def resting_level(scene: Scene, elements: sections.Elements, ends: Array) -> float:
@@ -166,6 +174,7 @@ def least_bend(elements: sections.Elements) -> float:
 
 
 def _least_tension(elements: sections.Elements) -> float:
-    """H [N] of a catenary that the elements can follow."""
+    """H [N] of a catenary that the elements can follow: where they bend, for chain goes slack."""
     w, EI = np.abs(elements.weight), np.maximum(elements.EI_y, elements.EI_z)
-    return float(np.maximum(SHARPEST_IN_ELEMENTS * w * elements.length, SHARPEST_BEND * np.cbrt(EI * w**2)).max())
+    least = np.maximum(SHARPEST_IN_ELEMENTS * w * elements.length, SHARPEST_BEND * np.cbrt(EI * w**2))
+    return float(least.max(where=elements.bends, initial=0.0))

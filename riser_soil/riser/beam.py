@@ -26,12 +26,12 @@ Spatial = tuple[beam3d.SpatialReference, beam3d.SpatialSection]
 
 def in_plane(line: Line, frames: PlanarFrames, elements: Elements) -> Planar:
     """EI is EI_y, as the second section axis is normal to the plane."""
-    section = beam2d.PlanarSection(elements.EA, elements.stiffness()[0])
+    section = beam2d.PlanarSection(elements.EA, elements.stiffness()[0], *elements.slack_law)
     return beam2d.reference(line.chord0, *_ends(frames.alpha0), line.length), section
 
 
 def in_space(line: Line, frames: SpatialFrames, elements: Elements) -> Spatial:
-    section = beam3d.SpatialSection(elements.EA, *elements.stiffness(), elements.GJ)
+    section = beam3d.SpatialSection(elements.EA, *elements.stiffness(), elements.GJ, *elements.slack_law)
     return beam3d.reference(line.chord0, *_ends(frames.T0), line.length), section
 
 

@@ -17,7 +17,8 @@ half its square slope, averaged over the element, is the shallow-arch term of th
 
     strain = (l - l0)/L + bow(a, b) - bow(a0, b0),    bow(a, b) = (2 a^2 - a b + 2 b^2)/30,
 
-which makes the two-node element fourth-order accurate on curved lines.
+which makes the two-node element fourth-order accurate on curved lines. Elements without bending stiffness go slack
+instead of bearing compression: their axial energy is that of `tension_only`.
 Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), chapter
 7.
 
@@ -36,6 +37,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
+from riser_soil.riser.tension_only import pulled, stored, unfolding
 
 Vec2 = tuple[float, float]
 
@@ -45,6 +47,9 @@ class PlanarSection(NamedTuple):
 
     EA: Array  # N
     EI: Array  # N m2
+    share: Array  # constants of elements that go slack: `tension_only`
+    soft: Array
+    fold: Array  # N
 
 
 class PlanarReference(NamedTuple):
@@ -62,6 +67,9 @@ class PlanarElement(NamedTuple):
     L: float
     EA: float
     EI_per_L: float
+    share: float
+    soft: float
+    fold: float
     l0: float
     theta1: float
     theta2: float
@@ -112,8 +120,14 @@ def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array)
 @njit
 def element_at(ref: PlanarReference, section: PlanarSection, e: int) -> PlanarElement:
     """Stiffnesses and unstressed configuration of element e."""
-    L = ref.L[e]
-    return PlanarElement(L, section.EA[e], section.EI[e] / L, ref.l0[e], ref.theta1[e], ref.theta2[e])
+    L, law = ref.L[e], (section.share[e], section.soft[e], section.fold[e])
+    return PlanarElement(L, section.EA[e], section.EI[e] / L, *law, ref.l0[e], ref.theta1[e], ref.theta2[e])
+
+
+@njit
+def _with_axial_stiffness(element: PlanarElement, EA: float) -> PlanarElement:
+    law = element.share, element.soft, element.fold
+    return PlanarElement(element.L, EA, element.EI_per_L, *law, element.l0, element.theta1, element.theta2)
 
 
 @njit
@@ -123,12 +137,25 @@ def _strain(element: PlanarElement, at: PlanarCorotated) -> float:
 
 
 @njit
-def _stress(element: PlanarElement, at: PlanarCorotated) -> tuple[float, float, float]:
-    """Derivatives of U by the chord's length and by theta_1 and theta_2."""
-    N = element.EA * _strain(element, at)
+def _stress(element: PlanarElement, at: PlanarCorotated, strain: float) -> tuple[float, float, float]:
+    """Derivatives of U by the chord's length and by theta_1 and theta_2; strain: N/EA."""
+    N = element.EA * strain
     m1, m2 = end_moments(element.EI_per_L, at.theta1 - element.theta1, at.theta2 - element.theta2)
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
-    return N, m1 + N * element.L * slope1, m2 + N * element.L * slope2
+    straightening = element.L * (N + unfolding(bow(at.theta1, at.theta2), element.fold)[0])
+    return N, m1 + straightening * slope1, m2 + straightening * slope2
+
+
+@njit
+def _elastic_variation(
+    element: PlanarElement, at: PlanarCorotated, N: float, stretch: float, dtheta1: float, dtheta2: float
+) -> tuple[float, float, float]:
+    """Variation of `_stress`, by `stress_variation`."""
+    slope1, slope2 = bow_slopes(at.theta1, at.theta2)
+    unfolds, stiffness = unfolding(bow(at.theta1, at.theta2), element.fold)
+    dN, dm1, dm2 = stress_variation(element, at, N + unfolds, stretch, dtheta1, dtheta2)
+    change = element.L * stiffness * (slope1 * dtheta1 + slope2 * dtheta2)
+    return dN, dm1 + change * slope1, dm2 + change * slope2
 
 
 @njit
@@ -151,7 +178,9 @@ def element_energy(e: int, at: PlanarCorotated, ref: PlanarReference, section: P
     element = element_at(ref, section, e)
     phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
     m1, m2 = end_moments(element.EI_per_L, phi1, phi2)
-    return 0.5 * (element.EA * element.L * _strain(element, at) ** 2 + m1 * phi1 + m2 * phi2)
+    axial = element.EA * stored(_strain(element, at), element.share, element.soft)
+    axial += element.fold * bow(at.theta1, at.theta2) ** 3 / 3.0
+    return element.L * axial + 0.5 * (m1 * phi1 + m2 * phi2)
 
 
 @njit
@@ -172,7 +201,9 @@ def write_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
 @njit
 def write_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array) -> None:
     """Write internal forces f (6,) of element e."""
-    N, m1, m2 = _stress(element_at(ref, section, e), at)
+    element = element_at(ref, section, e)
+    strain, _ = pulled(_strain(element, at), element.share, element.soft)
+    N, m1, m2 = _stress(element, at, strain)
     write_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
 
@@ -188,7 +219,7 @@ def _vary(
 ) -> PlanarNodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1, in its axes, and turn by w_i."""
     stretch, spin = u[0], u[1] / at.length
-    dN, dm1, dm2 = stress_variation(element, at, N, stretch, w1 - spin, w2 - spin)
+    dN, dm1, dm2 = _elastic_variation(element, at, N, stretch, w1 - spin, w2 - spin)
     change = nodal_forces(at, dN, dm1, dm2)
     moved = configuration_variation(at, force, stretch, spin)
     total = (change.force[0] + moved[0], change.force[1] + moved[1])
@@ -214,10 +245,11 @@ def write_element(
 ) -> None:
     """Write internal forces f (6,) of element e and their derivative K (6, 6) by displacements and angles."""
     element = element_at(ref, section, e)
-    N, m1, m2 = _stress(element, at)
+    strain, stiffness = pulled(_strain(element, at), element.share, element.soft)
+    N, m1, m2 = _stress(element, at, strain)
     response = nodal_forces(at, N, m1, m2)
     write_forces(at.axis, response, f)
-    _tangent(element, at, N, response.force, K)
+    _tangent(_with_axial_stiffness(element, stiffness * element.EA), at, N, response.force, K)
 
 
 @njit

@@ -45,6 +45,7 @@ from riser_soil.riser.strain3d import (
     conjugate_change,
     difference,
     energy,
+    pulled_strain,
     stations,
     strain,
     strain_change,
@@ -63,6 +64,9 @@ class SpatialSection(NamedTuple):
     EIy: Array  # N m2, bending about the second section axis
     EIz: Array  # N m2, bending about the third section axis
     GJ: Array  # N m2, positive
+    share: Array  # constants of elements that go slack: `tension_only`
+    soft: Array
+    fold: Array  # N
 
 
 class SpatialReference(NamedTuple):
@@ -131,13 +135,14 @@ def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> SpatialRefer
 @njit
 def _unstressed(ref: SpatialReference, e: int) -> Strain:
     k = ref.curvature[e]
-    return Strain(ref.axial[e], ref.twist[e], (k[0, 0], k[0, 1]), (k[1, 0], k[1, 1]))
+    return Strain(ref.axial[e], ref.twist[e], (k[0, 0], k[0, 1]), (k[1, 0], k[1, 1]), 0.0)
 
 
 @njit
 def stiffness(ref: SpatialReference, section: SpatialSection, e: int) -> Stiffness:
     """Stiffnesses of element e."""
-    return Stiffness(ref.L[e], section.EA[e], section.EIy[e], section.EIz[e], section.GJ[e])
+    elastic = section.EA[e], section.EIy[e], section.EIz[e], section.GJ[e]
+    return Stiffness(ref.L[e], *elastic, section.share[e], section.soft[e], section.fold[e])
 
 
 @njit
@@ -178,9 +183,10 @@ def _all_forces(at: Shape, N: float, mu1: Vec, mu2: Vec, load: BowLoad) -> Spati
 
 
 @njit
-def _respond(D: Stiffness, unstressed: Strain, at: Shape, w: Vec) -> SpatialResponse:
-    elastic = difference(at.strain, unstressed)
-    return respond(D.L, at, elastic, stress(D, at.strain, elastic), bow_load(at.frame.axes, D.L, w))
+def _respond(D: Stiffness, unstressed: Strain, at: Shape, w: Vec) -> tuple[SpatialResponse, Stiffness]:
+    """Forces of an element under a load, and its stiffnesses for a change of the strains."""
+    elastic, tangent = pulled_strain(D, difference(at.strain, unstressed))
+    return respond(D.L, at, elastic, stress(D, at.strain, elastic), bow_load(at.frame.axes, D.L, w)), tangent
 
 
 @njit
@@ -211,7 +217,7 @@ def write_element_forces(
     section frames (ne, 3, 3) of both ends.
     """
     at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])
-    response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at, w)
+    response, _ = _respond(stiffness(ref, section, e), _unstressed(ref, e), at, w)
     _write_loaded_forces(ref.L[e], at, response, w, f)
 
 
@@ -353,6 +359,6 @@ def write_element(
     """
     D, w = stiffness(ref, section, e), vector(load[e])
     at = element_shape(e, chord, frame1, frame2, ref)
-    response = _respond(D, _unstressed(ref, e), at, w)
+    response, tangent = _respond(D, _unstressed(ref, e), at, w)
     _write_loaded_forces(D.L, at, response, w, f)
-    _tangent(D, at, response, workspace, K)
+    _tangent(tangent, at, response, workspace, K)

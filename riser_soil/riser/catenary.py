@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,10 +10,12 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SceneError
 from riser_soil.riser.cable import BarChain, CableBalance, fit
 from riser_soil.riser.shapes import UP, Curve, X, from_nodes
+from riser_soil.riser.slack import heap
 
 BARS = 2000  # error of H some 5e-8 of it
 HOVER = 1e-8  # of the length: where a line at rest is over the seabed
 KINK = 2.0  # weights of a bar: the least H, so that the sharpest bend spans some bars
+LIES = 1e-6  # of the length: below it a joint lies on the seabed
 LEVEL = 1e-9  # of the length: what an end may lie below the level at which the line rests
 
 
@@ -22,17 +24,34 @@ class Catenary:
     """Curve of the line, tensions at its nodes (nn,) N, the balance that it follows from, horizontal tension H (N).
 
     slack [m]: how far the end lies beyond its place, horizontally away from the start, where the line is too long to
-    hang there with the least H allowed; else 0.
+    hang there with the least H allowed; else 0. heaped: whether it is too long to pull at what lies of it
+    (`slack`).
     """
 
     curve: Curve
     tension: Array
     slack: float
     balance: CableBalance
+    heaped: bool = False
 
     @property
     def H(self) -> float:
         return self.balance.H
+
+    @property
+    def bends(self) -> Array:
+        """Arc lengths (n,) [m] where it bends most: where it comes down, and lowest or highest points."""
+        chain, z, V = self.balance.chain, self.balance.z, self.balance.V
+        joints = np.append(0.0, np.cumsum(chain.l0))
+        if self.heaped:
+            rests = np.concatenate([[False], V == 0.0, [False]])
+            ends = np.flatnonzero(rests[1:] != rests[:-1])
+            return joints[ends[(ends > 0) & (ends < V.size)]]
+        lies = (z < LIES * chain.L) & (chain.hover is not None)
+        down = np.flatnonzero(lies[1:] != lies[:-1])
+        turns = 1 + np.flatnonzero(V[1:] * V[:-1] < 0.0)
+        hanging = turns[~lies[turns]]
+        return np.concatenate([np.where(lies[down], joints[down], joints[down + 1]), joints[hanging]])
 
 
 def catenary(
@@ -45,6 +64,8 @@ def catenary(
     *,
     points: Array | None = None,
     least_H: float = 0.0,
+    heaps: bool = False,
+    surface: float = np.inf,
     bars: int = BARS,
     near: Catenary | None = None,
 ) -> Catenary:
@@ -55,7 +76,8 @@ def catenary(
     points: (np, 2) arc lengths [m] of point weights [N]. bars: about how many the line is cut into; the error is of
     second order in their length. near: one of the same line between points nearby, found in a tenth of the time.
     least_H [N]: a line so slack that its H would be less is laid with this one and ends beyond its place; at H = 0 a
-    cable has kinks, and any shape on the seabed. Raises SceneError where there is no such line.
+    cable has kinks, and any shape on the seabed. heaps: what lies on the seabed may take up the slack, or,
+    of a line that floats, on the water's surface [m]. Raises SceneError where there is no such line.
     """
     across = (end - start) * [1.0, 1.0, 0.0]
     h = float(np.linalg.norm(across))
@@ -66,11 +88,13 @@ def catenary(
     _hang_on(chain, np.empty((0, 2)) if points is None else points)
     if not chain.load > 0.0:
         raise SceneError("riser.initial: catenary: needs a submerged weight; give initial points, or straight")
+    nodes, direction = np.append(0, np.cumsum(pieces)), across / h if h > 0.0 else X
+    if heaps and (heaped := heap(chain, h, surface - start[2])) is not None:
+        return replace(_in_space(*heaped, nodes, start, end, direction, 0.0), heaped=True)
     least = max(least_H, KINK * float(np.abs(w * chain.l0).max()))
     found = fit(chain, h, least, None if near is None else near.balance)
-    nodes, direction = np.append(0, np.cumsum(pieces)), across / h if h > 0.0 else X
     slack = max(0.0, found.reach - h) if least >= found.H else 0.0
-    return _in_space(found, nodes, start, end + slack * direction, direction, slack)
+    return _in_space(found.x, found, nodes, start, end + slack * direction, direction, slack)
 
 
 def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: float) -> BarChain:
@@ -98,10 +122,12 @@ def _hang_on(chain: BarChain, points: Array) -> None:
 
 
 def _in_space(
-    found: CableBalance, nodes: IntArray, start: Array, end: Array, direction: Array, slack: float
+    along: Array, found: CableBalance, nodes: IntArray, start: Array, end: Array, direction: Array, slack: float
 ) -> Catenary:
-    """The shape at the nodes; it ends where it is to end, beyond the round-off of its balance."""
-    x, z, V = (values[nodes, None] for values in (found.x, found.z - found.chain.z0, found.V_at_joints))
+    """The shape at the nodes, its joints at distances along (nb + 1,) [m] from the start; it ends where it is to end,
+    beyond the round-off of its balance.
+    """
+    x, z, V = (values[nodes, None] for values in (along, found.z - found.chain.z0, found.V_at_joints))
     force = found.H * direction + V * UP
     tension = np.linalg.norm(force, axis=1)
     position = start + x * direction + z * UP

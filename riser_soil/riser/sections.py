@@ -11,6 +11,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError
+from riser_soil.riser.slack import law_of
 
 CHAIN = 1e-18  # EI of an element without bending stiffness, over EA L^2: below the round-off of its other stiffnesses
 
@@ -167,6 +168,11 @@ class Elements:
         """
         chain = CHAIN * self.EA * self.length**2
         return np.where(self.bends, self.EI_y, chain), np.where(self.bends, self.EI_z, chain)
+
+    @cached_property
+    def slack_law(self) -> tuple[Array, Array, Array]:
+        """Constants (ne,) by which elements without bending stiffness go slack, see `tension_only`."""
+        return law_of(self.bends, self.weight, self.length, self.EA)
 
     @property
     def arc(self) -> Array:

@@ -19,7 +19,7 @@ Strain energy of a two-node element in space, its gradient and its Hessian by th
 
     U = EA L axial^2 / 2 + GJ twist^2 / (2 L) + L/4 (sum of k.D k over both stations) - h P^2 L^3 / (24 GJ)
 
-with all strains less those of the unstressed element, D = diag(EIy, EIz), and P = (mean curvature x mean
+(its first term as of `tension_only` where there is no bending stiffness) with all strains less those of the unstressed element, D = diag(EIy, EIz), and P = (mean curvature x mean
 moment)_x, the torque rate. The last term is what the twist sets free that deviates from the line between the ends by
 a (1 - 4 x^2/L^2), x from the middle. It is stiffened by GJ and, as it turns the curvature k, by k'.D k' with k' normal
 to k; of both the least energy by a has
@@ -35,6 +35,7 @@ from typing import NamedTuple
 
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam2d import bow, bow_slopes
+from riser_soil.riser.tension_only import pulled, stored, unfolding
 from riser_soil.riser.vectors import Vec, add, dot, scale
 
 ROOT3 = math.sqrt(3.0)
@@ -49,6 +50,9 @@ class Stiffness(NamedTuple):
     EIy: float  # N m2, about the second section axis
     EIz: float  # N m2, about the third section axis
     GJ: float  # N m2
+    share: float  # constants of an element that goes slack: `tension_only`
+    soft: float
+    fold: float  # N
 
 
 class Station(NamedTuple):
@@ -66,15 +70,17 @@ class Strain(NamedTuple):
     twist: float  # over the whole element, rad
     first: Pair  # curvature at the first Gauss station, 1/m
     second: Pair  # at the second
+    bow: float  # part of the axial strain, in every configuration
 
 
 class Stress(NamedTuple):
-    """Derivatives of the strain energy by the four strains."""
+    """Derivatives of the strain energy by chord over length, twist, curvatures and bow."""
 
     axial: float
     twist: float
     first: Pair
     second: Pair
+    bow: float
 
 
 @njit
@@ -133,9 +139,9 @@ def stations(L: float, a: Vec, b: Vec) -> tuple[Station, Station]:
 @njit
 def strain(L: float, length: float, a: Vec, b: Vec, at: tuple[Station, Station]) -> Strain:
     """Strains for a chord of `length` and the ends' angles a and b; the axial one starts at 1."""
-    axial = length / L + bow(a[1], b[1]) + bow(a[2], b[2])
+    bowed = bow(a[1], b[1]) + bow(a[2], b[2])
     twist = b[0] - a[0] + 0.5 * (a[1] * b[2] - a[2] * b[1])
-    return Strain(axial, twist, at[0].curvature, at[1].curvature)
+    return Strain(length / L + bowed, twist, at[0].curvature, at[1].curvature, bowed)
 
 
 @njit
@@ -153,10 +159,10 @@ def strain_change(
 ) -> Strain:
     """Change of `strain` when the chord lengthens by `stretch` and the angles change by da and db."""
     axial1, axial2, twist1, twist2 = _gradients(a, b)
-    axial = stretch / L + dot(axial1, da) + dot(axial2, db)
+    bowed = dot(axial1, da) + dot(axial2, db)
     twist = db[0] - da[0] + dot(twist1, da) + dot(twist2, db)
     first, second = _curvature_change(at[0], -1.0, L, da, db), _curvature_change(at[1], 1.0, L, da, db)
-    return Strain(axial, twist, first, second)
+    return Strain(stretch / L + bowed, twist, first, second, bowed)
 
 
 @njit
@@ -173,7 +179,8 @@ def strain_change_variation(L: float, at: tuple[Station, Station], da: Vec, db: 
     axial1, axial2, twist1, twist2 = _gradients(ea, eb)
     first = _curvature_change_variation(at[0], -1.0, L, da, db, ea, eb)
     second = _curvature_change_variation(at[1], 1.0, L, da, db, ea, eb)
-    return Strain(dot(axial1, da) + dot(axial2, db), dot(twist1, da) + dot(twist2, db), first, second)
+    bowed = dot(axial1, da) + dot(axial2, db)
+    return Strain(bowed, dot(twist1, da) + dot(twist2, db), first, second, bowed)
 
 
 @njit
@@ -182,8 +189,8 @@ def conjugate(L: float, a: Vec, b: Vec, at: tuple[Station, Station], s: Stress) 
     axial1, axial2, twist1, twist2 = _gradients(a, b)
     first1, first2 = _to_ends(-1.0, L, _station_force(at[0], s.first))
     second1, second2 = _to_ends(1.0, L, _station_force(at[1], s.second))
-    end1 = add(scale(s.axial, axial1), scale(s.twist, add(twist1, (-1.0, 0.0, 0.0))))
-    end2 = add(scale(s.axial, axial2), scale(s.twist, add(twist2, (1.0, 0.0, 0.0))))
+    end1 = add(scale(s.bow, axial1), scale(s.twist, add(twist1, (-1.0, 0.0, 0.0))))
+    end2 = add(scale(s.bow, axial2), scale(s.twist, add(twist2, (1.0, 0.0, 0.0))))
     return add(end1, add(first1, second1)), add(end2, add(first2, second2))
 
 
@@ -196,8 +203,8 @@ def conjugate_change(
     dtau1, dtau2 = _at_station(-1.0, L, da, db)[0], _at_station(1.0, L, da, db)[0]
     first1, first2 = _to_ends(-1.0, L, _station_force_change(at[0], s.first, dtau1, change.first))
     second1, second2 = _to_ends(1.0, L, _station_force_change(at[1], s.second, dtau2, change.second))
-    end1 = add(scale(s.axial, axial1), scale(s.twist, twist1))
-    end2 = add(scale(s.axial, axial2), scale(s.twist, twist2))
+    end1 = add(scale(s.bow, axial1), scale(s.twist, twist1))
+    end2 = add(scale(s.bow, axial2), scale(s.twist, twist2))
     return add(end1, add(first1, second1)), add(end2, add(first2, second2))
 
 
@@ -206,7 +213,7 @@ def total(a: Strain, b: Strain) -> Strain:
     """a + b."""
     first = (a.first[0] + b.first[0], a.first[1] + b.first[1])
     second = (a.second[0] + b.second[0], a.second[1] + b.second[1])
-    return Strain(a.axial + b.axial, a.twist + b.twist, first, second)
+    return Strain(a.axial + b.axial, a.twist + b.twist, first, second, a.bow + b.bow)
 
 
 @njit
@@ -214,7 +221,7 @@ def difference(a: Strain, b: Strain) -> Strain:
     """a - b."""
     first = (a.first[0] - b.first[0], a.first[1] - b.first[1])
     second = (a.second[0] - b.second[0], a.second[1] - b.second[1])
-    return Strain(a.axial - b.axial, a.twist - b.twist, first, second)
+    return Strain(a.axial - b.axial, a.twist - b.twist, first, second, a.bow - b.bow)
 
 
 @njit
@@ -255,11 +262,20 @@ def _share_slopes(k: Pair, D: Stiffness, h: float) -> Pair:
 @njit
 def energy(D: Stiffness, total: Strain, elastic: Strain) -> float:
     """Strain energy U (J)."""
-    U = 0.5 * (D.EA * D.L * elastic.axial**2 + D.GJ / D.L * elastic.twist**2)
+    U = D.L * (D.EA * stored(elastic.axial, D.share, D.soft) + D.fold * total.bow**3 / 3.0)
+    U += 0.5 * D.GJ / D.L * elastic.twist**2
     U += 0.25 * D.L * D.EIy * (elastic.first[0] ** 2 + elastic.second[0] ** 2)
     U += 0.25 * D.L * D.EIz * (elastic.first[1] ** 2 + elastic.second[1] ** 2)
     k = _mean(total)
     return U - 0.5 * _twist_compliance(D) * _share(k, D) * _torque_rate(k, _mean(elastic), D) ** 2
+
+
+@njit
+def pulled_strain(D: Stiffness, elastic: Strain) -> tuple[Strain, Stiffness]:
+    """The strains with N/EA for the axial one, and the stiffnesses for a change of them: `tension_only`."""
+    axial, stiffness = pulled(elastic.axial, D.share, D.soft)
+    tangent = Stiffness(D.L, stiffness * D.EA, D.EIy, D.EIz, D.GJ, D.share, D.soft, D.fold)
+    return Strain(axial, elastic.twist, elastic.first, elastic.second, elastic.bow), tangent
 
 
 @njit
@@ -270,22 +286,24 @@ def linear_stress(D: Stiffness, elastic: Strain) -> Stress:
         (y * elastic.first[0], z * elastic.first[1]),
         (y * elastic.second[0], z * elastic.second[1]),
     )
-    return Stress(D.EA * D.L * elastic.axial, D.GJ / D.L * elastic.twist, first, second)
+    axial = D.EA * D.L * elastic.axial
+    return Stress(axial, D.GJ / D.L * elastic.twist, first, second, axial)
 
 
 @njit
-def _less(s: Stress, moment: Pair) -> Stress:
-    """s with the moment taken off both stations."""
+def _less(s: Stress, moment: Pair, more: float) -> Stress:
+    """s with the moment taken off both stations, and more that takes the bow out."""
     first = (s.first[0] - moment[0], s.first[1] - moment[1])
     second = (s.second[0] - moment[0], s.second[1] - moment[1])
-    return Stress(s.axial, s.twist, first, second)
+    return Stress(s.axial, s.twist, first, second, s.bow + more)
 
 
 @njit
 def stress(D: Stiffness, total: Strain, elastic: Strain) -> Stress:
-    """Gradient of U by the strains `total`, of which `elastic` exceeds the unstressed ones."""
+    """Gradient of U by the strains `total`, of which `elastic` exceeds the unstressed ones, the axial one N/EA."""
     k, e = _mean(total), _mean(elastic)
-    return _less(linear_stress(D, elastic), _twisting_moment(D, k, e))
+    unfolds, _ = unfolding(total.bow, D.fold)
+    return _less(linear_stress(D, elastic), _twisting_moment(D, k, e), D.L * unfolds)
 
 
 @njit
@@ -298,7 +316,7 @@ def _twisting_moment(D: Stiffness, k: Pair, e: Pair) -> Pair:
 
 @njit
 def stress_change(D: Stiffness, total: Strain, elastic: Strain, change: Strain) -> Stress:
-    """Hessian of U times a change of the strains."""
+    """Hessian of U times a change of the strains; D: stiffnesses for a change of them."""
     k, e, dk = _mean(total), _mean(elastic), _mean(change)
     P, h, half = _torque_rate(k, e, D), _share(k, D), 0.5 * _twist_compliance(D)
     (Py, Pz), (hy, hz) = _torque_rate_slopes(k, e, D), _share_slopes(k, D, h)
@@ -308,4 +326,5 @@ def stress_change(D: Stiffness, total: Strain, elastic: Strain, change: Strain) 
     dhy, dhz = 2.0 * dh / h * hy + bent[0], 2.0 * dh / h * hz + bent[1]
     first = half * (dP * (h * Py + P * hy) + P * (dh * Py + h * dPy + 0.5 * P * dhy))
     second = half * (dP * (h * Pz + P * hz) + P * (dh * Pz + h * dPz + 0.5 * P * dhz))
-    return _less(linear_stress(D, change), (first, second))
+    _, stiffness = unfolding(total.bow, D.fold)
+    return _less(linear_stress(D, change), (first, second), D.L * stiffness * change.bow)
