@@ -129,6 +129,12 @@ class LineAssembly:
     def too_slack(self) -> str:
         """Error message where a riser too slack for its elements finds no equilibrium."""
         bend = least_bend(self.elements)
+        if bend == 0.0:
+            return (
+                f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m "
+                "beyond its place, and no way back there was found; take shorter segments, move the ends apart, or "
+                "take shorter elements"
+            )
         return (
             f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
             "its place, and no way back there was found; take shorter segments, move the ends apart, or take "

@@ -29,22 +29,22 @@ OF_RADIUS = 0.5  # of that radius: elements beside it
 FINEST = 1e-3  # of the line's height: the shortest elements
 GROWTH = 0.3  # of the distance from a bend
 LEAST_CUT = 1.5  # elements asked for in place of one, from which it is cut
+SHORTEST = 1e-2  # of the line's length: the least height that counts
+SAMPLES = 2001  # of an element, by which it is cut
 GRID = 1e-6  # of the line's length: places of new nodes, so that round-off does not move them
 
 
 def cut_at_sharp_bends(scene: Scene) -> Scene:
     """The scene with the elements of slack chain and rope cut; itself where there are none to cut."""
-    found = {name: _lengths(view) for name, view in by_line(scene).items()}
-    if not any(lengths is not None for lengths in found.values()):
-        return scene
-    cut = {
-        name: line.segments if (lengths := found[name]) is None else tuple(_cut(line.segments, *lengths))
-        for name, line in risers(scene).items()
-    }
-    return with_segments(scene, cut) if cut != {name: line.segments for name, line in risers(scene).items()} else scene
+    given = {name: line.segments for name, line in risers(scene).items()}
+    cut = dict(given)
+    for name, view in by_line(scene).items():
+        if (bends := _sharp_bends(view)) is not None:
+            cut[name] = tuple(_cut(given[name], *bends))
+    return scene if cut == given else with_segments(scene, cut)
 
 
-def _lengths(scene: Scene) -> tuple[Array, Array] | None:
+def _sharp_bends(scene: Scene) -> tuple[Array, Array] | None:
     """Arc lengths of sharp bends (n,) of one line, and elements' lengths (n,) beside them [m]; None without any."""
     start, end = scene.line.start, scene.line.end
     if scene.line.initial != "catenary" or scene.soil is not None:
@@ -75,9 +75,6 @@ def _sharp(cable: Catenary, elements: Elements) -> tuple[Array, Array] | None:
     return arcs[sharp], np.maximum(OF_RADIUS * radius[sharp], FINEST * max(height, SHORTEST * elements.arc[-1]))
 
 
-SHORTEST = 1e-2  # of the line's length: the least height that counts
-
-
 def _cut(segments: tuple[Segment, ...], arcs: Array, lengths: Array) -> Iterator[Segment]:
     """The segments, equal elements beside each other in one."""
     grid, begin = GRID * sum(segment.length for segment in segments), 0.0
@@ -105,6 +102,3 @@ def _pieces(begin: float, length: float, arcs: Array, lengths: Array, grid: floa
     nodes = np.interp(np.arange(1, count) / count * asked[-1], asked, s - begin)
     at = [0.0, *(grid * np.round(nodes / grid)), length]
     return [float(value) for value in np.diff(at)]
-
-
-SAMPLES = 2001

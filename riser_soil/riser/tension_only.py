@@ -35,12 +35,14 @@ def pulled(strain: float, share: float, soft: float) -> tuple[float, float]:
 
 @njit
 def stored(strain: float, share: float, soft: float) -> float:
-    """psi: the integral of N/EA, that of a taut element 1/2 e^2."""
-    middle = share / (1.0 - share) if share < 1.0 else 0.0
-    beyond = strain - middle + soft
-    if share == 1.0 or beyond >= 2.0 * soft:
+    """psi, the integral of N/EA, never negative: r (1 + e)^2/2 where slack, beyond a constant e^2/2 where taut."""
+    if share == 1.0:
         return 0.5 * strain * strain
-    psi = 0.5 * share * (1.0 + strain) ** 2 - 0.5 * middle - (1.0 - share) * soft * soft / 6.0
+    middle = share / (1.0 - share)
+    beyond = strain - middle + soft
+    if beyond >= 2.0 * soft:
+        return 0.5 * strain * strain + 0.5 * middle + (1.0 - share) * soft * soft / 6.0
+    psi = 0.5 * share * (1.0 + strain) ** 2
     if beyond > 0.0:
         psi += (1.0 - share) * beyond**3 / (12.0 * soft)
     return psi

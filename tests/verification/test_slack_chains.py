@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.assembly import sized
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 W, SPAN, HEIGHT = 1400.0, 170.0, 115.0
 CHAIN = {"EA": 6e8, "EI": 0.0, "GJ": 1.0, "submerged_weight": W, "outer_diameter": 0.15, "mass": 165.0}

@@ -28,9 +28,10 @@ def test_the_pull_is_the_derivative_of_what_is_stored(strain: float) -> None:
 def test_taut_it_is_linear_and_slack_it_pulls_weakly() -> None:
     for strain in (0.3, 1.0):
         assert pulled(strain, SHARE, SOFT) == (strain, 1.0)
-        assert stored(strain, SHARE, SOFT) == 0.5 * strain**2
+        assert stored(strain, SHARE, SOFT) - stored(0.3, SHARE, SOFT) == pytest.approx(0.5 * (strain**2 - 0.09))
     for strain in (-0.9, -0.3):
         assert pulled(strain, SHARE, SOFT) == (SHARE * (1.0 + strain), SHARE)
+        assert stored(strain, SHARE, SOFT) == pytest.approx(0.5 * SHARE * (1.0 + strain) ** 2)
     everywhere = np.linspace(-0.999, 1.0, 500)
     pulls = np.array([pulled(strain, SHARE, SOFT) for strain in everywhere])
     assert pulls.min() > 0.0
@@ -50,7 +51,8 @@ def test_what_unfolds_is_the_derivative_of_its_energy() -> None:
 
 def test_a_slack_element_pulls_by_a_ten_thousandth_of_the_lines_weight() -> None:
     """Of 4 elements of 5 m and 200 N/m the first bends."""
-    share, soft, fold = law_of(np.array([True, False, False, False]), np.full(4, 200.0), np.full(4, 5.0), np.full(4, 1e8))
+    bends, weight, length, EA = np.array([True, False, False, False]), np.full(4, 200.0), np.full(4, 5.0), np.full(4, 1e8)
+    share, soft, fold = law_of(bends, weight, length, EA)
     assert (share[0], soft[0], fold[0]) == (1.0, 1.0, 0.0)
     assert share[1:] * 1e8 == pytest.approx(1e-4 * 4000.0)
     assert soft[1:] == pytest.approx(0.1 * 1000.0 / 1e8)
