@@ -20,7 +20,8 @@ Strain energy of a two-node element in space, its gradient and its Hessian by th
     U = EA L axial^2 / 2 + GJ twist^2 / (2 L) + L/4 (sum of k.D k over both stations) - h P^2 L^3 / (24 GJ)
 
 with all strains less those of the unstressed element, D = diag(EIy, EIz), and P = (mean curvature x mean
-moment)_x, the torque rate. Without bending stiffness the first term is that of `tension_only`. The last term is what the twist sets free that deviates from the line between the ends by
+moment)_x, the torque rate. Without bending stiffness the first term is that of `tension_only`. The last one is what the
+twist sets free that deviates from the line between the ends by
 a (1 - 4 x^2/L^2), x from the middle. It is stiffened by GJ and, as it turns the curvature k, by k'.D k' with k' normal
 to k; of both the least energy by a has
 

@@ -142,8 +142,8 @@ def straight_plane(n: int, L: float, EA: float, EI: float, element: Element2d) -
 def straight_space(n: int, L: float, EA: float, EI: tuple[float, float], GJ: float) -> SpaceChain:
     """Straight chain of n elements along x."""
     x = np.column_stack([np.linspace(0.0, L, n + 1), np.zeros(n + 1), np.zeros(n + 1)])
-    stiffnesses = (np.full(n, value) for value in (EA, *EI, GJ))
-    section = beam3d.SpatialSection(*stiffnesses, *never_slack(n))
+    axial, EIy, EIz, twisting = (np.full(n, value) for value in (EA, *EI, GJ))
+    section = beam3d.SpatialSection(axial, EIy, EIz, twisting, *never_slack(n))
     return SpaceChain(x, np.tile(np.eye(3), (2, n, 1, 1)), np.full(n, L / n), section)
 
 

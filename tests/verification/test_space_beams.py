@@ -159,12 +159,12 @@ def right_angle(n: int) -> SpaceChain:
     first, second = np.stack([at, o, o], axis=1), np.stack([LEG + o, -at, o], axis=1)
     frames = np.repeat(np.stack(LEGS), n, axis=0)
     count = 2 * n
-    full = [np.full(count, value) for value in (FRAME_EA, *FRAME_EI, FRAME_GJ)]
+    axial, EIy, EIz, twisting = (np.full(count, value) for value in (FRAME_EA, *FRAME_EI, FRAME_GJ))
     return SpaceChain(
         np.concatenate([first, second[1:]]),
         np.stack([frames, frames]),
         np.full(count, LEG / n),
-        beam3d.SpatialSection(*full, *never_slack(count)),
+        beam3d.SpatialSection(axial, EIy, EIz, twisting, *never_slack(count)),
     )
 
 

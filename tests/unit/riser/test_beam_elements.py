@@ -222,8 +222,8 @@ def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float, lo
     w = load * np.random.default_rng(2).normal(size=(NE, 2))
     in_space = flat.chord0 @ np.eye(3)[[0, 2]], flat.chord @ np.eye(3)[[0, 2]]
     frames0, frames = upright(flat.directions0), upright(flat.directions)
-    EA, EI, *slack = flat.section
-    section = beam3d.SpatialSection(EA, 3 * EI, EI, EI, *slack)
+    axial, EI, share, soft, fold = flat.section
+    section = beam3d.SpatialSection(axial, 3 * EI, EI, EI, share, soft, fold)
     ref = beam3d.reference(in_space[0], frames0[0], frames0[1], flat.ref.L)
     f3, K3 = spatial_elements.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section, w @ np.eye(3)[[0, 2]])
     f2, K2 = flat.call(planar_elements.forces_and_tangent)

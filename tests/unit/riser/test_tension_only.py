@@ -51,8 +51,8 @@ def test_what_unfolds_is_the_derivative_of_its_energy() -> None:
 
 def test_a_slack_element_pulls_by_a_ten_thousandth_of_the_lines_weight() -> None:
     """Of 4 elements of 5 m and 200 N/m the first bends."""
-    bends, weight, length, EA = np.array([True, False, False, False]), np.full(4, 200.0), np.full(4, 5.0), np.full(4, 1e8)
-    share, soft, fold = law_of(bends, weight, length, EA)
+    bends = np.array([True, False, False, False])
+    share, soft, fold = law_of(bends, np.full(4, 200.0), np.full(4, 5.0), np.full(4, 1e8))
     assert (share[0], soft[0], fold[0]) == (1.0, 1.0, 0.0)
     assert share[1:] * 1e8 == pytest.approx(1e-4 * 4000.0)
     assert soft[1:] == pytest.approx(0.1 * 1000.0 / 1e8)
