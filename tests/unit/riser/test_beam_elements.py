@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -160,6 +160,38 @@ def test_tangent_is_the_derivative_of_the_forces(
     f, K = elements.call(module.forces_and_tangent)
     assert difference(K, derivative(lambda moved: elements.call(module.forces, moved), n)) < TOLERANCE
     assert difference(f, elements.call(module.forces)) < 2e-14  # round-off of a strain of 0.02 that is counted from 1
+
+
+def going_slack(elements: Any, shorter: float, soft: float, fold: float) -> Any:
+    """Elements in space or in a plane, their chords shortened."""
+    found = elements._replace(chord=shorter * elements.chord)
+    for name, value in (("share", 0.03), ("soft", soft), ("fold", fold)):
+        found = with_constant(found, name, value)
+    return found
+
+
+def with_constant(elements: Any, name: str, value: float) -> Any:
+    """With another constant of the law by which they go slack."""
+    return elements._replace(section=elements.section._replace(**{name: np.full(NE, value)}))
+
+
+@pytest.mark.parametrize(("shorter", "soft"), [(0.96, 0.3), (0.6, 0.05)], ids=["in between", "slack"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_elements_that_go_slack_follow_from_their_energy(dimension: int, shorter: float, soft: float) -> None:
+    """And would not without any of the three constants."""
+    build, module, n = (plane, planar_elements, 6) if dimension == 2 else (loaded_space, spatial_elements, 12)
+    elements = going_slack(build(0.0, 0.4), shorter, soft, 2e5)
+    assert difference(elements.call(module.forces), derivative(elements.energy, n)) < TOLERANCE
+
+    def forces(moved: Array) -> Array:
+        return np.asarray(elements.call(module.forces, moved))
+
+    f, K = elements.call(module.forces_and_tangent)
+    assert difference(f, forces(np.zeros((NE, n)))) < 1e-14
+    assert difference(K, derivative(forces, n)) < TOLERANCE
+    for constant, value in (("share", 1.0), ("soft", 2.0 * soft + 0.5), ("fold", 0.0)):
+        other = with_constant(elements, constant, value)
+        assert difference(other.call(module.forces_and_tangent)[1], K) > 1e3 * TOLERANCE
 
 
 @SHAPES
