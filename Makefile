@@ -2,6 +2,7 @@
 
 PYTHON := .venv/bin/python
 WORKERS ?= 3
+DECKS ?= build/decks
 SUITES ?= bookworm trixie
 DOCKER ?= docker
 
@@ -20,7 +21,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test quick lint coverage verify stress fuzz mutants bench bench-peers parts bars asked precision quality figures verify-fresh docs dist docker pins clean
+.PHONY: help setup demo demos test quick lint coverage verify stress fuzz mutants bench bench-peers bench-decks parts bars asked precision quality figures verify-fresh docs dist docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -76,6 +77,10 @@ bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn an
 	$(PYTHON) -m benchmarks.peers.clay --page
 	$(PYTHON) -m benchmarks.peers.shaken --page
 	$(PYTHON) -m benchmarks.peers.hung --page
+
+bench-decks: setup ## what becomes of decks of public repositories, cloned into DECKS: docs/decks.md; a quarter of an hour
+	@scripts/peers.sh
+	$(PYTHON) -m benchmarks.decks $(DECKS) --page
 
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page

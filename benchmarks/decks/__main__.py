@@ -1,0 +1,118 @@
+"""Decks and files of public repositories, each imported, checked and hung: tables of docs/decks.md.
+
+    python -m benchmarks.decks FOLDER [--results FOLDER] [--without WORD]… [--again] [--page]
+
+FOLDER has clones of the repositories, each named OWNER+NAME. The catenaries are MoorPy's, of the environment
+build/peers (`scripts/peers.sh`); without it the tables lack them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from itertools import chain, groupby
+from pathlib import Path
+
+from benchmarks.decks.survey import Found, survey
+from benchmarks.peers.in_turn import ROOT, THEIRS
+from demos.page import publish, table
+
+PAGE = ROOT / "docs" / "decks.md"
+ALIKE = 0.005  # of the catenary's tension
+LONGEST = 160  # characters of a reason
+
+
+def verdict(found: Found) -> str:
+    """What becomes of it in a few words."""
+    if found.outcome != "scene":
+        return found.outcome
+    if found.difference is None:
+        return "scene, no catenary"
+    if abs(found.difference) <= ALIKE:
+        return "scene, as the catenary"
+    if found.bends:
+        return "scene that bends"
+    return "differs, with a warning" if found.warnings else "DIFFERS"
+
+
+def summary(found: Sequence[Found]) -> str:
+    counts = Counter(verdict(each) for each in found)
+    return table(["what becomes of it", "lines and decks"], [[word, str(n)] for word, n in counts.most_common()])
+
+
+def sources(found: Sequence[Found], folder: Path) -> str:
+    rows = []
+    for repository, group in groupby(found, key=lambda each: each.repository):
+        decks = len({each.deck for each in group})
+        rows.append([f"github.com/{repository}", _commit(folder / repository.replace("/", "+")), str(decks)])
+    return table(["repository", "commit", "files"], rows)
+
+
+def _commit(clone: Path) -> str:
+    done = subprocess.run(["git", "-C", str(clone), "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
+    return done.stdout.strip()[:10] or "-"
+
+
+def all_rows(found: Sequence[Found]) -> str:
+    rows = []
+    for each in found:
+        name = f"{each.repository}: {each.deck}" + (f", `--line {each.line}`" if each.line else "")
+        numbers = [_kN(each.tension), _kN(each.reference), _percent(each)]
+        rows.append([name, _words(each), str(each.remarks), *numbers])
+    return table(["deck", "outcome", "remarks", "top tension kN", "catenary kN", "difference %"], rows)
+
+
+def _words(each: Found) -> str:
+    reason = each.reason.replace("|", "/")
+    if each.outcome != "scene" and reason:
+        return f"{each.outcome}: {reason[:LONGEST]}{'…' if len(reason) > LONGEST else ''}"
+    return verdict(each).removeprefix("scene, ") if each.reference is None else verdict(each)
+
+
+def _kN(value: float | None) -> str:
+    return "-" if value is None else f"{value / 1e3:.5g}"
+
+
+def _percent(each: Found) -> str:
+    return "-" if each.difference is None else f"{100 * each.difference:.2f}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.decks", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
+    parser.add_argument("folder", type=Path, help="clones of repositories, each OWNER+NAME")
+    parser.add_argument("--results", type=Path, default=ROOT / "results" / "decks", help="scenes and runs")
+    parser.add_argument("--python", default=str(THEIRS), help="interpreter that has moorpy")
+    parser.add_argument("--without", action="append", default=[], help="leave out files with this in their path")
+    parser.add_argument("--again", action="store_true", help="tables of what an earlier survey has left in the results")
+    parser.add_argument("--page", action="store_true", help="write the tables into docs/decks.md, too")
+    asked = parser.parse_args()
+    log = asked.results / "found.jsonl"
+    if not asked.again:
+        asked.results.mkdir(parents=True, exist_ok=True)
+        _survey_into(log, survey(asked.folder.absolute(), asked.results.absolute(), asked.python, asked.without))
+    read = [_read(row) for row in log.read_text(encoding="utf-8").splitlines()]
+    found = sorted(read, key=lambda each: (each.repository.lower(), each.deck))
+    blocks = {"sources": sources(found, asked.folder), "outcomes": summary(found), "decks": all_rows(found)}
+    publish(blocks, asked.results, PAGE if asked.page else None)
+
+
+def _survey_into(log: Path, groups: Iterable[list[Found]]) -> None:
+    with log.open("w", encoding="utf-8") as rows:
+        for each in chain.from_iterable(groups):
+            print(json.dumps(asdict(each)), file=rows, flush=True)
+            print(verdict(each), each.repository, each.deck, each.line, file=sys.stderr, flush=True)
+
+
+def _read(row: str) -> Found:
+    given = json.loads(row)
+    return Found(**given | {"warnings": tuple(given["warnings"])})
+
+
+if __name__ == "__main__":
+    main()
