@@ -180,19 +180,26 @@ def _beside(found: Found, reference: dict[str, Any], work: Path) -> Found:
     lines = reference.get("held", "none")
     if isinstance(lines, str):
         return Found(**asdict(found) | {"tension": tension, "why_no_reference": lines})
-    near = [line["tensions"][1] for line in lines if math.dist(line["ends"][1], place) < SAME_PLACE]
-    closest = min(near, key=lambda other: abs(other - tension), default=None)
+    closest = _at_top(lines, place, tension)
     why = "" if closest is not None else f"no line of MoorPy's has its top at {place}"
     return Found(**asdict(found) | {"tension": tension, "reference": closest, "why_no_reference": why})
 
 
+def _at_top(lines: list[dict[str, Any]], place: Sequence[float], tension: float) -> float | None:
+    """Tension [N] of MoorPy's line whose top is there; of several the one nearest to a tension."""
+    near = [line["tensions"][1] for line in lines if math.dist(line["ends"][1], place) < SAME_PLACE]
+    return min(near, key=lambda other: abs(other - tension), default=None)
+
+
 def _whole_beside(found: Found, folder: Path, lines: Any) -> Found:
-    """That line whose tension differs most."""
-    done = Run(folder).of_lines
-    ours = {name.removeprefix("line"): float(each["effective_tension"][-1, -1]) for name, each in done.items()}
+    """That line whose tension differs most, of those whose tops MoorPy has at the same place."""
+    runs = Run(folder).of_lines.values()
+    ours = [(float(run["effective_tension"][-1, -1]), run["position"][-1, -1]) for run in runs]
     if isinstance(lines, str):
-        return Found(**asdict(found) | {"tension": max(ours.values()), "why_no_reference": lines})
-    theirs = {line["line"]: line["tensions"][1] for line in lines}
-    pairs = [(ours[name], theirs[name]) for name in ours if name in theirs]
-    worst = max(pairs, key=lambda pair: abs(pair[0] / pair[1] - 1) if pair[1] else 0.0, default=(None, None))
-    return Found(**asdict(found) | {"tension": worst[0], "reference": worst[1]})
+        return Found(**asdict(found) | {"tension": max(tension for tension, _ in ours), "why_no_reference": lines})
+    pairs = [(tension, other) for tension, place in ours if (other := _at_top(lines, place, tension))]
+    if not pairs:
+        why = "no line of MoorPy's has its top at the same place"
+        return Found(**asdict(found) | {"tension": max(tension for tension, _ in ours), "why_no_reference": why})
+    tension, other = max(pairs, key=lambda pair: abs(pair[0] / pair[1] - 1))
+    return Found(**asdict(found) | {"tension": tension, "reference": other})
