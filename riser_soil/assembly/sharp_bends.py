@@ -1,10 +1,14 @@
-"""Elements of slack chain and rope, cut where the line bends more sharply than they are long.
+"""Elements of chain and rope, cut where the line bends more sharply than they are long.
 
 A line without bending stiffness that is too long to pull at its anchor hangs straight down to a heap on the seabed, or
 in two legs side by side. Its bend there has the radius H/w and begins somewhere within an element; what of that element
-hangs is in doubt by half its length, and the tension at the top with it. The scene's nodes stay, new ones come between
-them: elements are as long as the bend's radius beside it, or as a small share of the height where it has hardly any
-radius, and grow with the distance from it. Where the first shape bends gently nothing is cut.
+hangs is in doubt by half its length, and the tension at the top with it. A float or a clump makes a kink: the elements
+beside it share one slope there, and bow away from the two straight legs by half the angle a that the line turns by. By
+the shallow arch of their cubics that takes up the length h a^2/30, h being the length of an element.
+
+The scene's nodes stay, new ones come between them. Beside a bend elements are as long as a share of its radius, or of
+the height where it has hardly any radius; beside a kink so that the length taken up is a small share of the line's.
+They grow with the distance from it. Where the first shape bends gently nothing is cut.
 """
 
 from __future__ import annotations
@@ -27,7 +31,9 @@ from riser_soil.scene.scene import Scene
 SHARP = 1.0  # of an element: radius of a bend that it can't follow
 OF_RADIUS = 0.5  # of that radius: elements beside it
 FINEST = 1e-3  # of the line's height: the shortest elements
-GROWTH = 0.3  # of the distance from a bend
+TAKEN_UP = 1e-5  # of the line's length: by the elements beside a kink
+ARCH = 30.0  # h a^2/ARCH is taken up there
+GROWTH = 0.3  # of the distance from a bend or a kink
 LEAST_CUT = 1.5  # elements asked for in place of one, from which it is cut
 SHORTEST = 1e-2  # of the line's length: the least height that counts
 SAMPLES = 2001  # of an element, by which it is cut
@@ -35,7 +41,7 @@ GRID = 1e-6  # of the line's length: places of new nodes, so that round-off does
 
 
 def cut_at_sharp_bends(scene: Scene) -> Scene:
-    """The scene with the elements of slack chain and rope cut; itself where there are none to cut."""
+    """The scene with the elements of chain and rope cut; itself where there are none to cut."""
     given = {name: line.segments for name, line in risers(scene).items()}
     cut = dict(given)
     for name, view in by_line(scene).items():
@@ -45,34 +51,46 @@ def cut_at_sharp_bends(scene: Scene) -> Scene:
 
 
 def _sharp_bends(scene: Scene) -> tuple[Array, Array] | None:
-    """Arc lengths of sharp bends (n,) of one line, and elements' lengths (n,) beside them [m]; None without any."""
+    """Arc lengths of sharp bends and kinks (n,) of one line, and elements' lengths (n,) beside them [m]; None without
+    any.
+    """
     start, end = scene.line.start, scene.line.end
     if scene.line.initial != "catenary" or scene.soil is not None:
         return None
-    if not all(isinstance(each, Support) and not each.jointed for each in (start, end)):
+    if not (isinstance(start, Support) and isinstance(end, Support)):
         return None
-    assert isinstance(start, Support)
-    assert isinstance(end, Support)
     elements = elements_of(scene)
     if elements.bends.any():
         return None
     try:
-        places = np.array(start.position), np.array(end.position)
-        cable = catenary_between(scene, elements, attachments_of(scene), *places)
+        places, attachments = (np.array(start.position), np.array(end.position)), attachments_of(scene)
+        cable = catenary_between(scene, elements, attachments, *places)
     except SceneError:  # said where the line is built
         return None
-    return _sharp(cable, elements)
+    hung = np.array([each.arc for each in attachments if 0.0 < each.arc < elements.arc[-1]])
+    found = [_kinks(cable, elements, hung)]
+    if not (start.jointed or end.jointed):  # else where its ends come to rest is not known before they do
+        found.append(_bends(cable, elements))
+    arcs, lengths = (np.concatenate(each) for each in zip(*found, strict=True))
+    height = max(float(np.ptp(cable.curve.position[:, 2])), SHORTEST * float(elements.arc[-1]))
+    return (arcs, np.maximum(lengths, FINEST * height)) if arcs.size else None
 
 
-def _sharp(cable: Catenary, elements: Elements) -> tuple[Array, Array] | None:
+def _bends(cable: Catenary, elements: Elements) -> tuple[Array, Array]:
+    """Sharp bends: arc lengths and elements' lengths beside them (n,) [m]."""
     arcs = cable.bends
     e = np.clip(np.searchsorted(elements.arc, arcs, side="right") - 1, 0, elements.length.size - 1)
     radius = cable.H / np.abs(elements.weight[e]) * (0.0 if cable.heaped else 1.0)
     sharp = radius < SHARP * elements.length[e]
-    if not sharp.any():
-        return None
-    height = float(np.ptp(cable.curve.position[:, 2]))
-    return arcs[sharp], np.maximum(OF_RADIUS * radius[sharp], FINEST * max(height, SHORTEST * elements.arc[-1]))
+    return arcs[sharp], OF_RADIUS * radius[sharp]
+
+
+def _kinks(cable: Catenary, elements: Elements, hung: Array) -> tuple[Array, Array]:
+    """Kinks where something hangs at arc lengths hung (m,): arc lengths and elements' lengths beside them (n,) [m]."""
+    least = TAKEN_UP * ARCH * elements.arc[-1] / float(elements.length.max())
+    angle = cable.turns(hung)
+    kinked = angle**2 > least
+    return hung[kinked], TAKEN_UP * ARCH * elements.arc[-1] / angle[kinked] ** 2
 
 
 def _cut(segments: tuple[Segment, ...], arcs: Array, lengths: Array) -> Iterator[Segment]:

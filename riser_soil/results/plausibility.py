@@ -1,4 +1,6 @@
-"""Plausibility of results: strains too large, bending that the elements do not resolve, soil never touched."""
+"""Plausibility of results: strains too large, bending that the elements do not resolve, compression that they can't
+bear, soil never touched.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +20,7 @@ from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot
 from riser_soil.results.bending_misfit import misfit
 from riser_soil.riser.section_forces import at_most
+from riser_soil.riser.sections import larger_beside
 from riser_soil.scene.stages import Stage
 
 if TYPE_CHECKING:
@@ -39,6 +42,8 @@ NEAR_STRESS = 0.15
 SMOOTH_MISFIT, STEEP_MISFIT = 0.1, 0.2
 # The same as a turn of the element [rad] that is too small to mind: it strains a pipe's outside by 1e-3 D/L.
 SMALL_TURN = 2e-3
+# Compression beyond what elements bear that is too small to mind, as a share of the stage's largest tension.
+SMALL_PUSH = 1e-3
 
 
 class BoundaryStress(NamedTuple):
@@ -84,7 +89,8 @@ class LargestValue:
 class Plausibility:
     """Plausibility of a stage's results at the recorded instants; on the rank that holds the riser.
 
-    EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have.
+    EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have. buckling [N]
+    (nn,): the larger of their buckling loads, pi^2 EI/L^2 by the smaller EI.
     """
 
     def __init__(self, assembly: Assembly) -> None:
@@ -92,6 +98,7 @@ class Plausibility:
         self._assembly = assembly
         self.EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
         self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
+        self.buckling = larger_beside(np.square(np.pi / elements.length) * np.minimum(elements.EI_y, elements.EI_z))
         self._middle = 0.5 * (assembly.line.arc[1:] + assembly.line.arc[:-1])
         self._touched = assembly.soil_contact is None
         self._bearing = surface_bearing(assembly)
@@ -102,9 +109,10 @@ class Plausibility:
         self._last_stage = stage.name == self._assembly.scene.stages[-1].name
         self._unit = "of the load" if stage.kind == "static" else "s"
         self._largest = 0.0  # moment [N.m]
+        self._tension = 0.0  # the largest [N]
         self._boundary: BoundaryStress | None = None
         self._axial = self._bending = self._smooth = self._steep = self._stretch = self._beyond = LargestValue()
-        self._load = self._misfit = LargestValue()
+        self._load = self._misfit = self._pushed = LargestValue()
         self._warned: tuple[tuple[object, ...], tuple[str, ...]] | None = None  # of what, and what
 
     def look(self, times: Sequence[float], riser: RiserSnapshot) -> None:
@@ -117,6 +125,11 @@ class Plausibility:
         self._axial = self._axial.or_this(axial, arc, at % arc.size, times[at // arc.size])
         self._bending = self._bending.or_this(bending, arc, bent_at % arc.size, times[bent_at // arc.size])
         self._largest = max(self._largest, moment)
+        self._tension = max(self._tension, float(tension.max()))
+        if tension.min() < 0.0:
+            beyond = -tension - self.buckling
+            at = int(beyond.argmax())
+            self._pushed = self._pushed.or_this(float(beyond.flat[at]), arc, at % arc.size, times[at // arc.size])
 
     def look_at_soil(self, t: float, state: State, seen: Instant) -> None:
         """t: as above; seen: the instant of this state, where there is soil."""
@@ -171,7 +184,7 @@ class Plausibility:
 
     def warnings(self) -> tuple[str, ...]:
         """With numbers and a remedy."""
-        basis = (*self._largest_values, self._boundary, self._largest, self._lowest, self._touched)
+        basis = (*self._largest_values, self._boundary, self._largest, self._tension, self._lowest, self._touched)
         if self._warned is None or any(a is not b for a, b in zip(basis, self._warned[0], strict=True)):
             self._warned = basis, tuple(self._reported())
         return self._warned[1]
@@ -179,6 +192,7 @@ class Plausibility:
     def _reported(self) -> Iterator[str]:
         yield from self._strains()
         yield from self._blurred()
+        yield from self._compressed()
         yield from self._stretched()
         yield from self._overloaded()
         yield from self._left()
@@ -211,6 +225,26 @@ class Plausibility:
                     "take elements half as long there"
                 )
                 return
+
+    def _compressed(self) -> Iterator[str]:
+        found = self._pushed
+        if found.value <= SMALL_PUSH * self._tension:
+            return
+        arc, length = self._assembly.line.arc, self._assembly.line.length
+        node = int(np.abs(arc - found.arc).argmin())
+        borne, long = float(self.buckling[node]), f"elements of {length[min(node, length.size - 1)]:.4g} m"
+        where = f"at arc {found.arc:.5g} m and {found.t:.5g} {self._unit}"
+        push = f"{where} the line is compressed by {found.value + borne:.4g} N"
+        if borne > 0.0:
+            yield (
+                f"{push}: {long} bow out between their nodes beyond pi^2 EI/L^2 = {borne:.4g} N, which tensions don't "
+                "know; take shorter elements there, or EI: 0 of chain and rope, which go slack"
+            )
+        else:
+            yield (
+                f"{push}, though it has no bending stiffness and goes slack: that is weight and inertia of {long}; "
+                "take shorter ones there"
+            )
 
     def _stretched(self) -> Iterator[str]:
         if self._stretch.value > LARGE_STRETCH:
@@ -270,18 +304,20 @@ class Plausibility:
     @property
     def _largest_values(self) -> tuple[LargestValue, ...]:
         of_soil = self._stretch, self._beyond, self._load
-        return self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit
+        return self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit, self._pushed
 
     def state(self) -> Saved:
         worst = [astuple(found) for found in self._largest_values]
         seen = {"largest": np.array(self._largest), "touched": np.array(self._touched), "worst": np.array(worst)}
+        seen |= {"tension": np.array(self._tension)}
         return seen | {"where": packed(self._where), "lowest": self._lowest}
 
     def restore(self, saved: Saved) -> None:
         """In the stage that has begun."""
         self._largest, self._touched = float(saved["largest"]), bool(saved["touched"])
+        self._tension = float(saved["tension"])
         found = (LargestValue(*row) for row in saved["worst"].tolist())
-        self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit = found
+        self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit, self._pushed = found
         self._stretch, self._beyond, self._load = of_soil
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]
 

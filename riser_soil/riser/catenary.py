@@ -53,6 +53,14 @@ class Catenary:
         hanging = turns[~lies[turns]]
         return np.concatenate([np.where(lies[down], joints[down], joints[down + 1]), joints[hanging]])
 
+    def turns(self, arcs: Array) -> Array:
+        """Angles (n,) [rad] by which it turns at arc lengths (n,) [m] within it: kinks where point weights hang."""
+        chain = self.balance.chain
+        joints = np.append(0.0, np.cumsum(chain.l0))
+        at = np.clip(np.abs(joints - arcs[:, None]).argmin(axis=1), 1, chain.l0.size - 1)
+        slope = np.arctan2(self.balance.V, self.H)
+        return np.abs(slope[at] - slope[at - 1])
+
 
 def catenary(
     arc: Array,

@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 from riser_soil.core.part import State
+from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.results import plausibility as module
 from riser_soil.results.bending_misfit import BendingMisfit
 from riser_soil.results.plausibility import LargestValue, Plausibility
@@ -79,6 +82,32 @@ def test_section_changes_count_with_the_weaker_side() -> None:
     plausibility = Plausibility(built(scene))
     assert plausibility.EA.tolist() == [1.0e4, 1.0e4, 4.0e4]
     assert plausibility.radius.tolist() == [0.01, 0.05, 0.05]
+
+
+@pytest.mark.parametrize(
+    ("EI", "push", "said"),
+    [
+        (2.0e3, 780.0, []),  # of the 789.6 N that elements of 5 m bear, pi^2 EI/L^2
+        (2.0e3, 800.0, ["arc 5 m", "compressed by 800 N", "5 m bow out", "= 789.6 N"]),
+        (0.0, 9.0, []),
+        (0.0, 11.0, ["arc 5 m", "compressed by 11 N", "no bending stiffness", "elements of 5 m"]),
+    ],
+)
+def test_compression_beyond_what_elements_bear_is_reported(EI: float, push: float, said: list[str]) -> None:
+    """Above a thousandth of the stage's largest tension, 10 N."""
+    scene = pulled(static())
+    scene["line_types"]["pipe"] |= {"EI": EI}
+    scene["riser"]["segments"] = [{"line_type": "pipe", "length": 10.0, "elements": 2}]
+    assembly = built(scene)
+    seen, still = Plausibility(assembly), np.zeros((1, 3))
+    seen.begin_stage(assembly.scene.stages[0])
+    seen.EA = np.full(3, 1.0e9)
+    tension = np.array([[1.0e4, -push, 20.0]])
+    riser = SimpleNamespace(effective_tension=tension, curvature=still, bending_moment=still)
+    seen.look([1.0], cast("RiserSnapshot", riser))
+    assert len(seen.warnings()) == bool(said)
+    for words in said:
+        line_with(seen.warnings(), words)
 
 
 def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -> None:
