@@ -1,6 +1,4 @@
-"""Plausibility of results: strains too large, bending that the elements do not resolve, compression that they can't
-bear, soil never touched.
-"""
+"""Plausibility of results: strains, bending and compression beyond what the elements stand for, soil never touched."""
 
 from __future__ import annotations
 
