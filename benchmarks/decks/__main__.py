@@ -1,6 +1,6 @@
 """Decks and files of public repositories, each imported, checked and hung: tables of docs/decks.md.
 
-    python -m benchmarks.decks FOLDER [--results FOLDER] [--without WORD]… [--again] [--page]
+    python -m benchmarks.decks FOLDER [--results FOLDER] [--without WORD]… [--workers N] [--again] [--page]
 
 FOLDER has clones of the repositories, each named OWNER+NAME. The catenaries are MoorPy's, of the environment
 build/peers (`scripts/peers.sh`); without it the tables lack them.
@@ -25,6 +25,7 @@ from demos.page import publish, table
 PAGE = ROOT / "docs" / "decks.md"
 ALIKE = 0.005  # of the catenary's tension
 LONGEST = 160  # characters of a reason
+NO_TENSION = "its tension is 0 there"
 
 
 def verdict(found: Found) -> str:
@@ -68,10 +69,13 @@ def all_rows(found: Sequence[Found]) -> str:
 
 
 def _words(each: Found) -> str:
-    reason = each.reason.replace("|", "/")
-    if each.outcome != "scene" and reason:
-        return f"{each.outcome}: {reason[:LONGEST]}{'…' if len(reason) > LONGEST else ''}"
-    return verdict(each).removeprefix("scene, ") if each.reference is None else verdict(each)
+    """The outcome, and why: words of the refusal, of what warns where it differs, or of why there is no catenary."""
+    word = verdict(each)
+    no_catenary = each.why_no_reference or NO_TENSION
+    said = {"differs, with a warning": " ".join(each.warnings), "scene, no catenary": no_catenary}
+    reason = (each.reason if each.outcome != "scene" else said.get(word, "")).replace("|", "/")
+    word = "no catenary" if word == "scene, no catenary" else word
+    return f"{word}: {reason[:LONGEST]}{'…' if len(reason) > LONGEST else ''}" if reason else word
 
 
 def _kN(value: float | None) -> str:
@@ -89,13 +93,15 @@ def main() -> None:
     parser.add_argument("--results", type=Path, default=ROOT / "results" / "decks", help="scenes and runs")
     parser.add_argument("--python", default=str(THEIRS), help="interpreter that has moorpy")
     parser.add_argument("--without", action="append", default=[], help="leave out files with this in their path")
+    parser.add_argument("--workers", type=int, default=1, help="decks at a time")
     parser.add_argument("--again", action="store_true", help="tables of what an earlier survey has left in the results")
     parser.add_argument("--page", action="store_true", help="write the tables into docs/decks.md, too")
     asked = parser.parse_args()
     log = asked.results / "found.jsonl"
     if not asked.again:
         asked.results.mkdir(parents=True, exist_ok=True)
-        _survey_into(log, survey(asked.folder.absolute(), asked.results.absolute(), asked.python, asked.without))
+        work = asked.results.absolute()
+        _survey_into(log, survey(asked.folder.absolute(), work, asked.python, asked.without, asked.workers))
     read = [_read(row) for row in log.read_text(encoding="utf-8").splitlines()]
     found = sorted(read, key=lambda each: (each.repository.lower(), each.deck))
     blocks = {"sources": sources(found, asked.folder), "outcomes": summary(found), "decks": all_rows(found)}

@@ -8,12 +8,13 @@ import math
 import re
 import subprocess
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from riser_soil.results.read import Run
-from riser_soil.stress.limited_process import Ending, Limits, ended, import_all
+from riser_soil.stress.limited_process import FORKING, Ending, Limits, ended, import_all
 
 LIMITS = Limits(cpu=180, wall=600.0)
 ENDINGS = (".dat", ".txt", ".yml", ".yaml", ".map", ".inp", ".ipt")
@@ -73,11 +74,17 @@ def decks_below(folder: Path, without: Sequence[str] = ()) -> Iterator[Path]:
             yield path
 
 
-def survey(folder: Path, work: Path, python: str, without: Sequence[str] = ()) -> Iterator[list[Found]]:
-    """All that is found of one deck after the other, a list for each. python: an interpreter that has moorpy."""
+def survey(
+    folder: Path, work: Path, python: str, without: Sequence[str] = (), workers: int = 1
+) -> Iterator[list[Found]]:
+    """All that is found of each deck, a list for each, in their order. python: an interpreter that has moorpy. workers:
+    decks at a time.
+    """
     import_all()
-    for number, deck in enumerate(decks_below(folder, without)):
-        yield _of_deck(folder, deck, work / f"{number:03d}", python)
+    decks = list(decks_below(folder, without))
+    places = [work / f"{number:03d}" for number in range(len(decks))]
+    with ThreadPoolExecutor(workers) as pool:
+        yield from pool.map(lambda deck, place: _of_deck(folder, deck, place, python), decks, places)
 
 
 def _of_deck(folder: Path, deck: Path, work: Path, python: str) -> list[Found]:
@@ -193,8 +200,9 @@ def _at_top(lines: list[dict[str, Any]], place: Sequence[float], tension: float)
 
 def _whole_beside(found: Found, folder: Path, lines: Any) -> Found:
     """That line whose tension differs most, of those whose tops MoorPy has at the same place."""
-    runs = Run(folder).of_lines.values()
-    ours = [(float(run["effective_tension"][-1, -1]), run["position"][-1, -1]) for run in runs]
+    with FORKING:
+        runs = Run(folder).of_lines.values()
+        ours = [(float(run["effective_tension"][-1, -1]), run["position"][-1, -1]) for run in runs]
     if isinstance(lines, str):
         return Found(**asdict(found) | {"tension": max(tension for tension, _ in ours), "why_no_reference": lines})
     pairs = [(tension, other) for tension, place in ours if (other := _at_top(lines, place, tension))]

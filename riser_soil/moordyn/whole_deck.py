@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
@@ -16,8 +17,20 @@ from riser_soil.moordyn.deck import Deck, DeckRow
 from riser_soil.moordyn.joint_places import at_rest, cable_of
 from riser_soil.moordyn.loads import SteadyForce, forces_of
 from riser_soil.moordyn.names import FREE
-from riser_soil.moordyn.nodes import HELD, Node, body_of, free_body, has_length, held_at, is_free, is_point, kind, place
-from riser_soil.moordyn.properties import line_types, stiffen_in_torsion
+from riser_soil.moordyn.nodes import (
+    HELD,
+    Node,
+    body_of,
+    free_body,
+    has_length,
+    held_at,
+    is_free,
+    is_point,
+    kind,
+    node_at,
+    place,
+)
+from riser_soil.moordyn.properties import line_types, stiffen_in_torsion, type_of
 from riser_soil.moordyn.riser_of import ImportedRiser, about_free, about_held, free_shape, riser_of
 from riser_soil.moordyn.scene_of import head_of, left_of_sections
 from riser_soil.moordyn.settings import Options, options_of, seabed_of
@@ -273,10 +286,22 @@ def _about_nodes(deck: Deck, ends: Ends, forces: dict[str, list[SteadyForce]]) -
 
 
 def _unused(deck: Deck, chains: list[Chain]) -> Iterator[Remark]:
-    """Rods that are held, or on bodies: their mass, buoyancy and drag; coupled bodies."""
+    """Rods that are held, or on bodies: their weight, buoyancy and drag."""
     own = {piece.row.line for chain in chains for piece in chain.pieces}
     for row in deck.of("rods"):
         if row.line in own or not has_length(deck, row):
             continue
-        where = "on a body" if body_of(deck, "rods", row) is not None else "held"
-        yield row.line, f"rod {row['ID']} is {where}: its weight, buoyancy and drag"
+        body = body_of(deck, "rods", row)
+        about = f"rod {row['ID']} is {'held' if body is None else 'on a body'}: its weight, buoyancy and drag"
+        yield row.line, about + ("" if body is None else _lacking_to(deck, body, row))
+
+
+def _lacking_to(deck: Deck, body: DeckRow, rod: DeckRow) -> str:
+    """What a rod's weight and buoyancy are to a free body, in words; none for another body."""
+    if kind(deck, "bodies", body)[0] != FREE:
+        return ""
+    length = math.dist(*(place(deck, node_at(deck, rod, "rods", end)) for end in "AB"))
+    mass, diameter = (deck.number(type_of(deck, rod), column) for column in ("Mass/m", "Diam"))
+    volume = length * math.pi / 4.0 * diameter**2
+    added = f"add {length * mass:.4g} kg to its Mass and {volume:.4g} m3 to its Volume"
+    return f"; for body {body['ID']} to have them, {added}"

@@ -213,3 +213,18 @@ def test_a_deck_in_air(tmp_path: Path) -> None:
     assert {*data["line_types"]["rope"]} == {"outer_diameter", "mass", "EA", "EI"}
     line_with(remarks, "20:", "WtrDnsty 0 counts")
     assert math.isclose(data["gravity"], 9.8)
+
+
+@pytest.mark.parametrize(
+    ("body", "ending"),
+    [("Free", "add 240 kg to its Mass and 0.1257 m3 to its Volume"), ("Fixed", "buoyancy and drag")],
+)
+def test_a_rod_on_a_body(body: str, ending: str, tmp_path: Path) -> None:
+    """A rod of 4 m, of 60 kg/m and 0.2 m: a free body lacks its weight and buoyancy, and the remark has them."""
+    bodies = [*BODIES, f"1 {body} 6 2 -5 0 0 0 900 0 1e3 1.0 0 0"]
+    points = [*POINTS[:3], "2 Body1 2 0 1 0 0 0 0"]
+    rods = [*RODS, "1 bar Body1 0 0 -2 0 0 2 2 -"]
+    parts = {"line_types": CABLE, "points": points, "bodies": bodies, "rod_types": ROD_TYPES, "rods": rods}
+    remarks = imported(tmp_path, True, **parts, lines=[*LINES[:2], "1 cable 1 2 400 20 -"])[1]
+    about = line_with(remarks, "rod 1 is on a body: its weight, buoyancy and drag")
+    assert about.endswith(ending)
