@@ -80,7 +80,7 @@ bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn an
 
 bench-decks: setup ## what becomes of decks of public repositories, cloned into DECKS: docs/decks.md; a quarter of an hour
 	@scripts/peers.sh
-	$(PYTHON) -m benchmarks.decks $(DECKS) --page
+	$(PYTHON) -m benchmarks.decks $(DECKS) --workers $(WORKERS) --page
 
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page
