@@ -80,7 +80,7 @@ def _bends(cable: Catenary, elements: Elements) -> tuple[Array, Array]:
     """Sharp bends: arc lengths and elements' lengths beside them (n,) [m]."""
     arcs = cable.bends
     e = np.clip(np.searchsorted(elements.arc, arcs, side="right") - 1, 0, elements.length.size - 1)
-    radius = cable.H / np.abs(elements.weight[e]) * (0.0 if cable.heaped else 1.0)
+    radius = cable.H / np.abs(elements.weight[e]) * (0.0 if cable.heaped or cable.folded else 1.0)
     sharp = radius < SHARP * elements.length[e]
     return arcs[sharp], OF_RADIUS * radius[sharp]
 

@@ -25,7 +25,7 @@ class Catenary:
 
     slack [m]: how far the end lies beyond its place, horizontally away from the start, where the line is too long to
     hang there with the least H allowed; else 0. heaped: whether it is too long to pull at what lies of it
-    (`slack`).
+    (`slack`). folded: whether it is so slack that it hangs in two legs, here leaning to where its ends are.
     """
 
     curve: Curve
@@ -33,6 +33,7 @@ class Catenary:
     slack: float
     balance: CableBalance
     heaped: bool = False
+    folded: bool = False
 
     @property
     def H(self) -> float:
@@ -51,6 +52,8 @@ class Catenary:
         down = np.flatnonzero(lies[1:] != lies[:-1])
         turns = 1 + np.flatnonzero(V[1:] * V[:-1] < 0.0)
         hanging = turns[~lies[turns]]
+        if self.folded and not (down.size or hanging.size):  # all of it hangs from one end, and is slack at the other
+            return joints[[0 if np.abs(V[0]) < np.abs(V[-1]) else -1]]
         return np.concatenate([np.where(lies[down], joints[down], joints[down + 1]), joints[hanging]])
 
     def turns(self, arcs: Array) -> Array:
@@ -102,6 +105,9 @@ def catenary(
     least = max(least_H, KINK * float(np.abs(w * chain.l0).max()))
     found = fit(chain, h, least, None if near is None else near.balance)
     slack = max(0.0, found.reach - h) if least >= found.H else 0.0
+    if heaps and slack > 0.0:
+        leaning = found.x - slack * np.append(0.0, np.cumsum(chain.l0)) / chain.L
+        return replace(_in_space(leaning, found, nodes, start, end, direction, 0.0), folded=True)
     return _in_space(found.x, found, nodes, start, end + slack * direction, direction, slack)
 
 

@@ -4,6 +4,7 @@ heap, and bear no compression.
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -93,3 +94,41 @@ def test_floats_and_clumps_make_kinks(
     cable = catenary(np.linspace(0.0, length, 2), *ends, W, CHAIN["EA"], level=0.0, points=np.array(hangs))
     assert np.linalg.norm(found["end_force"][-1]) == pytest.approx(cable.tension[-1], rel=1.5e-3)
     assert found["end_force"][-1][0] == pytest.approx(cable.H, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("span", "length", "elements", "more"),
+    [
+        (0.0, 0.99999, 1, {"pipe": {"EA": 1e6}}),
+        (0.0, 1.0, 1, {}),
+        (0.0, 1.0, 3, {"turned": True}),
+        (0.0, 1.001, 10, {"pipe": {"EA": 1e6}}),
+        (0.0, 1.02, 1, {}),
+        (0.0, 1.0, 1, {"dimension": 3}),
+        (0.0, 1.0, 3, {"pipe": {"submerged_weight": -300.0}}),
+        (0.0, 1.3, 10, {}),
+        (0.001, 1.3, 2, {}),
+        (0.0, 3.0, 1, {"dimension": 3}),
+        (0.02, 3.0, 40, {"turned": True}),
+    ],
+)
+def test_a_slack_line_between_ends_above_each_other_hangs_in_two_legs(
+    span: float, length: float, elements: int, more: dict[str, Any], tmp_path: Path
+) -> None:
+    """The higher end bears the longer leg, the lower one what hangs from it, or nothing: neither pushes."""
+    more = dict(more)
+    pipe: Mapping = CHAIN | more.pop("pipe", {})
+    low, high = (0.0, 0.0, 0.0), (span, 0.0, 1.0)
+    names = ("end", "start") if more.pop("turned", False) else ("start", "end")
+    ends: Mapping = {name: prescribed(*at) for name, at in zip(names, (low, high), strict=True)}
+    scene = riser_scene(static(), pipe=pipe, length=length, elements=elements, gravity=9.81, **ends, **more)
+    found = done(scene, tmp_path)
+    lower, upper = (
+        found[f"{name}_force"][-1][2] for name in (names if pipe["submerged_weight"] > 0.0 else names[::-1])
+    )
+    weight, below = pipe["submerged_weight"], max(0.0, 0.5 * (length - 1.0))
+    assert upper == pytest.approx(weight * (length - below), rel=1e-3)
+    assert lower == pytest.approx(weight * below, abs=1e-3 * abs(weight) * length)
+    assert found["effective_tension"][-1].min() > -1e-3 * abs(weight) * length
+    with (tmp_path / "summary.json").open() as file:
+        assert "laying" not in json.load(file)
