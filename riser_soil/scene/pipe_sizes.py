@@ -70,7 +70,8 @@ def doubt(
     if number == 0.0 or size.holds(gives(number)):
         return
     fits = {name: number * factor for name, factor in others.items() if size.holds(gives(number * factor))}
-    text = f"{number:g} {unit} gives {what} of {gives(number):.3g} {size.unit}, and {size.usual} is usual"
+    given = f"{gives(number):.3g} {size.unit}".rstrip()
+    text = f"{number:g} {unit} gives {what} of {given}, and {size.usual} is usual"
     yield Doubt(path, f"{' '.join(text.split())}: is it {meant(fits, unit)}?")
 
 
