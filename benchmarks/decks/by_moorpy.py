@@ -9,24 +9,24 @@ there is none. Runs where moorpy is, not with the project.
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import io
 import json
 import math
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any
-
-import moorpy
 
 TOLERANCE = 1e-4  # m, of the places of free points
 GRAVITY = 9.80665  # m/s2, of MoorDyn where a deck has none
 BY = ("g", "gravity"), ("rho", "wtrdnsty", "rhow")
 
 
-def read(file: str) -> moorpy.System:
-    """The system; without a depth the seabed is that of its deepest held point, as MoorDyn has it."""
+def read(file: str) -> Any:
+    """MoorPy's system of a deck; without a depth the seabed is that of its deepest held point, as MoorDyn has it."""
+    import moorpy
+
     with tempfile.TemporaryDirectory() as folder:
         bare = Path(folder) / "deck.txt"  # some decks have no line after their last, at which MoorPy stops
         text = Path(file).read_text(encoding="utf-8-sig", errors="replace")
@@ -65,16 +65,19 @@ def tensions(file: str, bodies_free: bool) -> list[dict[str, Any]]:
     return found
 
 
-def main() -> None:
+def main(deck: str) -> None:
+    """Print what is found of a deck's file."""
     found: dict[str, Any] = {}
     for name, bodies_free in (("held", False), ("free", True)):
         try:
             with contextlib.redirect_stdout(io.StringIO()):
-                found[name] = tensions(sys.argv[1], bodies_free)
+                found[name] = tensions(deck, bodies_free)
         except Exception as trouble:  # whatever it trips over is an answer
             found[name] = f"{type(trouble).__name__}: {trouble}"
     print(json.dumps(found))
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("deck", help="a deck of MoorDyn")
+    main(parser.parse_args().deck)

@@ -63,7 +63,7 @@ TABLES = {
     "t [s], x [m], y [m], z [m]\n0, 0, 0, 0\n1e-300, 0, 0, 0\n2, 0, 0, 0\n20, 0, 0, 0\n": "the rows, 1e-12 s apart",
     "t [s], x [m], y [m], z [m]\n0, 1e300, 0, 0\n": ":2: x: 1e300 is larger than 1e+12",
     "t [s], x [m], y [m], z [m]\n0, " + "1" * 140_000 + ", 0, 0\n": ":2: the row can't be read (field larger than",
-    "t [s], x [m], y [m], z [m]\n0, " + "x" * 90_000 + ", 0, 0\n": "xxx... is not a finite number",
+    "t [s], x [m], y [m], z [m]\n0, " + "x" * 90_000 + ", 0, 0\n": 'xxx..." is not a finite number',
 }
 
 

@@ -94,8 +94,8 @@ def test_scene_with_a_new_soil_law() -> None:
     }.items():
         with pytest.raises(SceneError, match=telling(*reported)):
             scene_from_mapping(on_soil(ELASTIC | {"kind": wrong}))
-    with pytest.raises(SceneError, match=telling("soil.law.Young:", "no such key", "kind, E, nu")):
-        scene_from_mapping(on_soil(ELASTIC | {"kind": "toy", "Young": 1.0}))
+    with pytest.raises(SceneError, match=telling("soil.law.stiff:", "no such key", "kind, E, nu")):
+        scene_from_mapping(on_soil(ELASTIC | {"kind": "toy", "stiff": 1.0}))
 
 
 @pytest.mark.usefixtures("other_elastic")
