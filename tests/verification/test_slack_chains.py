@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
+from tests.support.on_ranks import mpirun
 from tests.support.riser_scenes import prescribed, riser_scene, static
 
 W, SPAN, HEIGHT = 1400.0, 170.0, 115.0
@@ -132,3 +134,28 @@ def test_a_slack_line_between_ends_above_each_other_hangs_in_two_legs(
     assert found["effective_tension"][-1].min() > -1e-3 * abs(weight) * length
     with (tmp_path / "summary.json").open() as file:
         assert "laying" not in json.load(file)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"riser": {"attachments": [{"at": 40.0, "mass": 2000.0}]}},
+        {"riser": {"attachments": [{"at": 240.0, "mass": 2000.0}]}, "dimension": 3},
+        {"contact": {"friction": {"axial": 0.5, "lateral": 0.7, "mobilisation": 0.02}}},
+    ],
+)
+def test_what_lies_in_the_heap_does_not_count_at_the_top(more: dict[str, Any], tmp_path: Path) -> None:
+    """A clump sinks in, friction holds what lies; the top bears what hangs."""
+    found = done(slack(1.3 * (SPAN + HEIGHT), 40, **more), tmp_path)
+    assert found["end_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
+
+
+def test_a_heap_is_the_same_on_two_ranks(tmp_path: Path) -> None:
+    alone = done(slack(1.3 * (SPAN + HEIGHT), 10), tmp_path / "1")
+    with (tmp_path / "scene.yaml").open("w") as file:
+        YAML().dump(slack(1.3 * (SPAN + HEIGHT), 10), file)
+    ended = mpirun(2, "-m", "riser_soil", "run", "scene.yaml", "-o", "2", folder=tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    both = Run(tmp_path / "2")
+    for name, scale in (("position", HEIGHT), ("effective_tension", W * HEIGHT), ("end_force", W * HEIGHT)):
+        np.testing.assert_allclose(both[name], alone[name], rtol=0.0, atol=1e-6 * scale, err_msg=name)
