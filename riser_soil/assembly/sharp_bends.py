@@ -27,10 +27,12 @@ from riser_soil.riser.sections import Elements
 from riser_soil.scene.lines import by_line, risers, with_segments
 from riser_soil.scene.riser import Segment, Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage
 
 SHARP = 1.0  # of an element: radius of a bend that it can't follow
 OF_RADIUS = 0.5  # of that radius: elements beside it
 FINEST = 1e-3  # of the line's height: the shortest elements
+FINEST_MOVED = 0.1  # the same beside a heap under an end that moves: there shorter ones fold as they come down
 TAKEN_UP = 1e-5  # of the line's length: by the elements beside a kink
 ARCH = 30.0  # h a^2/ARCH is taken up there
 GROWTH = 0.3  # of the distance from a bend or a kink
@@ -70,7 +72,10 @@ def _sharp_bends(scene: Scene) -> tuple[Array, Array] | None:
     hung = np.array([each.arc for each in attachments if 0.0 < each.arc < elements.arc[-1]])
     found = [_kinks(cable, elements, hung)]
     if not (start.jointed or end.jointed):  # else where its ends come to rest is not known before they do
-        found.append(_bends(cable, elements))
+        bends, lengths = _bends(cable, elements)
+        if cable.heaped and any(isinstance(each, DynamicStage) and each.motion for each in scene.stages):
+            lengths = np.maximum(lengths, FINEST_MOVED * np.ptp(cable.curve.position[:, 2]))
+        found.append((bends, lengths))
     arcs, lengths = (np.concatenate(each) for each in zip(*found, strict=True))
     height = max(float(np.ptp(cable.curve.position[:, 2])), SHORTEST * float(elements.arc[-1]))
     return (arcs, np.maximum(lengths, FINEST * height)) if arcs.size else None

@@ -18,7 +18,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 W, SPAN, HEIGHT = 1400.0, 170.0, 115.0
 CHAIN = {"EA": 6e8, "EI": 0.0, "GJ": 1.0, "submerged_weight": W, "outer_diameter": 0.15, "mass": 165.0}
@@ -27,7 +27,7 @@ RIGID = {"kind": "rigid", "level": 0.0, "contact_at": "axis"}
 CLAY: Mapping = {"kind": "randolph-quiggin", "su": 4e3, "su_gradient": 1.2e3}
 HYSTERETIC = {"kind": "hysteretic", "level": 0.0, "contact_at": "axis", "law": CLAY}
 PULLS = 3e-4  # of the weight that hangs: what a slack chain pulls at its anchor
-HEAVE = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 1.5], "period": 6.0, "ramp": 3.0}}}
+HEAVE: Mapping = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 1.0], "period": 9.0, "ramp": 4.5}}}
 
 
 def slack(length: float, elements: int, turned: bool = False, **more: Any) -> Mapping:
@@ -159,3 +159,17 @@ def test_a_heap_is_the_same_on_two_ranks(tmp_path: Path) -> None:
     both = Run(tmp_path / "2")
     for name, scale in (("position", HEIGHT), ("effective_tension", W * HEIGHT), ("end_force", W * HEIGHT)):
         np.testing.assert_allclose(both[name], alone[name], rtol=0.0, atol=1e-6 * scale, err_msg=name)
+
+
+def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> None:
+    """The top bears what hangs, within a percent at rest, and in motion its inertia, with what comes down."""
+    stages = static(), dynamic(13.5, "auto", motion=HEAVE)
+    drag: Mapping = {"drag": {"normal": 1.2, "tangential": 0.1}, "added_mass": {"normal": 1.0, "tangential": 0.1}}
+    water = {"surface_level": 130.0, "depth": 130.0}
+    found = done(slack(1.3 * (SPAN + HEIGHT), 10, stages=stages, pipe=CHAIN | drag, water=water), tmp_path)
+    assert found["time"][-1] == pytest.approx(13.5)
+    top, mass = found["end_force"][:, 2], CHAIN["mass"] + 0.1 * 1025.0 * np.pi / 4.0 * 0.15**2
+    inertia = mass * HEIGHT * (2.0 * np.pi / 9.0) ** 2
+    assert top[0] == pytest.approx(W * HEIGHT, rel=1.5e-2)
+    assert np.abs(top - W * HEIGHT).max() < 4.0 * inertia
+    assert np.ptp(top) > inertia
