@@ -163,7 +163,7 @@ def test_a_heap_is_the_same_on_two_ranks(tmp_path: Path) -> None:
 
 def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> None:
     """The top bears what hangs, within a percent at rest, and in motion its inertia, with what comes down."""
-    stages = static(), dynamic(13.5, "auto", motion=HEAVE)
+    stages = static(), dynamic(13.5, 0.1, motion=HEAVE) | {"time_step": "auto"}
     drag: Mapping = {"drag": {"normal": 1.2, "tangential": 0.1}, "added_mass": {"normal": 1.0, "tangential": 0.1}}
     water = {"surface_level": 130.0, "depth": 130.0}
     found = done(slack(1.3 * (SPAN + HEIGHT), 10, stages=stages, pipe=CHAIN | drag, water=water), tmp_path)
