@@ -46,8 +46,7 @@ class Catenary:
         joints = np.append(0.0, np.cumsum(chain.l0))
         if self.heaped:
             rests = np.concatenate([[False], V == 0.0, [False]])
-            ends = np.flatnonzero(rests[1:] != rests[:-1])
-            return joints[ends[(ends > 0) & (ends < V.size)]]
+            return joints[np.flatnonzero(rests[1:] != rests[:-1])]
         lies = (z < LIES * chain.L) & (chain.hover is not None)
         down = np.flatnonzero(lies[1:] != lies[:-1])
         turns = 1 + np.flatnonzero(V[1:] * V[:-1] < 0.0)

@@ -173,3 +173,13 @@ def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> Non
     assert top[0] == pytest.approx(W * HEIGHT, rel=1.5e-2)
     assert np.abs(top - W * HEIGHT).max() < 4.0 * inertia
     assert np.ptp(top) > inertia
+
+
+@pytest.mark.parametrize(("span", "elements", "seabed"), [(8.0, 10, SPRING), (8.0, 40, SPRING), (8.0, 400, RIGID)])
+def test_a_heap_has_little_room(span: float, elements: int, seabed: Mapping, tmp_path: Path) -> None:
+    """A quarter of what lies is room enough, at any mesh; its anchor bears nothing, for elements are cut beside it."""
+    low, high = prescribed(0.0, 0.0, 0.0), prescribed(span, 0.0, HEIGHT)
+    options: Mapping = {"pipe": CHAIN, "length": 1.3 * HEIGHT, "elements": elements, "gravity": 9.81, "seabed": seabed}
+    found = done(riser_scene(static(), start=low, end=high, **options), tmp_path)
+    assert found["end_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
+    assert np.linalg.norm(found["start_force"][-1]) < PULLS * W * HEIGHT
