@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 TOLERANCE = 1e-4  # m, of the places of free points
+BALANCE = 0.005  # of the largest tension
 GRAVITY = 9.80665  # m/s2, of MoorDyn where a deck has none
 BY = ("g", "gravity"), ("rho", "wtrdnsty", "rhow")
 
@@ -54,6 +55,7 @@ def tensions(file: str, bodies_free: bool) -> list[dict[str, Any]]:
     system.initialize()
     if not system.solveEquilibrium(DOFtype="free", tol=TOLERANCE, maxIter=2000, finite_difference=bodies_free):
         raise RuntimeError("it finds no equilibrium")
+    _refuse_imbalance(system)
     found = []
     for line in system.lineList:
         ends = sorted([(line.rA, line.TA), (line.rB, line.TB)], key=lambda end: end[0][2])
@@ -63,6 +65,16 @@ def tensions(file: str, bodies_free: bool) -> list[dict[str, Any]]:
             "tensions": [float(tension) for _, tension in ends],
         })  # fmt: skip
     return found
+
+
+def _refuse_imbalance(system: Any) -> None:
+    """Free ends may come out folded up to the other end, or far from vertical by little weight."""
+    largest = max(max(line.TA, line.TB) for line in system.lineList)
+    for point in system.pointList:
+        force = point.getForces(xyz=True)
+        net = math.hypot(*(float(component) for component in force))
+        if point.type == 0 and net > BALANCE * largest:
+            raise RuntimeError(f"its point {point.number} is out of balance by {net:.3g} N")
 
 
 def main(deck: str) -> None:
