@@ -25,7 +25,7 @@ from demos.page import publish, table
 PAGE = ROOT / "docs" / "decks.md"
 ALIKE = 0.005  # of the catenary's tension
 LONGEST = 160  # characters of a reason
-NO_TENSION = "its tension is 0 there"
+WITHOUT_TENSION = "its tension is 0 there"
 
 
 def verdict(found: Found) -> str:
@@ -71,7 +71,7 @@ def all_rows(found: Sequence[Found]) -> str:
 def _words(each: Found) -> str:
     """The outcome, and why: words of the refusal, of what warns where it differs, or of why there is no catenary."""
     word = verdict(each)
-    no_catenary = each.why_no_reference or NO_TENSION
+    no_catenary = each.why_no_reference or WITHOUT_TENSION
     said = {"differs, with a warning": " ".join(each.warnings), "scene, no catenary": no_catenary}
     reason = (each.reason if each.outcome != "scene" else said.get(word, "")).replace("|", "/")
     word = "no catenary" if word == "scene, no catenary" else word

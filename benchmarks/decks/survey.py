@@ -25,6 +25,7 @@ WORDS = re.compile(
 )
 LARGEST = 2_000_000  # bytes of a deck
 SAME_PLACE = 0.02  # m
+NO_TENSION = 1e-3  # N: of a catenary with no more there is none
 FREE = re.compile(rb"\bfree\b", re.IGNORECASE)  # points or bodies
 MOST_OTHERS = 3  # lines of a deck apart
 HERE = Path(__file__).parent
@@ -53,7 +54,7 @@ class Found:
     @property
     def difference(self) -> float | None:
         """Of the tension from the catenary's, over it."""
-        if self.tension is None or not self.reference:
+        if self.tension is None or self.reference is None or self.reference < NO_TENSION:
             return None
         return self.tension / self.reference - 1
 
@@ -139,7 +140,8 @@ def _of_line(deck: Path, name: tuple[str, str], line: str, work: Path) -> Found:
     if not run.finished:
         outcome = "no solution" if run.well else run.word
         return Found(*name, line, outcome, _reason(run), remarks, warnings)
-    warnings += tuple(row for row in run.output.splitlines() if row.startswith("warning:"))
+    known = tuple(re.sub(r"^warning: \S+:\d+: ", "warning: ", row) for row in warnings)
+    warnings += tuple(row for row in run.output.splitlines() if row.startswith("warning:") and row not in known)
     bends = any(float(EI) > 0.0 for EI in re.findall(r"\bEI: ([-+.\deE]+)", Path(scene).read_text(encoding="utf-8")))
     return Found(*name, line, "scene", "", remarks, tuple(dict.fromkeys(warnings)), bends=bends)
 
