@@ -240,8 +240,8 @@ class Plausibility:
             )
         else:
             yield (
-                f"{push}, though it has no bending stiffness and goes slack: that is weight and inertia of {long}; "
-                "take shorter ones there"
+                f"{push}, though it has no bending stiffness and goes slack: that is weight and inertia of {long}, and "
+                "tensions there may be off by as much; take shorter ones at rest, and damping of the line in motion"
             )
 
     def _stretched(self) -> Iterator[str]:
