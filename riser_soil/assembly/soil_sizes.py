@@ -112,8 +112,9 @@ class SoilSizes:
 
     @property
     def along(self) -> float:
-        """Length of the cells along the riser [m]."""
-        shortest = min(bending_on_soil(self.elements, self.soil.top_law), self.bending_length or np.inf)
+        """Length of the cells along the riser [m]; chain and rope have no bend to be resolved."""
+        bends = bending_on_soil(self.elements, self.soil.top_law), self.bending_length
+        shortest = min((length for length in bends if length > 0.0), default=np.inf)
         return min(ALONG * shortest, LONGEST * self.scales.diameter)
 
 

@@ -108,6 +108,8 @@ def _lengths_against_bending(assembly: Assembly) -> Iterator[str]:
     if mesh is None or soil is None:
         return
     bending = bending_on_soil(assembly.elements, soil.top_law)
+    if bending == 0.0:  # chain and rope load the soil by their weight, evenly
+        return
     above = _elements_above(assembly)
     element = float(assembly.line.length[above].max(initial=0.0))
     for what, length in (("elements of the riser over the soil", element), ("soil.mesh cells along it", mesh.along)):
@@ -126,6 +128,8 @@ def _sections_against_bending(assembly: Assembly) -> Iterator[str]:
         return
     assert assembly.soil is not None
     bending = bending_on_soil(assembly.elements, soil.top_law)
+    if bending == 0.0:
+        return
     depth = float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
     excess = excess_of_sections(bending, touching_width(assembly.scales, soil.top_law), depth)
     if excess > EXCESS:

@@ -64,10 +64,9 @@ def settled(scene: Scene, elements: Elements, depth: float, across: float = 0.0)
     if soil is None or scales.weight <= 0.0:
         return None
     by_weight = settlement(soil, scales, depth, across)
-    touchdown = forecast(scene, elements)
-    if touchdown is None or min(touchdown.H, by_weight) <= 0.0:
+    touchdown, EI = forecast(scene, elements), _stiffness(elements)
+    if touchdown is None or min(touchdown.H, by_weight, EI) <= 0.0:  # a cable lies down without an overshoot
         return Settled(by_weight, by_weight, 1.0)
-    EI = _stiffness(elements)
     deepest, overshoot = by_weight, 1.0
     for _ in range(ROUNDS):
         bend = TouchdownBend(scales.weight, touchdown.H, EI, deepest / overshoot)

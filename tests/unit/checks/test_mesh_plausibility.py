@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, reported_resolution
-from riser_soil.checks.settlement import Settled
+from riser_soil.checks.settlement import Settled, foretold
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.soil import GeneratedMesh
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
@@ -55,6 +56,21 @@ def test_sections_deep_beside_the_bend_on_soil_are_reported() -> None:
     line_with([reported], "0.577 m", "3 m of soil", "settles", f"{excess:.0%} more")
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), block=block)) == []
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections")) == []
+
+
+@pytest.mark.parametrize("mesh", [sizes(0.5, 0.012), "auto"])
+def test_chain_on_soil_has_no_bend_to_be_resolved(mesh: Mapping | str) -> None:
+    """Without bending stiffness: nothing is divided by it, cells are four diameters long, no warning names a bend."""
+    scene = on_block(LAY, mesh=mesh, model="sections")
+    scene["line_types"]["flexible"] |= {"EI": 0.0}
+    assembly = built(scene)
+    assert list(mesh_warnings(assembly)) == []
+    found = foretold(assembly)
+    assert found is not None
+    assert (found.overshoot, found.deepest) == (1.0, found.by_weight)
+    assert assembly.scene.soil is not None
+    assert isinstance(assembly.scene.soil.mesh, GeneratedMesh)
+    assert assembly.scene.soil.mesh.along == pytest.approx(1.2 if mesh == "auto" else 0.5)
 
 
 def test_long_cells_under_an_oblique_riser_are_reported() -> None:
