@@ -42,8 +42,10 @@ def reported_resolution(assembly: Assembly) -> str | None:
 
 def missed(found: Settled, fine: Settled) -> float:
     """The part of the settlement that cells miss which grow to 0.6 of the soil's depth, beside fine ones throughout
-    (test_automatic_mesh).
+    (test_automatic_mesh). Soil so thin that nothing settles has nothing to miss.
     """
+    if fine.deepest == 0.0:
+        return 0.0
     return GRADED + max(0.0, 1.0 - found.deepest / fine.deepest)
 
 

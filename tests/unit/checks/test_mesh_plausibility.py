@@ -93,6 +93,7 @@ def test_what_cells_miss_grows_with_their_size() -> None:
     fine, half = Settled(0.01, 0.01, 1.0), Settled(0.005, 0.005, 1.0)
     assert missed(fine, fine) == pytest.approx(0.02)
     assert missed(half, fine) == pytest.approx(0.52)
+    assert missed(Settled(0.0, 0.0, 1.0), Settled(0.0, 0.0, 1.0)) == 0.0
     reported = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
     assert reported is not None
     line_with(reported, "0.5 m along", "0.012 m across", "0.0236 m touch", "2% less")
