@@ -12,7 +12,7 @@ from riser_soil.assembly.bodies_on_seabed import on_seabed
 from riser_soil.assembly.line_assembly import LineAssembly
 from riser_soil.assembly.sea import water_of
 from riser_soil.assembly.stage import loads_of_body
-from riser_soil.bodies.body import BodyProperties, MovingBody, radius_of
+from riser_soil.bodies.body import BodyProperties, MovingBody
 from riser_soil.bodies.drag import BodyDrag
 from riser_soil.bodies.inertia import BodyInertia, MidpointBodyInertia
 from riser_soil.bodies.joints import STIFF, JointOf, Joints, Side
@@ -21,6 +21,7 @@ from riser_soil.bodies.seabed_contact import BodyContact
 from riser_soil.bodies.seabed_friction import BodyFriction
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
+from riser_soil.core.sphere import radius_of
 from riser_soil.scene.bodies import Body as BodyScene
 from riser_soil.scene.bodies import PointBody, SolidBody
 from riser_soil.scene.joints import Joint, JointPoint

@@ -17,11 +17,12 @@ from riser_soil.assembly.friction import coefficients, seabed_adhesion
 from riser_soil.assembly.line_assembly import LineAssembly
 from riser_soil.assembly.scales import Scales, contact_radius
 from riser_soil.assembly.seabed_reach import why_apart
-from riser_soil.bodies.body import BodyProperties, MovingBody, radius_of
+from riser_soil.bodies.body import BodyProperties, MovingBody
 from riser_soil.bodies.loads import BodyWeight
 from riser_soil.bodies.seabed_contact import BodyContact
 from riser_soil.bodies.seabed_friction import BodyFriction
 from riser_soil.core.arrays import Array
+from riser_soil.core.sphere import radius_of
 from riser_soil.scene.bodies import BodyTouch
 from riser_soil.scene.contact import Contact, Friction
 from riser_soil.scene.scene import Scene
@@ -98,7 +99,8 @@ def _body(
 def _radius(
     scene: Scene, name: str, given: BodyTouch, properties: BodyProperties, lines: Mapping[str, LineAssembly]
 ) -> float:
-    """Of its volume as a sphere, else of the lines that it is joined to; 0 of points given, and where axes touch [m].
+    """Radius [m] of a sphere of the body's volume, else of the lines that it is joined to; 0 where points are given and
+    where axes touch.
     """
     if given.points is not None or scene.contact_at == "axis":
         return 0.0

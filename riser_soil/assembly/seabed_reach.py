@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from riser_soil.assembly.riser import attachments_of, elements_of
+from riser_soil.core.sphere import radius_of
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.bodies import Body, BodyTouch
 from riser_soil.scene.lines import by_line
@@ -41,7 +42,7 @@ def _highest(scene: Scene) -> float:
 
 def _farthest(body: Body) -> float:
     """Distance from a body's place to its farthest side that may touch, at most [m]."""
-    given, radius = body.contact or BodyTouch(), _radius_of(body.volume)
+    given, radius = body.contact or BodyTouch(), radius_of(body.volume)
     points = given.points or (getattr(body, "centre_of_buoyancy", (0.0, 0.0, 0.0)),)
     return max(math.hypot(*point) for point in points) + (radius if given.radius is None else given.radius)
 
@@ -52,12 +53,7 @@ def _net(scene: Scene, body: Body) -> float:
 
 
 def _wet_weight(view: Scene) -> float:
-    """Of a line and what is attached to it, as far as that is heavy [N]."""
+    """Weight in water [N] of a line and what is attached to it, without what floats."""
     elements, attachments = elements_of(view), attachments_of(view)
     of_line = float(np.maximum(elements.weight, 0.0) @ elements.length)
     return of_line + sum(max(attachment.net_weight, 0.0) for attachment in attachments)
-
-
-def _radius_of(volume: float) -> float:
-    """Of a sphere of a volume [m3]."""
-    return math.cbrt(0.75 * volume / math.pi)

@@ -9,7 +9,6 @@ sphere is s = (2 + 3 eta - eta^3)/4, whose slope is zero at both ends.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
+from riser_soil.core.sphere import radius_of
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.moving_nodes import MovingNodes, out_of_plane
@@ -154,11 +154,6 @@ def _about_origin(mass: Array, inertia: Array, centre: Array) -> Array:
 
 def _skew(v: Array) -> Array:
     return np.array(skew(vector(v)))
-
-
-def radius_of(volume: float) -> float:
-    """Of a sphere of a volume [m3]."""
-    return float((3.0 * volume / (4.0 * math.pi)) ** (1.0 / 3.0))
 
 
 @njit

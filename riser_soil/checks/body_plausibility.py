@@ -11,7 +11,7 @@ SUNK = 0.5  # of a body's width, by which its own weight may press it in
 
 
 def body_warnings(hung: Hung) -> Iterator[str]:
-    """Of bodies that begin below the seabed, and of those that it hardly bears."""
+    """Warnings of bodies that begin below the seabed, and of those that it hardly bears."""
     for name, contact in hung.contacts.items():
         net = hung.weights[name].net
         sunk = contact.sunk_by(net)

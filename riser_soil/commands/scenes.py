@@ -88,7 +88,7 @@ def read_start(scene: str, overrides: list[str] | None) -> "Scene":
 
 
 def read_solved(scene: str, overrides: list[str] | None) -> "Scene":
-    """As `read_start`, with the hang-off solved and the vessel at the offset that the scene asks for."""
+    """Read a scene, solve its hang-off and displace the vessel by the offset that the scene asks for."""
     checked = read_start(scene, overrides)
     from riser_soil.accuracy.chosen_run import in_numbers
 
@@ -119,7 +119,7 @@ def placed(file: str, overrides: list[str] | None) -> Iterator[None]:
 
 @contextmanager
 def placed_in(document: "Callable[[], Document]") -> Iterator[None]:
-    """The same with the scene's document, which is asked for where it is needed."""
+    """Put lines of the scene's document before keys in errors; the document is asked for where there is one."""
     try:
         yield
     except (SceneError, MeshError) as err:

@@ -6,12 +6,11 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from riser_soil.imported_scene import Remark
+from riser_soil.imported_scene import Remark, twisting_stiffness
 from riser_soil.moordyn.deck import Deck, DeckRow, as_number
 from riser_soil.moordyn.nodes import Piece
 from riser_soil.scene.problem import Path
 
-TWIST = 1e-4  # of EA D^2: torsional stiffness of a line without bending stiffness
 STEEL = 2.1e11  # Pa: Young's modulus of the bar that stands for a rod
 STIFFER = 10.0  # over the stiffest line's: the least of a rod
 
@@ -63,7 +62,7 @@ def line_types(deck: Deck, pieces: Iterable[Piece]) -> tuple[dict[str, Any], lis
 def stiffen_in_torsion(deck: Deck, types: dict[str, Any]) -> Remark:
     """Give all types GJ, which lines in space need."""
     for each in types.values():
-        each["GJ"] = each["EI"] or TWIST * each["EA"] * each["outer_diameter"] ** 2
+        each["GJ"] = twisting_stiffness(each["EI"], each["EA"], each["outer_diameter"])
     line = deck.of("line types")[0].line
     return line, "GJ, which MoorDyn does not know: as EI, or small where there is none"
 

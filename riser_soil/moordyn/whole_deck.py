@@ -151,7 +151,7 @@ def _is_shared(deck: Deck, node: Node, at_it: list[tuple[Chain, str]]) -> bool:
 def _joints(
     deck: Deck, node: Node, at_it: list[tuple[Chain, str]], bodies: dict[str, Any], places: dict[str, Vector]
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Of all ends at a node: with its body where it has one, else with each other."""
+    """Joints of all ends at a node: with its body where it has one, else with each other."""
     if not _is_shared(deck, node, at_it):
         return
     ends: list[dict[str, Any]] = [{"line": chain.name, "at": key} for chain, key in at_it]
@@ -172,7 +172,7 @@ def _joints(
 
 
 def _short(node: Node) -> str:
-    """Of a point its number, else R or B before it, and of a rod its end."""
+    """Short name of a node: a point's number, R and a rod's number and end, B and a body's number."""
     return {"points": "", "rods": "R", "bodies": "B"}[node.section] + node.name.split()[1]
 
 

@@ -50,7 +50,7 @@ class PipeOfType:
 
     @property
     def contact_diameter(self) -> float:
-        """Of what lies on the seabed [m]."""
+        """Diameter of what lies on the seabed [m]."""
         return self.item.number("OuterContactDiameter", self.item.number("ContactDiameter", self.outermost))
 
 
@@ -178,7 +178,7 @@ def _twisting(pipe: PipeOfType, found: dict[str, float]) -> float:
 
 
 def _homogeneous(pipe: PipeOfType) -> dict[str, Any]:
-    """Of an elastic pipe: E A, E I, G 2 I; coats have mass alone."""
+    """Mass and stiffnesses of an elastic pipe: E A, E I, G 2 I; coats have mass alone."""
     item, E = pipe.item, pipe.item.number("E") * FORCE
     area, inertia = _ring(pipe.outer, pipe.inner), math.pi / 64.0 * (pipe.outer**4 - pipe.inner**4)
     mass, outer, inner = item.number("MaterialDensity") * area, pipe.outer, pipe.inner

@@ -33,7 +33,7 @@ class LineEnd:
 
     @property
     def height(self) -> float:
-        """Of a free end below all others [m]."""
+        """Height z [m]; a free end counts as below all others."""
         return -math.inf if self.position is None else self.position[2]
 
 
@@ -145,7 +145,7 @@ def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe
 
 
 def _elements(row: Item, length: float, whole: float) -> dict[str, Any]:
-    """Of a piece [m] of a section that is as long as the whole [m]."""
+    """Elements of a piece, by its length [m], of a section whose whole length is given [m]."""
     if row.has("TargetSegmentLength"):
         return {"element_length": row.number("TargetSegmentLength")}
     if row.has("NumberOfSegments"):
@@ -225,8 +225,9 @@ def _support(end: LineEnd, lower: LineEnd, upper: LineEnd, clamp: float) -> Any:
 
 
 def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd, clamp: float) -> dict[str, Any]:
-    """Of a hinge nothing; of a flex joint in the riser's plane its stiffness and neutral angle. A clamped end is a very
-    stiff one, as a scene's own clamp has the direction of the initial shape.
+    """Rotation of an end: none for a hinge, stiffness and neutral angle for a flex joint in the riser's plane.
+
+    A clamped end is a very stiff one, as a scene's own clamp has the direction of the initial shape.
     """
     row = end.stiffness
     for key in ("ConnectionAzimuth", "ConnectionDeclination", "ConnectionGamma"):

@@ -112,7 +112,7 @@ def _peaked(train: Item, kind: str) -> dict[str, Any] | None:
 
 
 def _peak_period(train: Item, gamma: float) -> float | None:
-    """As it is given, or by the mean zero-crossing period of the whole spectrum [s]."""
+    """Peak period [s], as given or by the mean zero-crossing period of the whole spectrum."""
     for key in ("WaveTp", "WavePeakPeriod"):
         if train.has(key):
             return train.number(key)

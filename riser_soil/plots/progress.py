@@ -57,7 +57,7 @@ class DrawingProgress:
         self._bar.stop()
 
     def tell(self, words: str, done: int, count: int) -> None:
-        """As `Tell`; the time left begins anew with each number of pieces."""
+        """Show what is drawn now, a `Tell`; the time left begins anew with each number of pieces."""
         if count != self._count:
             self._bar.reset(self._task, total=count, description=words, visible=True)
             self._count = count

@@ -113,7 +113,7 @@ class HungReader:
         return [*told, *self._sunk(found)]
 
     def _sunk(self, found: Mapping[str, Any]) -> Iterator[str]:
-        """Of bodies below ground that they have no contact with."""
+        """Warnings of bodies below ground that they have no contact with."""
         scene = self._assembly.scene
         view = next(iter(self._assembly.lines.values())).scene
         for name in self._bodies if scene.has_ground else ():

@@ -130,7 +130,7 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
 
 
 def below_seabed(path: Path, ground: float) -> Problem:
-    """Of a position below the seabed, whose height is z = ground [m]."""
+    """The problem of a position below the seabed, whose height is z = ground [m]."""
     allowed = f"must not lie below the seabed (z = {ground:g} m)"
     return Problem(path, allowed, "raise the position or lower the seabed")
 

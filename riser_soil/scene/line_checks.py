@@ -40,7 +40,7 @@ def all_conflicts(scene: Scene) -> list[Problem]:
 
 
 def _at_offset(scene: Scene) -> Iterator[Problem]:
-    """Of a scene without other conflicts: those that the vessel's offset brings; none before hang-offs are found."""
+    """Conflicts that the vessel's offset brings in a scene without others; none before hang-offs are found."""
     if scene.vessel is None or any(line.hangs_off for line in risers(scene).values()):
         return
     moved = at_offset(scene)

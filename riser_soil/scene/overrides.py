@@ -26,7 +26,7 @@ def _override(document: Document, assignment: str) -> None:
 
 
 def put_once(document: Document, dots: str, value: Any, reported: str, again: bool = False) -> None:
-    """As `put`; SceneError where that would undo another override without a word. again: of the same path it may."""
+    """Put a value as `put` does; SceneError where it would undo another override. again: the same path may be."""
     words = dots.split(".")
     for path, earlier in document.overrides.items():
         if [str(item) for item in path[: len(words)]] == words and not (again and len(path) == len(words)):

@@ -115,7 +115,7 @@ class GivenPipe(NamedTuple):
 
 
 def area_of(outer: float, inner: float) -> float:
-    """Of a cross-section [m2]."""
+    """Area of a ring's cross-section [m2]."""
     return 0.25 * math.pi * (outer**2 - inner**2)
 
 
@@ -139,7 +139,7 @@ def _dense(pipe: GivenPipe, factor: float, size: Size) -> bool | None:
 
 
 def _of_section(pipe: GivenPipe) -> Iterator[Doubt]:
-    """Of a pipe whose diameters are known."""
+    """Doubts about the section of a pipe whose diameters are known."""
     (outer, inner), area, whole = pipe.wall, area_of(*pipe.wall), area_of(*pipe.diameters)
     if area <= 0.0 or whole <= 0.0:
         return
@@ -188,7 +188,7 @@ class GivenLine(NamedTuple):
 
     @property
     def lengths(self) -> dict[Any, float]:
-        """Of each pipe on it [m]."""
+        """Length [m] of each pipe on the line."""
         segments = [segment for _, segment in matching(self.given, ("segments", "*")) if isinstance(segment, dict)]
         used = {name: [each for each in segments if each.get("line_type") == name] for name in self.pipes}
         return {name: math.fsum(amount_of(each.get("length")) for each in of) for name, of in used.items() if of}

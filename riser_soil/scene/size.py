@@ -66,5 +66,5 @@ def number_of(value: Any) -> float:
 
 
 def amount_of(value: Any) -> float:
-    """The same of a quantity that is never below 0; 0 for what is."""
+    """A number of a quantity that is never negative; 0 for a negative one."""
     return max(number_of(value), 0.0)

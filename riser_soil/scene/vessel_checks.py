@@ -104,7 +104,7 @@ def _heaves(scene: Scene, ends: list[LineEnd]) -> Iterator[Problem]:
 
 
 def _end(scene: Scene, key: LineEnd) -> object:
-    """As a line has it, held by a joint or not; a free one that a joint holds can't be moved either."""
+    """A line's end, None where a joint holds it: it can't be moved then."""
     line, end = key
     view = by_line(scene)[line]
     given = getattr(view.line, end)

@@ -8,13 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from riser_soil.bodies.body import BodyProperties, MovingBody, radius_of, wet, wet_height
+from riser_soil.bodies.body import BodyProperties, MovingBody, wet, wet_height
 from riser_soil.bodies.drag import BodyDrag
 from riser_soil.bodies.inertia import BodyInertia
 from riser_soil.bodies.joints import JointOf, Joints, Side
 from riser_soil.bodies.loads import BodyWeight, Release
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Weights
+from riser_soil.core.sphere import radius_of
 from riser_soil.sea.current import SteadyCurrent
 from riser_soil.sea.flows import Sea
 from tests.support.differences import WEIGHTS, difference_tangent, error
