@@ -161,17 +161,21 @@ def behind(path: Path) -> ResultsError:
 
 
 class _MemoryFile:
-    """In-memory file for HDF5, which neither reports a full disk nor survives it."""
+    """In-memory file for HDF5, which neither reports a full disk nor survives it: a base, pages of it that were written
+    to, and what is behind it.
+    """
 
     def __init__(self, base: BinaryIO, size: int) -> None:
         self.size = size
-        self._base, self._at = base, 0
+        self._base, self._of_base, self._at = base, size, 0
         self._pages: dict[int, bytearray] = {}
+        self._added = bytearray()
 
     def changes(self) -> dict[int, bytes]:
-        """Pages written to, by their offset, up to the file's end."""
-        whole = {number * _PAGE: page for number, page in sorted(self._pages.items())}
-        return {at: bytes(page[: self.size - at]) for at, page in whole.items() if at < self.size}
+        """What was written to, by its offset, up to the file's end."""
+        pages = {number * _PAGE: page[: self._of_base - number * _PAGE] for number, page in self._pages.items()}
+        parts = sorted((pages | {self._of_base: self._added}).items())
+        return {at: bytes(part[: self.size - at]) for at, part in parts if at < self.size}
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         self._at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self.size}[whence]
@@ -194,21 +198,34 @@ class _MemoryFile:
 
     def readinto(self, buffer: memoryview) -> int:
         into = memoryview(buffer).cast("B")
-        for number, within, at in _cut(self._at, len(into)):
+        old, behind = self._split(len(into))
+        for number, within, at in _cut(self._at, old):
             page = self._pages.get(number) or self._read(number)
             into[at] = page[within]
+        into[old:] = self._added[behind]
         self._at += len(into)
         return len(into)
 
     def write(self, data: memoryview) -> int:
         content = memoryview(data).cast("B")
-        for number, within, at in _cut(self._at, len(content)):
+        old, behind = self._split(len(content))
+        for number, within, at in _cut(self._at, old):
             if number not in self._pages:
                 self._pages[number] = self._read(number)
             self._pages[number][within] = content[at]
+        self._added[behind] = content[old:]
         self._at += len(content)
         self.size = max(self.size, self._at)
         return len(content)
+
+    def _split(self, count: int) -> tuple[int, slice]:
+        """How many of the next `count` bytes are of the base, and where those are that come behind it."""
+        old = min(max(self._of_base - self._at, 0), count)
+        first = max(self._at - self._of_base, 0)
+        end = first + count - old
+        if end > len(self._added):
+            self._added.extend(bytes(end - len(self._added)))
+        return old, slice(first, end)
 
     def _read(self, number: int) -> bytearray:
         self._base.seek(number * _PAGE)

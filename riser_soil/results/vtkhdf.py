@@ -3,34 +3,35 @@
 One group is of that layout, VTKHDF: points, cells, values on both, and for each instant where its own begin. Values of
 all instants stand one after the other, in chunks of an instant or of several small ones, so that a frame costs the same
 however many there are. What they share is stored once: a mesh that stays, a line's cells; offsets that are the same for
-several values are links to one array. XDMF refers to datasets that store nothing: `CELLS`, and the values of single
-instants that `Instants` makes.
+several values are links to one array. XDMF refers to `CELLS`, and to datasets of single instants, see `instant`: its
+readers, other than VTK's, know no parts of datasets. The dataset of an instant is a view, which stores no number, where
+its values are large. Small values are copied: HDF5 makes three copies in the time of one view.
 Source: VTK's file formats, "VTKHDF File Format", version 2.0.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import h5py
 import numpy as np
-from h5py import h5d, h5p, h5s
+from h5py import h5d, h5p, h5s, h5t
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.results.growing_file import append_rows
 
 ROOT = "VTKHDF"
 CELLS = "cells"  # (nc, k) numbers of each cell's points: a view of VTKHDF's own, which are in one row
-_VIEWS = "views"
+_INSTANTS = "instants"
 _TYPES = {4: 10, 8: 12, 10: 24}  # tetrahedron, hexahedron, second-order tetrahedron, by their points
 _KINDS_OF_LINES = ("Vertices", "Lines", "Polygons", "Strips")
 _STEPS_IN_CHUNK = 128
-_BYTES_IN_CHUNK = 1 << 14  # of values, or those of one instant
+_BYTES_IN_CHUNK = 1 << 14  # of values, or those of one instant, which then are large
 
 
 def lay_out(store: h5py.File, cells: IntArray, points: Array | None, polyline: bool) -> None:
     """A mesh without any instant. cells: (nc, k), or one line (1, np); points: (np, 3) m, None where they move."""
+    store.create_group(_INSTANTS)
     root = store.create_group(ROOT)
     root.attrs["Version"] = np.array([2, 0])
     root.attrs["Type"] = np.bytes_("PolyData" if polyline else "UnstructuredGrid")
@@ -72,6 +73,11 @@ def append(
     numbers = int(steps.attrs["NSteps"]) + np.arange(n)
     for kind, values in {"Point": on_points, "Cell": on_cells}.items():
         _append_values(root[f"{kind}Data"], steps[f"{kind}DataOffsets"], numbers, values)
+        for name, array in values.items():
+            if array[0].nbytes < _BYTES_IN_CHUNK:
+                _add_copies(store[_INSTANTS], name, numbers, array)
+            else:
+                _add_views(store[_INSTANTS], name, numbers, root[f"{kind}Data"][name], array.shape[1:])
     if geometry is not None and "Points" not in root:
         root["Points"] = root["PointData"][geometry]
     moved = numbers * (int(root["NumberOfPoints"][0]) if geometry is not None else 0)
@@ -86,10 +92,10 @@ def append(
 
 
 def cut_back(store: h5py.File, frames: int) -> None:
-    """Take the instants after the first `frames` away, with their views."""
-    views = store.get(_VIEWS, {})
-    for name in [name for name in views if int(name.rpartition("_")[2]) >= frames]:
-        del views[name]
+    """Take the instants after the first `frames` away."""
+    instants = store[_INSTANTS]
+    for name in [name for name in instants if int(name.rpartition("_")[2]) >= frames]:
+        del instants[name]
     root = store[ROOT]
     steps = root["Steps"]
     for kind in ("Point", "Cell"):
@@ -147,43 +153,32 @@ def _add_view_of_cells(store: h5py.File, connectivity: h5py.Dataset, shape: tupl
     h5d.create(store.id, CELLS.encode(), connectivity.id.get_type(), rows, layout)
 
 
-class Instants:
-    """Where the values of single instants are, for readers that know no parts of datasets. What all instants share is
-    found once.
-    """
-
-    def __init__(self, store: h5py.File) -> None:
-        self._root, self._views = store[ROOT], store.require_group(_VIEWS)
-        self._sources: dict[tuple[str, str], _Source] = {}
-        self._rows = dict[str, int]()
-
-    def view(self, kind: str, name: str, number: int) -> str:
-        """The path of a dataset of a quantity's values at an instant alone, which stores no number."""
-        source = self._source(kind, name)
-        source.space.select_hyperslab((number * source.shape[0], *(0 for _ in source.shape[1:])), source.shape)
-        layout, view = h5p.create(h5p.DATASET_CREATE), f"{name}_{number:06d}"
-        layout.set_virtual(source.of_one, b".", source.values.name.encode(), source.space)
-        h5d.create(self._views.id, view.encode(), source.values.id.get_type(), source.of_one, layout)
-        return f"{_VIEWS}/{view}"
-
-    def _source(self, kind: str, name: str) -> _Source:
-        if (kind, name) not in self._sources:
-            if kind not in self._rows:
-                self._rows[kind] = _rows(self._root, kind)
-            values = self._root[f"{kind}Data"][name]
-            shape = self._rows[kind], *values.shape[1:]
-            spaces = h5s.create_simple(values.shape), h5s.create_simple(shape)
-            self._sources[kind, name] = _Source(values, *spaces, shape)
-        return self._sources[kind, name]
+def instant(name: str, number: str) -> str:
+    """Path of the dataset of a quantity's values at an instant alone; number: six digits."""
+    return f"{_INSTANTS}/{name}_{number}"
 
 
-class _Source(NamedTuple):
-    """Values of all instants, their space, and the space and shape of one instant's."""
+def _add_copies(instants: h5py.Group, name: str, numbers: IntArray, values: Array) -> None:
+    """Values (n, np) or (n, np, 3) of the last instants, each written by itself."""
+    space, number_type = h5s.create_simple(values.shape[1:]), h5t.py_create(values.dtype)
+    layout = h5p.create(h5p.DATASET_CREATE)
+    layout.set_layout(h5d.COMPACT)
+    layout.set_obj_track_times(False)
+    for number, of_one in zip(numbers.tolist(), values, strict=True):
+        made = h5d.create(instants.id, f"{name}_{number:06d}".encode(), number_type, space, layout)
+        made.write(h5s.ALL, h5s.ALL, of_one, number_type)
 
-    values: h5py.Dataset
-    space: h5s.SpaceID
-    of_one: h5s.SpaceID
-    shape: tuple[int, ...]
+
+def _add_views(
+    instants: h5py.Group, name: str, numbers: IntArray, stacked: h5py.Dataset, shape: tuple[int, ...]
+) -> None:
+    """The last instants by themselves, as parts of the dataset of all; shape: of one."""
+    space, of_all = h5s.create_simple(shape), stacked.id.get_space()
+    for number in numbers.tolist():
+        layout = h5p.create(h5p.DATASET_CREATE)
+        of_all.select_hyperslab((number * shape[0], *(0 for _ in shape[1:])), shape)
+        layout.set_virtual(space, b".", stacked.name.encode(), of_all)
+        h5d.create(instants.id, f"{name}_{number:06d}".encode(), stacked.id.get_type(), space, layout)
 
 
 def _append_values(data: h5py.Group, offsets: h5py.Group, numbers: IntArray, values: Mapping[str, Array]) -> None:

@@ -23,6 +23,7 @@ from riser_soil.results.ownership import PROGRAM, XDMF_HEAD, quoted
 
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
 _GRID = '<Grid Name="frame_'
+_NUMBER = "\0"  # of a frame, in the text that all have alike: XML has no such character
 _FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
 
 
@@ -60,7 +61,7 @@ class XdmfFile:
     ) -> None:
         heavy = path.with_suffix(".vtkhdf")
         self._heavy_name = heavy.name
-        self._frames = 0
+        self._frames, self._content = 0, ""
         self._waiting: list[Frame] = []
         content = io.BytesIO()
         with h5py.File(content, "w") as store:
@@ -89,9 +90,10 @@ class XdmfFile:
         frames = self._waiting
         with appending(self._heavy) as store:
             on_points, on_cells = (_stacked([getattr(f, of) for f in frames]) for of in ("on_points", "on_cells"))
-            times, instants = [frame.time for frame in frames], vtkhdf.Instants(store)
+            times = [float(frame.time) for frame in frames]
             first = vtkhdf.append(store, times, on_points, on_cells, frames[0].geometry)
-            grids = [self._grid(instants, first + i, self._frames + i, frame) for i, frame in enumerate(frames)]
+        self._content = self._content or self._content_of(frames[0])
+        grids = [self._grid(first + i, self._frames + i, time) for i, time in enumerate(times)]
         self._frames += len(grids)
         self._waiting.clear()
         self._append("".join(grids))
@@ -136,26 +138,27 @@ class XdmfFile:
         elif self._text is not None and at >= 0:
             self._text.update({at: _FOOT.encode()}, at + len(_FOOT))
 
-    def _grid(self, instants: vtkhdf.Instants, number: int, in_run: int, frame: Frame) -> str:
+    def _grid(self, number: int, in_run: int, time: float) -> str:
         """number: of the frame in the VTKHDF file; in_run: in a run that may have had other files before."""
-        items = {
-            name: self._item(instants.view(kind, name, number), values.shape)
-            for kind, on in {"Point": frame.on_points, "Cell": frame.on_cells}.items()
-            for name, values in on.items()
-        }
+        head = f'   {_GRID}{in_run:06d}" GridType="Uniform">\n   <Time Value="{time!r}"/>\n'
+        return head + self._content.replace(_NUMBER, f"{number:06d}")
+
+    def _content_of(self, frame: Frame) -> str:
+        """What all grids have alike, but for their numbers."""
+        on = {"Node": frame.on_points, "Cell": frame.on_cells}
+        each = [(name, centre, values) for centre, of in on.items() for name, values in of.items()]
+        items = {name: self._item(vtkhdf.instant(name, _NUMBER), values.shape) for name, _, values in each}
         points = self._points if frame.geometry is None else items[frame.geometry]
         lines = [
-            f'{_GRID}{in_run:06d}" GridType="Uniform">',
-            f'<Time Value="{float(frame.time)!r}"/>',
             self._topology,
             f'<Geometry GeometryType="XYZ">{points}</Geometry>',
+            *(_attribute(name, centre, values, items[name]) for name, centre, values in each),
+            "</Grid>",
         ]
-        lines += [_attribute(name, "Node", v, items[name]) for name, v in frame.on_points.items()]
-        lines += [_attribute(name, "Cell", v, items[name]) for name, v in frame.on_cells.items()]
-        return "".join(f"   {line}\n" for line in [*lines, "</Grid>"])
+        return "".join(f"   {line}\n" for line in lines)
 
     def _item(self, where: str, shape: Sequence[int], number: str = "Float") -> str:
-        """A whole array of the VTKHDF file, as large as it is now."""
+        """A whole array of the VTKHDF file."""
         return (
             f'<DataItem Dimensions="{_words(shape)}" NumberType="{number}" Precision="8" Format="HDF">'
             f"{self._heavy_name}:/{where}</DataItem>"
