@@ -35,16 +35,6 @@ def pipe_radius(run: Run) -> float:
         return 1e-3 * float(run.arc[-1])
 
 
-def flat_seabed(run: Run) -> float | None:
-    """m, the level of a seabed that is flat; None where there is none, or it slopes, or the scene cannot be read."""
-    try:
-        seabed = run.scene["seabed"]
-        flat = not seabed["slope_deg"] and seabed["profile"] is None and seabed.get("grid") is None
-        return float(seabed["level"]) if flat else None
-    except (ResultsError, KeyError, TypeError, ValueError):
-        return None
-
-
 def touchdown_place(arc_length: float, arc: Array, position: Array) -> Array:
     """The touchdown point (3,) m of an axis (nn, 3); its lowest point where nothing touches."""
     if math.isnan(arc_length):

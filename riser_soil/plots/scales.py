@@ -1,4 +1,4 @@
-"""Round numbers for colour bars and magnification, lengths in words and in sight, units as engineers read them."""
+"""Round numbers for colour bars and magnification, lengths in words, units as engineers read them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ _TOPS = ((1, 6), (1.2, 5), (1.6, 5), (2, 5), (3, 4), (4, 5), (5, 6), (6, 4), (8,
 _FACTORS = (5.0, 2.0, 1.0)
 # A magnified displacement that is this share of the body's depth is well visible, and not absurd.
 _VISIBLE_SHARE = 0.1
-# Radius of a pipe over the width of the view from which it shows as a pipe: some 9 pixels of 1,200 across.
-_SEEN_SHARE = 0.004
 SHOWN: dict[str, tuple[str, float]] = {  # unit of SI as UDUNITS writes it -> unit shown, how many of it are one of SI
     "N": ("kN", 1e-3),
     "N m": ("kN m", 1e-3),
@@ -43,11 +41,6 @@ def magnification(largest: float, depth: float) -> float:
 def metres(length: float) -> str:
     """A length in words: whole metres from 100 m on, else three figures."""
     return f"{length:.0f} m" if abs(length) >= 99.95 else f"{length:.3g} m"
-
-
-def drawn_radius(radius: float, across: float) -> float:
-    """Radius [m] at which a pipe is drawn in a view `across` [m] wide: thick enough to be seen."""
-    return max(radius, _SEEN_SHARE * across)
 
 
 def shown(units: str) -> tuple[str, float]:

@@ -23,7 +23,7 @@ from riser_soil.plots.curves import envelope, sheet
 from riser_soil.plots.histories import energy
 from riser_soil.plots.progress import DrawingProgress
 from riser_soil.plots.ranges import draw_range, mean_in_time, names
-from riser_soil.plots.scales import axis_words, drawn_radius, metres
+from riser_soil.plots.scales import axis_words, metres
 from riser_soil.plots.shape import filmed_records, seabed_under, snapshots
 from riser_soil.plots.side_by_side import sheets
 from riser_soil.report.report import write_report
@@ -239,8 +239,6 @@ def test_what_cannot_be_drawn_is_said(run: Run, tmp_path: Path, arguments: list[
 
 def test_sizes_read_well() -> None:
     assert [metres(length) for length in (1543.2, 100.0, 99.94, 2.5)] == ["1543 m", "100 m", "99.9 m", "2.5 m"]
-    assert drawn_radius(0.15, 300.0) == pytest.approx(1.2)
-    assert drawn_radius(0.15, 10.0) == 0.15
 
 
 COMMANDS = [command.name or command.callback.__name__ for command in app.registered_commands if command.callback]
