@@ -68,8 +68,9 @@ fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; 
 mutants: setup ## some 70 places of the package broken one at a time: which of them the quick tests notice; half an hour
 	$(PYTHON) -m tests.mutants.run
 
-bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, waves against plain sums, energy of an impact by scheme
-	$(PYTHON) -m benchmarks
+bench: setup ## what steps of lines, soils, waves and storms cost: docs/speed.md; Newton iterations against the bare work in them, energy of an impact by scheme
+	$(PYTHON) -m benchmarks --page
+	$(PYTHON) -m benchmarks.large --page
 
 bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn and CalculiX: docs/peers.md; an hour
 	@scripts/peers.sh

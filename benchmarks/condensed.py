@@ -4,11 +4,11 @@ with the compliance that an earlier run has kept, and without.
 
 from __future__ import annotations
 
-import argparse
 import os
 import time
 
 from benchmarks.coupled import SCENE
+from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import last_stage
 from riser_soil.core.system import Timer
 from riser_soil.soil.compliance import SWITCH
@@ -23,17 +23,25 @@ MESHES = {  # cells along and across the riser, and far from it [m], by unknowns
 STEPS = {"springs": 40, "condensed": 20, "whole": 4}
 
 
-def report() -> None:
+HEAD = (
+    *("unknowns of the soil", "a step on springs [ms]", "on condensed soil [ms]", "on whole soil [ms]"),
+    *("condensed over springs", "whole over condensed", "laid with kept compliance [s]", "without [s]"),
+)
+
+
+def report(page: bool = False) -> None:
     springs = step_seconds(SPRINGS, STEPS["springs"])
-    print(f"the demo's riser in a plane on springs: {1e3 * springs:.2f} ms of processor time a step")
-    for unknowns, mesh in MESHES.items():
-        condensed, whole = (step_seconds(on_soil(mesh, soil), STEPS[soil]) for soil in ("condensed", "whole"))
-        print(
-            f"on {unknowns} unknowns of elastic soil: condensed {1e3 * condensed:.1f} ms, whole {1e3 * whole:.0f} ms; "
-            f"condensed/springs {condensed / springs:.1f}, whole/condensed {whole / condensed:.0f}"
-        )
-        kept, anew = laying_seconds(on_soil(mesh, "condensed"))
-        print(f"  laid in {kept:.2f} s with compliance of an earlier run, in {anew:.2f} s without")
+    tell("condensed", HEAD, (row(unknowns, springs) for unknowns in MESHES), page)
+
+
+def row(unknowns: int, springs: float) -> list[str]:
+    mesh = MESHES[unknowns]
+    condensed, whole = (step_seconds(on_soil(mesh, soil), STEPS[soil]) for soil in ("condensed", "whole"))
+    laid = laying_seconds(on_soil(mesh, "condensed"))
+    return [
+        f"{unknowns:,}", f"{1e3 * springs:.2f}", f"{1e3 * condensed:.1f}", f"{1e3 * whole:.0f}",
+        f"{condensed / springs:.1f}", f"{whole / condensed:.0f}", *(f"{seconds:.1f}" for seconds in laid),
+    ]  # fmt: skip
 
 
 def laying_seconds(overrides: tuple[str, ...]) -> tuple[float, float]:
@@ -65,5 +73,4 @@ def step_seconds(overrides: tuple[str, ...], steps: int) -> float:
 
 
 if __name__ == "__main__":
-    argparse.ArgumentParser(prog="python -m benchmarks.condensed", description=__doc__).parse_args()
-    report()
+    report(parser_of("condensed", __doc__).parse_args().page)

@@ -1,17 +1,20 @@
 """Large soils: the first load step of the demo's riser on ever finer blocks, by each linear solver.
 
-On several ranks under mpirun: what the slowest takes. One block of so many thousand unknowns: --block.
+Each in a process of its own. One block of so many thousand unknowns alone: --block, under mpirun on several ranks, of
+which the slowest counts.
 """
 
 from __future__ import annotations
 
-import argparse
 import resource
+import subprocess
+import sys
 import time
 
 from mpi4py import MPI
 
 from benchmarks.coupled import SCENE
+from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import TimedStage
 from riser_soil.assembly import build, sized
 from riser_soil.checks.estimate import size_of
@@ -26,11 +29,29 @@ BLOCKS = {  # cells along and across the riser, and far from it [m], by thousand
     45: (0.25, 0.05, 0.5),
     134: (0.25, 0.03, 0.25),
 }
+SOLVERS = ("kept", "direct", "iterative")
 
 
-def report(block: int, linear: str) -> None:
-    """Processor time and peak memory, each of the rank that takes most, all of this process so far included in the
-    latter.
+HEAD = (
+    *("unknowns", "linear solver", "Newton iterations", "each takes [s]", "by the clock [s]", "memory [GB]"),
+    "forecast [GB]",
+)
+
+
+def report(page: bool = False) -> None:
+    tell("large", HEAD, (alone(block, linear) for block in BLOCKS for linear in SOLVERS), page)
+
+
+def alone(block: int, linear: str) -> list[str]:
+    """A row of the table, from a process of its own."""
+    command = [sys.executable, "-m", "benchmarks.large", "--block", str(block), "--linear", linear]
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()[0].split("; ")
+
+
+def measure(block: int, linear: str) -> None:
+    """Prints a row of the table and the parts of an iteration.
+
+    Processor time and peak memory, each of the rank that takes most, all of this process so far included in the latter.
     """
     comm, clock, began = MPI.COMM_WORLD, Timer.new(), time.process_time()
     along, across, far = BLOCKS[block]
@@ -45,24 +66,26 @@ def report(block: int, linear: str) -> None:
     set_up, step, wall, memory = (max(values) for values in zip(*comm.allgather(mine), strict=True))
     foretold = size_of(scene).memory(comm.size) / comm.size
     if comm.rank == 0:
-        print(
-            f"{timed.system.numbering.free} unknowns on {comm.size} ranks, {linear}: set-up {set_up:.1f} s, "
-            f"{timed.iterations} Newton iterations of {step / timed.iterations:.2f} s of processor time "
-            f"({wall / timed.iterations:.2f} s by the clock), {memory:.0f} MB ({foretold / 1e6:.0f} foretold)"
-        )
+        each = (f"{seconds / timed.iterations:.2f}" for seconds in (step, wall))
+        gigabytes = (f"{size / 1e9:.2f}" for size in (memory, foretold))
+        print(f"{timed.system.numbering.free:,}", linear, timed.iterations, *each, *gigabytes, sep="; ")
+        print(f"on {comm.size} ranks, set up in {set_up:.1f} s of processor time")
         for part, seconds in sorted(clock.seconds.items(), key=lambda item: -item[1])[:5]:
             print(f"  {part:14s} {seconds / timed.iterations:8.3f} s an iteration by the clock, on the first rank")
     timed.destroy()
 
 
 def _peak() -> float:
-    """Largest resident memory of this process [MB]."""
-    return 1024e-6 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    """Largest resident memory of this process [bytes]."""
+    return 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.large", description=__doc__)
-    parser.add_argument("--block", type=int, choices=BLOCKS, default=23)
-    parser.add_argument("--linear", choices=("kept", "direct", "iterative"), default="direct")
+    parser = parser_of("large", __doc__)
+    parser.add_argument("--block", type=int, choices=BLOCKS)
+    parser.add_argument("--linear", choices=SOLVERS, default="direct")
     given = parser.parse_args()
-    report(given.block, given.linear)
+    if given.block is None:
+        report(given.page)
+    else:
+        measure(given.block, given.linear)

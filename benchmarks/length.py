@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import argparse
 import resource
 import subprocess
 import sys
 import time
 import tracemalloc
+from collections.abc import Iterator
 from statistics import median
 
 from benchmarks.riser_only import CATENARY, ELEMENTS
+from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import last_stage
 from riser_soil.core.system import Timer
 
@@ -19,20 +20,28 @@ LENGTH, END = 10000.0, 4285.7  # m: the catenary of `demos/catenary`, 29 times a
 BEFORE, STEPS = 5, 20
 
 
-def report() -> None:
-    for dimension in (2, 3):
-        print(f"a riser of 10 km, in {dimension} dimensions:")
-        least = None
-        for count in COUNTS:
-            command = [sys.executable, "-m", "benchmarks.length", str(dimension), str(count)]
-            found = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
-            seconds, iterations, memory, passing, kept = (float(word) for word in found)
-            least = memory if least is None else least
-            print(
-                f"  {count} elements: {1e3 * seconds:.2f} ms of processor time a step, {1e6 * seconds / count:.2f} us "
-                f"an element, {iterations:.1f} iterations; {(memory - least) / 1e6:.0f} MB more than with {COUNTS[0]}; "
-                f"a step allocates {passing / count:.0f} bytes an element in passing and leaves {kept:.0f} bytes in all"
-            )
+HEAD = (
+    *("riser of 10 km", "elements", "a step [ms]", "an element [µs]", "Newton iterations"),
+    *(f"memory beyond that of {COUNTS[0]} elements [MB]", "bytes of an element in passing", "bytes that a step leaves"),
+)
+
+
+def report(page: bool = False) -> None:
+    tell("length", HEAD, (each for dimension in (2, 3) for each in rows(dimension)), page)
+
+
+def rows(dimension: int) -> Iterator[list[str]]:
+    least = None
+    for count in COUNTS:
+        command = [sys.executable, "-m", "benchmarks.length", str(dimension), str(count)]
+        found = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+        seconds, iterations, memory, passing, kept = (float(word) for word in found)
+        least = memory if least is None else least
+        yield [
+            "in a plane" if dimension == 2 else "in space", f"{count:,}", f"{1e3 * seconds:.2f}",
+            f"{1e6 * seconds / count:.2f}", f"{iterations:.1f}", f"{(memory - least) / 1e6:.0f}",
+            f"{passing / count:.0f}", f"{kept:.0f}",
+        ]  # fmt: skip
 
 
 def measure(dimension: int, elements: int) -> tuple[float, float, float, float, float]:
@@ -62,11 +71,11 @@ def measure(dimension: int, elements: int) -> tuple[float, float, float, float, 
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.length", description=__doc__)
+    parser = parser_of("length", __doc__)
     parser.add_argument("dimension", type=int, nargs="?", help="with a count: that measurement alone, in numbers")
     parser.add_argument("elements", type=int, nargs="?")
     given = parser.parse_args()
     if given.elements is None:
-        report()
+        report(given.page)
     else:
         print(*measure(given.dimension, given.elements))

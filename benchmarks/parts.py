@@ -9,17 +9,16 @@ from __future__ import annotations
 
 import argparse
 import json
-import platform
 import resource
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from datetime import date
 from pathlib import Path
 from typing import Any
 
+from benchmarks.speed_page import machine
 from demos.page import filled, table
 
 SCENE = Path(__file__).parent.parent / "demos" / "first_scene.yaml"
@@ -194,8 +193,7 @@ HEAD = (
 def tables() -> dict[str, str]:
     """Blocks of the page."""
     rows = [row(name, cost(name)) for name in SCENES]
-    machine = f"{platform.machine()}, one core, Python {platform.python_version()}, {date.today():%Y-%m-%d}"
-    return {"parts": table(HEAD, rows), "parts made": f"Made by `python -m benchmarks.parts --page` on {machine}."}
+    return {"parts": table(HEAD, rows), "parts made": f"Made by `python -m benchmarks.parts --page` on {machine()}."}
 
 
 def main() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import time
 from dataclasses import dataclass
 
@@ -10,6 +9,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from benchmarks.coupled import SCENE
+from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import Timer
@@ -22,8 +22,8 @@ from riser_soil.solve.snes import SnesLoop
 
 CLAY = "su: 2.0e3, su_gradient: 1.5e3, E_over_su: 300.0"
 LAWS = {
-    "perfectly plastic clay": f"soil.law={{kind: von-mises, {CLAY}}}",
-    "cyclic clay": f"soil.law={{kind: kinematic-hardening, {CLAY}}}",
+    "perfectly plastic": f"soil.law={{kind: von-mises, {CLAY}}}",
+    "cyclic": f"soil.law={{kind: kinematic-hardening, {CLAY}}}",
 }
 QUICK = ((1.0, 0.075, 0.75), (0.7, 0.065, 0.65))  # cells along and across the riser, and far from it [m]
 LARGE = ((0.4, 0.042, 0.41), (0.35, 0.036, 0.36))
@@ -47,19 +47,25 @@ class Walk:
     alone: float
 
 
-def report(meshes: tuple[tuple[float, float, float], ...] = QUICK) -> None:
-    print("processor time; yielded: share of the points; LDL^T: one factorisation alone")
-    for law, overrides in LAWS.items():
-        for mesh in meshes:
-            kept, direct = (_walked((overrides, _meshed(mesh), f"solver.linear={how}")) for how in ("kept", "direct"))
-            made = f"{kept.factorisations} factorisations, {kept.krylov / kept.iterations:.1f} Krylov iterations each"
-            print(
-                f"{law}, {kept.unknowns} unknowns, {100.0 * kept.yielded:.0f} % yielded: "
-                f"an iteration {1e3 * kept.seconds:.0f} ms kept (of {kept.iterations}; {made}), "
-                f"{1e3 * direct.seconds:.0f} ms direct (of {direct.iterations}), LDL^T {1e3 * direct.alone:.0f} ms; "
-                f"kept/direct {kept.seconds / direct.seconds:.2f}, kept/LDL^T {kept.seconds / direct.alone:.2f}",
-                flush=True,
-            )
+HEAD = (
+    *("clay", "unknowns", "points that have yielded", "an iteration, kept [ms]", "direct [ms]", "LDLᵀ alone [ms]"),
+    *("kept over direct", "kept over LDLᵀ", "Newton iterations, kept and direct", "factorisations, kept"),
+    "Krylov iterations each",
+)
+
+
+def report(page: bool = False, meshes: tuple[tuple[float, float, float], ...] = QUICK) -> None:
+    tell("plastic", HEAD, (row(law, mesh) for law in LAWS for mesh in meshes), page)
+
+
+def row(law: str, mesh: tuple[float, float, float]) -> list[str]:
+    kept, direct = (_walked((LAWS[law], _meshed(mesh), f"solver.linear={how}")) for how in ("kept", "direct"))
+    return [
+        law, f"{kept.unknowns:,}", f"{100.0 * kept.yielded:.0f} %",
+        f"{1e3 * kept.seconds:.0f}", f"{1e3 * direct.seconds:.0f}", f"{1e3 * direct.alone:.0f}",
+        f"{kept.seconds / direct.seconds:.2f}", f"{kept.seconds / direct.alone:.2f}",
+        f"{kept.iterations}, {direct.iterations}", f"{kept.factorisations}", f"{kept.krylov / kept.iterations:.1f}",
+    ]  # fmt: skip
 
 
 def _meshed(mesh: tuple[float, float, float]) -> str:
@@ -103,6 +109,7 @@ def _factorisation_seconds(matrix: PETSc.Mat, repeats: int = 3) -> float:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.plastic", description=__doc__)
-    parser.add_argument("--large", action="store_true", help="meshes of some 37,000 and 60,000 unknowns, half an hour")
-    report(LARGE if parser.parse_args().large else QUICK)
+    parser = parser_of("plastic", __doc__)
+    parser.add_argument("--large", action="store_true", help="also larger meshes")
+    given = parser.parse_args()
+    report(given.page, QUICK + LARGE if given.large else QUICK)

@@ -10,12 +10,13 @@ import functools
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from statistics import mean, median
 from unittest.mock import patch
 
+from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
@@ -39,18 +40,30 @@ CASES: dict[str, tuple[Path, tuple[str, ...]]] = {
 RAMP, STEPS = 150, 140  # steps until the surge has grown; steps of one period
 
 
-def report() -> None:
-    for case, (scene, overrides) in CASES.items():
-        us = measure(scene, *overrides)
-        step, recorded, iterations = us["step"], us["recorded"], us["iterations"]
-        print(f"{case}: {step:.0f} us a step, {recorded:.0f} us with results; {iterations:.2f} iterations")
-        snes, bare = us["snes"] / step, step / us["bare"]
-        print(f"  by SNES {us['snes']:.0f} us, {snes:.1f} times as long; a step over its Newton steps alone {bare:.2f}")
+HEAD = (
+    *("riser", "step of [s]", "Newton iterations", "takes [ms]", "with results [ms]", "times as fast as real time"),
+    *("by SNES [ms]", "SNES over compiled", "step over its Newton steps"),
+)
+
+
+def report(page: bool = False) -> None:
+    rows = (row(case, measure(scene, *overrides)) for case, (scene, overrides) in CASES.items())
+    tell("riser_only", HEAD, rows, page)
+
+
+def row(case: str, us: Mapping[str, float]) -> list[str]:
+    """Of the table, from what `measure` has found."""
+    step, recorded, snes = (us[name] / 1e3 for name in ("step", "recorded", "snes"))
+    real = [f"{1e3 * us['time step'] / each:.0f}" for each in (step, recorded)]
+    return [
+        case, f"{us['time step']:.3g}", f"{us['iterations']:.2f}", f"{step:.2f}", f"{recorded:.2f}", " and ".join(real),
+        f"{snes:.2f}", f"{snes / step:.1f}", f"{us['step'] / us['bare']:.2f}",
+    ]  # fmt: skip
 
 
 def measure(scene: Path, *overrides: str) -> dict[str, float]:
     """Medians in us of a step that is solved, accounted for and committed, by the compiled loop ("step") and by SNES;
-    told to the results, too ("recorded"); of its Newton steps alone ("bare"). Mean number of iterations.
+    told to the results, too ("recorded"); of its Newton steps alone ("bare"). Mean number of iterations; time step [s].
     """
     compiled, snes = (surging(scene, *overrides, f"solver.newton={kind}") for kind in ("compiled", "snes"))
     taken = defaultdict[str, list[float]](list)
@@ -62,6 +75,7 @@ def measure(scene: Path, *overrides: str) -> dict[str, float]:
             stage.walk(1)
         compiled.tell(seen)
         seen.hand_over()  # which reads kernels
+        began = compiled.stepper.now.t
         for _ in range(STEPS):
             step = compiled.stepper.next_step(compiled.control)
             with suppress(NotConvergedError):  # a step that is cut
@@ -72,9 +86,10 @@ def measure(scene: Path, *overrides: str) -> dict[str, float]:
             taken["snes"].append(1e6 * timed(lambda: snes.walk(1)))
             taken["told"].append(1e6 * timed(lambda: compiled.tell(seen)))
         taken["told"][-1] += 1e6 * timed(seen.hand_over)
+    found = {name: median(values) for name, values in taken.items()} | {"iterations": mean(taken["iterations"])}
+    found["time step"] = (compiled.stepper.now.t - began) / STEPS
     for stage in (compiled, snes):
         stage.destroy()
-    found = {name: median(values) for name, values in taken.items()} | {"iterations": mean(taken["iterations"])}
     return found | {"recorded": found["step"] + mean(taken["told"])}  # told of many at once
 
 
@@ -90,3 +105,7 @@ def timed(action: Callable[[], object]) -> float:
     began = time.process_time()
     action()
     return time.process_time() - began
+
+
+if __name__ == "__main__":
+    report(parser_of("riser_only", __doc__).parse_args().page)

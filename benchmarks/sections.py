@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 import time
+from collections.abc import Iterator
 
 from benchmarks.coupled import SCENE
+from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import last_stage
 from riser_soil.core.system import Timer
 
@@ -18,7 +19,14 @@ WAYS = {
 STEPS = 16
 
 
-def report() -> None:
+HEAD = ("soil and solver", "unknowns", "Newton iterations", "each takes [ms]", "of it linear systems [ms]")
+
+
+def report(page: bool = False) -> None:
+    tell("sections", HEAD, rows(), page)
+
+
+def rows() -> Iterator[list[str]]:
     """Processor time; that of the linear systems by their share of the time by the clock."""
     for way, overrides in WAYS.items():
         clock = Timer.new()
@@ -28,14 +36,9 @@ def report() -> None:
         stage.walk(STEPS)
         each = 1e3 * (time.process_time() - began) / stage.iterations
         linear = each * clock.seconds["linear_solve"] / clock.total
-        print(
-            f"{way}: {stage.system.numbering.free} unknowns, {stage.iterations} Newton iterations of {each:.0f} ms, "
-            f"of them {linear:.1f} ms linear systems",
-            flush=True,
-        )
+        yield [way, f"{stage.system.numbering.free:,}", f"{stage.iterations}", f"{each:.0f}", f"{linear:.1f}"]
         stage.destroy()
 
 
 if __name__ == "__main__":
-    argparse.ArgumentParser(prog="python -m benchmarks.sections", description=__doc__).parse_args()
-    report()
+    report(parser_of("sections", __doc__).parse_args().page)

@@ -6,11 +6,11 @@ steps and the results take of it.
 
 from __future__ import annotations
 
-import argparse
 import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+from benchmarks.speed_page import parser_of, tell
 from demos.compute import timed
 
 SCENE = Path(__file__).parent / "storm.yaml"
@@ -29,13 +29,19 @@ class Cost(NamedTuple):
     results: float
 
 
-def report(duration: float = 600.0) -> None:
+HEAD = (
+    *("storm [s]", "steps", "Newton iterations a step", "processor time [s]", "times as fast as real time"),
+    *("in the compiled loop", "for results"),
+)
+
+
+def report(page: bool = False, duration: float = 600.0) -> None:
     cost = measure(duration)
-    print(
-        f"a storm of {duration:g} s, {cost.steps} steps of {cost.iterations:.2f} iterations: {cost.seconds:.1f} s of "
-        f"processor time, {duration / cost.seconds:.1f} times as fast as real time; {cost.loop:.0%} of it in the "
-        f"compiled loop, {cost.results:.0%} for results"
-    )
+    row = [
+        f"{duration:g}", f"{cost.steps:,}", f"{cost.iterations:.2f}", f"{cost.seconds:.1f}",
+        f"{duration / cost.seconds:.1f}", f"{cost.loop:.0%}", f"{cost.results:.0%}",
+    ]  # fmt: skip
+    tell("storm", HEAD, [row], page)
 
 
 def measure(duration: float) -> Cost:
@@ -49,6 +55,7 @@ def measure(duration: float) -> Cost:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.storm", description=__doc__)
+    parser = parser_of("storm", __doc__)
     parser.add_argument("--duration", type=float, default=600.0, metavar="SECONDS", help="of the storm")
-    report(parser.parse_args().duration)
+    given = parser.parse_args()
+    report(given.page, given.duration)

@@ -6,7 +6,6 @@ drifts changes all figures alike. `python -m benchmarks.waves` prints the table 
 
 from __future__ import annotations
 
-import argparse
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -15,6 +14,7 @@ from unittest.mock import patch
 import numpy as np
 
 from benchmarks.riser_only import timed
+from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import TimedStage, last_stage
 from riser_soil.assembly.sea import water_of
 from riser_soil.core.system import Timer
@@ -38,15 +38,19 @@ class PlainSums(SummedWaves):
     deepest = wave_series.DEEPEST
 
 
-def report() -> None:
-    print("the sea of demos/waves, by series about places and by plain sums, 441 stations:")
-    for count in COMPONENTS:
-        series, sums = measure(count)
-        print(
-            f"  {count} components: water {1e3 * series.water:.2f} and {1e3 * sums.water:.2f} ms a step, sums / series "
-            f"{sums.water / series.water:.1f}; a whole step {1e3 * series.step:.1f} and {1e3 * sums.step:.1f} ms, "
-            f"{sums.step / series.step:.2f}"
-        )
+HEAD = (
+    *("wave components", "waves of a step, by series [ms]", "by plain sums [ms]", "sums over series"),
+    *("the whole step, by series [ms]", "by plain sums [ms]", "sums over series"),
+)
+
+
+def report(page: bool = False) -> None:
+    tell("waves", HEAD, (row(count, *measure(count)) for count in COMPONENTS), page)
+
+
+def row(count: int, series: Cost, sums: Cost) -> list[str]:
+    pairs = ((series.water, sums.water), (series.step, sums.step))
+    return [f"{count}", *(cell for a, b in pairs for cell in (f"{1e3 * a:.2f}", f"{1e3 * b:.2f}", f"{b / a:.1f}"))]
 
 
 def measure(count: int) -> tuple[Cost, Cost]:
@@ -81,5 +85,4 @@ def taken(stage: TimedStage, *seas: Sea | PlainSums) -> list[float]:
 
 
 if __name__ == "__main__":
-    argparse.ArgumentParser(prog="python -m benchmarks.waves", description=__doc__).parse_args()
-    report()
+    report(parser_of("waves", __doc__).parse_args().page)

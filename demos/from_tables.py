@@ -1,4 +1,4 @@
-"""Figures that sentences of the demos' pages take from the tables that long runs have written: no run is needed.
+"""Figures that pages take from the tables that long runs have written, there or on other pages: no run is needed.
 
 `make figures` writes them to their places, and a quick test compares them with the tables.
 """
@@ -6,15 +6,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
-from demos.page import ROOT, block
-
-DEMOS = ROOT / "demos"
+from demos.page import ROOT, block, table
 
 
 def row(page: str, name: str, *first: str) -> list[str]:
-    """Cells of the only row that begins with these cells, in the block of this name of a page of the demos."""
-    text = block((DEMOS / page).read_text(encoding="utf-8"), name)
+    """Cells of the only row that begins with these cells, in the block of this name of a page."""
+    text = block((ROOT / page).read_text(encoding="utf-8"), name)
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("|")]
     (found,) = [cells for cells in rows if cells[: len(first)] == [*first]]
     return found
@@ -25,18 +24,19 @@ def numbers(page: str, name: str, *first: str) -> list[float]:
     return [float(re.findall(r"-?[\d.]+", cell)[0]) for cell in row(page, name, *first)[len(first) :] if cell]
 
 
-def by_head(page: str, *first: str) -> dict[str, str]:
-    """Cells of a cheap run's row by the heads of their columns."""
-    return dict(zip(row(page, "cheap", "elements"), row(page, "cheap", *first), strict=True))
+def by_head(page: str, *first: str, name: str = "cheap", head: str = "elements") -> dict[str, str]:
+    """Cells of a row by the heads of their columns; head: that of the first."""
+    return dict(zip(row(page, name, head), row(page, name, *first), strict=True))
 
 
 def table_figures() -> dict[str, str]:
     """All of them by their names."""
-    return {**of_catenary(), **of_tank(), **of_trench(), **of_dug_trench(), **of_pipe_segment()}
+    demos = {**of_catenary(), **of_tank(), **of_trench(), **of_dug_trench(), **of_pipe_segment()}
+    return {**demos, **of_peers(), **of_quality()}
 
 
 def of_catenary() -> dict[str, str]:
-    scene, graded = (by_head("catenary/convergence.md", *first) for first in (("35", "0.1"), ("73, graded",)))
+    scene, graded = (by_head("demos/catenary/convergence.md", *first) for first in (("35", "0.1"), ("73, graded",)))
     return {
         "catenary forces": percent(scene["error of forces"]),
         "catenary moment": percent(scene["error of M"]),
@@ -47,7 +47,7 @@ def of_catenary() -> dict[str, str]:
 
 
 def of_tank() -> dict[str, str]:
-    scene = by_head("tank/convergence.md", "200", "0.05")
+    scene = by_head("demos/tank/convergence.md", "200", "0.05")
     return {
         "tank seconds": scene["run s"],
         "tank tensions": percent(scene["error of forces"]),
@@ -63,10 +63,10 @@ def percent(cell: str) -> str:
 
 def of_trench() -> dict[str, str]:
     def both(name: str) -> list[float]:
-        return numbers("trench/README.md", "trench", name)
+        return numbers("demos/trench/README.md", "trench", name)
 
     touchdown, rest = both("at rest: touchdown arc length [m]"), both("largest bending moment [kN m]")
-    heave = [float(cell.split(" to ")[1]) for cell in row("trench/README.md", "trench", HEAVED)[1:]]
+    heave = [float(cell.split(" to ")[1]) for cell in row("demos/trench/README.md", "trench", HEAVED)[1:]]
     return {
         "trench later": f"{touchdown[0] - touchdown[1]:.1f}",
         "trench smaller": f"{100.0 * (1.0 - rest[0] / rest[1]):.0f}",
@@ -78,7 +78,7 @@ HEAVED = "largest bending moment, in heave [kN m]"
 
 
 def of_dug_trench() -> dict[str, str]:
-    page = "dug_trench/README.md"
+    page = "demos/dug_trench/README.md"
     laid, first, second = numbers(page, "depth", "deepest [mm]")
     arcs = numbers(page, "depth", "touchdown arc length [m]")
     storms = [row(page, "fatigue", name) for name in ("first, on clay as laid", "second, in the trench")]
@@ -98,7 +98,7 @@ def of_dug_trench() -> dict[str, str]:
 
 
 def of_pipe_segment() -> dict[str, str]:
-    page = "pipe_segment/README.md"
+    page = "demos/pipe_segment/README.md"
     coarse, fine, small, smooth = (
         numbers(page, "capacity", name)
         for name in ("segment, cells of D/16", "segment, cells of D/32", "segment, D/16, small strain",
@@ -121,3 +121,64 @@ def beside(values: list[float], others: list[float]) -> str:
     """How far values lie below and above others, in per cent."""
     off = [100.0 * (a / b - 1.0) for a, b in zip(values, others, strict=True)]
     return f"{-min(off):.0f} % below to {max(off):.0f} % above"
+
+
+OTHERS = ("Exudyn", "CableDyn, tolerance 1e-4", "MoorDyn")
+
+
+def of_peers() -> dict[str, str]:
+    """What others cost over what riser_soil costs, by accuracy; how far its finest runs are off what all agree on."""
+    rows = [*cheaper("catenary", "surge"), *cheaper("tank", "hose in a tank")]
+    head = ["costs, over those of riser_soil with graded elements", *OTHERS]
+    head += [f"the cheapest of them, over riser_soil {how}" for how in ("with equal elements", "by SNES")]
+    off = (row("docs/peers.md", f"{name} finest", "riser_soil, compiled")[-1] for name in ("catenary", "tank"))
+    return {
+        "peers cheaper": table(head, rows),
+        "peers at 1 %": " to ".join(sorted(times_at_one(rows), key=float)),
+        **dict(zip(("peers off in surge", "peers off in the tank"), off, strict=True)),
+    }
+
+
+def cheaper(name: str, case: str) -> Iterator[list[str]]:
+    """A row for each accuracy that riser_soil reaches in all ways."""
+    graded, equal, by_snes = (costs_of(name, f"riser_soil, {how}") for how in ("compiled, graded", "compiled", "SNES"))
+    others = [costs_of(name, who) for who in OTHERS]
+    for accuracy, cost in graded.items():
+        theirs = [other.get(accuracy) for other in others]
+        least = min(each for each in theirs if each is not None)
+        ours = (times(least / own[accuracy]) for own in (equal, by_snes))
+        yield [f"{case}, {accuracy}", *("–" if each is None else times(each / cost) for each in theirs), *ours]
+
+
+def costs_of(name: str, who: str) -> dict[str, float]:
+    """Processor seconds per simulated second by the accuracy, where it is reached."""
+    cells = by_head("docs/peers.md", who, name=f"{name} cost", head="processor seconds per simulated second")
+    return {at: float(cell.split(" (")[0]) for at, cell in cells.items() if "%" in at and cell != "–"}
+
+
+def times_at_one(rows: list[list[str]]) -> list[str]:
+    """What the cheapest of the others costs, over riser_soil with graded elements, at an error of 1 %."""
+    return [min(set(cells[:3]) - {"–"}, key=float) for name, *cells in rows if name.endswith(", 1 %")]
+
+
+def times(ratio: float) -> str:
+    return f"{ratio:.2g}"
+
+
+def of_quality() -> dict[str, str]:
+    """Of error bars, accuracies asked and stress cases."""
+    scenes, judged = row("docs/error_bars.md", "error bars out of sample", "scenes, key results judged")[1].split(", ")
+    inside = row("docs/error_bars.md", "error bars out of sample", "true error inside its bar")[1].removesuffix("%")
+    asked = block((ROOT / "docs/asked_accuracy.md").read_text(encoding="utf-8"), "asked accuracy")
+    found = re.search(r"of all (\d+) scenes \((\d+) say that they do not reach it\) \| ([\d.]+)%", asked)
+    assert found, asked
+    cases = block((ROOT / "docs/quality.md").read_text(encoding="utf-8"), "stress").splitlines()[2].split("|")[1]
+    return {
+        "bars scenes": scenes,
+        "bars judged": judged,
+        "bars inside": inside,
+        "asked scenes": found[1],
+        "asked not": found[2],
+        "asked reached": f"{int(found[1]) * float(found[3]) / 100.0:.0f}",
+        "stress cases": cases.strip(),
+    }

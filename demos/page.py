@@ -11,6 +11,7 @@ import csv
 import io
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -60,8 +61,9 @@ def filled(page: str, texts: Mapping[str, str]) -> str:
 
 
 def all_pages() -> list[Path]:
-    """README.md, the pages in docs and those of the demos."""
-    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "demos").glob("*/*.md"))]
+    """README.md, the paper, the pages in docs and those of the demos."""
+    in_folders = (sorted(ROOT.glob(pattern)) for pattern in ("docs/*.md", "demos/*/*.md"))
+    return [ROOT / "README.md", ROOT / "paper.md", *chain.from_iterable(in_folders)]
 
 
 def fill_pages(texts: Mapping[str, str]) -> None:

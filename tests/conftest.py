@@ -12,6 +12,7 @@ import gc
 import os
 import signal
 import sys
+from functools import partial
 from pathlib import Path
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -22,10 +23,22 @@ os.environ["RISER_SOIL_COMPLIANCE"] = "off"
 import pytest
 from hypothesis import settings
 
+from tests.support.pages import Tell, compare
+
 gc.set_threshold(100_000, 10, 10)  # in what compiling kernels makes a search for garbage takes a tenth of its time
 
 settings.register_profile("unhurried", deadline=None)  # nothing hangs on how busy the machine is
 settings.load_profile("unhurried")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--page", action="store_true", help="write what tests find to its places in the pages")
+
+
+@pytest.fixture
+def tell(request: pytest.FixtureRequest) -> Tell:
+    """Compares what a test has found, by the names of figures, with what the pages tell; writes it there by --page."""
+    return partial(compare, write=request.config.getoption("--page"))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -102,7 +102,8 @@ def computed(folder: Path, *overrides: str) -> Storms:
 
 def main(results: Path, page: bool) -> None:
     both = Both(computed(results), computed(results / "coarser", *COARSER))
-    publish({"depth": depths(both), "fatigue": fatigue(both)}, results, PAGE if page else None)
+    blocks = {"depth": depths(both), "fatigue": fatigue(both), **effort(both.fine)}
+    publish(blocks, results, PAGE if page else None)
     pictures = PICTURES if page else results
     draw(pictures / "dug_trench.png", both.fine)
     print(f"\nthe runs and tables are in {results}, the picture in {pictures}")
@@ -119,6 +120,20 @@ class Both:
         """What a method of Storms finds, with a bar: the change from coarser cells, for an error of first order."""
         value, coarser = quantity(self.fine, *of), quantity(self.coarse, *of)
         return f"{value:.{digits}f} ± {abs(value - coarser):.{digits}f}"
+
+
+def effort(storms: Storms) -> dict[str, str]:
+    """Newton iterations and cut steps of both storms, and the worst of their energy balances; the clay's heave."""
+    first, second = (storms.runs[name].summary["stages"][0] for name in ("first", "second"))
+    iterations = (stage["newton_iterations"] / stage["steps"] for stage in (first, second))
+    worst = max(abs(s["energy"]["worst_residual"]["value"]) / s["energy"]["turned_over"] for s in (first, second))
+    return {
+        "dug heave": f"{-1e3 * float(np.nanmin(storms.runs['first']['settlement_across'][-1])):.0f}",
+        "dug steps": f"{first['steps']:,}",
+        "dug iterations": " and ".join(f"{each:.1f}" for each in iterations),
+        "dug cuts": f"{first['step_cuts']} and {second['step_cuts']}",
+        "dug residual": f"{100.0 * worst:.1g}",
+    }
 
 
 def depths(both: Both) -> str:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from demos.page import plain
+from demos.page import all_pages, fill_pages, places, plain
 from tests.support.on_ranks import ROOT
+
+Tell = Callable[[Mapping[str, str]], None]  # see the fixture `tell`
 
 README = ROOT / "README.md"
 DOCS = sorted((ROOT / "docs").glob("*.md"))
@@ -39,6 +42,23 @@ def same_figures(told: str, computed: str) -> bool:
     (words, numbers), (others, values) = (_apart(each) for each in (told, computed))
     close = (abs(float(a) - float(b)) <= 1.01 * _last_digit(a) for a, b in zip(numbers, values, strict=False))
     return words == others and all(close)
+
+
+def compare(texts: Mapping[str, str], write: bool = False) -> None:
+    """Figures by their names are what the pages tell; write: to their places there, first."""
+    if write:
+        fill_pages(texts)
+    there = [places(page.read_text(encoding="utf-8")) for page in all_pages()]
+    told = [(name, text) for page in there for name, each in page.items() for text in each]
+    assert texts.keys() <= {name for name, _ in told}
+    for name, text in told:
+        assert name not in texts or same_figures(text, texts[name]), f"{text} is told of {name}, and is {texts[name]}"
+
+
+def signed_percent(shares: Iterable[float]) -> str:
+    """Shares as `+12.9, −6.3 %`."""
+    rounded = (round(100.0 * share, 1) + 0.0 for share in shares)
+    return ", ".join(f"{each:+.1f}" if each else "0.0" for each in rounded).replace("-", "−") + " %"
 
 
 def _apart(text: str) -> tuple[list[str], list[str]]:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
+from tests.support.pages import Tell
 from tests.support.pipe_in_place import chord, pipe_in_place, resistance, rough_by_slip_lines, smooth_by_slip_lines
 
 PRANDTL = 2.0 + np.pi
@@ -63,7 +64,7 @@ def _summed(w: float) -> float:
 @pytest.mark.verify
 @pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
 @pytest.mark.parametrize("w", [0.1, 0.2, 0.3, 0.4, 0.5])
-def test_capacity_from_two_meshes(w: float, rough: bool) -> None:
+def test_capacity_from_two_meshes(tell: Tell, w: float, rough: bool) -> None:
     """Midway between what first and second order make of them, rough by adhesion. A smooth pipe's load falls a little
     behind its peak.
     """
@@ -72,7 +73,9 @@ def test_capacity_from_two_meshes(w: float, rough: bool) -> None:
     coarse, fine = (float(load.max()) for load in loads)
     first, second = extrapolated(coarse, fine, strips)
     capacity = 0.5 * (first + second)
-    print(f"w/D = {w:g}: {coarse:.3f}, {fine:.3f}, {first:.3f} to {second:.3f}, fell by {fallen(loads[-1]):.1e}")
+    between = dict.fromkeys(f"{each:.2f}" for each in sorted((first, second)))
+    found = f"{coarse:.2f}, {fine:.2f} | {' to '.join(between)}"
+    tell({f"in place {w:g} {'rough' if rough else 'smooth'}": found})
     known = rough_by_slip_lines(w) if rough else smooth_by_slip_lines(w), fitted(w, rough)
     assert (1.0 - WITHIN) * min(known) < capacity < (1.0 + WITHIN) * max(known)
     low, high = BOUNDS.get((w, rough), (0.0, np.inf))

@@ -10,14 +10,16 @@ import pytest
 from riser_soil.core.arrays import Array
 from tests.support.elastic_strip import StripOnSlice
 from tests.support.half_space import ALONG, DOWN, LoadedBlock, boussinesq, cerruti
+from tests.support.pages import Tell
 
 LOADS = pytest.mark.parametrize(("direction", "unit"), [(DOWN, boussinesq), (ALONG, cerruti)], ids=["down", "along"])
 
 
-def shares(kind: str, h: float, direction: Array, unit: Any) -> Array:
+def shares(tell: Tell, kind: str, h: float, direction: Array, unit: Any) -> Array:
     """Of the half space's displacement 1.5 to 2 m from the patch, in blocks of 4 and 8 m to each side."""
     found = [LoadedBlock(kind, h, half, 0.25 * half, direction).share(unit) for half in (4.0, 8.0)]
-    print(f"{kind}, cells of {h:g} m: {found}, extrapolated {2.0 * found[1] - found[0]:.4f}")
+    shown = " | ".join(f"{share:.3f}" for share in (*found, 2.0 * found[1] - found[0]))
+    tell({f"half space {kind} {h:g} {'down' if direction is DOWN else 'along'}": shown})
     return np.array(found)
 
 
@@ -29,17 +31,17 @@ def in_large_blocks(found: Array) -> None:
 
 
 @LOADS
-def test_displacement_is_that_of_the_half_space(direction: Array, unit: Any) -> None:
-    in_large_blocks(shares("tet", 0.5, direction, unit))
+def test_displacement_is_that_of_the_half_space(tell: Tell, direction: Array, unit: Any) -> None:
+    in_large_blocks(shares(tell, "tet", 0.5, direction, unit))
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize(("kind", "h"), [("hex", 0.25), ("tet", 0.25)])
 @LOADS
 def test_displacement_is_that_of_the_half_space_on_finer_cells(
-    kind: str, h: float, direction: Array, unit: Any
+    tell: Tell, kind: str, h: float, direction: Array, unit: Any
 ) -> None:
-    in_large_blocks(shares(kind, h, direction, unit))
+    in_large_blocks(shares(tell, kind, h, direction, unit))
 
 
 @LOADS

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.support.pages import Tell, signed_percent
 from tests.support.slip_lines import ROUGH, SMOOTH, bearing_factor, field, forces
 from tests.support.strip import CLAY, SU, press_graded_strip
 
@@ -52,7 +53,7 @@ def test_bearing_factor_is_near_a_published_fit(ratio: float) -> None:
 @pytest.mark.verify
 @pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
 @pytest.mark.parametrize("ratio", [2.0, 6.0])
-def test_strip_on_clay_that_grows_stronger_bears_what_slip_lines_tell(ratio: float, rough: bool) -> None:
+def test_strip_on_clay_that_grows_stronger_bears_what_slip_lines_tell(tell: Tell, ratio: float, rough: bool) -> None:
     """V/B = F ((2 + π) su0 + k B/4), B = 2 m: from above, at about first order in the cells below it."""
     law = CLAY.model_copy(update={"su_gradient": ratio * SU / 2.0})
     exact = bearing_factor(ratio, rough, 40) * (PRANDTL + 0.25 * ratio)
@@ -60,7 +61,8 @@ def test_strip_on_clay_that_grows_stronger_bears_what_slip_lines_tell(ratio: flo
     pressed = [press_graded_strip(size, 0.25, law, rough=rough, fine=1.0, depth=0.1) for size in sizes]
     errors = np.array([strip.load[-1] for strip in pressed]) / exact - 1.0
     rate, extrapolated = np.log2(errors[0] / errors[1]), 2.0 * errors[1] - errors[0]
-    print(f"k B/su0 = {ratio:g}, rough {rough}: {errors}, rate {rate:.2f}, extrapolated {extrapolated:.4f}")
+    found = f"{signed_percent(errors)} | {rate:.1f} | {signed_percent([extrapolated])}"
+    tell({f"growing {ratio:g} {'rough' if rough else 'smooth'}": found})
     assert pressed[1].load[-1] - pressed[1].load[-2] < 1e-3 * exact, "the load still rises"
     assert 0.0 < errors[1] < (0.05 if rough else 0.02)
     assert rate > 0.65

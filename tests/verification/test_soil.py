@@ -11,6 +11,7 @@ import pytest
 
 from riser_soil.soil.soil import Soil
 from tests.support.on_ranks import mpirun
+from tests.support.pages import Tell, signed_percent
 from tests.support.soil_bench import Bench
 from tests.support.soil_cases import ELASTIC, KINDS, small_block
 from tests.support.strip import press_graded_strip, press_strip
@@ -72,7 +73,7 @@ def test_strip_error_shrinks_with_the_cells() -> None:
 
 @pytest.mark.verify
 @pytest.mark.parametrize("kind", KINDS)
-def test_strip_comes_to_prandtls_load_at_first_order(kind: str) -> None:
+def test_strip_comes_to_prandtls_load_at_first_order(tell: Tell, kind: str) -> None:
     """Hexahedra halved everywhere, and tetrahedra, small around the strip's edge, too; the last two extrapolated."""
     if kind == "hex":
         loads = [press_strip("hex", n, far=4.0 / n).load[-1] for n in (4, 8, 16)]
@@ -80,7 +81,8 @@ def test_strip_comes_to_prandtls_load_at_first_order(kind: str) -> None:
         loads = [press_graded_strip(1.0 / n, growth=4.0 / n).load[-1] for n in (8, 16, 32)]
     errors = np.array(loads) / PRANDTL - 1.0
     rates, extrapolated = np.log2(errors[:-1] / errors[1:]), 2.0 * errors[-1] - errors[-2]
-    print(f"{kind}: {errors}, rates {rates}, extrapolated {extrapolated:.4f}")
+    orders = " and ".join(f"{rate:.2f}" for rate in rates)
+    tell({f"strip {kind}": f"{signed_percent(errors)} | order {orders}; {signed_percent([extrapolated])} extrapolated"})
     assert np.all(rates > 0.85)
     assert 0.0 < errors[-1] < {"hex": 0.035, "tet": 0.02}[kind]
     assert abs(extrapolated) < 0.005
