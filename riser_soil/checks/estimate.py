@@ -26,6 +26,7 @@ from riser_soil.scene.lines import by_line, on_soil
 from riser_soil.scene.plane import initial_ends, resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import MeshFile, SoilScene
+from riser_soil.scene.soil_law import initial_stress
 from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage
 
 if TYPE_CHECKING:
@@ -152,8 +153,8 @@ def _condensed(scene: Scene, soil: SoilScene) -> bool:
 
 def _symmetric(scene: Scene, soil: SoilScene) -> bool:
     """Whether all tangents are symmetric."""
-    surface, stress = np.zeros(1), np.zeros((1, 6))
-    lawful = all(law.at_points(surface, stress).symmetric for law in soil.laws)
+    middle = np.array([0.5 * soil.given_block.depth if soil.given_block else 1.0])
+    lawful = all(law.at_points(middle, initial_stress(soil, middle)).symmetric for law in soil.laws)
     return lawful and not UNSYMMETRIC & {*built(scene)}
 
 

@@ -29,6 +29,7 @@ from riser_soil.riser.sections import Elements
 from riser_soil.riser.touchdown_bend import TouchdownBend
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.soil_law import initial_stress
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.law import SoilLaw
 
@@ -112,8 +113,8 @@ def _moduli(soil: SoilScene, z: Array) -> Array:
     laws, tops = zip(*_layers(soil), strict=True)
     moduli, at = np.empty(z.size), np.searchsorted(tops, z, side="right") - 1
     for n, law in enumerate(laws):
-        within = z[at == n] - tops[n]
-        formula = law.at_points(within, np.zeros((within.size, 6)))
+        below = z[at == n]
+        formula = law.at_points(below - tops[n], initial_stress(soil, below))
         G, K = formula.shear * secant_share(law), formula.bulk
         moduli[at == n] = 4.0 * G * (3.0 * K + G) / (3.0 * K + 4.0 * G)
     return moduli

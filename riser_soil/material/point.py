@@ -20,7 +20,7 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError, SolveError
 from riser_soil.material.path import STRAIN_FACTOR, STRESS_FACTOR, STRESSES, MaterialPath, shear_path
 from riser_soil.scene.soil import SoilScene
-from riser_soil.scene.soil_law import volumes, weight_of
+from riser_soil.scene.soil_law import initial_stress, volumes
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil import mandel
 from riser_soil.soil.law import PLASTIC_STRAIN, Formula, SoilLaw, StressUpdate
@@ -60,9 +60,7 @@ def point_at(soil: SoilScene, depth: float) -> MaterialPoint:
     found = given.wrong_within(within)
     if found:
         raise SceneError(f"soil.law: at a depth of {depth:g} m {found[0]}; {found[1]}, or a smaller --depth")
-    weight = weight_of(soil)
-    borne = weight * depth if isinstance(weight, float) else float(weight.stress(np.array([depth]))[0])
-    initial = np.array([[-soil.K0 * borne, -soil.K0 * borne, -borne, 0.0, 0.0, 0.0]])
+    initial = initial_stress(soil, np.array([depth]))
     law = given.at_points(np.array([within]), initial)
     over = float(law.overstress(initial)[0])
     if over > 1.0 + 1e-12:

@@ -267,6 +267,17 @@ class SoilScene(BaseModel):
             raise found
         return self
 
+    @model_validator(mode="after")
+    def _laws_lie_somewhere(self) -> Self:
+        for n, law in enumerate(self.laws):
+            law.lies(f"soil.layers.{n}.law" if self.layers else "soil.law", self._unit_weight_at_top, self.K0)
+        return self
+
+    @property
+    def _unit_weight_at_top(self) -> float:
+        own = self.layers[0].submerged_unit_weight if self.layers else None
+        return self.submerged_unit_weight if own is None else own
+
     @property
     def given_block(self) -> Block | None:
         """The block, where its size is given or has been chosen."""

@@ -68,6 +68,14 @@ def weight_of(given: SoilScene) -> float | LayeredWeight:
     return LayeredWeight(boundaries(given.layers), tuple(given.submerged_unit_weight if w is None else w for w in own))
 
 
+def initial_stress(given: SoilScene, depth: Array) -> Array:
+    """Geostatic stress (n, 6) [Pa] at depths (n,) below the seabed [m]."""
+    weight = weight_of(given)
+    vertical = weight * depth if isinstance(weight, float) else weight.stress(depth)
+    ratios = np.array([given.K0, given.K0, 1.0, 0.0, 0.0, 0.0])
+    return np.asarray(-vertical[:, None] * ratios)
+
+
 def volumes(given: SoilScene) -> tuple[str, ...]:
     """Names of the mesh's volumes that are layers; none of layers by depth."""
     return tuple(layer.volume for layer in given.layers or () if layer.volume is not None)

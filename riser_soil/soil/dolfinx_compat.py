@@ -97,6 +97,35 @@ def _function_space(mesh: Any, degree: int, cache: Path) -> Any:
     return fem.FunctionSpace(mesh, ("Lagrange", degree), jit_params=options)
 
 
+def values_of_cells(mesh: Any, size: int) -> tuple[Any, IntArray]:
+    """A function with `size` numbers in each cell of a mesh that one rank has alone, and where they stand in its array
+    (nc, size).
+    """
+    if hasattr(fem, "functionspace"):
+        space = fem.functionspace(mesh, ("DG", 0, (size,)))
+    else:
+        space = fem.VectorFunctionSpace(mesh, ("DG", 0), dim=size)
+    return fem.Function(space), size * _table(space.dofmap) + np.arange(size)
+
+
+class CellExpression:
+    """A vector (k,) in UFL in the middle of each cell of a mesh that one rank has alone, compiled."""
+
+    def __init__(self, mesh: Any, vector: Any) -> None:
+        _quiet_compiler_log()
+        middle, cache = np.full((1, mesh.topology.dim), 0.5), {"cache_dir": str(writable_cache(MPI.COMM_SELF))}
+        self._since_06 = hasattr(fem, "functionspace")
+        options: dict[str, Any] = {"jit_options" if self._since_06 else "jit_params": cache}
+        self._expression = fem.Expression(vector, middle, **options)
+        self._mesh = mesh
+        self._cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
+
+    def values(self) -> Array:
+        """(nc, k)."""
+        where = (self._mesh, self._cells) if self._since_06 else (self._cells,)
+        return np.asarray(self._expression.eval(*where)).reshape(len(self._cells), -1)
+
+
 def _table(dofmap: Any) -> Any:
     """Dofs by cell as a 2-d array: an adjacency list in 0.5, an array since; a rank may have no cells."""
     dofs = dofmap.list.array if hasattr(dofmap.list, "array") else dofmap.list

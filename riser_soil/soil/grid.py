@@ -13,7 +13,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.errors import MeshError
+from riser_soil.errors import MeshError, SceneError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.soil import dolfinx_compat
 from riser_soil.soil.block import BlockSpec, make_block
@@ -92,15 +92,16 @@ def file_grid(comm: MPI.Intracomm, path: Path, volumes: Sequence[str] = ()) -> D
 
 
 def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
-    """The result of `make`, each rank its own; a MeshError of any rank is raised on all (collective)."""
-    result, failure = None, ""
+    """The result of `make`, each rank its own; a MeshError or SceneError of any rank is raised on all (collective)."""
+    result, failure = None, None
     try:
         result = make()
-    except MeshError as err:
-        failure = str(err)
-    failures = [text for text in comm.allgather(failure) if text]
+    except (MeshError, SceneError) as err:
+        failure = err
+    failures = [(type(err), str(err)) for err in comm.allgather(failure) if err is not None]
     if failures or result is None:
-        raise MeshError(failures[0])
+        kind, text = failures[0]
+        raise kind(text) from failure
     return result
 
 

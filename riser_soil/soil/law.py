@@ -103,6 +103,11 @@ class SoilLaw(BaseModel, ABC):
         """Rate of shear [1/s] beyond which the soil is stronger; None where no rate counts."""
         return None
 
+    def lies(self, key: str, unit_weight: float, K0: float) -> None:
+        """What a law that is asked for more than its constants may note: its key in the scene, and of the soil at the
+        seabed the submerged unit weight [N/m3] and K0.
+        """
+
     @abstractmethod
     def surface_modulus(self, width: float) -> float:
         """Young's modulus at the soil's surface [Pa], above 0, as a pipe of this width [m] meets it: contact is so much

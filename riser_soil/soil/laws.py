@@ -2,6 +2,7 @@
 
 from riser_soil.core.quantities import registry
 from riser_soil.soil.drucker_prager import DruckerPrager
+from riser_soil.soil.imported_law import ImportedLaw
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.law import SoilLaw
@@ -14,4 +15,5 @@ LAWS: dict[str, type[SoilLaw]] = registry(
     KinematicHardening,
     IwanOverlay,
     DruckerPrager,
+    ImportedLaw,
 )

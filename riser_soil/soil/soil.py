@@ -18,7 +18,7 @@ from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.families import FOLDS, skewness
 from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
-from riser_soil.soil.grid import DistributedMesh
+from riser_soil.soil.grid import DistributedMesh, on_all_ranks
 from riser_soil.soil.large_strain import carried_depths, carried_rows, moved_on
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
@@ -65,7 +65,7 @@ class Soil:
         self._ground = _Ground(law, weight, K0, start == "geostatic")
         depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
-        self._take_material()
+        self._initial, self._unit_weight, self.law = on_all_ranks(grid.nodes.comm, self._material)
         self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful, Yielding))
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
@@ -78,11 +78,14 @@ class Soil:
         self._mesh_at = self.cells.made_at.copy() if moves else np.empty(0)  # (nc, nn, 3): nodes of cells when made
         self._stored = self._lifted = 0.0
 
-    def _take_material(self) -> None:
-        """Law, unit weight and initial stress at the points, of the depths that their material had at first."""
+    def _material(self) -> tuple[Array, Array, Formula]:
+        """Initial stress, unit weight and law at the points, of the depths that their material had at first."""
         depth = self.cells.at_points(self._depth)
-        self._initial, self._unit_weight = self._ground.stress(depth), self._ground.weight.at(depth)
-        self.law = self._ground.law(depth, self._initial)
+        initial = self._ground.stress(depth)
+        return initial, self._ground.weight.at(depth), self._ground.law(depth, initial)
+
+    def _take_material(self) -> None:
+        self._initial, self._unit_weight, self.law = self._material()
 
     def blocks(self) -> dict[str, MatrixBlock]:
         rows = self.field.offset + components(self.cells.nodes, self.grid.family.axes)

@@ -1,0 +1,46 @@
+"""Formula of an energy of one's own: stress and moduli by UFL's derivatives of psi(eps), compiled by FFCx.
+
+eps is the strain since the start, and psi the energy that it stores beyond what the initial stress does.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.soil import energy_kernel
+from riser_soil.soil.law import STRESS
+from riser_soil.soil.law_source import LawError
+from riser_soil.soil.own_formula import PLACES, OwnFormula, asked_of_user
+
+STRAIN = tuple(f"strain_{place}" for place in PLACES)
+NONE = 1e-9  # of the moduli, which is no stress
+
+
+class EnergyFormula(OwnFormula):
+    """Of a class with an energy density psi(eps) or psi(eps, depth) [J/m3]. History: stress and strain."""
+
+    columns = (*STRESS, *STRAIN)
+    symmetric = True
+    by_rate = False
+
+    def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
+        super().__init__(law, depth, initial, label)
+        arguments = asked_of_user(lambda: len(inspect.signature(law.psi).parameters))
+        if arguments not in (1, 2):
+            raise LawError("psi must take the strain, or strain and depth: psi(self, eps) or psi(self, eps, depth)")
+        psi = law.psi if arguments == 2 else lambda eps, depth: law.psi(eps)
+        self._energy = asked_of_user(lambda: energy_kernel.EnergyKernel(psi, depth))
+        _, stress, moduli = self._energy.at(np.zeros((len(depth), 6)))
+        if depth.size and not np.abs(stress).max() <= NONE * np.abs(moduli).max():
+            raise LawError(f"psi has a stress of {np.abs(stress).max():.4g} Pa where there is no strain; it must be 0")
+
+    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+        strain = history[:, 6:] + increment
+        stored, stress, moduli = self._energy.at(strain)
+        stress = history[:, :6] + stress - self._energy.at(history[:, 6:])[1]
+        return stress, moduli, np.column_stack((stress, strain)), stored, strain

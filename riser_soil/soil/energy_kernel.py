@@ -1,0 +1,48 @@
+"""Compiled energy, stress and moduli of an energy density in UFL at n points: one cell of an interval each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import ufl
+from dolfinx.mesh import create_interval
+from mpi4py import MPI
+
+from riser_soil.core.arrays import Array
+from riser_soil.soil.dolfinx_compat import CellExpression, values_of_cells
+from riser_soil.soil.law_source import LawError
+
+SHEAR = 1.0 / 2.0**0.5
+GIVEN = 7  # numbers of a point: strain in Mandel's notation, and depth
+
+
+class EnergyKernel:
+    """Of psi(eps, depth), eps a symmetric tensor (3, 3) and depth a number [m] of UFL; at depths (n,) [m]."""
+
+    def __init__(self, psi: Callable[[Any, Any], Any], depth: Array) -> None:
+        mesh = create_interval(MPI.COMM_SELF, max(len(depth), 1), [0.0, 1.0])
+        self._given, self._at = values_of_cells(mesh, GIVEN)
+        self._at = self._at[: len(depth)]
+        self._given.x.array[self._at[:, -1]] = depth
+        self._compiled = CellExpression(mesh, _with_derivatives(psi, self._given))
+
+    def at(self, strain: Array) -> tuple[Array, Array, Array]:
+        """Energy (n,) [J/m3], stress (n, 6) and moduli (n, 6, 6) [Pa] of strains (n, 6)."""
+        n = len(self._at)
+        self._given.x.array[self._at[:, :-1]] = strain
+        found = self._compiled.values()[:n]
+        return found[:, 0].copy(), found[:, 1:7].copy(), found[:, 7:].reshape(n, 6, 6).copy()
+
+
+def _with_derivatives(psi: Callable[[Any, Any], Any], given: Any) -> Any:
+    """Energy, its six derivatives by Mandel's components, and theirs, (43,)."""
+    x = ufl.variable(ufl.as_vector([given[i] for i in range(6)]))
+    xx, yy, zz, xy, xz, yz = x[0], x[1], x[2], SHEAR * x[3], SHEAR * x[4], SHEAR * x[5]
+    energy = psi(ufl.as_tensor([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), given[6])
+    if getattr(energy, "ufl_shape", None) != ():
+        raise LawError(f"psi must return a number of UFL, and returns {type(energy).__name__}")
+    stress = ufl.diff(energy, x)
+    moduli = ufl.diff(stress, x)
+    return ufl.as_vector([energy, *(stress[i] for i in range(6)), *(moduli[i, j] for i in range(6) for j in range(6))])

@@ -1,0 +1,254 @@
+"""Formulas of laws of one's own: what a user's class answers, as the program asks for it.
+
+A class has one of three methods. Components are those of `mandel`, tension positive, unless said otherwise.
+
+- `update(increment, history, dt)`, as of `law.Formula`: it returns stress (n, 6), tangent (n, 6, 6) and history (n, nh),
+  and may return energy stored (n,) and elastic strain (n, 6) behind them. `columns` names what the history holds, the six
+  of the stress first; six columns from name_xx to name_yz are a tensor that turns with the material. `start()` is the
+  history at first: by default the initial stress, and zeros. `symmetric` says that the tangent is, `by_rate = False` that
+  dt does not matter, `overstress(stress)` what share of its strength is used.
+- `evaluate(t, del_t, grad_del_u, stress, tangent, history)` of fenics-constitutive: flat arrays, overwritten; which of its
+  two last components is yz, and which xz, has changed between its releases, and is found by asking.
+- `psi(eps)`: energy density by the strain since the start, a tensor of UFL; `psi(eps, depth)` with the depth [m].
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.soil import mandel
+from riser_soil.soil.law import STRESS, StressUpdate
+from riser_soil.soil.law_source import LawError, reported
+
+METHODS = ("update", "evaluate", "psi")
+PLACES = tuple(name[-2:] for name in STRESS)
+SHORTEST, LONGEST = 1e-9, 1e12  # s; what stands for "at once" and "slow" where a law divides by the time
+PROBE = 1e-6  # strain
+
+
+def formula_of(make: Callable[[], Any], depth: Array, initial: Array, label: str) -> OwnFormula:
+    """The formula of the object that `make` makes, at depths (n,) [m] under a stress (n, 6) [Pa]; LawError."""
+    law = asked_of_user(make)
+    found = [name for name in METHODS if callable(getattr(law, name, None))]
+    if len(found) != 1:
+        has = f"has {' and '.join(found)}" if found else "has none"
+        raise LawError(f"the class must have one of the methods {', '.join(METHODS)}, and {has}")
+    if found[0] == "psi":
+        from riser_soil.soil.energy_formula import EnergyFormula
+
+        return EnergyFormula(law, depth, initial, label)
+    kinds: dict[str, type[OwnFormula]] = {"update": UpdateFormula, "evaluate": ConstitutiveFormula}
+    return kinds[found[0]](law, depth, initial, label)
+
+
+def asked_of_user(call: Callable[[], Any]) -> Any:
+    """What the user's code returns; LawError, with its place, where it fails."""
+    try:
+        return call()
+    except LawError:
+        raise
+    except Exception as err:
+        raise LawError(reported(err)) from err
+
+
+class OwnFormula(ABC):
+    """A user's law at n points, depths (n,) [m] and initial stress (n, 6) [Pa]. label: of its messages."""
+
+    columns: tuple[str, ...]
+
+    def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
+        self.law, self.depth, self.initial, self.label = law, depth, initial, label
+        self._warned = False
+
+    @property
+    def symmetric(self) -> bool:
+        return bool(getattr(self.law, "symmetric", False))
+
+    @property
+    def by_rate(self) -> bool:
+        return bool(getattr(self.law, "by_rate", True))
+
+    @property
+    def bulk(self) -> Array:
+        return self._elastic[0]
+
+    @property
+    def shear(self) -> Array:
+        return self._elastic[1]
+
+    @cached_property
+    def _elastic(self) -> tuple[Array, Array]:
+        """Bulk and shear modulus (n,) [Pa] nearest to the tangent of an increment that is none."""
+        dt = 0.0 if self.by_rate else math.inf
+        C = self.answer(np.zeros((len(self.depth), 6)), self.start(), dt)[1]
+        bulk = np.einsum("i,nij,j->n", mandel.UNIT, C, mandel.UNIT) / 9.0
+        return bulk, np.einsum("ij,nij->n", mandel.DEVIATOR, C) / 10.0
+
+    def start(self) -> Array:
+        return np.column_stack((self.initial, np.zeros((len(self.initial), len(self.columns) - 6))))
+
+    @abstractmethod
+    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+        """Stress, tangent, history, and where it is known energy stored and elastic strain; LawError."""
+
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
+        """An answer that is none, nan, makes the solver try a smaller step."""
+        try:
+            found = self.answer(strain_increment, history, dt)
+            self._tell_of_infinite(strain_increment, found[0], found[1])
+        except LawError as err:
+            self._tell(f"{err}: the step is tried again with a smaller one")
+            found = [np.full((len(self.depth), *shape), np.nan) for shape in ((6,), (6, 6), (len(self.columns),))]
+        return self._with_energy(found)
+
+    def _with_energy(self, found: Sequence[Array]) -> StressUpdate:
+        if len(found) == 5:
+            return StressUpdate(*found)
+        change = found[0] - self.initial
+        elastic = mandel.elastic_strain(self.bulk, self.shear, change)
+        return StressUpdate(found[0], found[1], found[2], 0.5 * mandel.product(change, elastic), elastic)
+
+    def _tell_of_infinite(self, increment: Array, stress: Array, tangent: Array) -> None:
+        finite = np.isfinite(stress).all(axis=1) & np.isfinite(tangent).all(axis=(1, 2))
+        if not finite.all():
+            at = int(np.argmin(finite))
+            self._tell(f"{infinite(self.depth[at], increment[at])}: the step is tried again with a smaller one")
+
+    def _tell(self, text: str) -> None:
+        """Once: what follows is likely to be the same."""
+        if not self._warned:
+            print(f"warning: {self.label}: {text}", file=sys.stderr)
+        self._warned = True
+
+    def overstress(self, stress: Array) -> Array:
+        own = getattr(self.law, "overstress", None)
+        if own is None:
+            return np.zeros(len(stress))
+        return as_array(asked_of_user(lambda: own(stress)), (len(stress),), "overstress")
+
+
+def infinite(depth: float, increment: Array) -> str:
+    """In words: at a point."""
+    return f"{at_point(depth, increment)}: stress or tangent is not finite"
+
+
+def at_point(depth: float, increment: Array) -> str:
+    """A depth [m], and a strain increment (6,) in the engineer's components, in words."""
+    names = ("eps_xx", "eps_yy", "eps_zz", "gamma_xy", "gamma_xz", "gamma_yz")
+    values = increment * np.array([1.0, 1.0, 1.0, *[math.sqrt(2.0)] * 3])
+    strain = ", ".join(f"{name} {value:.3g}" for name, value in zip(names, values, strict=True) if value != 0.0)
+    return f"at a depth of {depth:.4g} m, for a strain increment of {strain or '0'}"
+
+
+def as_array(values: Any, shape: tuple[int, ...], name: str) -> Array:
+    """LawError where the shape is another one."""
+    try:
+        found = np.ascontiguousarray(values, dtype=float)
+    except (TypeError, ValueError) as err:
+        raise LawError(f"{name} is no array of numbers") from err
+    if found.shape != shape:
+        raise LawError(f"{name} has the shape {found.shape}, and must have {shape}")
+    return found
+
+
+class UpdateFormula(OwnFormula):
+    """Of a class with this program's `update`."""
+
+    def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
+        super().__init__(law, depth, initial, label)
+        self.columns = _checked_columns(getattr(law, "columns", STRESS))
+
+    def start(self) -> Array:
+        own = getattr(self.law, "start", None)
+        if own is None:
+            return super().start()
+        return as_array(asked_of_user(own), (len(self.depth), len(self.columns)), "start()")
+
+    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+        found = asked_of_user(lambda: self.law.update(increment, history, dt))
+        if not isinstance(found, tuple | list) or len(found) not in (3, 5):
+            what = "stress, tangent, history, and may return stored and elastic behind them"
+            raise LawError(f"update must return {what}, and returns {_kind(found)}")
+        n = len(self.depth)
+        shapes = ((n, 6), (n, 6, 6), (n, len(self.columns)), (n,), (n, 6))
+        return [as_array(*each) for each in zip(found, shapes, StressUpdate._fields, strict=False)]
+
+
+def _kind(found: Any) -> str:
+    return f"{len(found)} values" if isinstance(found, tuple | list) else type(found).__name__
+
+
+def _checked_columns(given: Any) -> tuple[str, ...]:
+    columns = tuple(given) if isinstance(given, tuple | list) else ()
+    if not columns or not all(isinstance(name, str) and re.fullmatch(r"[A-Za-z]\w*", name) for name in columns):
+        raise LawError("columns must be a tuple of names, of letters, digits and underscores")
+    if columns[:6] != STRESS:
+        raise LawError(f"columns must begin with the stress, {', '.join(STRESS)}")
+    if len({*columns}) < len(columns):
+        raise LawError("columns has a name twice")
+    return columns
+
+
+class ConstitutiveFormula(OwnFormula):
+    """Of a class with fenics-constitutive's `evaluate`. A history of six numbers is a tensor, which turns."""
+
+    def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
+        super().__init__(law, depth, initial, label)
+        dimensions = asked_of_user(lambda: getattr(law, "history_dim", None))
+        self._sizes = {key: _size_of(key, size) for key, size in (dimensions or {}).items()}
+        self.columns = _checked_columns((*STRESS, *(n for key, size in self._sizes.items() for n in _names(key, size))))
+        full = asked_of_user(lambda: getattr(law, "stress_strain_dim", 6))
+        if full != 6:
+            raise LawError(f"its constraint has {full} components of stress, and must be FULL, which has six")
+
+    @cached_property
+    def _order(self) -> list[int]:
+        """Where the law has each of the six components."""
+        probe, start = np.zeros((len(self.depth), 6)), self.start()
+        probe[:, 5] = PROBE
+        answers = np.abs(self._evaluated(probe, start, SHORTEST, [*range(6)])[0] - self.initial)[:, 4:].max(axis=0)
+        if not 4.0 * answers.min() < answers.max():
+            raise LawError("whether yz or xz is its fifth component can't be told from its answer to a shear yz")
+        return [0, 1, 2, 3, 4, 5] if answers[1] > answers[0] else [0, 1, 2, 3, 5, 4]
+
+    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+        return self._evaluated(increment, history, min(max(dt, SHORTEST), LONGEST), self._order)
+
+    def _evaluated(self, increment: Array, history: Array, dt: float, order: list[int]) -> Sequence[Array]:
+        n, first = len(increment), 6
+        stress, tangent = history[:, :6][:, order].ravel(), np.zeros(36 * n)
+        kept = dict[str, Array]()
+        for key, size in self._sizes.items():
+            values = history[:, first : first + size]
+            kept[key], first = (values[:, order] if size == 6 else values).ravel(), first + size
+        gradient = (increment[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]] * _GRADIENT).ravel()
+        asked_of_user(lambda: self.law.evaluate(0.0, dt, gradient, stress, tangent, kept if self._sizes else None))
+        after = [stress.reshape(n, 6)[:, order]]
+        for key, size in self._sizes.items():
+            values = as_array(kept.get(key), (n * size,), f"history {key}").reshape(n, size)
+            after.append(values[:, order] if size == 6 else values)
+        return after[0], np.ascontiguousarray(tangent.reshape(n, 6, 6)[:, order][:, :, order]), np.column_stack(after)
+
+
+_GRADIENT = np.sqrt([1.0, 0.5, 0.5, 0.5, 1.0, 0.5, 0.5, 0.5, 1.0])
+
+
+def _size_of(key: str, size: Any) -> int:
+    if isinstance(size, int) and size > 0:
+        return size
+    raise LawError(f"history_dim: {key} has the dimension {size}, and must be a number, six of a symmetric tensor")
+
+
+def _names(key: str, size: int) -> list[str]:
+    if size == 6:
+        return [f"{key}_{place}" for place in PLACES]
+    return [key] if size == 1 else [f"{key}_{n}" for n in range(size)]
