@@ -101,6 +101,7 @@ def values_of_cells(mesh: Any, size: int) -> tuple[Any, IntArray]:
     """A function with `size` numbers in each cell of a mesh that one rank has alone, and where they stand in its array
     (nc, size).
     """
+    _quiet_compiler_log()
     if hasattr(fem, "functionspace"):
         space = fem.functionspace(mesh, ("DG", 0, (size,)))
     else:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import ufl
 from dolfinx.mesh import create_interval
 from mpi4py import MPI

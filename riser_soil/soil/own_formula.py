@@ -2,13 +2,13 @@
 
 A class has one of three methods. Components are those of `mandel`, tension positive, unless said otherwise.
 
-- `update(increment, history, dt)`, as of `law.Formula`: it returns stress (n, 6), tangent (n, 6, 6) and history (n, nh),
-  and may return energy stored (n,) and elastic strain (n, 6) behind them. `columns` names what the history holds, the six
-  of the stress first; six columns from name_xx to name_yz are a tensor that turns with the material. `start()` is the
-  history at first: by default the initial stress, and zeros. `symmetric` says that the tangent is, `by_rate = False` that
-  dt does not matter, `overstress(stress)` what share of its strength is used.
-- `evaluate(t, del_t, grad_del_u, stress, tangent, history)` of fenics-constitutive: flat arrays, overwritten; which of its
-  two last components is yz, and which xz, has changed between its releases, and is found by asking.
+- `update(increment, history, dt)`, as of `law.Formula`: it returns stress (n, 6), tangent (n, 6, 6) and history
+  (n, nh), and may return energy stored (n,) and elastic strain (n, 6) behind them. `columns` names what the history
+  holds, the six of the stress first; six columns from name_xx to name_yz are a tensor that turns with the material.
+  `start()` is the history at first: by default the initial stress, and zeros. `symmetric` says that the tangent is,
+  `by_rate = False` that dt does not matter, `overstress(stress)` what share of its strength is used.
+- `evaluate(t, del_t, grad_del_u, stress, tangent, history)` of fenics-constitutive: flat arrays, overwritten; which of
+  its two last components is yz, and which xz, has changed between its releases, and is found by asking.
 - `psi(eps)`: energy density by the strain since the start, a tensor of UFL; `psi(eps, depth)` with the depth [m].
 """
 
@@ -152,7 +152,7 @@ def at_point(depth: float, increment: Array) -> str:
 def as_array(values: Any, shape: tuple[int, ...], name: str) -> Array:
     """LawError where the shape is another one."""
     try:
-        found = np.ascontiguousarray(values, dtype=float)
+        found = np.asarray(values, dtype=float, order="C")
     except (TypeError, ValueError) as err:
         raise LawError(f"{name} is no array of numbers") from err
     if found.shape != shape:
@@ -195,6 +195,15 @@ def _checked_columns(given: Any) -> tuple[str, ...]:
         raise LawError(f"columns must begin with the stress, {', '.join(STRESS)}")
     if len({*columns}) < len(columns):
         raise LawError("columns has a name twice")
+    left = [*columns]
+    for stem in [name[:-3] for name in columns if name.endswith(f"_{PLACES[0]}")]:
+        tensor = [f"{stem}_{place}" for place in PLACES]
+        if "/".join(tensor) in "/".join(columns):
+            left = [name for name in left if name not in tensor]
+    wrong = [name for name in left if re.search("_(x|y|z|xx|yy|zz|xy|xz|yz)$", name)]
+    if wrong:
+        what = f"is named as a component of a tensor, and lacks the others beside it, {', '.join(PLACES)}"
+        raise LawError(f"columns: {wrong[0]} {what}; give all six in this order, or another name")
     return columns
 
 
