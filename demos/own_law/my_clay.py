@@ -77,7 +77,7 @@ class CamClay:
             raise ArithmeticError("no convergence of the return to the yield surface")
         by = np.zeros_like(J)  # what moves the two equations by `squeezed` and q, turned about
         by[:, 0, 0], by[:, 1, 0] = 2.0 * y * self.elastic * now, -self.elastic * now * steep
-        by[:, 1, 1] = -2.0 * shear / q
+        by[:, 1, 1] = -2.0 * q / (self.M * (1.0 + stiff * y)) ** 2
         found[at], slopes[at] = np.column_stack((x, stiff * y)), np.linalg.solve(J, by)
         slopes[at, 1] *= stiff[:, None]
         return found[:, 0], found[:, 1], slopes
