@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array
-    from riser_soil.soil import law_trial, own_formula
+    from riser_soil.soil import imported_formula, law_trial
+    from riser_soil.soil.own_formula import OwnFormula
 else:
-    np, own_formula = LazyModule("numpy"), LazyModule("riser_soil.soil.own_formula")
+    np, imported_formula = LazyModule("numpy"), LazyModule("riser_soil.soil.imported_formula")
     law_trial = LazyModule("riser_soil.soil.law_trial")
 
 BEYOND = 1.01  # of the depths that a trial has seen: other ones
@@ -70,10 +71,10 @@ class ImportedLaw(SoilLaw):
         except LawError as err:
             raise SceneError(f"{self._key}: {self.from_.label}: {err}; correct the law") from err
 
-    def _made(self, depth: Array, initial: Array) -> own_formula.OwnFormula:
+    def _made(self, depth: Array, initial: Array) -> OwnFormula:
         law = self.from_.loaded
         given = arguments(law, self._given) | asked(law, {"depth": depth, "initial": initial})
-        return own_formula.formula_of(lambda: law(**given), depth, initial, f"{self._key}: {self.from_.label}")
+        return imported_formula.formula_of(lambda: law(**given), depth, initial, f"{self._key}: {self.from_.label}")
 
     def _try(self, depth: Array, initial: Array) -> None:
         """Where no trial has been yet."""

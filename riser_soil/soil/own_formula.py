@@ -29,25 +29,9 @@ from riser_soil.soil import mandel
 from riser_soil.soil.law import STRESS, StressUpdate
 from riser_soil.soil.law_source import LawError, reported
 
-METHODS = ("update", "evaluate", "psi")
 PLACES = tuple(name[-2:] for name in STRESS)
 SHORTEST, LONGEST = 1e-9, 1e12  # s; what stands for "at once" and "slow" where a law divides by the time
 PROBE = 1e-6  # strain
-
-
-def formula_of(make: Callable[[], Any], depth: Array, initial: Array, label: str) -> OwnFormula:
-    """The formula of the object that `make` makes, at depths (n,) [m] under a stress (n, 6) [Pa]; LawError."""
-    law = asked_of_user(make)
-    found = [name for name in METHODS if callable(getattr(law, name, None))]
-    if len(found) != 1:
-        has = f"has {' and '.join(found)}" if found else "has none"
-        raise LawError(f"the class must have one of the methods {', '.join(METHODS)}, and {has}")
-    if found[0] == "psi":
-        from riser_soil.soil.energy_formula import EnergyFormula
-
-        return EnergyFormula(law, depth, initial, label)
-    kinds: dict[str, type[OwnFormula]] = {"update": UpdateFormula, "evaluate": ConstitutiveFormula}
-    return kinds[found[0]](law, depth, initial, label)
 
 
 def asked_of_user(call: Callable[[], Any]) -> Any:
