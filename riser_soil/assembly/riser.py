@@ -152,6 +152,7 @@ def line_of(
         direction=np.asarray(vertical_plane(scene).direction),
         active=active,
         name=name,
+        loose=elements.loose,
     )
     if scene.line.across is not None:
         line.keep_in_plane(scene.line.across)

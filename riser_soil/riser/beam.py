@@ -18,6 +18,7 @@ from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialFrames
+from riser_soil.riser.tension_only import blend_forces, blend_tangent, blended, heaped, is_heaped
 from riser_soil.riser.vectors import vector
 
 Planar = tuple[beam2d.PlanarReference, beam2d.PlanarSection]
@@ -26,12 +27,12 @@ Spatial = tuple[beam3d.SpatialReference, beam3d.SpatialSection]
 
 def in_plane(line: Line, frames: PlanarFrames, elements: Elements) -> Planar:
     """EI is EI_y, as the second section axis is normal to the plane."""
-    section = beam2d.PlanarSection(elements.EA, elements.stiffness()[0], *elements.slack_law)
+    section = beam2d.PlanarSection(elements.EA, elements.stiffness()[0], elements.axial_law)
     return beam2d.reference(line.chord0, *_ends(frames.alpha0), line.length), section
 
 
 def in_space(line: Line, frames: SpatialFrames, elements: Elements) -> Spatial:
-    section = beam3d.SpatialSection(elements.EA, *elements.stiffness(), elements.GJ, *elements.slack_law)
+    section = beam3d.SpatialSection(elements.EA, *elements.stiffness(), elements.GJ, elements.axial_law)
     return beam3d.reference(line.chord0, *_ends(frames.T0), line.length), section
 
 
@@ -104,63 +105,170 @@ def seen_in_plane(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
 
 @add_forces.of(PlanarBeam)
 def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -> None:
-    f = np.empty(6)
+    f, heap = np.empty(6), np.empty(6)
     for e in range(part.length.size):
         seen = seen_in_plane(at, e)
         beam2d.write_element_forces(e, seen, part.reference, part.section, f)
         beam2d.add_load_forces(seen, part.length[e], part.load[e], f)
+        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
+            _blend_planar_forces(part, at, e, seen, f, heap)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
 
+@njit
+def _blend_planar_forces(
+    part: PlanarBeam, at: PlanarConfiguration, e: int, seen: beam2d.PlanarCorotated, f: Array, heap: Array
+) -> None:
+    """Make forces f (6,) of an element with its bow those that it has in a heap; workspace heap (6,)."""
+    chord, L, w = at.chord[e], part.length[e], part.load[e]
+    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    beam2d.write_heaped_forces(state, chord, at.end_angle[e, 0], at.end_angle[e, 1], L, w, heap)
+    blend_forces(state, chord, L, _more_than_in_planar_heap(part, at, e, seen), f, heap)
+
+
+@njit
+def _more_than_in_planar_heap(part: PlanarBeam, at: PlanarConfiguration, e: int, seen: beam2d.PlanarCorotated) -> float:
+    """Energy [J] of an element with its bow less that in a heap."""
+    L, chord = part.length[e], at.chord[e]
+    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    bowed = beam2d.element_energy(e, seen, part.reference, part.section)
+    bowed += beam2d.load_potential(seen, L, part.load[e], 0.0, 0.0)
+    turned = at.end_angle[e]
+    spring = beam2d.heaped_energy(state, chord, turned[0], turned[1], L)
+    return bowed - spring - beam2d.heaped_load_potential(turned[0], turned[1], L, part.load[e])
+
+
 @add_forces.of(SpatialBeam)
 def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces) -> None:
-    f = np.empty(12)
+    f, heap = np.empty(12), np.empty(12)
     for e in range(part.length.size):
         beam3d.write_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, f)
+        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
+            _blend_spatial_forces(part, at, e, f, heap)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
 
 
+@njit
+def _blend_spatial_forces(part: SpatialBeam, at: SpatialConfiguration, e: int, f: Array, heap: Array) -> None:
+    """Make forces f (12,) of an element with its bow those that it has in a heap; workspace heap (12,)."""
+    chord, L, w = at.chord[e], part.length[e], part.load[e]
+    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    beam3d.write_heaped_forces(state, chord, at.frame1[e], at.frame2[e], L, w, heap)
+    blend_forces(state, chord, L, _more_than_in_spatial_heap(part, at, e), f, heap)
+
+
+@njit
+def _more_than_in_spatial_heap(part: SpatialBeam, at: SpatialConfiguration, e: int) -> float:
+    """Energy [J] of an element with its bow less that in a heap."""
+    L, chord = part.length[e], at.chord[e]
+    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference)
+    bowed = beam3d.element_energy(e, seen, part.reference, part.section)
+    bowed += beam3d.element_potential(seen, L, vector(part.load[e]), beam3d.STILL)
+    spring = beam3d.heaped_energy(state, chord, at.frame1[e], at.frame2[e], L)
+    return bowed - spring - beam3d.heaped_load_potential(at.frame1[e], at.frame2[e], L, part.load[e])
+
+
 @add_tangent.of(PlanarBeam)
 def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    f, own = np.empty(6), np.empty((6, 6))
+    f, own, heap, heap_own = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     for e in range(part.length.size):
         seen = seen_in_plane(at, e)
         beam2d.write_element(e, seen, part.reference, part.section, f, own)
         beam2d.add_load_tangent(seen, part.length[e], part.load[e], own)
+        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
+            beam2d.add_load_forces(seen, part.length[e], part.load[e], f)
+            _blend_planar_tangent(part, at, e, seen, f, own, heap, heap_own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
 
 
+@njit
+def _blend_planar_tangent(
+    part: PlanarBeam,
+    at: PlanarConfiguration,
+    e: int,
+    seen: beam2d.PlanarCorotated,
+    f: Array,
+    K: Array,
+    heap: Array,
+    heap_K: Array,
+) -> None:
+    """Make the tangent K (6, 6) of an element with its bow and forces f (6,) that in a heap; workspaces of both."""
+    chord, L, w, turned = at.chord[e], part.length[e], part.load[e], at.end_angle[e]
+    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    beam2d.write_heaped_forces(state, chord, turned[0], turned[1], L, w, heap)
+    beam2d.write_heaped_tangent(state, turned[0], turned[1], L, w, heap_K)
+    blend_tangent(state, chord, L, _more_than_in_planar_heap(part, at, e, seen), f, K, heap, heap_K)
+
+
 @add_tangent.of(SpatialBeam)
 def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     f, own, workspace = np.empty(12), np.empty((12, 12)), beam3d.tangent_workspace()
+    heap, heap_own = np.empty(12), np.empty((12, 12))
     for e in range(part.length.size):
         beam3d.write_element(
             e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, workspace, f, own
         )
+        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
+            _blend_spatial_tangent(part, at, e, f, own, heap, heap_own)
         rotations.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)
         for i in range(12):
             for j in range(12):
                 K[e, i, j] += weights.force * own[i, j]
 
 
+@njit
+def _blend_spatial_tangent(
+    part: SpatialBeam, at: SpatialConfiguration, e: int, f: Array, K: Array, heap: Array, heap_K: Array
+) -> None:
+    """Make forces f (12,) and tangent K (12, 12) of an element with its bow those in a heap; workspaces of both."""
+    chord, L, more = at.chord[e], part.length[e], _more_than_in_spatial_heap(part, at, e)
+    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    beam3d.write_heaped_forces(state, chord, at.frame1[e], at.frame2[e], L, part.load[e], heap)
+    beam3d.write_heaped_tangent(state, at.frame1[e], at.frame2[e], L, part.load[e], heap_K)
+    blend_tangent(state, chord, L, more, f, K, heap, heap_K)
+    blend_forces(state, chord, L, more, f, heap)
+
+
 @add_energy.of(PlanarBeam)
 def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> None:
+    section, load = part.section, part.load
     for e in range(part.length.size):
-        seen, x = seen_in_plane(at, e), at.x
-        energy[1] += beam2d.element_energy(e, seen, part.reference, part.section)
-        p, z = 0.5 * (x[e, 0] + x[e + 1, 0]), 0.5 * (x[e, 1] + x[e + 1, 1])
-        energy[2] += beam2d.load_potential(seen, part.length[e], part.load[e], p, z)
+        seen, x, L, chord, turned = seen_in_plane(at, e), at.x, part.length[e], at.chord[e], at.end_angle[e]
+        stored = beam2d.element_energy(e, seen, part.reference, section)
+        by_bow = beam2d.load_potential(seen, L, load[e], 0.0, 0.0)
+        if is_heaped(section.law, e, chord, L):
+            state = heaped(section.law, e, chord, L, section.EA[e])
+            stored = blended(state, stored, beam2d.heaped_energy(state, chord, turned[0], turned[1], L))
+            by_bow = blended(state, by_bow, beam2d.heaped_load_potential(turned[0], turned[1], L, load[e]))
+        energy[1] += stored
+        energy[2] += by_bow
+        for i in range(2):
+            energy[2] -= 0.5 * L * load[e, i] * (x[e, i] + x[e + 1, i])
 
 
 @add_energy.of(SpatialBeam)
 def _spatial_energy(part: SpatialBeam, at: SpatialConfiguration, energy: Array) -> None:
+    section, load = part.section, part.load
     for e in range(part.length.size):
-        seen, x, w = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference), at.x, vector(part.load[e])
-        energy[1] += beam3d.element_energy(e, seen, part.reference, part.section)
-        middle = 0.5 * (x[e, 0] + x[e + 1, 0]), 0.5 * (x[e, 1] + x[e + 1, 1]), 0.5 * (x[e, 2] + x[e + 1, 2])
-        energy[2] += beam3d.element_potential(seen, part.length[e], w, middle)
+        seen, x, L, chord = (
+            beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference),
+            at.x,
+            part.length[e],
+            at.chord[e],
+        )
+        stored = beam3d.element_energy(e, seen, part.reference, section)
+        by_bow = beam3d.element_potential(seen, L, vector(load[e]), beam3d.STILL)
+        if is_heaped(section.law, e, chord, L):
+            state = heaped(section.law, e, chord, L, section.EA[e])
+            stored = blended(state, stored, beam3d.heaped_energy(state, chord, at.frame1[e], at.frame2[e], L))
+            by_bow = blended(state, by_bow, beam3d.heaped_load_potential(at.frame1[e], at.frame2[e], L, load[e]))
+        energy[1] += stored
+        energy[2] += by_bow
+        for i in range(3):
+            energy[2] -= 0.5 * L * load[e, i] * (x[e, i] + x[e + 1, i])

@@ -37,7 +37,20 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser.tension_only import pulled, stored, unfolding
+from riser_soil.riser.tension_only import (
+    ElementLaw,
+    Heaped,
+    Law,
+    law_at,
+    pulled,
+    set_spring_forces,
+    set_spring_tangent,
+    spring_energy,
+    stored,
+    with_fold,
+    with_fold_change,
+    with_fold_energy,
+)
 
 Vec2 = tuple[float, float]
 
@@ -47,9 +60,7 @@ class PlanarSection(NamedTuple):
 
     EA: Array  # N
     EI: Array  # N m2
-    share: Array  # constants of elements that go slack: `tension_only`
-    soft: Array
-    fold: Array  # N
+    law: Law  # `tension_only`
 
 
 class PlanarReference(NamedTuple):
@@ -67,9 +78,7 @@ class PlanarElement(NamedTuple):
     L: float
     EA: float
     EI_per_L: float
-    share: float
-    soft: float
-    fold: float
+    law: ElementLaw
     l0: float
     theta1: float
     theta2: float
@@ -120,14 +129,14 @@ def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array)
 @njit
 def element_at(ref: PlanarReference, section: PlanarSection, e: int) -> PlanarElement:
     """Stiffnesses and unstressed configuration of element e."""
-    L, law = ref.L[e], (section.share[e], section.soft[e], section.fold[e])
-    return PlanarElement(L, section.EA[e], section.EI[e] / L, *law, ref.l0[e], ref.theta1[e], ref.theta2[e])
+    L, law = ref.L[e], law_at(section.law, e)
+    return PlanarElement(L, section.EA[e], section.EI[e] / L, law, ref.l0[e], ref.theta1[e], ref.theta2[e])
 
 
 @njit
 def _with_axial_stiffness(element: PlanarElement, EA: float) -> PlanarElement:
-    law = element.share, element.soft, element.fold
-    return PlanarElement(element.L, EA, element.EI_per_L, *law, element.l0, element.theta1, element.theta2)
+    L, EI_per_L = element.L, element.EI_per_L
+    return PlanarElement(L, EA, EI_per_L, element.law, element.l0, element.theta1, element.theta2)
 
 
 @njit
@@ -142,7 +151,7 @@ def _stress(element: PlanarElement, at: PlanarCorotated, strain: float) -> tuple
     N = element.EA * strain
     m1, m2 = end_moments(element.EI_per_L, at.theta1 - element.theta1, at.theta2 - element.theta2)
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
-    straightening = element.L * (N + unfolding(bow(at.theta1, at.theta2), element.fold)[0])
+    straightening = element.L * with_fold(element.law, N, bow(at.theta1, at.theta2))
     return N, m1 + straightening * slope1, m2 + straightening * slope2
 
 
@@ -152,10 +161,11 @@ def _elastic_variation(
 ) -> tuple[float, float, float]:
     """Variation of `_stress`, by `stress_variation`."""
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
-    unfolds, stiffness = unfolding(bow(at.theta1, at.theta2), element.fold)
-    dN, dm1, dm2 = stress_variation(element, at, N + unfolds, stretch, dtheta1, dtheta2)
-    change = element.L * stiffness * (slope1 * dtheta1 + slope2 * dtheta2)
-    return dN, dm1 + change * slope1, dm2 + change * slope2
+    bowed, change = bow(at.theta1, at.theta2), slope1 * dtheta1 + slope2 * dtheta2
+    both = with_fold(element.law, N, bowed)
+    dN, dm1, dm2 = stress_variation(element, at, both, stretch, dtheta1, dtheta2)
+    dm1 = with_fold_change(element.law, dm1, element.L * slope1, bowed, change)
+    return dN, dm1, with_fold_change(element.law, dm2, element.L * slope2, bowed, change)
 
 
 @njit
@@ -178,8 +188,8 @@ def element_energy(e: int, at: PlanarCorotated, ref: PlanarReference, section: P
     element = element_at(ref, section, e)
     phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
     m1, m2 = end_moments(element.EI_per_L, phi1, phi2)
-    axial = element.EA * stored(_strain(element, at), element.share, element.soft)
-    axial += element.fold * bow(at.theta1, at.theta2) ** 3 / 3.0
+    axial = element.EA * stored(element.law, _strain(element, at))
+    axial = with_fold_energy(element.law, axial, bow(at.theta1, at.theta2))
     return element.L * axial + 0.5 * (m1 * phi1 + m2 * phi2)
 
 
@@ -202,7 +212,7 @@ def write_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
 def write_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array) -> None:
     """Write internal forces f (6,) of element e."""
     element = element_at(ref, section, e)
-    strain, _ = pulled(_strain(element, at), element.share, element.soft)
+    strain, _ = pulled(element.law, _strain(element, at))
     N, m1, m2 = _stress(element, at, strain)
     write_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
@@ -245,7 +255,7 @@ def write_element(
 ) -> None:
     """Write internal forces f (6,) of element e and their derivative K (6, 6) by displacements and angles."""
     element = element_at(ref, section, e)
-    strain, stiffness = pulled(_strain(element, at), element.share, element.soft)
+    strain, stiffness = pulled(element.law, _strain(element, at))
     N, m1, m2 = _stress(element, at, strain)
     response = nodal_forces(at, N, m1, m2)
     write_forces(at.axis, response, f)
@@ -324,3 +334,37 @@ def add_load_tangent(at: PlanarCorotated, L: float, w: Array, K: Array) -> None:
             K[i + 1, j + 2] += mixed * c
             K[j + 2, i] += mixed * -s
             K[j + 2, i + 1] += mixed * c
+
+
+@njit
+def heaped_energy(at: Heaped, chord: Array, direction1: float, direction2: float, L: float) -> float:
+    """Energy [J] of an element in a heap: `tension_only`."""
+    return spring_energy(at, chord) + 0.5 * at.stiffness * L * L * (1.0 - math.cos(direction2 - direction1))
+
+
+@njit
+def heaped_load_potential(direction1: float, direction2: float, L: float, w: Array) -> float:
+    """Potential [J] of a load w per length (2,) [N/m] on its bow."""
+    p, z = math.cos(direction1) - math.cos(direction2), math.sin(direction1) - math.sin(direction2)
+    return -L * L / 12.0 * (w[0] * p + w[1] * z)
+
+
+@njit
+def write_heaped_forces(
+    at: Heaped, chord: Array, direction1: float, direction2: float, L: float, w: Array, f: Array
+) -> None:
+    """Write the forces f (6,) of both, and of the load on the nodes."""
+    set_spring_forces(at, chord, L, w, f)
+    turn = 0.5 * at.stiffness * L * L * math.sin(direction2 - direction1)
+    f[2] = -turn - L * L / 12.0 * (w[1] * math.cos(direction1) - w[0] * math.sin(direction1))
+    f[5] = turn + L * L / 12.0 * (w[1] * math.cos(direction2) - w[0] * math.sin(direction2))
+
+
+@njit
+def write_heaped_tangent(at: Heaped, direction1: float, direction2: float, L: float, w: Array, K: Array) -> None:
+    """Write their derivative K (6, 6)."""
+    set_spring_tangent(at, 2, K)
+    turn = 0.5 * at.stiffness * L * L * math.cos(direction2 - direction1)
+    K[2, 2] = turn + L * L / 12.0 * (w[0] * math.cos(direction1) + w[1] * math.sin(direction1))
+    K[5, 5] = turn - L * L / 12.0 * (w[0] * math.cos(direction2) + w[1] * math.sin(direction2))
+    K[2, 5] = K[5, 2] = -turn

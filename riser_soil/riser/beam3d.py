@@ -52,6 +52,14 @@ from riser_soil.riser.strain3d import (
     stress,
     stress_change,
 )
+from riser_soil.riser.tension_only import (
+    Heaped,
+    Law,
+    law_at,
+    set_spring_forces,
+    set_spring_tangent,
+    spring_energy,
+)
 from riser_soil.riser.vectors import Mat, Vec, add, dot, matrix, scale, sub, vecmat, vector
 
 STILL = (0.0, 0.0, 0.0)
@@ -64,9 +72,7 @@ class SpatialSection(NamedTuple):
     EIy: Array  # N m2, bending about the second section axis
     EIz: Array  # N m2, bending about the third section axis
     GJ: Array  # N m2, positive
-    share: Array  # constants of elements that go slack: `tension_only`
-    soft: Array
-    fold: Array  # N
+    law: Law  # `tension_only`
 
 
 class SpatialReference(NamedTuple):
@@ -142,7 +148,7 @@ def _unstressed(ref: SpatialReference, e: int) -> Strain:
 def stiffness(ref: SpatialReference, section: SpatialSection, e: int) -> Stiffness:
     """Stiffnesses of element e."""
     elastic = section.EA[e], section.EIy[e], section.EIz[e], section.GJ[e]
-    return Stiffness(ref.L[e], *elastic, section.share[e], section.soft[e], section.fold[e])
+    return Stiffness(ref.L[e], *elastic, law_at(section.law, e))
 
 
 @njit
@@ -362,3 +368,66 @@ def write_element(
     response, tangent = _respond(D, _unstressed(ref, e), at, w)
     _write_loaded_forces(D.L, at, response, w, f)
     _tangent(tangent, at, response, workspace, K)
+
+
+@njit
+def heaped_energy(at: Heaped, chord: Array, frame1: Array, frame2: Array, L: float) -> float:
+    """Energy [J] of an element in a heap: `tension_only`. 1 + 2 cos of the angle between its ends is the trace of the
+    rotation from one to the other.
+    """
+    return spring_energy(at, chord) + 0.25 * at.stiffness * L * L * (3.0 - _trace(frame1, frame2))
+
+
+@njit
+def _trace(frame1: Array, frame2: Array) -> float:
+    """Sum of the products of the frames' axes."""
+    total = 0.0
+    for i in range(3):
+        for k in range(3):
+            total += frame1[i, k] * frame2[i, k]
+    return total
+
+
+@njit
+def heaped_load_potential(frame1: Array, frame2: Array, L: float, w: Array) -> float:
+    """Potential [J] of a load w per length (3,) [N/m] on its bow."""
+    along = 0.0
+    for i in range(3):
+        along += w[i] * (frame1[i, 0] - frame2[i, 0])
+    return -L * L / 12.0 * along
+
+
+@njit
+def write_heaped_forces(at: Heaped, chord: Array, frame1: Array, frame2: Array, L: float, w: Array, f: Array) -> None:
+    """Write the forces f (12,) of both, and of the load on the nodes."""
+    set_spring_forces(at, chord, L, w, f)
+    stiffness, twelfth = 0.25 * at.stiffness * L * L, L * L / 12.0
+    for i in range(3):
+        j, m = (i + 1) % 3, (i + 2) % 3
+        turn = 0.0
+        for k in range(3):
+            turn += stiffness * (frame1[j, k] * frame2[m, k] - frame1[m, k] * frame2[j, k])
+        f[3 + i] = -turn - twelfth * (frame1[j, 0] * w[m] - frame1[m, 0] * w[j])
+        f[9 + i] = turn + twelfth * (frame2[j, 0] * w[m] - frame2[m, 0] * w[j])
+
+
+@njit
+def write_heaped_tangent(at: Heaped, frame1: Array, frame2: Array, L: float, w: Array, K: Array) -> None:
+    """Write their derivative K (12, 12) by displacements and spatial spins."""
+    set_spring_tangent(at, 3, K)
+    stiffness, twelfth, trace = 0.25 * at.stiffness * L * L, L * L / 12.0, _trace(frame1, frame2)
+    along1, along2 = 0.0, 0.0
+    for i in range(3):
+        along1 += frame1[i, 0] * w[i]
+        along2 += frame2[i, 0] * w[i]
+    for i in range(3):
+        for j in range(3):
+            same = 1.0 if i == j else 0.0
+            turn, back = trace * same, trace * same
+            for k in range(3):
+                turn -= frame2[i, k] * frame1[j, k]
+                back -= frame1[i, k] * frame2[j, k]
+            K[3 + i, 3 + j] = stiffness * back - twelfth * (frame1[i, 0] * w[j] - same * along1)
+            K[9 + i, 9 + j] = stiffness * turn + twelfth * (frame2[i, 0] * w[j] - same * along2)
+            K[3 + i, 9 + j] = -stiffness * turn
+            K[9 + i, 3 + j] = -stiffness * back

@@ -26,6 +26,7 @@ class PlanarBase(NamedTuple):
     chord: Array
     angle: Array
     alpha0: Array
+    loose: Array
 
 
 class SpatialBase(NamedTuple):
@@ -35,6 +36,7 @@ class SpatialBase(NamedTuple):
     chord: Array
     R: Array
     T0: Array
+    loose: Array
 
 
 class PlanarConfiguration(NamedTuple):
@@ -109,8 +111,8 @@ class Maps(NamedTuple):
 def base_of(line: MovingNodes) -> Base:
     """The accepted configuration of a line, as it is kept there."""
     if isinstance(line.frames, PlanarFrames):
-        return PlanarBase(line.x, line.chord, line.frames.angle, line.frames.alpha0)
-    return SpatialBase(line.x, line.chord, line.frames.R, line.frames.T0)
+        return PlanarBase(line.x, line.chord, line.frames.angle, line.frames.alpha0, line.loose)
+    return SpatialBase(line.x, line.chord, line.frames.R, line.frames.T0, line.loose)
 
 
 def workspace_for(line: MovingNodes) -> Configuration:
@@ -278,11 +280,15 @@ def _write_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Arr
 def _write_folded_in_plane(at: PlanarConfiguration, base: PlanarBase, out: IntArray) -> None:
     tangent, normal = np.empty(at.tangent.shape), np.empty(at.tangent.shape)
     directors.write_ends(base.angle, base.alpha0, np.empty(base.alpha0.shape), tangent, normal)
-    line_kernels.write_folded(base.chord, tangent, at.chord, at.tangent, directors.first_wound(at.end_angle), out)
+    line_kernels.write_folded(
+        base.chord, tangent, at.chord, at.tangent, directors.first_wound(at.end_angle), base.loose, out
+    )
 
 
 @write_folded.of(SpatialConfiguration)
 def _write_folded_in_space(at: SpatialConfiguration, base: SpatialBase, out: IntArray) -> None:
     tangent, first, second = np.empty(at.tangent.shape), np.empty(at.frame1.shape), np.empty(at.frame2.shape)
     spatial_directors.write_end_frames(base.R, base.T0, first, second, tangent)
-    line_kernels.write_folded(base.chord, tangent, at.chord, at.tangent, spatial_directors.first_wound(at.Theta), out)
+    line_kernels.write_folded(
+        base.chord, tangent, at.chord, at.tangent, spatial_directors.first_wound(at.Theta), base.loose, out
+    )

@@ -35,6 +35,7 @@ class Line(MovingNodes):
     Where no end prescribes the rotation of a line in space, `prescribe_spin` keeps the start from spinning about the
     pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
     active: whether this rank evaluates and owns the riser.
+    loose: chords (ne,) [m] below which an element may be folded, as it lies in a heap; none by default.
     """
 
     def __init__(
@@ -47,6 +48,7 @@ class Line(MovingNodes):
         prescribe_spin: bool = False,
         active: bool = True,
         name: str = "riser",
+        loose: Array | None = None,
     ) -> None:
         self.dimension, self.start, self.end = dimension, start, end
         self.outer_diameter = layout.outer_diameter
@@ -58,6 +60,8 @@ class Line(MovingNodes):
         self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
         frames, x = initial_frames(layout.rotation, layout.T0, self.basis), (layout.position - self.origin) @ self.basis
         super().__init__(name, x, frames, layout.arc, self.basis, active)
+        if loose is not None:
+            self.loose = loose
         self._ends = LineEnds(start, end, self.arc.size, self.frames, self.origin, self.basis, self.turning_axes)
         self.prescribe_spin(prescribe_spin)
 
@@ -169,7 +173,7 @@ class Line(MovingNodes):
         trial, found = self.trial(state), np.zeros(2, dtype=np.int64)
         left = trial if before is None else self.trial(before)
         first, last = (left.chord, left.turn.tangent), (trial.chord, trial.turn.tangent)
-        write_folded(*first, *last, trial.turn.first_wound, found)
+        write_folded(*first, *last, trial.turn.first_wound, self.loose, found)
         return self.folding(*as_list(found))
 
     def folding(self, folded: int, swung: int) -> str:

@@ -11,18 +11,24 @@ from riser_soil.core.compiled import njit
 
 
 @njit
-def write_folded(chord0: Array, tangent0: Array, chord: Array, tangent: Array, wound: int, out: IntArray) -> None:
+def write_folded(
+    chord0: Array, tangent0: Array, chord: Array, tangent: Array, wound: int, loose: Array, out: IntArray
+) -> None:
     """Write the numbers (2,) of the first element that is folded or wound up, and of the first that swings too far from
-    one configuration to another, see `Line.inadmissible`; ne without any.
+    one configuration to another, see `Line.inadmissible`; ne without any. loose: see `first_folded`.
     """
-    out[0] = min(first_folded(chord, tangent), wound)
-    out[1] = first_swung(chord0, tangent0, chord, tangent, MOST_SWING)
+    out[0] = min(first_folded(chord, tangent, loose), wound)
+    out[1] = first_swung(chord0, tangent0, chord, tangent, loose, MOST_SWING)
 
 
 @njit
-def first_folded(chord: Array, tangent: Array) -> int:
-    """First element with an end whose tangent points against the chord; ne without any."""
+def first_folded(chord: Array, tangent: Array, loose: Array) -> int:
+    """First element with an end whose tangent points against the chord; ne without any. loose (ne,): chords [m] below
+    which an element lies in a heap, where neither its direction nor that of its ends counts.
+    """
     for e in range(chord.shape[0]):
+        if _is_shorter(chord[e], loose[e]):
+            continue
         for side in range(2):
             ahead = 0.0
             for i in range(chord.shape[1]):
@@ -33,13 +39,24 @@ def first_folded(chord: Array, tangent: Array) -> int:
 
 
 @njit
-def first_swung(chord0: Array, tangent0: Array, chord: Array, tangent: Array, most: float) -> int:
+def _is_shorter(chord: Array, length: float) -> bool:
+    square = 0.0
+    for i in range(chord.size):
+        square += chord[i] ** 2
+    return square < length * length
+
+
+@njit
+def first_swung(chord0: Array, tangent0: Array, chord: Array, tangent: Array, loose: Array, most: float) -> int:
     """First element with an end whose tangent turns against the chord by more than `most` [rad], from one configuration
-    to another; ne without any. Chords (ne, d), turned from one to the other the shortest way; tangents (ne, 2, d).
+    to another; ne without any. Chords (ne, d), turned from one to the other the shortest way; tangents (ne, 2, d);
+    loose: see `first_folded`.
     """
     ne, d = chord.shape
     first, second = np.empty(d), np.empty(d)
     for e in range(ne):
+        if _is_shorter(chord0[e], loose[e]) or _is_shorter(chord[e], loose[e]):
+            continue
         _write_unit(chord0[e], first)
         _write_unit(chord[e], second)
         for side in range(2):
@@ -87,8 +104,7 @@ def folded(arc: float, length: float, diameter: float, ends: Array, chord: Array
     ends, and chord (d,). Of one that was bent double before, its bend is told, which no shorter step prevents.
     """
     found = (
-        f"the riser is folded at arc {arc:.6g} m, where an element's end turns by more than "
-        "90 degrees from its chord"
+        f"the riser is folded at arc {arc:.6g} m, where an element's end turns by more than 90 degrees from its chord"
     )
     first, second = _swings(ends, chord / np.linalg.norm(chord))
     swing = max(abs(first), abs(second))

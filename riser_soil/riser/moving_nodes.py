@@ -68,6 +68,7 @@ class MovingNodes:
     axes. Base of `Line` and `MovingBody`, which say what is prescribed.
 
     x (nn, d), frames: the accepted configuration; arc (nn,): their places along the chain; basis (3, d): its axes.
+    loose (ne,): see `Line`.
     active: whether this rank evaluates and owns it.
     """
 
@@ -77,6 +78,7 @@ class MovingNodes:
         self.chord: Array = np.diff(x, axis=0)
         self.frames, self.arc, self.basis, self.active = frames, arc, basis, active
         self.length = np.diff(arc)
+        self.loose = np.zeros(self.length.size)
         self.nodes, self.dimension = x.shape
         self.ndof = self.dimension + frames.dofs
         self.size = self.nodes * self.ndof

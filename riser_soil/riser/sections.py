@@ -12,6 +12,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError
 from riser_soil.riser.slack import law_of
+from riser_soil.riser.tension_only import BOWED, Law
 
 CHAIN = 1e-18  # EI of an element without bending stiffness, over EA L^2: below the round-off of its other stiffnesses
 
@@ -170,9 +171,14 @@ class Elements:
         return np.where(self.bends, self.EI_y, chain), np.where(self.bends, self.EI_z, chain)
 
     @cached_property
-    def slack_law(self) -> tuple[Array, Array, Array]:
-        """Constants (ne,) by which elements without bending stiffness go slack, see `tension_only`."""
+    def axial_law(self) -> Law:
+        """How elements without bending stiffness go slack, if there are any."""
         return law_of(self.bends, self.weight, self.length, self.EA)
+
+    @property
+    def loose(self) -> Array:
+        """Chords (ne,) [m] below which elements without bending stiffness lie in a heap, 0 of others."""
+        return np.where(self.bends, 0.0, BOWED * self.length)
 
     @property
     def arc(self) -> Array:

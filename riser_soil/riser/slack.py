@@ -8,23 +8,24 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.riser.cable import BarChain, CableBalance
+from riser_soil.riser.tension_only import Law, Linear, TensionOnly
 
 PULL = 1e-4  # of the line's weight: tension in a slack element as long as its chord
 LEAST_SHARE, MOST_SHARE = 1e-11, 1e-4  # r: above round-off, and where EA is small beside the weight
 SOFT = 0.1  # of an element's weight, over EA
 MOST_SOFT = 0.1  # of the strain
 FOLD = 500.0  # of an element's weight: an element under this alone sags to angles of 0.5 rad
-CLOSEST = 1e-4  # of their length: bars in a heap
 
 
-def law_of(bends: BoolArray, weight: Array, length: Array, EA: Array) -> tuple[Array, Array, Array]:
-    """Constants r, soft and fold [N] (ne,) of `tension_only` for elements with and without bending stiffness; weight
-    N/m, length m, EA N (ne,).
-    """
+
+def law_of(bends: BoolArray, weight: Array, length: Array, EA: Array) -> Law:
+    """Law of elements with and without bending stiffness; weight N/m, length m, EA N (ne,)."""
+    if bends.all():
+        return Linear()
     heavy = np.abs(weight) * length
     share = np.clip(PULL * heavy.sum() / EA, LEAST_SHARE, MOST_SHARE)
     soft = np.clip(SOFT * heavy / EA, share, MOST_SOFT)
-    return np.where(bends, 1.0, share), np.where(bends, 1.0, soft), np.where(bends, 0.0, FOLD * heavy)
+    return TensionOnly(np.where(bends, 1.0, share), np.where(bends, 1.0, soft), np.where(bends, 0.0, FOLD * heavy))
 
 
 def heap(chain: BarChain, h: float, surface: float = np.inf) -> tuple[Array, CableBalance] | None:
@@ -54,13 +55,13 @@ def _heap(chain: BarChain, h: float) -> tuple[Array, CableBalance] | None:
     room = chain.l0[lies].copy()
     room[0] -= first.z[-1]
     room[-1] -= last.z[-1]
-    if room.min() < 0.0 or h > room.sum() or h < CLOSEST * room.sum():
+    if room.min() < 0.0 or h > room.sum():
         return None
     dx, V = np.zeros(chain.l0.size), np.zeros(chain.l0.size)
     dx[lies] = room * h / room.sum()
     V[: first.V.size], V[V.size - last.V.size :] = -first.V, last.V[::-1]
     z = np.concatenate([first.z, np.zeros(lying - 1), last.z[::-1]])
-    pull = PULL * chain.load * h / room.sum()
+    pull = PULL * chain.load * max(h / room.sum(), LEAST_SHARE)  # no more than a direction where h is 0
     return np.append(0.0, np.cumsum(dx)), CableBalance(chain, pull, z, V, np.zeros(z.size - 2), 0.0)
 
 

@@ -36,7 +36,14 @@ from typing import NamedTuple
 
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam2d import bow, bow_slopes
-from riser_soil.riser.tension_only import pulled, stored, unfolding
+from riser_soil.riser.tension_only import (
+    ElementLaw,
+    pulled,
+    stored,
+    with_fold,
+    with_fold_change,
+    with_fold_energy,
+)
 from riser_soil.riser.vectors import Vec, add, dot, scale
 
 ROOT3 = math.sqrt(3.0)
@@ -51,9 +58,7 @@ class Stiffness(NamedTuple):
     EIy: float  # N m2, about the second section axis
     EIz: float  # N m2, about the third section axis
     GJ: float  # N m2
-    share: float  # constants of an element that goes slack: `tension_only`
-    soft: float
-    fold: float  # N
+    law: ElementLaw  # `tension_only`
 
 
 class Station(NamedTuple):
@@ -155,9 +160,7 @@ def _gradients(a: Vec, b: Vec) -> tuple[Vec, Vec, Vec, Vec]:
 
 
 @njit
-def strain_change(
-    L: float, a: Vec, b: Vec, at: tuple[Station, Station], stretch: float, da: Vec, db: Vec
-) -> Strain:
+def strain_change(L: float, a: Vec, b: Vec, at: tuple[Station, Station], stretch: float, da: Vec, db: Vec) -> Strain:
     """Change of `strain` when the chord lengthens by `stretch` and the angles change by da and db."""
     axial1, axial2, twist1, twist2 = _gradients(a, b)
     bowed = dot(axial1, da) + dot(axial2, db)
@@ -263,7 +266,7 @@ def _share_slopes(k: Pair, D: Stiffness, h: float) -> Pair:
 @njit
 def energy(D: Stiffness, total: Strain, elastic: Strain) -> float:
     """Strain energy U (J)."""
-    U = D.L * (D.EA * stored(elastic.axial, D.share, D.soft) + D.fold * total.bow**3 / 3.0)
+    U = D.L * with_fold_energy(D.law, D.EA * stored(D.law, elastic.axial), total.bow)
     U += 0.5 * D.GJ / D.L * elastic.twist**2
     U += 0.25 * D.L * D.EIy * (elastic.first[0] ** 2 + elastic.second[0] ** 2)
     U += 0.25 * D.L * D.EIz * (elastic.first[1] ** 2 + elastic.second[1] ** 2)
@@ -274,8 +277,8 @@ def energy(D: Stiffness, total: Strain, elastic: Strain) -> float:
 @njit
 def pulled_strain(D: Stiffness, elastic: Strain) -> tuple[Strain, Stiffness]:
     """The strains with N/EA for the axial one, and the stiffnesses for a change of them: `tension_only`."""
-    axial, stiffness = pulled(elastic.axial, D.share, D.soft)
-    tangent = Stiffness(D.L, stiffness * D.EA, D.EIy, D.EIz, D.GJ, D.share, D.soft, D.fold)
+    axial, stiffness = pulled(D.law, elastic.axial)
+    tangent = Stiffness(D.L, stiffness * D.EA, D.EIy, D.EIz, D.GJ, D.law)
     return Strain(axial, elastic.twist, elastic.first, elastic.second, elastic.bow), tangent
 
 
@@ -292,19 +295,20 @@ def linear_stress(D: Stiffness, elastic: Strain) -> Stress:
 
 
 @njit
-def _less(s: Stress, moment: Pair, more: float) -> Stress:
-    """s with the moment taken off both stations, and more that takes the bow out."""
+def _less(s: Stress, moment: Pair, bow: float) -> Stress:
+    """s with the moment taken off both stations, and another one that takes the bow out."""
     first = (s.first[0] - moment[0], s.first[1] - moment[1])
     second = (s.second[0] - moment[0], s.second[1] - moment[1])
-    return Stress(s.axial, s.twist, first, second, s.bow + more)
+    return Stress(s.axial, s.twist, first, second, bow)
 
 
 @njit
 def stress(D: Stiffness, total: Strain, elastic: Strain) -> Stress:
     """Gradient of U by the strains `total`, of which `elastic` exceeds the unstressed ones, the axial one N/EA."""
     k, e = _mean(total), _mean(elastic)
-    unfolds, _ = unfolding(total.bow, D.fold)
-    return _less(linear_stress(D, elastic), _twisting_moment(D, k, e), D.L * unfolds)
+    linear = linear_stress(D, elastic)
+    bow = D.L * with_fold(D.law, D.EA * elastic.axial, total.bow)
+    return _less(linear, _twisting_moment(D, k, e), bow)
 
 
 @njit
@@ -327,5 +331,5 @@ def stress_change(D: Stiffness, total: Strain, elastic: Strain, change: Strain) 
     dhy, dhz = 2.0 * dh / h * hy + bent[0], 2.0 * dh / h * hz + bent[1]
     first = half * (dP * (h * Py + P * hy) + P * (dh * Py + h * dPy + 0.5 * P * dhy))
     second = half * (dP * (h * Pz + P * hz) + P * (dh * Pz + h * dPz + 0.5 * P * dhz))
-    _, stiffness = unfolding(total.bow, D.fold)
-    return _less(linear_stress(D, change), (first, second), D.L * stiffness * change.bow)
+    linear = linear_stress(D, change)
+    return _less(linear, (first, second), with_fold_change(D.law, linear.bow, D.L, total.bow, change.bow))

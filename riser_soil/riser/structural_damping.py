@@ -17,6 +17,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.tension_only import Linear
 from riser_soil.riser.vectors import matrix, matvec, vector
 
 
@@ -57,9 +58,11 @@ class StructuralDamping(CompiledPart):
         line, ne, beta = self.line, self.line.length.size, self._elements.damping
         if isinstance(line.frames, PlanarFrames):
             flat, planar = in_plane(line, line.frames, self._elements)
-            return PlanarViscosity(flat, beam2d.PlanarSection(*(beta * D for D in planar)), np.empty((ne, 2)))
+            return PlanarViscosity(
+                flat, beam2d.PlanarSection(beta * planar.EA, beta * planar.EI, Linear()), np.empty((ne, 2))
+            )
         bent, spatial = in_space(line, line.frames, self._elements)
-        viscosity = beam3d.SpatialSection(*(beta * D for D in spatial))
+        viscosity = beam3d.SpatialSection(*(beta * D for D in spatial[:-1]), Linear())
         return SpatialViscosity(bent, viscosity, np.empty((ne, 3)), np.empty((ne + 1, 3)))
 
     def viscous_forces(self, state: State) -> Array:

@@ -9,19 +9,87 @@ is slack almost none,
 so that it pulls its nodes towards each other like a weak spring of no length of its own: N > 0 always, so no slack
 element makes the line unstable, and what lies in a heap on the seabed spreads evenly. The lines meet at e0 = r/(1 - r).
 From e0 - soft to e0 + soft the stiffness grows steadily from one to the other; outside, the law is as above. N is the
-derivative of the energy EA psi(e) per length. Elements with bending stiffness have r = 1: N = EA e always.
+derivative of the energy EA psi(e) per length. Lines with bending stiffness have N = EA e always, and so have those of
+their elements with r = 1 which hang on a chain.
 
 Where nothing pulls, nothing keeps a slack element's ends from turning over under its weight. The energy fold b^3/3 per
-length does, b being half the mean square slope over the chord (`beam2d.bow`): the slack element sags to angles of some
-30 degrees. On a taut one it is of the sixth order in its small angles, and doesn't count.
+length does, b being half the mean square slope over the chord (`beam2d.bow`): on a taut element it is of the sixth
+order in its small angles, and doesn't count.
+
+In a heap chords l are short, and may vanish. The angles from a chord mean nothing there, and forces that turn it grow
+beyond all bounds as moments over l. So an element whose chord is a share l/L of its length has the energy
+
+    U = g U_bowed + (1 - g) U_heaped,    g(l/L) from 0 below GONE to 1 above BOWED,
+
+U_bowed being all of the above with the load on its bow, and U_heaped that of a spring without a bow,
+
+    U_heaped = r EA L [(l/L)^2 + (1 - cos of the angle between its ends)]/2,
+
+whose forces are linear in the chord, so that its direction does not matter. The second term keeps its ends from
+spinning.
 """
 
+from typing import Any, NamedTuple
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 
+GONE, BOWED = 0.5, 0.9  # chord over length: shares between which an element gets its bow
 
-@njit
-def pulled(strain: float, share: float, soft: float) -> tuple[float, float]:
+
+class Linear(NamedTuple):
+    """The law of a line whose elements all bend."""
+
+
+class TensionOnly(NamedTuple):
+    """Constants (ne,) of a line with elements that go slack; fold N."""
+
+    share: Array
+    soft: Array
+    fold: Array
+
+
+class SlackElement(NamedTuple):
+    """Constants of one element."""
+
+    share: float
+    soft: float
+    fold: float
+
+
+Law = Linear | TensionOnly  # of a line
+ElementLaw = Linear | SlackElement
+
+
+@bound_by_type
+def law_at(law: Any, e: int) -> Any:
+    """Law of element e."""
+
+
+@law_at.of(Linear)
+def _linear_at(law: Linear, e: int) -> Linear:
+    return law
+
+
+@law_at.of(TensionOnly)
+def _slack_at(law: TensionOnly, e: int) -> SlackElement:
+    return SlackElement(law.share[e], law.soft[e], law.fold[e])
+
+
+@bound_by_type
+def pulled(law: Any, strain: float) -> tuple[float, float]:
     """N/EA and its derivative by the strain."""
+
+
+@pulled.of(Linear)
+def _linear(law: Linear, strain: float) -> tuple[float, float]:
+    return strain, 1.0
+
+
+@pulled.of(SlackElement)
+def _pulled(law: SlackElement, strain: float) -> tuple[float, float]:
+    share, soft = law.share, law.soft
     if share == 1.0:
         return strain, 1.0
     beyond = strain - share / (1.0 - share) + soft  # of the strain where the stiffness begins to grow
@@ -33,9 +101,19 @@ def pulled(strain: float, share: float, soft: float) -> tuple[float, float]:
     return share * (1.0 + strain) + 0.5 * grown * beyond, share + grown
 
 
-@njit
-def stored(strain: float, share: float, soft: float) -> float:
+@bound_by_type
+def stored(law: Any, strain: float) -> float:
     """psi, the integral of N/EA, never negative: r (1 + e)^2/2 where slack, beyond a constant e^2/2 where taut."""
+
+
+@stored.of(Linear)
+def _square(law: Linear, strain: float) -> float:
+    return 0.5 * strain * strain
+
+
+@stored.of(SlackElement)
+def _stored(law: SlackElement, strain: float) -> float:
+    share, soft = law.share, law.soft
     if share == 1.0:
         return 0.5 * strain * strain
     middle = share / (1.0 - share)
@@ -48,7 +126,178 @@ def stored(strain: float, share: float, soft: float) -> float:
     return psi
 
 
+@bound_by_type
+def with_fold(law: Any, N: float, bow: float) -> float:
+    """N and what fold b^3/3 adds to it for b = bow [N]."""
+
+
+@with_fold.of(Linear)
+def _alone(law: Linear, N: float, bow: float) -> float:
+    return N
+
+
+@with_fold.of(SlackElement)
+def _with_fold(law: SlackElement, N: float, bow: float) -> float:
+    return N + law.fold * bow * bow
+
+
+@bound_by_type
+def with_fold_change(law: Any, value: float, lever: float, bow: float, change: float) -> float:
+    """A value and what `with_fold` adds to it on a lever [m] as the bow changes."""
+
+
+@with_fold_change.of(Linear)
+def _value_alone(law: Linear, value: float, lever: float, bow: float, change: float) -> float:
+    return value
+
+
+@with_fold_change.of(SlackElement)
+def _with_fold_change(law: SlackElement, value: float, lever: float, bow: float, change: float) -> float:
+    return value + lever * 2.0 * law.fold * bow * change
+
+
+@bound_by_type
+def with_fold_energy(law: Any, energy: float, bow: float) -> float:
+    """An energy per length and fold b^3/3 [N]."""
+
+
+@with_fold_energy.of(Linear)
+def _energy_alone(law: Linear, energy: float, bow: float) -> float:
+    return energy
+
+
+@with_fold_energy.of(SlackElement)
+def _with_fold_energy(law: SlackElement, energy: float, bow: float) -> float:
+    return energy + law.fold * bow**3 / 3.0
+
+
+class Heaped(NamedTuple):
+    """An element's state as a spring: g and its derivatives by the chord's length over L; stiffness r EA/L [N/m]."""
+
+    g: float
+    slope: float
+    bend: float
+    stiffness: float
+
+
+@bound_by_type
+def is_heaped(law: Any, e: int, chord: Array, L: float) -> bool:
+    """Whether an element lacks a part of its bow; chord (d,) m."""
+
+
+@is_heaped.of(Linear)
+def _never(law: Linear, e: int, chord: Array, L: float) -> bool:
+    return False
+
+
+@is_heaped.of(TensionOnly)
+def _where_short(law: TensionOnly, e: int, chord: Array, L: float) -> bool:
+    return law.share[e] < 1.0 and _square_of(chord) < (BOWED * L) ** 2
+
+
+@bound_by_type
+def heaped(law: Any, e: int, chord: Array, L: float, EA: float) -> Heaped:
+    """State of element e, of `is_heaped`."""
+
+
+@heaped.of(Linear)
+def _not_heaped(law: Linear, e: int, chord: Array, L: float, EA: float) -> Heaped:
+    return Heaped(1.0, 0.0, 0.0, 0.0)
+
+
+@heaped.of(TensionOnly)
+def _heaped(law: TensionOnly, e: int, chord: Array, L: float, EA: float) -> Heaped:
+    x = (_square_of(chord) ** 0.5 / L - GONE) / (BOWED - GONE)
+    k = law.share[e] * EA / L
+    if x <= 0.0:
+        return Heaped(0.0, 0.0, 0.0, k)
+    y, width = 1.0 - x, BOWED - GONE
+    g = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+    return Heaped(g, 30.0 * x * x * y * y / width, 60.0 * x * y * (y - x) / (width * width), k)
+
+
 @njit
-def unfolding(bow: float, fold: float) -> tuple[float, float]:
-    """Derivative of fold b^3/3 by b = bow [N], and its own."""
-    return fold * bow * bow, 2.0 * fold * bow
+def _square_of(chord: Array) -> float:
+    square = 0.0
+    for i in range(chord.size):
+        square += chord[i] * chord[i]
+    return square
+
+
+@njit
+def blended(at: Heaped, bowed: float, spring: float) -> float:
+    """An energy of both; where there is no bow its own may be no number."""
+    return spring if at.g == 0.0 else at.g * bowed + (1.0 - at.g) * spring
+
+
+@njit
+def spring_energy(at: Heaped, chord: Array) -> float:
+    """Of the chord alone [J]."""
+    return 0.5 * at.stiffness * _square_of(chord)
+
+
+@njit
+def set_spring_forces(at: Heaped, chord: Array, L: float, w: Array, f: Array) -> None:
+    """Set f (n,): the chord's pull on both nodes, and half of the load w per length [N/m] on each."""
+    d, half = chord.size, f.size // 2
+    f[:] = 0.0
+    for i in range(d):
+        f[i] = -at.stiffness * chord[i] - 0.5 * L * w[i]
+        f[half + i] = at.stiffness * chord[i] - 0.5 * L * w[i]
+
+
+@njit
+def set_spring_tangent(at: Heaped, d: int, K: Array) -> None:
+    """Set K (n, n), the derivative of `set_spring_forces`."""
+    half = K.shape[0] // 2
+    K[:, :] = 0.0
+    for i in range(d):
+        K[i, i] = K[half + i, half + i] = at.stiffness
+        K[i, half + i] = K[half + i, i] = -at.stiffness
+
+
+@njit
+def blend_tangent(at: Heaped, chord: Array, L: float, more: float, f: Array, K: Array, fs: Array, Ks: Array) -> None:
+    """Make K (n, n) of the bowed element that of both, before `blend_forces`; more: energy of the bowed element less
+    that of the spring [J]; f and fs (n,): of both, Ks of the spring.
+    """
+    n, d = f.size, chord.size
+    half = n // 2
+    if at.g == 0.0:
+        K[:, :] = Ks
+        return
+    length = _square_of(chord) ** 0.5
+    for i in range(n):
+        for j in range(n):
+            K[i, j] = at.g * K[i, j] + (1.0 - at.g) * Ks[i, j]
+    by, round_chord = at.slope / L, more * at.slope / (L * length)
+    along = more * at.bend / (L * L) - round_chord
+    for i in range(d):
+        x = chord[i] / length
+        for k in range(n):
+            change = by * x * (f[k] - fs[k])
+            K[i, k] -= change
+            K[half + i, k] += change
+            K[k, i] -= change
+            K[k, half + i] += change
+        for j in range(d):
+            own = along * x * chord[j] / length + (round_chord if i == j else 0.0)
+            K[i, j] += own
+            K[half + i, half + j] += own
+            K[i, half + j] -= own
+            K[half + i, j] -= own
+
+
+@njit
+def blend_forces(at: Heaped, chord: Array, L: float, more: float, f: Array, fs: Array) -> None:
+    """Make forces f (n,) of the bowed element those of both; arguments as in `blend_tangent`."""
+    n, d = f.size, chord.size
+    if at.g == 0.0:
+        f[:] = fs
+        return
+    for i in range(n):
+        f[i] = at.g * f[i] + (1.0 - at.g) * fs[i]
+    by = more * at.slope / (L * _square_of(chord) ** 0.5)
+    for i in range(d):
+        f[i] -= by * chord[i]
+        f[n // 2 + i] += by * chord[i]
