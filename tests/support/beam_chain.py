@@ -8,6 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d, beam3d, rotations
+from riser_soil.riser.tension_only import Linear
 from riser_soil.riser.vectors import vector
 from tests.support import planar_elements, spatial_elements
 
@@ -127,15 +128,10 @@ def load(chain: Chain, tip_load: Array, steps: int, tolerance: float = 1e-10) ->
     return iterations
 
 
-def never_slack(n: int) -> tuple[Array, Array, Array]:
-    """Constants of `tension_only` for n elements that bear compression."""
-    return np.ones(n), np.ones(n), np.zeros(n)
-
-
 def straight_plane(n: int, L: float, EA: float, EI: float, element: Element2d) -> PlaneChain:
     """Straight chain of n elements along the first axis."""
     x = np.column_stack([np.linspace(0.0, L, n + 1), np.zeros(n + 1)])
-    section = beam2d.PlanarSection(np.full(n, EA), np.full(n, EI), *never_slack(n))
+    section = beam2d.PlanarSection(np.full(n, EA), np.full(n, EI), Linear())
     return PlaneChain(x, np.zeros((2, n)), np.full(n, L / n), section, element)
 
 
@@ -143,7 +139,7 @@ def straight_space(n: int, L: float, EA: float, EI: tuple[float, float], GJ: flo
     """Straight chain of n elements along x."""
     x = np.column_stack([np.linspace(0.0, L, n + 1), np.zeros(n + 1), np.zeros(n + 1)])
     axial, EIy, EIz, twisting = (np.full(n, value) for value in (EA, *EI, GJ))
-    section = beam3d.SpatialSection(axial, EIy, EIz, twisting, *never_slack(n))
+    section = beam3d.SpatialSection(axial, EIy, EIz, twisting, Linear())
     return SpaceChain(x, np.tile(np.eye(3), (2, n, 1, 1)), np.full(n, L / n), section)
 
 
@@ -154,5 +150,5 @@ def arc_space(n: int, radius: float, angle: float, EA: float, EI: float, GJ: flo
     x = radius * np.column_stack([1.0 - np.cos(s), np.sin(s), o])
     tangent, inward = np.column_stack([np.sin(s), np.cos(s), o]), np.column_stack([np.cos(s), -np.sin(s), o])
     frames = np.stack([tangent, inward, np.cross(tangent, inward)], axis=2)
-    section = beam3d.SpatialSection(np.full(n, EA), np.full(n, EI), np.full(n, EI), np.full(n, GJ), *never_slack(n))
+    section = beam3d.SpatialSection(np.full(n, EA), np.full(n, EI), np.full(n, EI), np.full(n, GJ), Linear())
     return SpaceChain(x, np.array([frames[:-1], frames[1:]]), np.full(n, radius * angle / n), section)

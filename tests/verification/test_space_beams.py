@@ -13,8 +13,9 @@ from scipy.special import jv
 from riser_soil.core.arrays import Array
 from riser_soil.riser import beam3d
 from riser_soil.riser.rotations import exp
+from riser_soil.riser.tension_only import Linear
 from riser_soil.riser.vectors import vector
-from tests.support.beam_chain import SpaceChain, load, never_slack, straight_space
+from tests.support.beam_chain import SpaceChain, load, straight_space
 from tests.support.rod_reference import Rod, first_buckling, tip
 
 FOURTH = 3.6  # least order that counts as fourth on coarse meshes
@@ -164,7 +165,7 @@ def right_angle(n: int) -> SpaceChain:
         np.concatenate([first, second[1:]]),
         np.stack([frames, frames]),
         np.full(count, LEG / n),
-        beam3d.SpatialSection(axial, EIy, EIz, twisting, *never_slack(count)),
+        beam3d.SpatialSection(axial, EIy, EIz, twisting, Linear()),
     )
 
 

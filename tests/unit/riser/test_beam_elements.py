@@ -17,9 +17,9 @@ from riser_soil.riser import (
     rotations,
     strain3d,
 )
+from riser_soil.riser.tension_only import Linear, TensionOnly, pulled
 from riser_soil.riser.vectors import isotropic, matrix, vector
 from tests.support import planar_elements, spatial_elements
-from tests.support.beam_chain import never_slack
 
 NE = 5
 EA = 2.0e3
@@ -74,7 +74,7 @@ def space(curved: float, rotation: float, seed: int = 7, load: float = 0.0) -> S
     chord0 = (L * (1.0 - curved**2 / 8))[:, None] * base[:, :, 0]
     frames0 = np.array([turns(rng, curved, NE) @ base, turns(rng, curved, NE) @ base])
     bending = 1 + rng.random(NE), 2 + rng.random(NE), 1.5 + rng.random(NE)
-    section = beam3d.SpatialSection(np.full(NE, EA), *bending, *never_slack(NE))
+    section = beam3d.SpatialSection(np.full(NE, EA), *bending, Linear())
     rigid = turns(rng, 2.0, NE)
     chord = np.einsum("eij,ej->ei", rigid, chord0) * 1.02
     frames = np.array([turns(rng, rotation, NE) @ rigid @ end for end in frames0])
@@ -112,7 +112,7 @@ def plane(curved: float, rotation: float, seed: int = 7) -> Plane:
     L, base = 1.0 + rng.random(NE), 6.0 * rng.random(NE)
     chord0 = (L * (1.0 - curved**2 / 8)) * np.array([np.cos(base), np.sin(base)])
     directions0 = base + curved * rng.uniform(-1, 1, size=(2, NE))
-    section = beam2d.PlanarSection(np.full(NE, EA), 1 + rng.random(NE), *never_slack(NE))
+    section = beam2d.PlanarSection(np.full(NE, EA), 1 + rng.random(NE), Linear())
     chord = 1.02 * np.array([[0.6, -0.8], [0.8, 0.6]]) @ chord0
     directions = directions0 + np.arctan2(0.8, 0.6) + rotation * rng.choice([-1.0, 1.0], size=(2, NE))
     ref = beam2d.reference(chord0.T, directions0[0], directions0[1], L)
@@ -162,17 +162,10 @@ def test_tangent_is_the_derivative_of_the_forces(
     assert difference(f, elements.call(module.forces)) < 2e-14  # round-off of a strain of 0.02 that is counted from 1
 
 
-def going_slack(elements: Any, shorter: float, soft: float, fold: float) -> Any:
-    """Elements in space or in a plane, their chords shortened."""
-    found = elements._replace(chord=shorter * elements.chord)
-    for name, value in (("share", 0.03), ("soft", soft), ("fold", fold)):
-        found = with_constant(found, name, value)
-    return found
-
-
-def with_constant(elements: Any, name: str, value: float) -> Any:
-    """With another constant of the law by which they go slack."""
-    return elements._replace(section=elements.section._replace(**{name: np.full(NE, value)}))
+def going_slack(elements: Any, shorter: float, share: float, soft: float, fold: float) -> Any:
+    """Elements in space or in a plane, their chords shortened, that bear no compression."""
+    law = TensionOnly(*(np.full(NE, value) for value in (share, soft, fold)))
+    return elements._replace(chord=shorter * elements.chord, section=elements.section._replace(law=law))
 
 
 @pytest.mark.parametrize(("shorter", "soft"), [(0.96, 0.3), (0.6, 0.05)], ids=["in between", "slack"])
@@ -180,7 +173,8 @@ def with_constant(elements: Any, name: str, value: float) -> Any:
 def test_elements_that_go_slack_follow_from_their_energy(dimension: int, shorter: float, soft: float) -> None:
     """And would not without any of the three constants."""
     build, module, n = (plane, planar_elements, 6) if dimension == 2 else (loaded_space, spatial_elements, 12)
-    elements = going_slack(build(0.0, 0.4), shorter, soft, 2e5)
+    given = {"share": 0.03, "soft": soft, "fold": 2e5}
+    elements = going_slack(build(0.0, 0.4), shorter, **given)
     assert difference(elements.call(module.forces), derivative(elements.energy, n)) < TOLERANCE
 
     def forces(moved: Array) -> Array:
@@ -190,7 +184,7 @@ def test_elements_that_go_slack_follow_from_their_energy(dimension: int, shorter
     assert difference(f, forces(np.zeros((NE, n)))) < 1e-14
     assert difference(K, derivative(forces, n)) < TOLERANCE
     for constant, value in (("share", 1.0), ("soft", 2.0 * soft + 0.5), ("fold", 0.0)):
-        other = with_constant(elements, constant, value)
+        other = going_slack(build(0.0, 0.4), shorter, **(given | {constant: value}))
         assert difference(other.call(module.forces_and_tangent)[1], K) > 1e3 * TOLERANCE
 
 
@@ -254,8 +248,8 @@ def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float, lo
     w = load * np.random.default_rng(2).normal(size=(NE, 2))
     in_space = flat.chord0 @ np.eye(3)[[0, 2]], flat.chord @ np.eye(3)[[0, 2]]
     frames0, frames = upright(flat.directions0), upright(flat.directions)
-    axial, EI, share, soft, fold = flat.section
-    section = beam3d.SpatialSection(axial, 3 * EI, EI, EI, share, soft, fold)
+    axial, EI, law = flat.section
+    section = beam3d.SpatialSection(axial, 3 * EI, EI, EI, law)
     ref = beam3d.reference(in_space[0], frames0[0], frames0[1], flat.ref.L)
     f3, K3 = spatial_elements.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section, w @ np.eye(3)[[0, 2]])
     f2, K2 = flat.call(planar_elements.forces_and_tangent)
@@ -378,6 +372,7 @@ def test_geometric_term_of_the_plane_matters(monkeypatch: pytest.MonkeyPatch) ->
     _, K = elements.call(planar_elements.forces_and_tangent)
     for name in ("_vary", "_tangent", "write_element"):
         monkeypatch.setattr(beam2d, name, getattr(beam2d, name).py_func)
+    monkeypatch.setattr(beam2d, "pulled", pulled.kernels[Linear])
     monkeypatch.setattr(beam2d, "configuration_variation", lambda *_: (0.0, 0.0))
     _, incomplete = elements.call(planar_elements.forces_and_tangent.py_func)
     assert difference(incomplete, K) > 1e4 * TOLERANCE
@@ -389,7 +384,7 @@ def test_torque_that_varies_along_an_element_twists_it_within() -> None:
     1/2 (GJ phi'^2 + k'.D k' phi^2) - P phi is least.
     """
     L, GJ, EI = 3.0, 4.0, np.array([2.0, 5.0])
-    D = strain3d.Stiffness(L, EA, 2.0, 5.0, GJ, 1.0, 1.0, 0.0)
+    D = strain3d.Stiffness(L, EA, 2.0, 5.0, GJ, Linear())
     k, k0 = np.array([0.11, -0.07]), np.array([0.03, 0.02])
     P = k[0] * EI[1] * (k - k0)[1] - k[1] * EI[0] * (k - k0)[0]
     s, weight = (0.5 * L * values for values in np.polynomial.legendre.leggauss(5))

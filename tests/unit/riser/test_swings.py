@@ -7,7 +7,7 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import rotations
-from riser_soil.riser.line_kernels import first_swung
+from riser_soil.riser.line_kernels import first_folded, first_swung
 from riser_soil.riser.vectors import vector
 
 
@@ -15,16 +15,18 @@ def turned(axis: Array, angle: float, v: Array) -> Array:
     return np.array(rotations.exp(vector(angle * axis))) @ v
 
 
-def swung(spin: float, swing: float, twist: float, most: float) -> int:
-    """Of three elements the second one spins as a whole, and its second end swings and twists beyond that."""
+def swung(spin: float, swing: float, twist: float, most: float, loose: float = 0.0) -> int:
+    """Of three elements the second one spins as a whole, and its second end swings and twists beyond that; its chord is
+    2 m long.
+    """
     along, aside, up = np.eye(3)
-    chord0 = np.stack([along, along, along])
+    chord0 = 2.0 * np.stack([along, along, along])
     tangent0 = np.repeat(turned(up, 0.1, along)[None, None], 6, axis=0).reshape(3, 2, 3)
-    chord, tangent = 2.0 * chord0, tangent0.copy()
+    chord, tangent = chord0.copy(), tangent0.copy()
     chord[1] = 2.0 * turned(aside, spin, along)
     tangent[1] = [turned(aside, spin, t) for t in tangent0[1]]
     tangent[1, 1] = turned(aside, spin, turned(along, twist, turned(aside, swing, tangent0[1, 1])))
-    return int(first_swung(chord0, tangent0, chord, tangent, most))
+    return int(first_swung(chord0, tangent0, chord, tangent, np.array([0.0, loose, 0.0]), most))
 
 
 @pytest.mark.parametrize("spin", [0.0, 1.0, -3.0])
@@ -41,4 +43,13 @@ def test_a_turn_of_the_whole_element_does_not_count() -> None:
 
 def test_an_element_that_points_back_has_swung() -> None:
     chord0, tangent0 = np.array([[1.0, 0.0]]), np.array([[[1.0, 0.0], [1.0, 0.0]]])
-    assert first_swung(chord0, tangent0, -chord0, -tangent0, 3.0) == 0
+    assert first_swung(chord0, tangent0, -chord0, -tangent0, np.zeros(1), 3.0) == 0
+
+
+def test_an_element_in_a_heap_may_fold_and_swing() -> None:
+    """It is shorter than the chord below which that does not count."""
+    assert swung(0.0, 0.25, 0.0, 0.24, loose=1.9) == 1
+    assert swung(0.0, 0.25, 0.0, 0.24, loose=2.1) == 3
+    chord, tangent = np.array([[1.0, 0.0]]), np.array([[[-1.0, 0.0], [1.0, 0.0]]])
+    assert first_folded(chord, tangent, np.array([0.9])) == 0
+    assert first_folded(chord, tangent, np.array([1.1])) == 1
