@@ -175,11 +175,58 @@ def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> Non
     assert np.ptp(top) > inertia
 
 
-@pytest.mark.parametrize(("span", "elements", "seabed"), [(8.0, 10, SPRING), (8.0, 40, SPRING), (8.0, 400, RIGID)])
-def test_a_heap_has_little_room(span: float, elements: int, seabed: Mapping, tmp_path: Path) -> None:
-    """A quarter of what lies is room enough, at any mesh; its anchor bears nothing, for elements are cut beside it."""
+@pytest.mark.parametrize(
+    ("span", "length", "elements", "more"),
+    [
+        (0.0, 1.3, 10, {}),
+        (0.0, 3.0, 40, {"dimension": 3, "seabed": RIGID}),
+        (0.1, 1.1, 100, {"turned": True}),
+        (1.0, 2.0, 400, {"seabed": RIGID}),
+        (3.0, 1.3, 40, {"dimension": 3}),
+        (8.0, 1.3, 10, {}),
+    ],
+)
+def test_a_heap_lies_right_under_its_top(
+    span: float, length: float, elements: int, more: dict[str, Any], tmp_path: Path
+) -> None:
+    """At any mesh, however near the ends are; the anchor in the heap bears nothing. length: over the height."""
     low, high = prescribed(0.0, 0.0, 0.0), prescribed(span, 0.0, HEIGHT)
-    options: Mapping = {"pipe": CHAIN, "length": 1.3 * HEIGHT, "elements": elements, "gravity": 9.81, "seabed": seabed}
-    found = done(riser_scene(static(), start=low, end=high, **options), tmp_path)
-    assert found["end_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
-    assert np.linalg.norm(found["start_force"][-1]) < PULLS * W * HEIGHT
+    more = dict(more)
+    turned = more.pop("turned", False)
+    ends: Mapping = {"start": high, "end": low} if turned else {"start": low, "end": high}
+    found = done(heap_under(length * HEIGHT, elements, **ends, **more), tmp_path)
+    top, anchor = (found[f"{name}_force"][-1] for name in (("start", "end") if turned else ("end", "start")))
+    assert top[2] == pytest.approx(W * HEIGHT, rel=1e-3)
+    assert np.linalg.norm(anchor) < PULLS * W * HEIGHT
+    assert found["effective_tension"][-1].min() > -PULLS * W * HEIGHT
+
+
+@pytest.mark.parametrize(("span", "elements"), [(0.0, 10), (1.0, 100)])
+def test_two_legs_hang_side_by_side_to_one_heap(span: float, elements: int, tmp_path: Path) -> None:
+    """Each bears its own weight down to the seabed."""
+    ends: Mapping = {"start": prescribed(0.0, 0.0, HEIGHT), "end": prescribed(span, 0.0, HEIGHT)}
+    found = done(heap_under(2.5 * HEIGHT, elements, **ends), tmp_path)
+    for name in ("start", "end"):
+        assert found[f"{name}_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
+
+
+@pytest.mark.parametrize(("span", "elements", "dimension"), [(0.0, 10, 2), (0.1, 40, 3)])
+def test_a_rope_that_floats_lies_in_a_heap_over_its_anchor(
+    span: float, elements: int, dimension: int, tmp_path: Path
+) -> None:
+    """The anchor bears its buoyancy less weight, up to the water's surface."""
+    rope: Mapping = {"EA": 6e7, "EI": 0.0, "GJ": 1.0, "outer_diameter": 0.25, "mass": 20.0}
+    water = {"surface_level": HEIGHT, "depth": HEIGHT, "density": WATER}
+    ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(span, 0.0, HEIGHT)}
+    found = done(heap_under(1.3 * HEIGHT, elements, **ends, pipe=rope, water=water, dimension=dimension), tmp_path)
+    lift = GRAVITY * (WATER * np.pi / 4.0 * 0.25**2 - 20.0) * HEIGHT
+    assert found["start_force"][-1][2] == pytest.approx(-lift, rel=1e-3)
+    assert np.linalg.norm(found["end_force"][-1]) < PULLS * lift
+
+
+def heap_under(length: float, elements: int, **more: Any) -> Mapping:
+    """A chain over a seabed of springs, at rest."""
+    options: Mapping = {"pipe": CHAIN, "length": length, "elements": elements, "gravity": GRAVITY, "seabed": SPRING}
+    if "water" in more:
+        del options["seabed"]
+    return riser_scene(static(), **(options | more))
