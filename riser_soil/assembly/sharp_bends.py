@@ -31,7 +31,7 @@ from riser_soil.scene.stages import DynamicStage
 
 SHARP = 1.0  # of an element: radius of a bend that it can't follow
 OF_RADIUS = 0.5  # of that radius: elements beside it
-FINEST = 1e-3  # of the line's height: the shortest elements
+FINEST = 5e-4  # of the line's height: the shortest elements
 FINEST_MOVED = 0.1  # the same beside a heap under an end that moves: there shorter ones fold as they come down
 TAKEN_UP = 1e-5  # of the line's length: by the elements beside a kink
 ARCH = 30.0  # h a^2/ARCH is taken up there

@@ -20,7 +20,9 @@ from riser_soil.riser.moving_nodes import MovingNodes, write_moved
 
 
 class PlanarBase(NamedTuple):
-    """Accepted configuration of a plane line: places (nn, 2), chords (ne, 2) and angles (nn,); alpha0 (ne, 2)."""
+    """Accepted configuration of a plane line: places (nn, 2), chords (ne, 2) and angles (nn,); alpha0 (ne, 2);
+    loose (ne,): see `line_kernels`.
+    """
 
     x: Array
     chord: Array
@@ -30,7 +32,9 @@ class PlanarBase(NamedTuple):
 
 
 class SpatialBase(NamedTuple):
-    """Accepted configuration in space: places (nn, 3), chords (ne, 3), frames R (nn, 3, 3); T0 (ne, 2, 3, 3)."""
+    """Accepted configuration in space: places (nn, 3), chords (ne, 3), frames R (nn, 3, 3); T0 (ne, 2, 3, 3);
+    loose (ne,): see `line_kernels`.
+    """
 
     x: Array
     chord: Array

@@ -78,7 +78,7 @@ def _slack_at(law: TensionOnly, e: int) -> SlackElement:
 
 
 @bound_by_type
-def pulled(law: Any, strain: float) -> tuple[float, float]:
+def pulled(law: Any, strain: float) -> Any:
     """N/EA and its derivative by the strain."""
 
 
@@ -102,7 +102,7 @@ def _pulled(law: SlackElement, strain: float) -> tuple[float, float]:
 
 
 @bound_by_type
-def stored(law: Any, strain: float) -> float:
+def stored(law: Any, strain: float) -> Any:
     """psi, the integral of N/EA, never negative: r (1 + e)^2/2 where slack, beyond a constant e^2/2 where taut."""
 
 
@@ -127,7 +127,7 @@ def _stored(law: SlackElement, strain: float) -> float:
 
 
 @bound_by_type
-def with_fold(law: Any, N: float, bow: float) -> float:
+def with_fold(law: Any, N: float, bow: float) -> Any:
     """N and what fold b^3/3 adds to it for b = bow [N]."""
 
 
@@ -142,7 +142,7 @@ def _with_fold(law: SlackElement, N: float, bow: float) -> float:
 
 
 @bound_by_type
-def with_fold_change(law: Any, value: float, lever: float, bow: float, change: float) -> float:
+def with_fold_change(law: Any, value: float, lever: float, bow: float, change: float) -> Any:
     """A value and what `with_fold` adds to it on a lever [m] as the bow changes."""
 
 
@@ -157,7 +157,7 @@ def _with_fold_change(law: SlackElement, value: float, lever: float, bow: float,
 
 
 @bound_by_type
-def with_fold_energy(law: Any, energy: float, bow: float) -> float:
+def with_fold_energy(law: Any, energy: float, bow: float) -> Any:
     """An energy per length and fold b^3/3 [N]."""
 
 
@@ -181,7 +181,7 @@ class Heaped(NamedTuple):
 
 
 @bound_by_type
-def is_heaped(law: Any, e: int, chord: Array, L: float) -> bool:
+def is_heaped(law: Any, e: int, chord: Array, L: float) -> Any:
     """Whether an element lacks a part of its bow; chord (d,) m."""
 
 
@@ -196,7 +196,7 @@ def _where_short(law: TensionOnly, e: int, chord: Array, L: float) -> bool:
 
 
 @bound_by_type
-def heaped(law: Any, e: int, chord: Array, L: float, EA: float) -> Heaped:
+def heaped(law: Any, e: int, chord: Array, L: float, EA: float) -> Any:
     """State of element e, of `is_heaped`."""
 
 
@@ -301,3 +301,50 @@ def blend_forces(at: Heaped, chord: Array, L: float, more: float, f: Array, fs: 
     for i in range(d):
         f[i] -= by * chord[i]
         f[n // 2 + i] += by * chord[i]
+
+
+@njit
+def blend_viscous_forces(at: Heaped, rate: Array, f: Array) -> None:
+    """Make viscous forces f (n,) of the bowed element those of both; rate (d,): of the chord [m/s]. The state is that
+    of viscosities in place of stiffnesses.
+    """
+    half = f.size // 2
+    for i in range(f.size):
+        f[i] = 0.0 if at.g == 0.0 else at.g * f[i]
+    for i in range(rate.size):
+        pull = (1.0 - at.g) * at.stiffness * rate[i]
+        f[i] -= pull
+        f[half + i] += pull
+
+
+@njit
+def blend_viscous_tangent(
+    at: Heaped, chord: Array, L: float, rate: Array, shift_v: float, f: Array, K: Array
+) -> None:
+    """Make the derivative K (n, n) of the bowed element's viscous forces f (n,) that of both; rates follow by shift_v
+    [1/s].
+    """
+    n, d = f.size, chord.size
+    half = n // 2
+    for i in range(n):
+        for j in range(n):
+            K[i, j] = 0.0 if at.g == 0.0 else at.g * K[i, j]
+    for i in range(d):
+        own = (1.0 - at.g) * at.stiffness * shift_v
+        K[i, i] += own
+        K[half + i, half + i] += own
+        K[i, half + i] -= own
+        K[half + i, i] -= own
+    if at.g == 0.0:
+        return
+    by = at.slope / (L * _square_of(chord) ** 0.5)
+    for i in range(n):
+        less = 0.0
+        if i < d:
+            less = -at.stiffness * rate[i]
+        elif half <= i < half + d:
+            less = at.stiffness * rate[i - half]
+        for j in range(d):
+            change = by * (f[i] - less) * chord[j]
+            K[i, j] -= change
+            K[i, half + j] += change

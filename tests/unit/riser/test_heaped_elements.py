@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -14,12 +15,13 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.riser.tension_only import Heaped, TensionOnly, is_heaped
 from riser_soil.riser.tension_only import heaped as heaped_state
 from tests.support.dense_chain import residual, tangent
-from tests.support.differences import difference_tangent, error, moved, slope
+from tests.support.differences import WEIGHTS, difference_tangent, error, moved, slope
 
-CHAIN = SectionProperties(EA=4.0e5, EI_y=0.0, EI_z=0.0, GJ=3.0, submerged_weight=700.0)
+CHAIN = SectionProperties(EA=4.0e5, EI_y=0.0, EI_z=0.0, GJ=3.0, submerged_weight=700.0, damping=0.2)
 SHARES = np.array([0.95, 0.86, 0.8, 0.7, 0.6, 0.52, 0.3, 1e-3])  # of their lengths: chords, those in between most
 LENGTH = 1.5
 STATIC = Weights(0.0, 1.0, 0.0, 0.0)
@@ -70,6 +72,23 @@ def test_tangent_is_the_derivative_of_the_forces(dimension: int) -> None:
     K = tangent([beam], state, STATIC)
     assert error(K, difference_tangent(beam, state, STATIC, h=1e-5)) < 1e-8
     assert np.abs(K - K.T).max() < 1e-12 * np.abs(K).max()
+
+
+@dimensions
+def test_damping_has_its_exact_tangent_too(dimension: int) -> None:
+    """And takes out energy, with no chord as well: by r EA/L times the damping and the chord's rate."""
+    beam = heaped(dimension, SHARES)
+    damping = StructuralDamping(beam.line, beam._elements)
+    v = 0.3 * np.random.default_rng(4).normal(size=beam.line.size)
+    state = replace(shaken(beam, 2), v=v)
+    assert error(tangent([damping], state, WEIGHTS), difference_tangent(damping, state, WEIGHTS, h=1e-5)) < 1e-8
+    assert residual([damping], state, WEIGHTS) @ v > 0.0
+    beam = heaped(dimension, np.zeros(1))
+    damping, still = StructuralDamping(beam.line, beam._elements), placed(np.zeros((2, beam.line.ndof)))
+    moving = replace(still, v=np.append(np.zeros(beam.line.ndof), np.full(beam.line.ndof, 0.3)))
+    forces = residual([damping], moving, STATIC).reshape(2, -1)
+    assert forces[1, :dimension] == pytest.approx(0.2 * 1e-4 * 700.0 * 0.3)
+    assert np.isfinite(tangent([damping], moving, WEIGHTS)).all()
 
 
 @dimensions
