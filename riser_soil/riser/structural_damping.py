@@ -61,7 +61,8 @@ class StructuralDamping(CompiledPart):
             viscosity = beam2d.PlanarSection(beta * planar.EA, beta * planar.EI, planar.law)
             return PlanarViscosity(flat, viscosity, np.empty((ne, 2)))
         bent, spatial = in_space(line, line.frames, self._elements)
-        viscous = beam3d.SpatialSection(*(beta * D for D in spatial[:-1]), spatial.law)
+        EA, EIy, EIz, GJ = (beta * D for D in (spatial.EA, spatial.EIy, spatial.EIz, spatial.GJ))
+        viscous = beam3d.SpatialSection(EA, EIy, EIz, GJ, spatial.law)
         return SpatialViscosity(bent, viscous, np.empty((ne, 3)), np.empty((ne + 1, 3)))
 
     def viscous_forces(self, state: State) -> Array:
