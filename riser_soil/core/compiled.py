@@ -19,8 +19,8 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from glob import glob
 from inspect import signature
@@ -244,6 +244,16 @@ FOLDER = choose_folder(fingerprint(PACKAGE))
 _announcer = _Announcer()
 for _kind in ("numba:compile", "numba:run_pass"):
     event.register(_kind, _announcer)
+
+
+@contextmanager
+def compiling() -> Iterator[None]:
+    """What another compiler does meanwhile is announced and counted as what numba does."""
+    _announcer.on_start(None)
+    try:
+        yield
+    finally:
+        _announcer.on_end(None)
 
 
 def seconds_of_work() -> float:

@@ -1,4 +1,4 @@
-"""Compatibility with dolfinx 0.5, 0.9 and 0.11: the only module that knows how they differ.
+"""Compatibility with dolfinx 0.5, 0.9 and 0.11: the only module that knows how they differ, but for FFCx (ffcx_compat).
 
 The soil needs three things of dolfinx: distribute a gmsh mesh over the ranks, number Lagrange nodes, and say
 where they are. Everything else works on the arrays returned here.
@@ -7,7 +7,6 @@ where they are. Everything else works on the arrays returned here.
 from __future__ import annotations
 
 import importlib
-import logging
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ from mpi4py import MPI
 
 from riser_soil.core import compiled
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.soil.ffcx_compat import quiet_compiler_log
 
 WORKSPACE = 1 << 22  # bytes that the code of one element needs, and more
 STALE_AFTER = 120.0  # s; the code compiled for one element takes a few seconds
@@ -58,7 +58,7 @@ def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
 
     The arrays outlive the mesh; `comm` is the caller's, since the mesh frees its own copy.
     """
-    _quiet_compiler_log()
+    quiet_compiler_log()
     cache = writable_cache(comm)
     remove_stale_locks(comm, cache)
     space = _function_space(mesh, degree, cache)
@@ -131,12 +131,6 @@ def _table(dofmap: Any) -> Any:
     """Dofs by cell as a 2-d array: an adjacency list in 0.5, an array since; a rank may have no cells."""
     dofs = dofmap.list.array if hasattr(dofmap.list, "array") else dofmap.list
     return np.asarray(dofs).reshape(-1, dofmap.dof_layout.num_dofs)
-
-
-def _quiet_compiler_log() -> None:
-    """The compiler of 0.5 logs every command at level INFO through the root logger."""
-    for handler in logging.getLogger().handlers:
-        handler.setLevel(max(handler.level, logging.WARNING))
 
 
 def writable_cache(comm: MPI.Intracomm) -> Path:

@@ -1,13 +1,8 @@
-"""Element families, hexahedra with mean dilatation (B-bar) and ten-node tetrahedra, and their gradients.
+"""Element families: hexahedra and quadrilaterals with mean dilatation (B-bar), and ten-node tetrahedra.
 
 Undrained clay is nearly incompressible: fully integrated linear elements lock and never reach a collapse
-load. Node numbers are basix' (vertices 0.. in lexicographic order, then the edges' midpoints).
-
-Shape-function gradients at the quadrature points (B-bar) of cells with their nodes at given places.
-
-The strain-displacement operator B̄ replaces the volumetric part of the symmetric gradient by `volume`
-gradients: the cell's mean for hexahedra (mean dilatation: Hughes 1980, doi:10.1002/nme.1620150914; the full
-gradients elsewhere).
+load. Node numbers are basix' (vertices 0.. in lexicographic order, then the edges' midpoints). What happens in a cell
+is in weak_form.py.
 """
 
 from __future__ import annotations
@@ -121,38 +116,26 @@ QUAD4 = Family(
 )
 
 
-@dataclass(frozen=True, eq=False)
-class Gradients:
-    """Shape-function gradients in the nc cells of this rank.
-
-    full (nc, nq, nn, 3) [1/m]: dN/dx. volume (nc, 1 or nq, nn, 3) [1/m]: gradients that give the volume
-    change. weights (nc, nq) [m3]: quadrature weight times the map's determinant.
+def point_volumes(family: Family, points: Array, cells: IntArray) -> Array:
+    """What each quadrature point (nc, nq) of the cells (nc, nn) of nodes at points (n, 3) stands for [m3]; MeshError if
+    a cell is inverted or flat.
     """
-
-    full: Array
-    volume: Array
-    weights: Array
-
-
-def cell_gradients(family: Family, points: Array, cells: IntArray) -> Gradients:
-    """Gradients of the cells (nc, nn) of nodes at points (n, 3); MeshError if a cell is inverted or flat."""
-    at, axes, derivatives = points[cells], np.array(family.axes), family.derivatives
-    determinant = np.empty((len(cells), len(derivatives)))
-    full = np.zeros((*determinant.shape, cells.shape[1], 3))
-    kernels.write_gradients(at, axes, derivatives, determinant, full)
+    at, axes = points[cells], np.array(family.axes)
+    determinant = _determinants(family, at)
     _check_shape(determinant, at, axes)
-    weights = np.abs(determinant) * family.quadrature[1] * family.thickness
-    if not family.mean_dilatation:
-        return Gradients(full, full, weights)
-    volume = np.empty((len(cells), 1, *full.shape[2:]))
-    kernels.write_mean(full, weights, volume[:, 0])
-    return Gradients(full, volume, weights)
+    return np.abs(determinant) * family.quadrature[1] * family.thickness
+
+
+def _determinants(family: Family, at: Array) -> Array:
+    """Of the maps (nc, nq) from the reference cell, nodes at (nc, nn, 3)."""
+    out = np.empty((len(at), len(family.derivatives)))
+    kernels.write_determinants(at, np.array(family.axes), family.derivatives, out)
+    return out
 
 
 def skewness(family: Family, points: Array, cells: IntArray) -> Array:
     """Least over mean determinant of the map in each cell (nc,), at quadrature points: 1 in bricks, 0 when it folds."""
-    determinant = np.empty((len(cells), len(family.derivatives)))
-    kernels.write_determinants(points[cells], np.array(family.axes), family.derivatives, determinant)
+    determinant = _determinants(family, points[cells])
     determinant *= np.sign(determinant[:, :1])
     return np.asarray(determinant.min(axis=1) / np.abs(determinant).mean(axis=1))
 

@@ -24,8 +24,6 @@ from scipy.spatial import cKDTree
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.carried import carried
 from riser_soil.core.compiled import njit
-from riser_soil.soil import kernels
-from riser_soil.soil.families import Family, cell_gradients
 from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.law import STRESS, Formula, StressUpdate
 from riser_soil.soil.soil_cells import SoilCells
@@ -37,18 +35,10 @@ APART = 10.0  # largest extent of the soil, by which sections are moved apart
 Take = Callable[[Array, Array, Array], tuple[Array, ...]]  # of places, rows there, and places asked for
 
 
-def moved_on(
-    family: Family, points: Array, cells: IntArray, u: Array, law: Formula, history: Array, dt: float
-) -> StressUpdate:
-    """The law's answer (n points) to the displacements u (3n,) of nodes at points (n, 3), in cells (nc, nn), within
-    dt [s].
-    """
-    half = cell_gradients(family, points + 0.5 * u.reshape(-1, 3), cells)
-    nc, nq = half.weights.shape
-    strain, spin = np.empty((nc, nq, 6)), np.empty((nc, nq, 3))
-    kernels.strain(half.full, half.volume, cells, u, strain)
-    kernels.spin(half.full, cells, u, spin)
-    return law.update(strain.reshape(-1, 6), turned(history, law.columns, spin.reshape(-1, 3)), dt)
+def moved_on(cells: SoilCells, points: Array, u: Array, law: Formula, history: Array, dt: float) -> StressUpdate:
+    """The law's answer (n points) to the displacements u (3n,) of nodes at points (n, 3), within dt [s]."""
+    strain, spin = cells.motion(points + 0.5 * u.reshape(-1, 3), u)
+    return law.update(strain, turned(history, law.columns, spin), dt)
 
 
 def turned(history: Array, columns: Sequence[str], spin: Array) -> Array:

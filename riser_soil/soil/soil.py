@@ -72,7 +72,7 @@ class Soil:
         self._in_balance = self._found.stress  # as the last step left it, before cells that moved asked the law again
         self._last: _Answer | None = None
         self._elastic_share = 0.0
-        self._volumes: Array = self.cells.gradients.weights.flatten()
+        self._volumes: Array = self.cells.volumes.flatten()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
         self._mesh_at = self.cells.made_at.copy() if moves else np.empty(0)  # (nc, nn, 3): nodes of cells when made
@@ -154,7 +154,7 @@ class Soil:
 
     def _move(self, u: Array, dt: float) -> StressUpdate:
         """Let the nodes move by u within dt [s]; the law's answer to that."""
-        found = moved_on(self.grid.family, self.points, self.cells.nodes, u, self.law, self._found.history, dt)
+        found = moved_on(self.cells, self.points, u, self.law, self._found.history, dt)
         self.cells.renew(self.points + u.reshape(-1, 3))
         self._load = self._held + self._weight()
         return found
@@ -214,7 +214,7 @@ class Soil:
         history[new_points] = carried_rows(self.grid, here, there, history, self.law.columns)
         self._mesh_at[new] = after[self.cells.nodes[new]]
         self.cells.make_anew(np.flatnonzero(new), self._mesh_at[new])
-        self._volumes[new_points] = self.cells.gradients.weights.ravel()[new_points]
+        self._volumes[new_points] = self.cells.volumes.ravel()[new_points]
         self._take_material()
         self._load, self._last = self._held + self._weight(), None
         found = self.law.update(np.zeros((len(history), 6)), self._balanced(history), dt=0.0)

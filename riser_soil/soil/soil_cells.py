@@ -1,4 +1,4 @@
-"""A rank's cells of soil as they lie where a step starts: strain, forces, stiffness and means by their gradients."""
+"""A rank's cells of soil as they lie where a step starts: strain, forces, stiffness and means, by kernels of UFL."""
 
 from __future__ import annotations
 
@@ -7,48 +7,62 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.soil import kernels
-from riser_soil.soil.families import Gradients, cell_gradients
+from riser_soil.soil import cell_loops
+from riser_soil.soil.cell_loops import kernels_of
+from riser_soil.soil.families import point_volumes
+from riser_soil.soil.field import components
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
 
-STRAINED = 1e-4  # of its size, that a cell's nodes move against each other before its gradients are made anew
+STRAINED = 1e-4  # of its size, that a cell's nodes move against each other before it is placed anew
 
 
 class SoilCells:
-    """Cells with nodes at points (n, 3), whose gradients are made anew where they have strained.
+    """Cells with nodes at points (n, 3), which are placed anew where they have strained.
 
     nodes (nc, nn): of each cell. shape (nc, nq): of their quadrature points, whose values (n, ...) lie one after the
-    other. made_at (nc, nn, 3) [m]: the nodes as they were when the gradients were made. Construction is collective;
-    MeshError if a cell is inverted.
+    other. made_at (nc, nn, 3) [m]: the nodes as they were when the cells were placed. volumes (nc, nq) [m3]: what each
+    point stands for. Construction is collective; MeshError if a cell is inverted.
     """
 
     def __init__(self, grid: DistributedMesh) -> None:
-        self._family, self._shares = grid.family, grid.shares()
+        self._family, self._shares = grid.family, grid.shares() * grid.family.thickness
+        self._kernels = kernels_of(grid.family)
         self.nodes = np.ascontiguousarray(grid.nodes.cells)
+        self._dofs = components(self.nodes, grid.family.axes)
         self.made_at = grid.nodes.points[self.nodes]
-        self.gradients = on_all_ranks(grid.nodes.comm, lambda: self._gradients_of(self.made_at))
-        self.shape = self.gradients.weights.shape
+        self.volumes = on_all_ranks(grid.nodes.comm, lambda: self._volumes_of(self.made_at))
+        self.shape = self.volumes.shape
+        self._placed = self._placed_at(self.made_at)
         self._spans = np.ptp(self.made_at, axis=1).min(axis=1)
         self._stiffness: _Stiffness | None = None  # there from the first tangent on
 
-    def _gradients_of(self, corners: Array, cells: IntArray | slice = slice(None)) -> Gradients:
-        """Of some cells, all by default, with their nodes at corners (nc, nn, 3)."""
-        nc, nn, _ = corners.shape
-        found = cell_gradients(self._family, corners.reshape(-1, 3), np.arange(nc * nn).reshape(nc, nn))
-        found.weights[:] *= self._shares[cells][:, None]
-        return found
+    def _volumes_of(self, at: Array, cells: IntArray | slice = slice(None)) -> Array:
+        """Of some cells, all by default, with their nodes at (nc, nn, 3)."""
+        nc, nn, _ = at.shape
+        found = point_volumes(self._family, at.reshape(-1, 3), np.arange(nc * nn).reshape(nc, nn))
+        return found * (self._shares[cells] / self._family.thickness)[:, None]
+
+    def _placed_at(self, at: Array) -> _Placed:
+        """Cells with their nodes at (nc, nn, 3)."""
+        axes = list(self._family.axes)
+        there = np.zeros_like(at)
+        there[..., : len(axes)] = at[..., axes]
+        mean = np.empty((len(at), self._dofs.shape[1] if self._family.mean_dilatation else 0))
+        if self._family.mean_dilatation:
+            cell_loops.write_mean_divergence(self._kernels.mean_divergence, there, mean)
+        return _Placed(there, mean)
 
     def make_anew(self, cells: IntArray, at: Array) -> None:
-        """Make the gradients of some cells anew, with their nodes at (n, nn, 3)."""
+        """Place some cells anew, with their nodes at (n, nn, 3)."""
         self.made_at[cells] = at
-        made = self._gradients_of(at, cells)
-        for name, values in vars(made).items():
-            vars(self.gradients)[name][cells] = values
+        self.volumes[cells] = self._volumes_of(at, cells)
+        for kept, made in zip(self._placed, self._placed_at(at), strict=True):
+            kept[cells] = made
         if self._stiffness is not None:
             self._stiffness.moduli[cells] = np.nan
 
     def renew(self, points: Array) -> None:
-        """Make the gradients anew of the cells that have strained since theirs were made; nodes at points (n, 3)."""
+        """Place those cells anew that have strained since they were placed; nodes at points (n, 3)."""
         at = points[self.nodes]
         moved = at - self.made_at
         moved -= moved.mean(axis=1, keepdims=True)
@@ -60,32 +74,51 @@ class SoilCells:
         """Matrices (nc, d nn, d nn) [N/m] of the cells by the moduli (n, 6, 6) [Pa] at their points, for displacements
         along the axes along which they extend.
         """
-        g, axes = self.gradients, np.array(self._family.axes)
         if self._stiffness is None:
-            self._stiffness = _Stiffness.unknown(self.shape, axes.size * self.nodes.shape[1])
-        kernels.renew_stiffness(
-            g.full, g.volume, g.weights, axes, moduli.reshape(*self.shape, 6, 6), *self._stiffness
+            self._stiffness = _Stiffness.unknown(self.shape, self._dofs.shape[1])
+        cell_loops.renew_matrices(
+            self._kernels.tangent, *self._placed, self._shares, self._by_cell(moduli), *self._stiffness
         )
         return self._stiffness.matrices
 
     def strain(self, u: Array) -> Array:
         """Strain (n, 6) of nodal displacements u (size,)."""
-        g, out = self.gradients, np.empty((*self.shape, 6))
-        kernels.strain(g.full, g.volume, self.nodes, u, out)
+        return self._strain(self._placed, u)
+
+    def _strain(self, placed: _Placed, u: Array) -> Array:
+        out = np.empty((self.shape[0], self.shape[1] * 6))
+        cell_loops.write_at_points(self._kernels.strain, *placed, self._dofs, u, out)
         return out.reshape(-1, 6)
 
+    def motion(self, points: Array, u: Array) -> tuple[Array, Array]:
+        """Strain (n, 6) and spin (n, 3) of nodal displacements u (size,) by the gradients of cells with their nodes at
+        points (n, 3).
+        """
+        at = points[self.nodes]
+        self._volumes_of(at)
+        placed, spin = self._placed_at(at), np.empty((self.shape[0], self.shape[1] * 3))
+        cell_loops.write_at_points(self._kernels.spin, placed.at, placed.mean[:, :0], self._dofs, u, spin)
+        return self._strain(placed, u), spin.reshape(-1, 3)
+
     def internal_force(self, stress: Array, size: int) -> Array:
-        """Nodal forces (size,) [N] of a stress (n, 6)."""
-        g, out = self.gradients, np.zeros(size)
-        kernels.add_internal_force(g.full, g.volume, g.weights, self.nodes, stress.reshape(*self.shape, 6), out)
+        """Nodal forces (size,) [N] of a stress (n, 6) [Pa]."""
+        out = np.zeros(size)
+        cell_loops.add_forces(
+            self._kernels.force, *self._placed, self._shares, self._by_cell(stress), self._dofs, out
+        )
         return out
 
     def weight(self, unit_weight: Array, size: int) -> Array:
         """Nodal forces (size,) [N] of a unit weight (n,) [N/m3], downwards."""
-        down = -np.einsum("cq,cq,qa->ca", unit_weight.reshape(self.shape), self.gradients.weights, self._family.values)
         out = np.zeros(size)
-        out[2::3] = np.bincount(self.nodes.ravel(), down.ravel(), minlength=size // 3)
+        cell_loops.add_forces(
+            self._kernels.weight, *self._placed, self._shares, self._by_cell(unit_weight), self._dofs, out
+        )
         return out
+
+    def _by_cell(self, values: Array) -> Array:
+        """Values (n, ...) at points as a row for each cell."""
+        return np.ascontiguousarray(values).reshape(self.shape[0], -1)
 
     def at_points(self, nodal: Array) -> Array:
         """Values (n, ...) of those (nodes, ...) at nodes."""
@@ -94,24 +127,35 @@ class SoilCells:
 
     def slopes(self, nodal: Array) -> Array:
         """Gradients (n, 3) of values (nodes,) at nodes."""
-        return np.asarray(np.einsum("cqni,cn->cqi", self.gradients.full, nodal[self.nodes]).reshape(-1, 3))
+        out = np.empty((self.shape[0], self.shape[1] * 3))
+        cell_loops.write_at_points(
+            self._kernels.slope, self._placed.at, self._placed.mean[:, :0], self.nodes, nodal, out
+        )
+        return out.reshape(-1, 3)
 
     def integral(self, a: Array, b: Array) -> float:
         """Of the product of two fields (n, 6)."""
-        return float(np.einsum("n,ni,ni->", self.gradients.weights.ravel(), a, b))
+        return float(np.einsum("n,ni,ni->", self.volumes.ravel(), a, b))
 
     def mean(self, values: Array) -> Array:
         """Mean (nc,) in each cell of values (n,)."""
-        w = self.gradients.weights
+        w = self.volumes
         return np.asarray(np.einsum("cq,cq->c", w, values.reshape(self.shape)) / w.sum(axis=1))
 
 
+class _Placed(NamedTuple):
+    """Cells where they are: nodes and mean divergences, see cell_loops."""
+
+    at: Array
+    mean: Array
+
+
 class _Stiffness(NamedTuple):
-    """Cell matrices (nc, n, n) [N/m] and the moduli (nc, nq, 6, 6) [Pa] that they are of: most keep them."""
+    """Moduli (nc, nq 36) [Pa] by cell, and the cell matrices (nc, n, n) [N/m] of these: most keep them."""
 
     moduli: Array
     matrices: Array
 
     @classmethod
     def unknown(cls, shape: tuple[int, ...], n: int) -> _Stiffness:
-        return cls(np.full((*shape, 6, 6), np.nan), np.zeros((shape[0], n, n)))
+        return cls(np.full((shape[0], shape[1] * 36), np.nan), np.zeros((shape[0], n, n)))

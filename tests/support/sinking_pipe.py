@@ -87,7 +87,7 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
     assert soil is not None
     bearing = float(soil.grid.high[0] - soil.grid.low[0]) * SU * D
     deepest = 0.5 - scene["stages"][0]["move"]["start"][2] / D
-    first = soil.cells.gradients.weights.sum()
+    first = soil.cells.volumes.sum()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         forces = [contact.force_on_soil(stepper.before)]
@@ -102,7 +102,7 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
         state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
     w, V, H, iterations, t, lift = np.array(rows).T
     renewals = 0 if assembly.mesh_renewal is None else assembly.mesh_renewal.count
-    return Sunk(w, V, H, iterations, t, lift, renewals, float(soil.cells.gradients.weights.sum() / first))
+    return Sunk(w, V, H, iterations, t, lift, renewals, float(soil.cells.volumes.sum() / first))
 
 
 def lifted(surface: SoilSurface) -> float:

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from meshes.block import main as write_block
 from riser_soil.core.part import State
 from riser_soil.errors import MeshError, SceneError
-from riser_soil.soil.families import cell_gradients
+from riser_soil.soil.families import point_volumes
 from riser_soil.soil.grading import BlockSpec, graded, in_units
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.sections import smoothed
@@ -90,9 +90,9 @@ def test_under_a_riser_across_the_axes_cells_are_fine_both_ways() -> None:
 def test_cells_that_grow_a_thousandfold_fill_the_block() -> None:
     spec = replace(LONG, size_at_riser=0.002, size_far=2.0, strip=0.016, y=(-4.0, 4.0), depth=4.0)
     grid = block_grid(COMM, spec)
-    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
-    assert g.weights.min() > 0.0
-    assert g.weights.sum() == pytest.approx(4.0 * 8.0 * 4.0, rel=1e-12)
+    volumes = point_volumes(grid.family, grid.nodes.points, grid.nodes.cells)
+    assert volumes.min() > 0.0
+    assert volumes.sum() == pytest.approx(4.0 * 8.0 * 4.0, rel=1e-12)
     assert len(grid.nodes.cells) == np.prod(spec.layers())
     assert 500.0 < np.ptp(np.diff(spec.coordinates(1))) / 0.002 < 1000.0
 
@@ -100,8 +100,8 @@ def test_cells_that_grow_a_thousandfold_fill_the_block() -> None:
 def test_block_of_tetrahedra_grows_away_from_the_riser() -> None:
     spec = BlockSpec((0.0, 10.0), (-5.0, 5.0), 5.0, 0.5, 2.5, kind="tet", riser=((0.0, 0.0), (10.0, 0.0)))
     grid = block_grid(COMM, spec)
-    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
-    volume, centre = g.weights.sum(axis=1), grid.nodes.points[grid.nodes.cells[:, :4]].mean(axis=1)
+    volumes = point_volumes(grid.family, grid.nodes.points, grid.nodes.cells)
+    volume, centre = volumes.sum(axis=1), grid.nodes.points[grid.nodes.cells[:, :4]].mean(axis=1)
     near = np.hypot(centre[:, 1], centre[:, 2]) < 0.7
     far = np.hypot(centre[:, 1], centre[:, 2]) > 4.0
     assert volume.sum() == pytest.approx(500.0, rel=1e-12)
@@ -125,8 +125,8 @@ def test_mesh_file_gives_the_same_soil_as_the_block(kind: str, tmp_path: Path) -
     grid = file_grid(COMM, file)
     assert grid.family.corners == {"hex": 4, "tet": 3}[kind]
     np.testing.assert_allclose(np.r_[grid.low, grid.high], [0.0, -2.5, -2.0, 4.0, 2.5, 0.0], atol=1e-9)
-    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
-    assert g.weights.sum() == pytest.approx(40.0, rel=1e-12)
+    volumes = point_volumes(grid.family, grid.nodes.points, grid.nodes.cells)
+    assert volumes.sum() == pytest.approx(40.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", KINDS)

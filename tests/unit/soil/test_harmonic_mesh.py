@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.soil.block import BlockSpec
-from riser_soil.soil.families import cell_gradients
+from riser_soil.soil.families import point_volumes
 from riser_soil.soil.field import gather, top_of
 from riser_soil.soil.grid import block_grid
 from riser_soil.soil.harmonic_mesh import HarmonicMesh
@@ -31,7 +31,7 @@ def mesh_of(kind: Any, **more: Any) -> HarmonicMesh:
 
 
 def volume(mesh: HarmonicMesh, points: Array) -> float:
-    return float(cell_gradients(mesh.family, points, mesh.cells).weights.sum())
+    return float(point_volumes(mesh.family, points, mesh.cells).sum())
 
 
 def strain(mesh: HarmonicMesh, points: Array) -> float:

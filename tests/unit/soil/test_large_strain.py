@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.soil.families import cell_gradients
+from riser_soil.soil.families import point_volumes
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.large_strain import turn, turned
@@ -103,11 +103,11 @@ def test_simple_shear_to_four_times_the_height_rises_to_the_strength(law: Any) -
 def test_pressure_is_that_of_the_volume_that_there_is(kind: str) -> None:
     """Cells stretched to half of their height in 20 steps, their volume less by 1e-3: p = -K ln(1 - 1e-3)."""
     soil = moving(kind, LAWS[0].at_points)
-    first, volume = soil.points.copy(), cell_gradients(soil.grid.family, soil.points, soil.grid.nodes.cells).weights
+    first, volume = soil.points.copy(), point_volumes(soil.grid.family, soil.points, soil.grid.nodes.cells)
     for n in range(1, 21):
         height, plan = 0.5 ** (n / 20), (1.0 - 1e-3) ** (n / 20)
         move(soil, first * np.array([plan / height, 1.0, height]))
-    now = cell_gradients(soil.grid.family, soil.points, soil.grid.nodes.cells).weights
+    now = point_volumes(soil.grid.family, soil.points, soil.grid.nodes.cells)
     np.testing.assert_allclose(now.sum(axis=1) / volume.sum(axis=1), 1.0 - 1e-3, rtol=1e-12)
     found = -stress(soil)[:, :3].mean(axis=1)
     np.testing.assert_allclose(found, -soil.law.bulk * np.log(1.0 - 1e-3), rtol=5e-3)
@@ -189,17 +189,17 @@ def test_a_stress_that_varies_goes_along_with_the_way() -> None:
 
 
 def test_cells_beside_new_ones_stay_as_they_are() -> None:
-    """A strained block gets new nodes where x < 1: cells beyond keep stress, wear and gradients to the last bit."""
+    """A strained block gets new nodes where x < 1: cells beyond keep stress, wear and places to the last bit."""
     soil = Soil(small_block("hex", 0.25), CLAY, level=0.0, unit_weight=5.0e3, moves=True)
     x = soil.points
     move(soil, x + 0.01 * np.stack([x[:, 0] * x[:, 2], 0.0 * x[:, 0], -0.5 * x[:, 2] ** 2], axis=1))
     made, order = x[:, 0] < 1.0 - 1e-9, np.argsort(soil.grid.nodes.number)
     there = np.where(made[:, None], waved(soil, 0.02), soil.points)
     beside = ~made[soil.cells.nodes].any(axis=1)
-    held = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.gradients.full.copy()
+    held = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.made_at.copy()
     assert np.allclose(soil.gathered_wear(soil.worn)[order].max(), soil.worn.max())
     soil.take_mesh(there[order], made[order])
-    now = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.gradients.full
+    now = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.made_at
     assert 0 < beside.sum() < beside.size
     for before, after in zip(held, now, strict=True):
         assert np.array_equal(before[beside], after[beside])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,11 @@ from mpi4py import MPI
 
 from riser_soil.core.part import State
 from riser_soil.errors import MeshError
-from riser_soil.soil import kernels
-from riser_soil.soil.families import cell_gradients
 from riser_soil.soil.grading import BlockSpec
 from riser_soil.soil.large_strain import carried_rows, nearest_rows
 from riser_soil.soil.slices import slice_grid
 from riser_soil.soil.soil import Soil
+from riser_soil.soil.soil_cells import SoilCells
 from tests.support.sinking_pipe import CLAY, sink, sinking
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import ELASTIC
@@ -39,7 +39,7 @@ def soil_of(along: int, law: Any = ELASTIC) -> Soil:
 @ALONG
 def test_slices_fill_the_block(along: int) -> None:
     soil = soil_of(along)
-    assert soil.cells.gradients.weights.sum() == pytest.approx(2.0 * 2.0 * 1.0, rel=1e-12)
+    assert soil.cells.volumes.sum() == pytest.approx(2.0 * 2.0 * 1.0, rel=1e-12)
     places = np.unique(soil.grid.nodes.points[:, along])
     np.testing.assert_allclose(places, [0.25, 0.75, 1.25, 1.75])
     mesh = soil.output_mesh()
@@ -72,9 +72,7 @@ def test_linear_displacement_strains_askew_cells_alike(along: int) -> None:
     points[:, [across, 2]] += 0.06 * np.random.default_rng(3).uniform(-1.0, 1.0, (len(points), 2))
     u[:, across] = 1e-3 * points[:, across] - 4e-4 * points[:, 2]
     u[:, 2] = 7e-4 * points[:, across] + 2e-3 * points[:, 2]
-    g = cell_gradients(grid.family, points, grid.nodes.cells)
-    strain, exact = np.empty((*g.weights.shape, 6)), np.zeros(6)
-    kernels.strain(g.full, g.volume, grid.nodes.cells, u.ravel(), strain)
+    strain, exact = SoilCells(replace(grid, nodes=replace(grid.nodes, points=points))).strain(u.ravel()), np.zeros(6)
     exact[[across, 2, 4 + across]] = 1e-3, 2e-3, 3e-4 / np.sqrt(2.0)
     np.testing.assert_allclose(strain, np.broadcast_to(exact, strain.shape), atol=1e-15)
 

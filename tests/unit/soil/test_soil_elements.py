@@ -9,15 +9,16 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
-from riser_soil.soil import kernels, mandel
-from riser_soil.soil.families import cell_gradients
+from riser_soil.soil import mandel
 from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.soil import Soil
+from riser_soil.soil.soil_cells import SoilCells
 from riser_soil.soil.von_mises import VonMises
+from tests.support.b_bar import cells_of
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, sheared, small_block
 
@@ -30,10 +31,8 @@ GRADIENT = 1e-3 * np.array([[1.0, 0.4, -0.2], [0.7, -0.5, 0.3], [-0.6, 0.1, 0.8]
 
 
 def strain_of(grid: DistributedMesh, displacement: Array) -> Array:
-    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
-    out = np.empty((*g.weights.shape, 6))
-    kernels.strain(g.full, g.volume, grid.nodes.cells, displacement.ravel(), out)
-    return out
+    cells = SoilCells(grid)
+    return cells.strain(displacement.ravel()).reshape(*cells.shape, 6)
 
 
 def force(soil: Soil, state: State) -> Array:
@@ -78,10 +77,10 @@ def test_patch_test_of_cells_fifty_times_as_long_as_wide(nu: float) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_volume_and_rigid_rotation(kind: str) -> None:
     grid = distorted(small_block(kind))
-    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
-    assert g.weights.sum() == pytest.approx(3.0, rel=1e-13)
+    cells = cells_of(grid.family, grid.nodes.points, grid.nodes.cells)
+    assert SoilCells(grid).volumes.sum() == pytest.approx(3.0, rel=1e-13)
     turn = np.cross(np.array([0.1, -0.2, 0.3]), grid.nodes.points)
-    terms = np.abs(g.full).sum(axis=2).max() * np.abs(turn).max()  # strains are sums of these, rounded one by one
+    terms = np.abs(cells.gradients).sum(axis=2).max() * np.abs(turn).max()  # strains are sums of them, rounded each
     assert np.abs(strain_of(grid, turn)).max() < 8.0 * EPS * terms
 
 

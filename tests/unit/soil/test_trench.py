@@ -18,7 +18,7 @@ from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.seabed_features import Groove, Trench
 from riser_soil.soil.block import BlockSpec
-from riser_soil.soil.families import cell_gradients
+from riser_soil.soil.families import point_volumes
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid
 from riser_soil.soil.seabed_feature import GrooveSpec, TrenchSpec
 from riser_soil.soil.soil import Soil
@@ -38,7 +38,7 @@ def dug(feature: Any, size: float = 0.25, riser: Any = ALONG_X, **more: Any) -> 
 
 
 def volume(grid: DistributedMesh) -> float:
-    return float(cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells).weights.sum())
+    return float(point_volumes(grid.family, grid.nodes.points, grid.nodes.cells).sum())
 
 
 def soil_on(grid: DistributedMesh) -> Soil:

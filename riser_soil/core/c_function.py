@@ -1,0 +1,28 @@
+"""C functions as arguments of compiled code: numba's wrapper address protocol.
+
+Machine code that holds an address is nothing to keep on disk. As an argument the address is asked for at each call,
+which takes some microseconds, and the code of the loop around it stays.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba.experimental.function_type  # noqa: F401 (tells numba of the protocol)
+from numba import types
+
+
+class CFunction(types.WrapperAddressProtocol):  # type: ignore[misc]
+    """A function at an address that takes so many pointers and returns nothing; compiled code hands it arrays'
+    `ctypes`. owner: what must live as long as the function.
+    """
+
+    def __init__(self, address: int, arguments: int, owner: object) -> None:
+        self._address, self._owner = address, owner
+        self._signature = types.void(*[types.voidptr] * arguments)
+
+    def __wrapper_address__(self) -> int:
+        return self._address
+
+    def signature(self) -> Any:
+        return self._signature
