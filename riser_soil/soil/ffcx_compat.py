@@ -35,8 +35,8 @@ from riser_soil.core.kernel_cache import first_alone
 from riser_soil.errors import RiserSoilError
 
 ARGUMENTS = 7
-FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassociative-math")
-FLAGS += ("--param", "vect-max-peeling-for-alignment=0", "-g0", "-w")
+FLAGS = ("-O2", "-ftree-vectorize", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros")
+FLAGS += ("-fassociative-math", "-freciprocal-math", "--param", "vect-max-peeling-for-alignment=0", "-g0", "-w")
 OLD = hasattr(ufl, "VectorElement")  # elements were UFL's own before basix had them
 _FFI = cffi.FFI()
 
