@@ -13,13 +13,13 @@ from numba import types
 
 
 class CFunction(types.WrapperAddressProtocol):  # type: ignore[misc]
-    """A function at an address that takes so many pointers and returns nothing; compiled code hands it arrays'
-    `ctypes`. owner: what must live as long as the function.
+    """A function at an address that takes so many pointers and returns nothing; compiled code hands it addresses of
+    arrays, whole numbers, 0 for none. owner: what must live as long as the function.
     """
 
     def __init__(self, address: int, arguments: int, owner: object) -> None:
         self._address, self._owner = address, owner
-        self._signature = types.void(*[types.voidptr] * arguments)
+        self._signature = types.void(*[types.intp] * arguments)
 
     def __wrapper_address__(self) -> int:
         return self._address

@@ -74,10 +74,10 @@ def _kernels_of(family: Family) -> CellKernels:
 def write_mean_divergence(kernel: CFunction, at: Array, mean: Array) -> None:
     """kernel: integrals of the divergences, and of 1."""
     n = mean.shape[1]
-    b, none = np.empty(n + 1), np.zeros(1)
+    b = np.empty(n + 1)
     for c in range(at.shape[0]):
         b[:] = 0.0
-        _tabulate(kernel, b, none, at[c], none)
+        kernel(place(b, 0), 0, 0, place(at, c), 0, 0, 0)
         for i in range(n):
             mean[c, i] = b[i] / b[n]
 
@@ -86,7 +86,7 @@ def write_mean_divergence(kernel: CFunction, at: Array, mean: Array) -> None:
 def write_at_points(kernel: CFunction, at: Array, mean: Array, dofs: IntArray, u: Array, out: Array) -> None:
     """Values (nc, m) of a field u and its mean dilatation; dofs (nc, n): where the cells have their part of it."""
     n = dofs.shape[1]
-    w, none = np.zeros(n + 1), np.zeros(1)
+    w = np.zeros(n + 1)
     for c in range(at.shape[0]):
         for i in range(n):
             w[i] = u[dofs[c, i]]
@@ -94,7 +94,7 @@ def write_at_points(kernel: CFunction, at: Array, mean: Array, dofs: IntArray, u
         for i in range(mean.shape[1]):
             w[n] += mean[c, i] * w[i]
         out[c] = 0.0
-        _tabulate(kernel, out[c], w, at[c], none)
+        kernel(place(out, c), place(w, 0), 0, place(at, c), 0, 0, 0)
 
 
 @njit
@@ -103,10 +103,10 @@ def add_forces(
 ) -> None:
     """Add the cells' nodal forces, times their shares (nc,), to out; given (nc, m): coefficients of the form."""
     n = dofs.shape[1]
-    b, none = np.empty(n + 1), np.zeros(1)
+    b = np.empty(n + 1)
     for c in range(at.shape[0]):
         b[:] = 0.0
-        _tabulate(kernel, b, given[c], at[c], none)
+        kernel(place(b, 0), place(given, c), 0, place(at, c), 0, 0, 0)
         for i in range(mean.shape[1]):
             b[i] += b[n] * mean[c, i]
         for i in range(n):
@@ -121,13 +121,13 @@ def renew_matrices(
     given (nc, m) of the form; known: the ones that they are of, which become those.
     """
     n, fields = out.shape[1], out.shape[1] + (1 if mean.shape[1] > 0 else 0)
-    A, none = np.empty((fields, fields)), np.zeros(1)
+    A = np.empty((fields, fields))
     for c in range(at.shape[0]):
         if _same(given[c], known[c]):
             continue
         known[c] = given[c]
         A[:] = 0.0
-        _tabulate(kernel, A, given[c], at[c], none)
+        kernel(place(A, 0), place(given, c), 0, place(at, c), 0, 0, 0)
         K, h = out[c], mean[c]
         for i in range(n):
             if fields > n:
@@ -148,6 +148,6 @@ def _same(a: Array, b: Array) -> bool:
 
 
 @njit
-def _tabulate(kernel: CFunction, out: Array, given: Array, at: Array, none: Array) -> None:
-    """Let a kernel add its numbers to out; coefficients given, none of what it doesn't ask for."""
-    kernel(out.ctypes, given.ctypes, none.ctypes, at.ctypes, none.ctypes, none.ctypes, none.ctypes)
+def place(array: Array, k: int) -> int:
+    """Address of the row k of an array: slices would count references, which takes longer than a small kernel."""
+    return array.ctypes.data + k * array.strides[0]
