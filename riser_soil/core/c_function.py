@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba.experimental.function_type  # noqa: F401 (tells numba of the protocol)
 from numba import types
+from numba.experimental import function_type  # noqa: F401 (tells numba of the protocol)
 
 
-class CFunction(types.WrapperAddressProtocol):  # type: ignore[misc]
+class CFunction(types.WrapperAddressProtocol):
     """A function at an address that takes so many pointers and returns nothing; compiled code hands it addresses of
     arrays, whole numbers, 0 for none. owner: what must live as long as the function.
     """

@@ -101,7 +101,7 @@ def values_of_cells(mesh: Any, size: int) -> tuple[Any, IntArray]:
     """A function with `size` numbers in each cell of a mesh that one rank has alone, and where they stand in its array
     (nc, size).
     """
-    _quiet_compiler_log()
+    quiet_compiler_log()
     if hasattr(fem, "functionspace"):
         space = fem.functionspace(mesh, ("DG", 0, (size,)))
     else:
@@ -113,7 +113,7 @@ class CellExpression:
     """A vector (k,) in UFL in the middle of each cell of a mesh that one rank has alone, compiled."""
 
     def __init__(self, mesh: Any, vector: Any) -> None:
-        _quiet_compiler_log()
+        quiet_compiler_log()
         middle, cache = np.full((1, mesh.topology.dim), 0.5), {"cache_dir": str(writable_cache(MPI.COMM_SELF))}
         self._since_06 = hasattr(fem, "functionspace")
         options: dict[str, Any] = {"jit_options" if self._since_06 else "jit_params": cache}

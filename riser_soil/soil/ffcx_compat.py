@@ -35,8 +35,10 @@ from riser_soil.core.kernel_cache import first_alone
 from riser_soil.errors import RiserSoilError
 
 ARGUMENTS = 7
-FLAGS = ("-O2", "-ftree-vectorize", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros")
-FLAGS += ("-fassociative-math", "-freciprocal-math", "--param", "vect-max-peeling-for-alignment=0", "-g0", "-w")
+FLAGS = [
+    "-O2", "-ftree-vectorize", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros",
+    "-fassociative-math", "-freciprocal-math", "--param", "vect-max-peeling-for-alignment=0", "-g0", "-w",
+]  # fmt: skip
 OLD = hasattr(ufl, "VectorElement")  # elements were UFL's own before basix had them
 _FFI = cffi.FFI()
 
@@ -133,7 +135,7 @@ def _compiler(kind: str, what: Any) -> Callable[[Path], Any]:
     quiet_compiler_log()
     options = {"parameters": {"scalar_type": "double"}} if OLD else {"options": {"scalar_type": np.float64}}
     compiles = jit.compile_forms if kind == "forms" else jit.compile_expressions
-    return lambda folder: compiles([what], cache_dir=folder, cffi_extra_compile_args=list(FLAGS), **options)
+    return lambda folder: compiles([what], cache_dir=folder, cffi_extra_compile_args=FLAGS, **options)
 
 
 def quiet_compiler_log() -> None:
