@@ -27,7 +27,7 @@ from packaging.requirements import Requirement
 from tests.support.on_ranks import ROOT
 
 PUBLIC = {"numba", "numba.types", "numba.typed", "numba.experimental", "numba.extending", "numba.core.event"}  # modules
-DOCUMENTED = {"address", "ctypes", "py_func"}
+DOCUMENTED = {"address", "ctypes", "py_func", "signature"}  # the last of the wrapper address protocol
 OTHERS = {"load", "args", "name", "register", "globals", "flush", "_replace"}  # words that objects of others have, too
 OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline"}
 INSIDE: tuple[Any, ...] = (
