@@ -27,6 +27,15 @@ def small_block(kind: Any, size: float = 0.5) -> DistributedMesh:
     return block_grid(MPI.COMM_SELF, BlockSpec((0.0, 2.0), (0.0, 1.5), 1.0, size, size, kind=kind))
 
 
+def slices_spec(along: int, length: float = 2.0, **more: Any) -> BlockSpec:
+    """A block for four slices, a riser along x (0) or y (1) in its middle."""
+    line, ranges = np.zeros((2, 2)), [(0.0, length), (-1.0, 1.0)]
+    line[1, along] = length
+    x, y = ranges if along == 0 else ranges[::-1]
+    first, second = ((float(p[0]), float(p[1])) for p in line)
+    return BlockSpec(x, y, 1.0, 0.25, 0.5, riser=(first, second), along=length / 4.0, **more)
+
+
 def distorted(grid: DistributedMesh, amount: float = 0.08) -> DistributedMesh:
     """The grid with its inner vertices moved at random by up to `amount` [m]; edges stay straight."""
     points = grid.nodes.points.copy()

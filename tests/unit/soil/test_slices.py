@@ -18,22 +18,13 @@ from riser_soil.soil.soil import Soil
 from riser_soil.soil.soil_cells import SoilCells
 from tests.support.sinking_pipe import CLAY, sink, sinking
 from tests.support.soil_bench import assemble
-from tests.support.soil_cases import ELASTIC
+from tests.support.soil_cases import ELASTIC, slices_spec
 
 ALONG = pytest.mark.parametrize("along", [0, 1])
 
 
-def spec(along: int, length: float = 2.0, **more: Any) -> BlockSpec:
-    """Four cells along the riser."""
-    line, ranges = np.zeros((2, 2)), [(0.0, length), (-1.0, 1.0)]
-    line[1, along] = length
-    x, y = ranges if along == 0 else ranges[::-1]
-    first, second = ((float(p[0]), float(p[1])) for p in line)
-    return BlockSpec(x, y, 1.0, 0.25, 0.5, riser=(first, second), along=length / 4.0, **more)
-
-
 def soil_of(along: int, law: Any = ELASTIC) -> Soil:
-    return Soil(slice_grid(MPI.COMM_SELF, spec(along)), law, level=0.0, unit_weight=5.0e3)
+    return Soil(slice_grid(MPI.COMM_SELF, slices_spec(along)), law, level=0.0, unit_weight=5.0e3)
 
 
 @ALONG
@@ -51,7 +42,7 @@ def test_slices_fill_the_block(along: int) -> None:
 @ALONG
 def test_slices_take_nothing_from_each_other(along: int) -> None:
     """A new mesh of thin slices whose nodes lie nearer to those of the next one than to their own neighbours."""
-    soil = Soil(slice_grid(MPI.COMM_SELF, spec(along, length=0.2)), ELASTIC, level=0.0, unit_weight=5.0e3)
+    soil = Soil(slice_grid(MPI.COMM_SELF, slices_spec(along, length=0.2)), ELASTIC, level=0.0, unit_weight=5.0e3)
     before = soil.cells.at_points(soil.points)
     number = np.round(before[:, along] / 0.05 - 0.5)
     assert set(number) == {0.0, 1.0, 2.0, 3.0}
@@ -67,7 +58,7 @@ def test_slices_take_nothing_from_each_other(along: int) -> None:
 @ALONG
 def test_linear_displacement_strains_askew_cells_alike(along: int) -> None:
     """Nodes are moved at random within their slices."""
-    grid, across = slice_grid(MPI.COMM_SELF, spec(along)), 1 - along
+    grid, across = slice_grid(MPI.COMM_SELF, slices_spec(along)), 1 - along
     points, u = grid.nodes.points.copy(), np.zeros((len(grid.nodes.points), 3))
     points[:, [across, 2]] += 0.06 * np.random.default_rng(3).uniform(-1.0, 1.0, (len(points), 2))
     u[:, across] = 1e-3 * points[:, across] - 4e-4 * points[:, 2]

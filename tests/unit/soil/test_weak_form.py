@@ -20,8 +20,7 @@ from riser_soil.soil.slices import slice_grid
 from riser_soil.soil.soil_cells import SoilCells
 from riser_soil.soil.weak_form import WeakForm
 from tests.support.b_bar import Cells, cells_of
-from tests.support.soil_cases import small_block
-from tests.unit.soil.test_slices import spec
+from tests.support.soil_cases import slices_spec, small_block
 
 RNG = np.random.default_rng(11)
 WAYS = ("hexahedra", "curved tetrahedra", "sections along x", "sections along y")
@@ -30,7 +29,7 @@ WAYS = ("hexahedra", "curved tetrahedra", "sections along x", "sections along y"
 def distorted(way: str) -> DistributedMesh:
     """Every node moved at random, those in the middle of a side as well."""
     if way.startswith("sections"):
-        grid, size = slice_grid(MPI.COMM_SELF, spec(0 if way.endswith("x") else 1)), 0.06
+        grid, size = slice_grid(MPI.COMM_SELF, slices_spec(0 if way.endswith("x") else 1)), 0.06
     else:
         grid, size = small_block("hex" if way == "hexahedra" else "tet"), 0.03
     points = grid.nodes.points + size * RNG.uniform(-1.0, 1.0, grid.nodes.points.shape) * axes_of(grid.family)
