@@ -77,14 +77,28 @@ def _spread(indptr: IntArray, indices: IntArray, values: Array, band: Array, b: 
                 band[i, indices[k] - i + b] = values[k]
 
 
+class OutgrownError(Exception):
+    """The matrix lacks places for the tangent: the iteration ends, to begin anew with a wider one; on all ranks."""
+
+
 class Balance(Protocol):
-    """The balance that a loop is to find; its arrays are over this rank's rows, see `Newton`."""
+    """The balance that a loop is to find, and the rules by which; its arrays are over this rank's rows, see
+    `StepIteration`. All methods are collective.
+    """
 
     def residual(self, x: Array) -> Array: ...
 
-    def judge(self, x: Array, f: Array) -> str: ...
+    def tangent(self, x: Array) -> None:
+        """Assemble the tangent at unknowns that are judged, unless the one before serves once more."""
+        ...
+
+    def judge(self, x: Array, f: Array, small: bool | None = None) -> str: ...
 
     def shortened(self, x: Array, y: Array) -> Array: ...
+
+    def took(self, part: float) -> None:
+        """Take note of the part of the last step that another line search has found."""
+        ...
 
     def linear_tolerance(self) -> float: ...
 
@@ -94,10 +108,11 @@ class Balance(Protocol):
 
 
 class Loop:
-    """Base of the loops of Newton's method. factorises: whether pivots may be counted, too. again: whether what failed
-    last may be tried once more.
+    """Base of the loops of Newton's method. max_iterations: those after which a step is looked at. factorises: whether
+    pivots may be counted, too. again: whether what failed last may be tried once more.
     """
 
+    max_iterations: int
     factorises, again = True, False
 
     def iterate(self, x: Array, most: int) -> str:
@@ -128,18 +143,19 @@ class Loop:
 class ChainLoop(Loop):
     """Newton's iteration with banded factors."""
 
-    def __init__(self, system: System, balance: Balance) -> None:
-        self._system, self._balance = system, balance
+    def __init__(self, system: System, max_iterations: int, balance: Balance) -> None:
+        self._system, self.max_iterations, self._balance = system, max_iterations, balance
         self.renew()
 
     def iterate(self, x: Array, most: int) -> str:
-        """As Newton's method in its plainest form."""
+        """Newton's method in its plainest form."""
         f = self._balance.residual(x)
         for left in range(most, -1, -1):
             if (ending := self._balance.judge(x, f)) != ITERATING:
                 return ending
             if not left:
                 break
+            self._balance.tangent(x)
             failure, y = self.respond(f)
             if failure:
                 return failure

@@ -39,8 +39,8 @@ from riser_soil.core.petsc_matrix import declare
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.chain import ChainFactors
+from riser_soil.solve.petsc_options import PREFIX
 
-PREFIX = "riser_soil_"
 # MUMPS' controls for counting pivots, on several ranks too (13), null pivots (24).
 COUNTING = {13: 1, 24: 1}
 IN_LIBRARY = 76  # PETSc's code of an error in another library, here MUMPS
@@ -53,10 +53,12 @@ class LinearSystems:
     """How one system after the other is solved; collective.
 
     factorises: whether pivots may be counted, too. to_tolerance: whether each is solved as exactly as the KSP is told.
+    options: PETSc's, where the user gives none of the name.
     """
 
     factorises: ClassVar[bool] = True
     to_tolerance: ClassVar[bool] = False
+    options: ClassVar[Mapping[str, str]] = {}
 
     @property
     def reads_mat(self) -> bool:
@@ -87,20 +89,6 @@ class LinearSystems:
         """Go on with that."""
 
 
-@contextmanager
-def defaults(options: Mapping[str, str]) -> Iterator[None]:
-    """PETSc options under the project's prefix while the block lasts; what the user has set wins."""
-    database = PETSc.Options()
-    added = [key for key in options if not database.hasName(PREFIX + key)]
-    for key in added:
-        database[PREFIX + key] = options[key]
-    try:
-        yield
-    finally:
-        for key in added:
-            database.delValue(PREFIX + key)
-
-
 def keeps_factors(system: System, asked: str) -> bool:
     """Whether factors are kept from one tangent to the next: as asked ("kept", "direct"), or where that is cheaper."""
     if system.is_chain or asked == "direct":
@@ -118,15 +106,18 @@ def factorise_directly(pc: PETSc.PC, system: System, workspace: Workspace) -> No
     _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", workspace.controls)
 
 
-def complaint(err: PETSc.Error | SingularError) -> str:
-    """What was said of a system that could not be solved, the same on all ranks; "" for other errors of PETSc.
+def raised(err: Exception) -> Exception:
+    """What a callback has raised, which PETSc 3.18 lets pass and PETSc 3.22 makes an error of its own of."""
+    cause = err.__cause__
+    return cause if isinstance(err, PETSc.Error) and isinstance(cause, Exception) else err
 
-    PETSc 3.18 lets what its callbacks raise pass, PETSc 3.22 makes an error of its own of it.
-    """
-    if SingularError in (type(err), type(err.__cause__)):
+
+def complaint(err: Exception) -> str:
+    """What was said of a system that could not be solved, the same on all ranks; "" for all other errors."""
+    err = raised(err)
+    if isinstance(err, SingularError):
         return "the linear solver failed (the matrix is singular)"
-    assert isinstance(err, PETSc.Error)
-    if err.ierr != IN_LIBRARY:
+    if not (isinstance(err, PETSc.Error) and err.ierr == IN_LIBRARY):
         return ""
     said = re.search(r"(?:in|during) (?:the )?(\w[\w ]*) phase.*INFOG\(1\)\s*=\s*(-?\d+)", str(err))
     where = f" in its {said[1]} phase: INFOG(1) = {said[2]}" if said else ""
@@ -179,7 +170,7 @@ def _counted(mat: PETSc.Mat) -> int:
         pc = PETSc.PC().create(mat.comm)
         try:
             pc.setOperators(mat)
-            use_mumps(pc, "cholesky", workspace.controls | COUNTING)
+            use_mumps(pc, "cholesky", workspace.controls | COUNTING, by_options=False)
             pc.setUp()
             if not workspace.grows_after(pc):
                 return int(pc.getFactorMatrix().getInertia()[0])
@@ -197,11 +188,15 @@ def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]
     use_mumps(pc, kind, controls)
 
 
-def use_mumps(pc: PETSc.PC, kind: str, controls: Mapping[int, int]) -> None:
-    """Let MUMPS factorise a preconditioner's operator. kind: "lu", or "cholesky": LDLᵀ of the upper triangle."""
+def use_mumps(pc: PETSc.PC, kind: str, controls: Mapping[int, int], by_options: bool = True) -> None:
+    """Let MUMPS factorise a preconditioner's operator. kind: "lu", or "cholesky": LDLᵀ of the upper triangle.
+    by_options: whether the user's options of MUMPS (mat_mumps_icntl_14, ...) go before the controls.
+    """
     pc.setType(kind)
     pc.setFactorSolverType("mumps")
     pc.setFactorSetUpSolverType()
+    if by_options:
+        pc.getFactorMatrix().setOptionsPrefix(PREFIX)
     for control, value in controls.items():
         pc.getFactorMatrix().setMumpsIcntl(control, value)
 

@@ -1,4 +1,6 @@
-"""Newton's method for a step over the parts of a system: residual, tangent and tests, for the loops of `chain`."""
+"""Newton's method for a step over the parts of a system: residual, tangent and the rules of convergence, which the
+riser's own loop (`chain`) and PETSc's SNES (`snes`) call.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +19,12 @@ from riser_soil.solve.chain import (
     DIVERGED,
     ITERATING,
     LOOSE,
+    NOT_FINITE,
     OUTGROWN,
     TOO_MANY,
     ChainLoop,
     Loop,
+    OutgrownError,
 )
 from riser_soil.solve.newton_progress import (
     NAMES,
@@ -69,7 +73,7 @@ class StepIteration:
 
     def _new_loop(self) -> Loop:
         if self.system.is_chain and not self.settings.snes:
-            return ChainLoop(self.system, self)
+            return ChainLoop(self.system, self.settings.max_iterations, self)
         from riser_soil.solve.snes import SnesLoop
 
         return SnesLoop(self.system, self.settings, self)
@@ -166,7 +170,7 @@ class StepIteration:
             if ending == OUTGROWN:
                 self._renew(self._step.balanced)
             elif ending == TOO_MANY and not self._elastic.in_vain and self._still_falls():
-                self._most += self.settings.max_iterations
+                self._most += self.loop.max_iterations
             elif not self.loop.again:
                 self.iterations += self._taken
                 self._elastic.reset()
@@ -176,14 +180,17 @@ class StepIteration:
     def _run(self) -> str:
         """Iterate until that converges, the pattern is outgrown or it fails: how it ends."""
         began, counted = time.perf_counter(), self.system.clock.total
-        ending = self.loop.iterate(self._x, self._most - self._taken)
+        try:
+            ending = self.loop.iterate(self._x, self._most - self._taken)
+        except OutgrownError:
+            ending = OUTGROWN
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         return ending
 
     def _still_falls(self) -> bool:
         """Whether a static step nears its end, if slowly, as where stiff ground opens and closes point after point."""
         before, lately = self._norms[:-PATIENCE], self._norms[-PATIENCE:]
-        limit = LONGEST * self.settings.max_iterations
+        limit = LONGEST * self.loop.max_iterations
         return self._step.weights.inertia == 0.0 and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
 
     @property
@@ -224,7 +231,7 @@ class StepIteration:
 
     def _begin(self, step: Step, at_equilibrium: bool) -> None:
         self._trials, self._norms, self._first = StepTrials(self.system, step), list[float](), 0
-        self._most = self.settings.max_iterations
+        self._most = self.loop.max_iterations
         self._x = self.system.numbering.to_global(step.guess)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._step.weights.inertia > 0.0
@@ -243,8 +250,12 @@ class StepIteration:
         def along(f: Array) -> float:
             return -self.system.sum([float(f @ y)])[0]
 
-        self._elastic.length = step_length(along(self._f), lambda part: along(self.residual(x - part * y)))
+        self.took(step_length(along(self._f), lambda part: along(self.residual(x - part * y))))
         return self._elastic.length * y
+
+    def took(self, part: float) -> None:
+        """Take note of the part of a step that a line search has found."""
+        self._elastic.length = part
 
     def _assemble(self, state: State) -> None:
         self.system.assemble(state, self._step.weights)
@@ -264,25 +275,55 @@ class StepIteration:
         before, norm = self._norms[-2:]
         return bool(leaves_tangent(norm, before, norm, self._limits.reuse))
 
-    def judge(self, x: Array, f: Array) -> str:
-        """Whether unknowns with the residual f are to be iterated further, and if so with which tangent: how it ends,
-        else ITERATING. What was judged last is what was found. Collective.
+    def tangent(self, x: Array) -> None:
+        """Assemble the tangent of the next iteration, unless that of the previous one can be reused; OutgrownError
+        where it lacks places.
+        """
+        if self._reusable():
+            return
+        self._step.of(x)
+        self._assemble(self._step.balanced)
+        if self._outgrown():
+            raise OutgrownError
+
+    def judge(self, x: Array, f: Array, small: bool | None = None) -> str:
+        """How the iteration ends at unknowns with the residual f, else ITERATING; OutgrownError where forces are found
+        that the tangent has no places for. What was judged last is what was found. small: whether the residual is, by
+        tolerances beside the settings'; None where these decide. Collective.
         """
         self._x, self._f = x, f
-        ending = self._judged()
-        return OUTGROWN if ending == CONVERGED and self._outgrown() else ending
+        self._norms.append(self._norm.of(f))
+        ending = self._judged(self._norms[-1], small)
+        if ending == CONVERGED and self._outgrown():
+            raise OutgrownError
+        return ending
 
-    def _judged(self) -> str:
-        norm, limits = self._norm.of(self._f), self._limits
-        self._norms.append(norm)
-        ending = NAMES[verdict(norm, self._norm.in_play(self._step.forces), self._taken, limits)]
+    def _judged(self, norm: float, small: bool | None) -> str:
+        ending, limits = self._verdict(norm, small), self._limits
         if ending != ITERATING:
             return ending
         if self._taken >= limits.least and stalled(np.array(self._norms)) and self._at_round_off():
             return CONVERGED
         if diverges(norm, self._norms[self._first], self._taken, limits):
             return DIVERGED
-        return self._next_tangent()
+        return self._yields()
+
+    def _verdict(self, norm: float, small: bool | None) -> str:
+        if small is None:
+            return NAMES[verdict(norm, self._norm.in_play(self._step.forces), self._taken, self._limits)]
+        if not np.isfinite(norm):
+            return NOT_FINITE
+        return CONVERGED if small and self._taken >= self._limits.least else ITERATING
+
+    def _yields(self) -> str:
+        """Adapt the share of the elastic tangent in the next one, where that is to be new; TOO_MANY where it is all of
+        it in vain.
+        """
+        if self._taken >= self._most or self._reusable():
+            return ITERATING
+        if self._taken > max(self._first, 1):
+            self._elastic.adapt(*self._norms[:-3:-1])
+        return TOO_MANY if self._elastic.in_vain else ITERATING
 
     def _at_round_off(self) -> bool:
         """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
@@ -290,18 +331,6 @@ class StepIteration:
         magnitudes = self.system.magnitudes(self._step.balanced, self._step.weights)
         sizes = self.system.numbering.sizes_to_global(magnitudes)
         return not any_of(self.system.comm, bool(above_round_off(self._f, sizes)))
-
-    def _next_tangent(self) -> str:
-        """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
-        if self._taken >= self._most or self._reusable():
-            return ITERATING
-        self._step.of(self._x)
-        if self._taken > max(self._first, 1):
-            self._elastic.adapt(*self._norms[:-3:-1])
-        if self._elastic.in_vain:
-            return TOO_MANY
-        self._assemble(self._step.balanced)
-        return OUTGROWN if self._outgrown() else ITERATING
 
     def linear_tolerance(self) -> float:
         """Share of the residual that the next linear system may leave.

@@ -1,0 +1,111 @@
+"""The solver of a system's tangents, one after the other, by what a scene, the user's options and the state ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from petsc4py import PETSc
+
+from riser_soil.core.factor_memory import Workspace
+from riser_soil.core.system import System
+from riser_soil.solve.chain import Balance
+from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
+from riser_soil.solve.kept_factors import KeptFactors
+from riser_soil.solve.linear_solver import LinearSystems, RiserAboveSoil, factorise_directly, keeps_factors
+from riser_soil.solve.petsc_options import Given
+from riser_soil.solve.section_solver import SectionSolver, sections_of
+
+
+def linear_systems(system: System, asked: str, by_options: bool) -> LinearSystems:
+    """As asked: "direct", "kept", "iterative", or "auto", by which sections are solved one by one; what there is
+    nothing for is solved directly. by_options: PETSc's own, as the user's options name one.
+    """
+    comm: Any = system.comm
+    if by_options:
+        return PetscSolver()
+    solid = solid_of(system) if asked == "iterative" else None
+    if solid is not None:
+        return IterativeSolver(system, solid)
+    sections = sections_of(system) if asked == "auto" else None
+    if sections is not None:
+        return SectionSolver(system, sections, Workspace())
+    if keeps_factors(system, asked):
+        return KeptFactors(comm, system.symmetric, Workspace())
+    return DirectSolver(system, Workspace())
+
+
+class PetscSolver(LinearSystems):
+    """A linear solver by the user's options; what they leave open is done by LU of MUMPS."""
+
+    to_tolerance: ClassVar[bool] = True
+    options: ClassVar[Mapping[str, str]] = {"pc_factor_mat_solver_type": "mumps"}
+
+    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        ksp.getPC().setType(PETSc.PC.Type.LU)
+
+
+class DirectSolver(LinearSystems):
+    """Each system is factorised."""
+
+    def __init__(self, system: System, workspace: Workspace) -> None:
+        self._system, self._workspace = system, workspace
+
+    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        factorise_directly(ksp.getPC(), self._system, self._workspace)
+
+    def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
+        """Where factors found too little workspace, the next get more."""
+        return "", self._workspace.grows_after(ksp.getPC())
+
+
+class TangentSolver:
+    """The KSP of a system's tangents and, where nothing touches whole soil, that of the riser alone in its place.
+
+    systems: how the first one solves them; used: whether it has been chosen.
+    """
+
+    def __init__(self, system: System, asked: str, given: Given) -> None:
+        self._system, self._given, self.used = system, given, False
+        self.systems = linear_systems(system, asked, given.linear_solver)
+
+    def serve(self, ksp: PETSc.KSP) -> None:
+        """Solve what this KSP is asked for, for the matrix that the system has now."""
+        system, self._ksp = self._system, ksp
+        self._levers = system.matrix.mat.createVecLeft()
+        self._levers.array_w[:] = system.numbering.to_global(system.levers)
+        self.systems.serve(ksp, self._levers)
+        self._alone: PETSc.KSP | None = None
+        if system.whole_soil is not None and not self._given.linear_solver:
+            self._above_soil, self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
+            self._above_soil.serve(self._alone)
+
+    def choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
+        """The solver of the present tangent for a residual, which has not been told how exactly."""
+        if self.systems.reads_mat or self._given.any:
+            self._system.matrix.write()
+        if self._alone is not None and self._above_soil.suits(np.array(f.array_r), balance.negligible()):
+            return self._alone
+        self.used = True
+        return self._ksp
+
+    def tighten(self, tolerance: float) -> None:
+        """Solve to a tolerance from now on, where the user gives none."""
+        if not self._given.linear_tolerance:
+            self._ksp.setTolerances(rtol=tolerance)
+
+    def failed(self) -> tuple[str, bool]:
+        """See `LinearSystems`."""
+        return self.systems.failed(self._ksp)
+
+    def drop(self) -> None:
+        """Destroy what belongs to the present matrix, factors on all ranks at once: MUMPS waits for the others."""
+        for thing in (self._ksp, self._alone):
+            if thing is not None:
+                thing.reset()
+                thing.destroy()
+        self._levers.destroy()
+        self._above_soil = None  # which keeps the matrix
