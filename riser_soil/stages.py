@@ -354,7 +354,8 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
         floor,
         line_search=on_soil,
         linear=solver.linear,
-        snes=solver.newton == "snes",
+        snes=solver.by_snes,
+        petsc_options=tuple(solver.petsc_options.items()),
     )
 
 

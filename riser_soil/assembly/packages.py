@@ -22,11 +22,11 @@ def communicator_of(scene: Scene) -> Communicator:
     """The processes that a scene is solved on; SceneError where packages are missing that it needs."""
     if scene.soil is not None:
         require("soil", FOR_SOIL)
-    elif scene.solver.newton == "snes":
-        require("solver.newton: snes", FOR_SNES)
+    elif scene.solver.by_snes:
+        require("solver.newton: snes" if scene.solver.newton == "snes" else "solver.petsc_options", FOR_SNES)
     elif scene.lines:
         require("lines", FOR_SNES)
-    return world(with_mpi=scene.soil is not None or scene.solver.newton == "snes" or bool(scene.lines))
+    return world(with_mpi=scene.soil is not None or scene.solver.by_snes or bool(scene.lines))
 
 
 def require(key: str, packages: dict[str, str]) -> None:

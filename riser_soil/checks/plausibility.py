@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
@@ -23,6 +24,7 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
     with a key of that line; collective.
     """
     yield from (f"{dotted(path)}: {text}" for path, text in doubts(assembly.scene.model_dump(by_alias=True)))
+    yield from _options_without_petsc(assembly)
     if not assembly.scene.lines:
         yield from _of_one(assembly)
         return
@@ -36,6 +38,18 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
         from riser_soil.checks.body_plausibility import body_warnings
 
         yield from body_warnings(assembly.hung)
+
+
+def _options_without_petsc(assembly: Assembly) -> Iterator[str]:
+    """Options for PETSc in the environment, where it solves nothing."""
+    scene, given = assembly.scene, os.environ.get("PETSC_OPTIONS", "").split()
+    options = [each for each in given if each.startswith("-riser_soil_")]
+    alone = scene.soil is None and not scene.lines and assembly.comm.size == 1
+    if options and alone and not scene.solver.by_snes:
+        yield (
+            f"PETSC_OPTIONS: {' '.join(options)}: not used, as a riser alone is solved without PETSc; "
+            "solver: {newton: snes} hands it to SNES"
+        )
 
 
 def refuse_impossible(scene: Scene) -> None:

@@ -1,6 +1,7 @@
 """Scene language: the whole scene, with the state that it begins with and the solver's settings."""
 
 import math
+import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
@@ -20,6 +21,8 @@ from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.stages import Stage
 from riser_soil.scene.vessel_offset import OffsetVessel
 from riser_soil.scene.water import Water
+
+OPTION = re.compile(r"(?!riser_soil_)[a-z][a-z0-9_]*")
 
 
 class Solver(BaseModel):
@@ -56,6 +59,11 @@ class Solver(BaseModel):
         description="the code that solves the steps; compiled: a riser alone by loops of its own, time steps of lines "
         "and bodies by a compiled one, all else by PETSc's SNES; snes: SNES throughout, with the same results",
     )
+    petsc_options: dict[str, Any] = Field(
+        default={},
+        description="options of PETSc's SNES, KSP and PC by their names, as {snes_monitor: true, snes_linesearch_type: "
+        "bt}; where there are some, SNES solves all steps; those of PETSC_OPTIONS, with the prefix riser_soil_, win",
+    )
     soil: Literal["auto", "condensed", "whole"] = Field(
         default="auto",
         description="how linear elastic soil is solved, with the same results; condensed: once, to the part of its "
@@ -68,6 +76,22 @@ class Solver(BaseModel):
         "is cheaper; iterative: by GMRES with multigrid on the soil, for soil that is too large to be factorised; "
         "auto: kept from 4000 unknowns on, soil in sections one section after the other",
     )
+
+    @model_validator(mode="after")
+    def _options_are_petscs(self) -> Self:
+        for name, value in self.petsc_options.items():
+            if not OPTION.fullmatch(name):
+                said = f"{name} is no name of an option without its dash and the prefix riser_soil_"
+                raise wrong("petsc_options", said, "write it as snes_monitor, ksp_type, pc_type, mat_mumps_icntl_14")
+            if not isinstance(value, bool | int | float | str | None):
+                said = f"the value of {name} is neither a number nor a word"
+                raise wrong("petsc_options", said, f"write {{{name}: true}} for an option without a value")
+        return self
+
+    @property
+    def by_snes(self) -> bool:
+        """Whether PETSc's SNES solves all steps."""
+        return self.newton == "snes" or bool(self.petsc_options)
 
 
 class Initial(BaseModel):

@@ -78,17 +78,19 @@ class TangentSolver:
         self._levers = system.matrix.mat.createVecLeft()
         self._levers.array_w[:] = system.numbering.to_global(system.levers)
         self.systems.serve(ksp, self._levers)
-        self._alone: PETSc.KSP | None = None
+        self._alone: tuple[RiserAboveSoil, PETSc.KSP] | None = None
         if system.whole_soil is not None and not self._given.linear_solver:
-            self._above_soil, self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
-            self._above_soil.serve(self._alone)
+            self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
+            self._alone[0].serve(self._alone[1])
 
     def choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
         """The solver of the present tangent for a residual, which has not been told how exactly."""
         if self.systems.reads_mat or self._given.any:
             self._system.matrix.write()
-        if self._alone is not None and self._above_soil.suits(np.array(f.array_r), balance.negligible()):
-            return self._alone
+        if self._alone is not None:
+            above_soil, ksp = self._alone
+            if above_soil.suits(np.array(f.array_r), balance.negligible()):
+                return ksp
         self.used = True
         return self._ksp
 
@@ -103,9 +105,8 @@ class TangentSolver:
 
     def drop(self) -> None:
         """Destroy what belongs to the present matrix, factors on all ranks at once: MUMPS waits for the others."""
-        for thing in (self._ksp, self._alone):
-            if thing is not None:
-                thing.reset()
-                thing.destroy()
+        for ksp in (self._ksp, *(() if self._alone is None else self._alone[1:])):
+            ksp.reset()
+            ksp.destroy()
         self._levers.destroy()
-        self._above_soil = None  # which keeps the matrix
+        self._alone = None  # which keeps the matrix

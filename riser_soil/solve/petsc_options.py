@@ -25,11 +25,11 @@ OWN = {  # options that SNES would read and nothing would follow, and why
     "snes_force_iteration": "the project's test asks for an iteration where one is due; leave it out",
 }
 COMMON = (
-    *("snes_monitor", "snes_converged_reason", "snes_view", "snes_type", "snes_rtol", "snes_atol", "snes_stol"),
-    *("snes_max_it", "snes_linesearch_type", "snes_linesearch_monitor", "snes_lag_jacobian", "snes_ksp_ew"),
-    *("ksp_type", "ksp_rtol", "ksp_max_it", "ksp_monitor", "ksp_converged_reason", "ksp_view", "ksp_gmres_restart"),
-    *("pc_type", "pc_factor_mat_solver_type", "mat_mumps_icntl_14", "soil_pc_gamg_threshold"),
+    *("snes_monitor", "snes_converged_reason", "snes_view", "snes_rtol", "snes_atol", "snes_stol", "snes_max_it"),
+    *("snes_type", "snes_linesearch_type", "snes_linesearch_monitor", "snes_lag_jacobian", "ksp_type", "ksp_rtol"),
+    *("ksp_monitor", "ksp_converged_reason", "ksp_view", "pc_type", "pc_factor_mat_solver_type", "mat_mumps_icntl_14"),
 )
+_BARE = {None: None, True: None, False: "false"}
 
 
 def given() -> dict[str, str | None]:
@@ -69,6 +69,11 @@ class Given(NamedTuple):
         return f <= atol or (iteration > 0 and (f <= rtol * snes.getAttr("first") or step <= stol * x))
 
 
+def as_text(options: Iterable[tuple[str, object]]) -> dict[str, str | None]:
+    """Options of a scene as PETSc reads them: true, or no value, is an option by its name alone."""
+    return {name: _BARE[value] if isinstance(value, bool | None) else str(value) for name, value in options}
+
+
 @contextmanager
 def defaults(options: Mapping[str, str | None]) -> Iterator[None]:
     """Options under the project's prefix while the block lasts; what is given already wins."""
@@ -95,8 +100,9 @@ def set_from_options(snes: PETSc.SNES, options: Mapping[str, str | None]) -> Non
         with defaults(options):
             snes.setFromOptions()
     except PETSc.Error as err:
-        said, values = str(err).splitlines()[-1].partition("] ")[2], _listed(known.items())
-        raise SceneError(f"-{PREFIX}* {WHERE}: PETSc refuses a value: {said}; given are {values}") from err
+        said = str(err).splitlines()[-1].partition("] ")[2]
+        named = [f"{name} {value}" for name, value in known.items() if value and value in said.split()]
+        raise SceneError(f"-{PREFIX}{', '.join(named) or '*'} {WHERE}: PETSc refuses the value: {said}") from err
 
 
 def refuse_unread(snes: PETSc.SNES) -> None:
@@ -104,11 +110,11 @@ def refuse_unread(snes: PETSc.SNES) -> None:
     for name in given():
         if not _is_read(PREFIX + name):
             near = get_close_matches(name, [each for each in COMMON if each != name], n=1)
-            meant = f"did you mean {near[0]}? " if near else ""
+            meant = f"did you mean {near[0]}? " if near else "leave it out; "
             kinds = f"SNES {snes.getType()}, KSP {snes.getKSP().getType()}, PC {snes.getKSP().getPC().getType()}"
             raise SceneError(
-                f"-{PREFIX}{name} {WHERE}: nothing reads it ({kinds}); {meant}Known are PETSc's options of these, such "
-                f"as {' '.join(COMMON)}"
+                f"-{PREFIX}{name} {WHERE}: nothing reads it ({kinds}); {meant}PETSc's options of these count, such as "
+                f"{', '.join(COMMON)}"
             )
 
 
@@ -118,6 +124,3 @@ def _is_read(name: str) -> bool:
     ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(found))
     return bool(found.value)
 
-
-def _listed(options: Iterable[tuple[str, str | None]]) -> str:
-    return ", ".join(name if value is None else f"{name} {value}" for name, value in options)

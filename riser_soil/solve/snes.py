@@ -11,6 +11,7 @@ all that is set here (`petsc_options`). Three things are the project's own as lo
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 
 import numpy as np
 from petsc4py import PETSc
@@ -23,7 +24,7 @@ from riser_soil.solve import chain
 from riser_soil.solve.chain import LOOSE, NOT_SOLVED, Balance, Loop
 from riser_soil.solve.linear_solver import complaint, raised
 from riser_soil.solve.linear_systems import TangentSolver
-from riser_soil.solve.petsc_options import PREFIX, Given, refuse_unread, set_from_options
+from riser_soil.solve.petsc_options import PREFIX, Given, as_text, defaults, refuse_unread, set_from_options
 from riser_soil.solve.solver import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
@@ -40,14 +41,19 @@ class SnesLoop(Loop):
     """SNES over the balance of a system. Its symbolic factorisation is reused throughout."""
 
     def __init__(self, system: System, settings: NewtonSettings, balance: Balance) -> None:
-        self._system, self._settings, self._balance, self._given = system, settings, balance, Given.now()
-        self._tangents, self._all_read = TangentSolver(system, settings.linear, self._given), not self._given.any
-        self.linear, self.again = self._tangents.systems, False
-        self.factorises = self.linear.factorises
-        self._create()
+        self._system, self._settings, self._balance = system, settings, balance
+        with ExitStack() as stack:
+            stack.enter_context(defaults(as_text(settings.petsc_options)))
+            self._given = given = Given.now()
+            self._tangents, self._all_read = TangentSolver(system, settings.linear, given), not given.any
+            self.linear, self.again = self._tangents.systems, False
+            self.factorises = self.linear.factorises
+            self._create()
+            self._options = stack.pop_all()
 
     def _create(self) -> None:
         self._x, self._f = self._system.matrix.mat.createVecs()
+        self._before: Array = np.array(self._x.array_r)
         self._snes = snes = PETSc.SNES().create(self._system.comm)
         snes.setOptionsPrefix(PREFIX)
         snes.setType(PETSc.SNES.Type.NEWTONLS)
@@ -147,6 +153,7 @@ class SnesLoop(Loop):
     def destroy(self) -> None:
         self.release()
         self.linear.forget()
+        self._options.close()
         del self._balance  # which refers to this: what both hold is freed now, not some time later
 
 def _ending(reason: int) -> str:

@@ -63,7 +63,8 @@ class NewtonSettings:
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
     step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
     factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,
-    "auto" keeps factors in large systems. snes: let PETSc's SNES solve a riser alone, too.
+    "auto" keeps factors in large systems. snes: let PETSc's SNES solve a riser alone, too. petsc_options: names without
+    prefix and values, see `petsc_options`.
     """
 
     tolerance: float
@@ -75,6 +76,7 @@ class NewtonSettings:
     linear_start: bool = False
     linear: Literal["auto", "kept", "direct", "iterative"] = "auto"
     snes: bool = False
+    petsc_options: tuple[tuple[str, bool | int | float | str | None], ...] = ()
 
 
 @lru_cache(maxsize=8)
