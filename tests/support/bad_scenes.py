@@ -70,6 +70,22 @@ KEYS = [
 ]
 
 VALUES = [
+    Bad(
+        "max_iterations: 20",
+        "petsc_options: {riser_soil_snes_monitor: true}",
+        35,
+        "solver.petsc_options",
+        '{"riser_soil_snes_monitor": true}',
+        "without its dash and the prefix riser_soil_; write it as snes_monitor",
+    ),
+    Bad(
+        "max_iterations: 20",
+        "petsc_options: {snes_rtol: [1]}",
+        35,
+        "solver.petsc_options",
+        '{"snes_rtol": [1]}',
+        "the value of snes_rtol is neither a number nor a word",
+    ),
     Bad("gravity: 9.81", "gravity: down", 2, "gravity", '"down"', "must be a number"),
     Bad("gravity: 9.81", "gravity:", 2, "gravity", "null", "must be a number"),
     Bad("gravity: 9.81", "gravity: -9.81", 2, "gravity", "-9.81", "must be at least 0"),

@@ -11,7 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from riser_soil.assembly import build
+from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core import banded, communicator
+from riser_soil.core.communicator import Alone
 from riser_soil.core.csr_matrix import CsrMatrix
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
@@ -65,6 +68,30 @@ def test_snes_asked_for_says_that_it_needs_petsc(tmp_path: Path) -> None:
     done = riser_soil_without(["petsc4py"], "check", SCENE, "--set", "solver.newton=snes")
     assert done.returncode == SceneError.exit_status
     line_with(done.stderr, "solver.newton:", "snes:", "needs PETSc and MPI", "PETSc is not installed")
+
+
+def test_options_of_petsc_say_that_they_need_it() -> None:
+    done = riser_soil_without(["petsc4py"], "check", SCENE, "--set", "solver.petsc_options.snes_monitor=true")
+    assert done.returncode == SceneError.exit_status
+    line_with(done.stderr, "solver.petsc_options: needs PETSc and MPI")
+
+
+def test_options_of_petsc_hand_all_steps_to_snes(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    run(read_scene(str(ROOT / SCENE), [*SHORT, "solver.petsc_options={snes_monitor: true, snes_rtol: 1e-9}"]), tmp_path)
+    printed = capfd.readouterr().out.splitlines()
+    stages = json.loads((tmp_path / "summary.json").read_text())["stages"]
+    begun = sum(line.startswith("  0 SNES Function norm") for line in printed)
+    assert begun == sum(stage["steps"] for stage in stages), stages[-1].keys()
+
+
+@pytest.mark.parametrize("overrides", [[], ["solver.petsc_options.snes_max_it=30"]], ids=["alone", "by SNES"])
+def test_options_of_the_environment_that_nothing_reads_are_warned_of(
+    overrides: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PETSC_OPTIONS", "-log_view -riser_soil_snes_monitor -no_signal_handler")
+    warned = [*physical_warnings(build(read_scene(str(ROOT / SCENE), overrides), Alone()))]
+    unread = [each for each in warned if each.startswith("PETSC_OPTIONS: -riser_soil_snes_monitor: not used")]
+    assert len(unread) == (0 if overrides else 1)
 
 
 def test_a_motion_table_says_that_it_needs_scipy(tmp_path: Path) -> None:

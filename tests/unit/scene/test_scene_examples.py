@@ -57,6 +57,7 @@ def test_echo_is_read_by_yaml_1_1_as_well() -> None:
     solver = yaml.load(dump_scene(read_scene(SCENES["bend"])))["solver"]
     assert solver.pop("min_time_step") == "auto"
     assert [solver.pop(key) for key in ("newton", "soil", "linear")] == ["compiled", "auto", "auto"]
+    assert solver.pop("petsc_options") == {}
     assert solver
     assert all(isinstance(value, int | float) for value in solver.values())
 
