@@ -1,5 +1,6 @@
-"""Newton's method for a step over the parts of a system: residual, tangent and the rules of convergence, which the
-riser's own loop (`chain`) and PETSc's SNES (`snes`) call.
+"""Newton's method for a step over the parts of a system: residual, tangent and the rules of convergence.
+
+The riser's own loop (`chain`) and PETSc's SNES (`snes`) call them.
 """
 
 from __future__ import annotations
