@@ -156,6 +156,7 @@ class SnesLoop(Loop):
         self._options.close()
         del self._balance  # which refers to this: what both hold is freed now, not some time later
 
+
 def _ending(reason: int) -> str:
     """How SNES has ended, in the words of `chain`; failures by PETSc's name."""
     known = {number: name for name, number in REASONS.items()}

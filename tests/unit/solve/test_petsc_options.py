@@ -63,8 +63,9 @@ def test_monitors_print_the_norms(capfd: pytest.CaptureFixture[str]) -> None:
 )
 def test_a_tolerance_of_snes_ends_the_iteration_in_the_place_of_the_project_s(option: str, limit: Any) -> None:
     """Looser than the scene's, and tighter."""
+    asked: dict[str, Any] = {option: 1e-3}
     for tolerance in (1e-12, 0.9):
-        *before, last = solved(tolerance, **{option: 1e-3}).norms
+        *before, last = solved(tolerance, **asked).norms
         assert last <= limit([*before, last]) < before[-1]
 
 
@@ -88,7 +89,7 @@ def test_options_of_the_database_go_before_those_of_a_scene() -> None:
 
 
 @pytest.mark.parametrize("options", [{"snes_linesearch_type": "bt"}, {"snes_type": "newtontr"}], ids=str)
-def test_searches_of_petsc_let_no_residual_grow(options: dict[str, str]) -> None:
+def test_searches_of_petsc_let_no_residual_grow(options: dict[str, Any]) -> None:
     full, searched = solved(), solved(**options)
     assert full.norms[1] > full.norms[0]
     assert (np.diff(searched.norms) < 0.0).all()
