@@ -356,6 +356,7 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
         linear=solver.linear,
         snes=solver.by_snes,
         petsc_options=tuple(solver.petsc_options.items()),
+        has_soil=assembly.scene.soil is not None,
     )
 
 

@@ -45,7 +45,9 @@ class SnesLoop(Loop):
         with ExitStack() as stack:
             stack.enter_context(defaults(as_text(settings.petsc_options)))
             self._given = given = Given.now()
-            self._tangents, self._all_read = TangentSolver(system, settings.linear, given), not given.any
+            self._tangents = TangentSolver(system, settings.linear, given)
+            before_soil = settings.has_soil and not system.model.others  # whose solvers read options, too
+            self._all_read = before_soil or not given.any
             self.linear, self.again = self._tangents.systems, False
             self.factorises = self.linear.factorises
             self._create()

@@ -64,7 +64,7 @@ class NewtonSettings:
     step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
     factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,
     "auto" keeps factors in large systems. snes: let PETSc's SNES solve a riser alone, too. petsc_options: names without
-    prefix and values, see `petsc_options`.
+    prefix and values, see `petsc_options`. has_soil: whether the scene has soil, be it in systems after this one.
     """
 
     tolerance: float
@@ -77,6 +77,7 @@ class NewtonSettings:
     linear: Literal["auto", "kept", "direct", "iterative"] = "auto"
     snes: bool = False
     petsc_options: tuple[tuple[str, bool | int | float | str | None], ...] = ()
+    has_soil: bool = False
 
 
 @lru_cache(maxsize=8)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,8 @@ from riser_soil.solve.snes import SnesLoop
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step
 from riser_soil.solve.step_iteration import StepIteration
 from riser_soil.solve.time_scheme import Static
+from tests.support.coupled_scenes import LAY, touchdown
+from tests.support.driven_stage import built, take
 from tests.support.on_ranks import mpirun
 from tests.support.said import line_with
 from tests.support.toy_chain import Chain, Springs
@@ -230,3 +233,18 @@ def test_options_of_the_environment_count_on_two_ranks(tmp_path: Path, monkeypat
     by_basic, by_bt, refused = (line for line in lines if "SNES Function norm" not in line)
     assert by_basic == by_bt == f"{solved().state.u[-1]:.9f}"
     line_with(refused, "-riser_soil_snes_monitr", "did you mean snes_monitor?")
+
+
+def test_options_of_the_soil_s_solver_are_looked_for_where_there_is_soil(capfd: pytest.CaptureFixture[str]) -> None:
+    """The riser is laid before, by a solver that has none of them; multigrid reads its own when it is set up."""
+    scene = touchdown(LAY)
+    scene["solver"] |= {"linear": "iterative"}
+    asked = {"ksp_gmres_restart": 60, "soil_pc_gamg_threshold": 0.01, "soil_mg_levels_ksp_max_it": 2, "ksp_view": True}
+    for more, says in (({}, ()), ({"soil_pc_gamg_treshold": 0.01}, ("-riser_soil_soil_pc_gamg_treshold", "KSP gmres"))):
+        scene["solver"]["petsc_options"] = asked | more
+        assembly = built(scene)
+        with pytest.raises(SceneError) if says else nullcontext() as failure:
+            take(assembly, assembly.scene.stages[0])
+        if says:
+            line_with(str(failure.value), *says)
+    assert "restart=60" in capfd.readouterr().out
