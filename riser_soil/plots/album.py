@@ -16,7 +16,7 @@ from riser_soil.errors import ResultsError
 from riser_soil.plots import film, histories, picture
 from riser_soil.plots.curves import save, sheet
 from riser_soil.plots.progress import Tell, in_turn, silent
-from riser_soil.plots.ranges import draw_range, names
+from riser_soil.plots.ranges import names, range_sheet
 from riser_soil.plots.shape import snapshots
 from riser_soil.results import Run
 from riser_soil.results.stage_records import StageRecords, stage_records
@@ -91,14 +91,7 @@ def _check(what: Sequence[str], there: Sequence[Picture]) -> None:
 def _ranges(stage: StageRecords) -> Iterator[Picture]:
     for name in names(stage):
         caption = f"{name.replace('_', ' ')} along the riser: {when(stage)}"
-        yield Picture(f"range_{name}", "ranges", caption, partial(_range_sheet, stage, name))
-
-
-def _range_sheet(stage: StageRecords, name: str) -> Figure:
-    figure, (axes,) = sheet(1, 1, width=8.0, height=3.6)
-    draw_range(axes, stage, name)
-    axes.set_title(f"{stage.run.summary['title']}: {when(stage)}", fontsize="medium")
-    return figure
+        yield Picture(f"range_{name}", "ranges", caption, partial(_titled, stage, partial(range_sheet, name=name)))
 
 
 def _others(stage: StageRecords) -> Iterator[Picture]:

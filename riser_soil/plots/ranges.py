@@ -1,4 +1,6 @@
-"""Range graphs: least, mean and largest value of a quantity at each node of the riser over a stage's records."""
+"""Range graphs: least, mean and largest value of a quantity at each node of the riser over a stage's records, with its
+limits, whole and near the touchdown points.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +10,22 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from riser_soil.assembly.riser import elements_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.outputs import ALONG_RISER
-from riser_soil.plots.curves import ALONG_ARC, ARC
+from riser_soil.errors import RiserSoilError
+from riser_soil.plots.curves import ALONG_ARC, ARC, sheet
 from riser_soil.results.stage_records import StageRecords
 
 _LIMITED = "utilisation"  # quantities that are limited by 1 have this in their names
-_NEAR_LIMIT = 0.5  # from which on the limit is drawn
+_NEAR_LIMIT = 0.4  # of the limit, from which on it is drawn; a quantity that is smaller would be a flat line under it
 _LINE = 32  # characters of an axis's name in one line
 _ROUND_OFF = 1e-9  # of the largest value
 _SIDE = 0.1  # of the span where a quantity acts: shown beside it
+_ZONE = 0.04  # of the riser's length, shown on both sides of the touchdown points
+_WHOLE = 0.6  # of the riser's length: where more of it is near them, that is no view from close by
 
 
 def names(stage: StageRecords) -> list[str]:
@@ -28,7 +35,7 @@ def names(stage: StageRecords) -> list[str]:
     return [name for name in known if np.isfinite(stage[name]).any()]
 
 
-def draw_range(axes: Axes, stage: StageRecords, name: str) -> None:
+def draw_range(axes: Axes, stage: StageRecords, name: str, legend: bool = True) -> None:
     """The range of a quantity of ALONG_ARC; of a stage with one record a line."""
     words, factor = ALONG_ARC[name]
     values, arc = factor * stage[name], stage.run.arc
@@ -37,12 +44,74 @@ def draw_range(axes: Axes, stage: StageRecords, name: str) -> None:
     else:
         _draw_band(axes, arc, values, stage.time)
     _mark_touchdown(axes, stage)
-    if _LIMITED in name and np.nanmax(values) > _NEAR_LIMIT:
-        axes.axhline(1.0, color="C3", linestyle="--", linewidth=1.0, label="limit")
+    _draw_limit(axes, stage, name, float(np.nanmax(values)), factor)
     axes.set_xlim(*_span(arc, values))
     axes.set_xlabel(ARC)
     axes.set_ylabel(textwrap.fill(words, _LINE))
-    axes.legend(fontsize="small")
+    if legend:
+        axes.legend(fontsize="small")
+
+
+def range_sheet(stage: StageRecords, name: str) -> Figure:
+    """The range along the whole riser, and beside it that near the touchdown points, if there are any."""
+    near = _near_touchdown(stage)
+    figure, panels = sheet(1, 1 if near is None else 2, width=8.0 if near is None else 13.0, height=3.6)
+    draw_range(panels[0], stage, name)
+    if near is not None:
+        draw_range(panels[1], stage, name, legend=False)
+        panels[1].set(title="near the touchdown points", xlim=near, ylim=_limits_within(stage, name, near))
+    return figure
+
+
+def _near_touchdown(stage: StageRecords) -> tuple[float, float] | None:
+    """Arc lengths [m] from and to which the view from close by goes."""
+    touchdown, arc = stage["touchdown_arc"], stage.run.arc
+    if np.isnan(touchdown).all():
+        return None
+    side = _ZONE * float(arc[-1])
+    low, high = max(float(np.nanmin(touchdown)) - side, 0.0), min(float(np.nanmax(touchdown)) + side, float(arc[-1]))
+    return (low, high) if high - low < _WHOLE * arc[-1] else None
+
+
+def _limits_within(stage: StageRecords, name: str, near: tuple[float, float]) -> tuple[float, float]:
+    """Least and largest value between two arc lengths, with some room."""
+    arc, values = stage.run.arc, ALONG_ARC[name][1] * stage[name]
+    at = [*near, *arc[(arc > near[0]) & (arc < near[1])]]
+    seen = [np.interp(at, arc, edge(values, axis=0)) for edge in (np.min, np.max)]
+    low, high = float(np.nanmin(seen[0])), float(np.nanmax(seen[1]))
+    room = 0.06 * (high - low) or 1e-9 + abs(high)
+    return low - room, high + room
+
+
+def _draw_limit(axes: Axes, stage: StageRecords, name: str, most: float, factor: float) -> None:
+    """The largest value allowed, by element, where the quantity comes near it; else its least in the legend."""
+    arc, limit = _limit(stage, name)
+    limit = factor * limit
+    if not np.isfinite(limit).any():
+        return
+    least = float(limit[np.isfinite(limit)].min())
+    style: dict[str, Any] = {"color": "C3", "linestyle": "--", "linewidth": 1.0}
+    if most >= _NEAR_LIMIT * least:
+        axes.stairs(np.where(np.isfinite(limit), limit, np.nan), arc, baseline=None, label="limit", **style)
+    else:
+        axes.plot([], [], label=f"limit, {least:.4g}: above the graph", **style)
+
+
+def _limit(stage: StageRecords, name: str) -> tuple[Array, Array]:
+    """Arc lengths (ne + 1,) [m] of the elements, and the largest value allowed (ne,) in SI units; infinite for any."""
+    if _LIMITED in name:
+        return stage.run.arc[[0, -1]], np.ones(1)
+    none = stage.run.arc[[0, -1]], np.array([np.inf])
+    if name not in ("curvature", "effective_tension"):
+        return none
+    try:
+        elements = elements_of(stage.run.read_scene())
+    except (RiserSoilError, OSError):
+        return none
+    allowed = elements.max_tension if name == "effective_tension" else 1.0 / np.where(
+        elements.min_bend_radius > 0.0, elements.min_bend_radius, np.inf
+    )
+    return elements.arc, np.where(allowed > 0.0, allowed, np.inf)
 
 
 def compare_ranges(axes: Axes, stages: dict[str, StageRecords], name: str) -> None:

@@ -1,11 +1,11 @@
-"""Snapshots of the riser's shape through a cycle: whole, near touchdown, and from above where it leaves its plane."""
+"""The riser's shape: its extremes and one cycle, whole, near touchdown, and from above where it leaves its plane."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -17,7 +17,8 @@ from riser_soil.results.cycles import cycles, period_of
 from riser_soil.results.stage_records import StageRecords, along
 from riser_soil.scene.bathymetry import ground_height
 
-SNAPSHOTS = 9
+SNAPSHOTS = 9  # of one cycle
+_MOVES = 1e-6  # of the riser's length: what moves by less is at rest
 _ASIDE = 0.002  # of the riser's length: what goes out of the plane less is not drawn from above
 _ZONE = 0.06  # of the riser's length: to either side of the touchdown point
 _UNDER = 0.04  # of the height shown: how much of the ground is seen
@@ -38,33 +39,86 @@ def filmed_records(stage: StageRecords, most: int) -> IntArray:
 
 
 def snapshots(stage: StageRecords) -> Figure:
-    """The axis at some instants, in the vertical plane from start to end."""
-    run, at = stage.run, _instants(stage)
+    """The axis in the vertical plane from start to end: at extremes, and thin lines through one cycle."""
+    run, extremes, cycle = stage.run, _extremes(stage), _one_cycle(stage)
+    at = np.concatenate([[record for record, _ in extremes], cycle]).astype(int)
     position = run["position"]
     aside = _aside(position[at])
     figure, panels = sheet(1, 2 + (aside is not None), width=10.0 if aside is None else 13.0, height=4.6)
-    colours = colormaps["viridis"](np.linspace(0.0, 0.9, len(at)))
-    ahead = along(position[0])
-    for record, colour in zip(at, colours, strict=True):
-        x, z = _in_plane(position[record], position[0, 0], ahead), position[record, :, 2]
+    ahead, origin = along(position[0]), position[0, 0]
+    lines: list[tuple[int, dict[str, Any]]] = [(record, {"color": "0.6", "linewidth": 0.6}) for record in cycle]
+    if len(cycle):
+        first, last = run.time[cycle[[0, -1]]]
+        lines[0][1]["label"] = f"one cycle, {first:.4g} to {last:.4g} s"
+    for n, (record, words) in enumerate(extremes):
+        lines.append((record, {"color": f"C{n}", "linewidth": 1.5, "label": words}))
+    for record, style in lines:
+        x, z = _in_plane(position[record], origin, ahead), position[record, :, 2]
         for axes in panels[:2]:
-            axes.plot(x, z, color=colour, linewidth=1.2, label=f"{run.time[record]:.4g} s")
+            axes.plot(x, z, **style)
         if aside is not None:
-            panels[2].plot(x, (position[record] - position[0, 0]) @ aside, color=colour, linewidth=1.2)
+            panels[2].plot(x, (position[record] - origin) @ aside, **style)
     _whole(panels[0])
+    _add_surface_and_floater(panels[0], run, _in_plane(position[at, -1], origin, ahead), position[at, -1, 2])
     _zone(panels[1], stage, position[at], ahead)
     _draw_seabed(panels[:2], run, position[at], ahead)
-    panels[0].legend(fontsize="x-small", title="t")
+    panels[0].legend(fontsize="x-small")
     if aside is not None:
         panels[2].set(title="from above", xlabel=_AHEAD, ylabel="to the left of the plane [m]")
     return figure
 
 
-def _instants(stage: StageRecords) -> IntArray:
+def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
+    """Records of the stage's extremes with words for them, each record once; the last one of a stage at rest."""
     if not stage.moves:
-        return stage.records[-1:]
-    filmed = filmed_records(stage, 200)
-    return filmed[np.unique(np.linspace(0, len(filmed) - 1, SNAPSHOTS).round().astype(int))]
+        return [(int(stage.records[-1]), f"{stage.run.time[stage.records[-1]]:.4g} s")]
+    end, found = stage["position"][:, -1], dict[int, list[str]]()
+    ways = end @ along(stage.run["position"][0])
+    asked = [("largest bending moment", stage["bending_moment"].max(axis=1).argmax())] if _has_moment(stage) else []
+    asked += [("least tension", stage["effective_tension"].min(axis=1).argmin())]
+    for words, motion in (("end {} the start", ways), ("end {}", end[:, 2])):
+        near, far = ("nearest to", "farthest from") if motion is ways else ("lowest", "highest")
+        if np.ptp(motion) > _MOVES * stage.run.arc[-1]:
+            asked += [(words.format(near), motion.argmin()), (words.format(far), motion.argmax())]
+    for words, n in asked:
+        found.setdefault(int(stage.records[n]), []).append(words)
+    return [(record, f"{', '.join(words)}: {stage.run.time[record]:.4g} s") for record, words in found.items()]
+
+
+def _has_moment(stage: StageRecords) -> bool:
+    return "bending_moment" in stage.run.variables
+
+
+def _one_cycle(stage: StageRecords) -> IntArray:
+    """Records through the last whole cycle of a periodic motion, else through the cycle of the end's motion around the
+    largest bending moment, from one upcrossing of its mean to the next; none of a stage at rest.
+    """
+    if not stage.moves:
+        return np.zeros(0, dtype=int)
+    try:
+        records = cycles(stage.run, stage.number, period_of(stage.run, stage.number))[-1].records
+    except ResultsError:
+        records = stage.records[_around_the_worst(stage)]
+    return records[np.unique(np.linspace(0, len(records) - 1, SNAPSHOTS).round().astype(int))]
+
+
+def _around_the_worst(stage: StageRecords) -> slice:
+    end = stage["position"][:, -1]
+    motion = end[:, int(np.ptp(end, axis=0).argmax())]
+    above = motion > motion.mean()
+    up = np.flatnonzero(~above[:-1] & above[1:])
+    worst = int(stage["bending_moment"].max(axis=1).argmax()) if _has_moment(stage) else len(end) // 2
+    before, after = up[up <= worst], up[up > worst]
+    return slice(int(before[-1]) if before.size else 0, int(after[0]) + 2 if after.size else len(end))
+
+
+def _add_surface_and_floater(axes: Axes, run: Run, x: Array, z: Array) -> None:
+    """The water's surface, and the place of the end (n,) [m] where it is carried by something that moves."""
+    level = surface_level(run)
+    if level is not None:
+        axes.axhline(level, color="C0", linewidth=0.8, linestyle="-.", label="water surface")
+    if np.ptp(x) + np.ptp(z) > 0.0:
+        axes.plot(x.mean(), z.mean(), "v", markersize=9, color="0.3", label="floater, at the riser's end")
 
 
 def _aside(position: Array) -> Array | None:
@@ -91,6 +145,14 @@ def _draw_seabed(panels: Sequence[Axes], run: Run, position: Array, ahead: Array
         axes.fill_between(x, level, level - 0.05 * np.ptp(position[..., 2]), color="tan", alpha=0.5, linewidth=0.0)
     under = level[(x >= seen[0]) & (x <= seen[1])].min(initial=np.inf)
     panels[-1].set(xlim=seen, ylim=(min(low, under - _UNDER * (high - low)), high))
+
+
+def surface_level(run: Run) -> float | None:
+    """z [m] of the water's surface; None where there is none, or the scene can't be read."""
+    try:
+        return float(run.scene["water"]["surface_level"])
+    except (ResultsError, KeyError, TypeError, ValueError):
+        return None
 
 
 def _limits(x: Array) -> tuple[float, float]:

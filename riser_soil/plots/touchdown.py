@@ -38,7 +38,7 @@ from riser_soil.plots.bodies import (
     touchdown_place,
 )
 from riser_soil.plots.scales import colour_scale, magnification, metres
-from riser_soil.plots.shape import seabed_under
+from riser_soil.plots.shape import seabed_under, surface_level
 from riser_soil.results import Run, SoilFrame
 from riser_soil.results.stage_records import along
 
@@ -434,16 +434,9 @@ def _add_ground(axes: Axes, still: _Frame, x: Array, position: Array) -> None:
 
 
 def _add_surface(axes: Axes, still: _Frame) -> None:
-    level = _surface_level(still.run)
+    level = surface_level(still.run)
     if level is not None:
         axes.axhline(level, color="C0", linewidth=1.2, label="water surface", zorder=0)
-
-
-def _surface_level(run: Run) -> float | None:
-    try:
-        return float(run.scene["water"]["surface_level"])
-    except (ResultsError, KeyError, TypeError, ValueError):
-        return None
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import StepPatch
 from PIL import Image
 from rich.console import Console
 from typer.testing import CliRunner
@@ -22,7 +23,7 @@ from riser_soil.plots.album import album, pictures
 from riser_soil.plots.curves import envelope, sheet
 from riser_soil.plots.histories import energy
 from riser_soil.plots.progress import DrawingProgress
-from riser_soil.plots.ranges import draw_range, mean_in_time, names
+from riser_soil.plots.ranges import draw_range, mean_in_time, names, range_sheet
 from riser_soil.plots.scales import axis_words, metres
 from riser_soil.plots.shape import filmed_records, seabed_under, snapshots
 from riser_soil.plots.side_by_side import sheets
@@ -67,6 +68,43 @@ def test_a_range_is_least_mean_and_largest_of_the_stage(run: Run) -> None:
     line_with(axes.get_ylabel(), "bending moment", "magnitude [kN m]")
     largest, arc = values.max(), run.arc[values.max(axis=0).argmax()]
     assert axes.get_legend_handles_labels()[1][0] == f"max, largest {largest:.4g} at {arc:.4g} m"
+
+
+def test_limits_are_drawn_by_element_where_the_quantity_comes_near_them(tmp_path: Path) -> None:
+    """A pipe of which the upper half may be bent less; a tension far below its limit is left to the legend."""
+    pipe = {"EA": 1.0e8, "EI": 1.0e3, "mass": 20.0, "submerged_weight": 100.0, "max_tension": 1.0e9}
+    ends = {"start": prescribed(0.0, 0.0, 10.0), "end": prescribed(30.0, 0.0, 10.0)}
+    more = ends | {"riser": {"initial": "catenary"}, "gravity": 9.81}
+    scene = riser_scene(static(), pipe=pipe | {"min_bend_radius": 8.0}, length=40.0, elements=4, **more)
+    scene["line_types"]["stiff"] = scene["line_types"]["pipe"] | {"min_bend_radius": 10.0}
+    halves = [{"line_type": name, "length": 20.0, "elements": 2} for name in ("pipe", "stiff")]
+    scene["riser"]["segments"] = halves
+    run_scene(scene_from_mapping(scene), tmp_path / "run")
+    stage = stage_records(Run(tmp_path / "run"))
+    axes = range_sheet(stage, "curvature").axes[0]
+    (limit,) = [each for each in axes.patches if isinstance(each, StepPatch) and each.get_label() == "limit"]
+    assert limit.get_data()[0] == pytest.approx([0.125, 0.125, 0.1, 0.1])
+    assert limit.get_data()[1] == pytest.approx([0.0, 10.0, 20.0, 30.0, 40.0])
+    of_tension = range_sheet(stage, "effective_tension").axes[0]
+    assert "limit, 1e+06: above the graph" in of_tension.get_legend_handles_labels()[1]
+
+
+def test_a_range_is_shown_near_the_touchdown_points_too(run: Run) -> None:
+    whole, close = range_sheet(stage_records(run), "bending_moment").axes
+    touchdown = run["touchdown_arc"]
+    assert whole.get_xlim() == pytest.approx((run.arc[0], run.arc[-1]))
+    low, high = close.get_xlim()
+    assert low <= np.nanmin(touchdown) <= np.nanmax(touchdown) <= high < run.arc[-1]
+
+
+def test_the_shape_shows_extremes_once_and_one_cycle(run: Run) -> None:
+    axes = snapshots(stage_records(run)).axes[0]
+    words = [text for text in axes.get_legend_handles_labels()[1] if text.endswith(" s")]
+    assert words[0].startswith("one cycle, ")
+    stage = stage_records(run)
+    worst = run.time[stage.records[stage["bending_moment"].max(axis=1).argmax()]]
+    assert next(text for text in words if "largest bending moment" in text).endswith(f": {worst:.4g} s")
+    assert len({text.rpartition(": ")[2] for text in words[1:]}) == len(words) - 1
 
 
 def test_a_mean_counts_time_not_records() -> None:
