@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -62,6 +62,7 @@ class Assembly:
     condensed: CondensedSoil | None = None
     mesh_renewal: MeshRenewal | None = None
     cushion: Cushion | None = None
+    soil_in_motion: list[Part] = field(default_factory=list)
     stage: Stage | None = None
 
     @property
@@ -285,8 +286,11 @@ class Assembly:
         if self.cushion is not None and (self.is_laid_in(stage) or not self.soil_bears):
             self.cushion.stays, cushion = not self.soil_bears, [self.cushion]
         on_ground = [*self.contacts, *self.frictions, *cushion]
+        in_motion = self.soil_in_motion if isinstance(stage, DynamicStage) else []
+        if self.soil is not None:
+            self.soil.hold(by_boundary=not any(part.name == "soil boundary" for part in in_motion))
         renewal = [] if self.mesh_renewal is None else [self.mesh_renewal]
-        with_soil = [*self.soil_parts, *on_ground, *renewal]
+        with_soil = [*self.soil_parts, *in_motion, *on_ground, *renewal]
         if self.condensed is not None:
             with_soil = [*on_ground, *self.soil_parts]
         parts = [part for each in of_lines.values() for part in each]
@@ -410,6 +414,7 @@ def _add_soil(assembly: Assembly, own: LineAssembly, given: SoilScene) -> None:
     assert settings is not None
     line, elements, diameter = own.line, own.elements, own.scales.diameter
     assembly.soil = soil = ground.soil_of(scene, given, line, diameter, comm)
+    assembly.soil_in_motion = ground.soil_in_motion(scene, given, soil)
     assembly.condensed = condensed_of(scene, soil, line, diameter)
     surface = soil.surface if assembly.condensed is None else assembly.condensed.top
     contact = ground.soil_contact_of(scene, settings, line, elements, surface, own.contact_stiffness["soil"])

@@ -9,6 +9,7 @@ import numpy as np
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
+from riser_soil.core.part import Part
 from riser_soil.errors import SceneError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
@@ -20,7 +21,7 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
 from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
-from riser_soil.scene.soil_law import law_of, volumes, weight_of
+from riser_soil.scene.soil_law import density_of, law_of, volumes, weight_of
 
 if TYPE_CHECKING:
     from riser_soil.contact.law import Penalty, SuctionLaw
@@ -60,7 +61,19 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: A
         unit_weight=weight_of(given),
         K0=given.K0,
         moves=scene.soil_moves,
+        inertia=given.inertia,
     )
+
+
+def soil_in_motion(scene: Scene, given: SoilScene, soil: Soil) -> list[Part]:
+    """Parts of soil with inertia in dynamic stages."""
+    if not given.inertia:
+        return []
+    from riser_soil.soil.inertia import SoilBoundary, SoilInertia
+
+    density = soil.mean_by_depth(density_of(given, scene))
+    boundary = [SoilBoundary(soil, density)] if given.absorbing else []
+    return [SoilInertia(soil, density), *boundary]
 
 
 def _grid(scene: Scene, given: SoilScene, line: Line, comm: Any) -> DistributedMesh:

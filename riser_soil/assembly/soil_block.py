@@ -111,6 +111,8 @@ def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
     ranks = soil.grid.nodes.comm.size
     if not scene.soil.is_linear:
         return f"it is not linear, its law is {' and '.join(sorted({law.kind for law in scene.soil.laws}))}"
+    if scene.soil.inertia:
+        return "it has inertia"
     if scene.soil.model == "sections":
         return "it is made of sections"
     if ranks > 1:

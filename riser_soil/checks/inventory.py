@@ -90,6 +90,8 @@ def _reasons_of_line(scene: Scene) -> dict[str, str]:
         "friction": _no_friction(scene, "seabed"),
         "soil friction": _no_friction(scene, "soil"),
         "soil": "" if scene.soil is not None else "the scene has no soil",
+        "soil inertia": _no_soil_inertia(scene),
+        "soil boundary": _no_soil_inertia(scene) or _no_soil_boundary(scene),
         "new mesh": no_new_mesh(scene),
         "cushion": _no_cushion(scene),
         "contact": "" if ground else "the scene has neither seabed nor soil",
@@ -98,7 +100,7 @@ def _reasons_of_line(scene: Scene) -> dict[str, str]:
 
 DISSIPATING = (
     *("morison", "structural damping", "contact", "seabed", "friction"),
-    *("soil friction", "soil", "new mesh", "cushion", "body drag", "body contact", "body friction"),
+    *("soil friction", "soil", "soil boundary", "new mesh", "cushion", "body drag", "body contact", "body friction"),
 )
 #: Accounts of a part that tells what is its own and what is the time scheme's.
 SPLIT = {
@@ -149,9 +151,23 @@ def no_new_mesh(scene: Scene) -> str:
         return "the scene has no soil"
     if scene.soil.is_linear:
         return "the soil is elastic"
+    if scene.soil.inertia:
+        return "soil with inertia is computed at small strain"
     if scene.soil.strain == "small":
         return "soil.strain: small keeps the cells where they are"
     return "" if scene.soil_moves else "at contact.method: node cells stay where they are"
+
+
+def _no_soil_inertia(scene: Scene) -> str:
+    if scene.soil is None:
+        return "the scene has no soil"
+    if not scene.soil.inertia:
+        return "soil.inertia is not asked for"
+    return "" if has_dynamics(scene) else "no stage is dynamic"
+
+
+def _no_soil_boundary(scene: Scene) -> str:
+    return "" if scene.soil is not None and scene.soil.absorbing else "soil.absorbing is not asked for"
 
 
 def _no_half(scene: Scene) -> str:

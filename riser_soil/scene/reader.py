@@ -31,11 +31,6 @@ KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
     ("stages", "*", "initial_velocity"): (None,),
 }
 
-# key -> values of the language that can't be chosen yet; the key is part of the models.
-VALUES: dict[tuple[str, ...], tuple[Any, ...]] = {
-    ("soil", "inertia"): (True,),
-}
-
 
 def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """The scene in a file, with `path=value` overrides; SceneError has one line per problem found."""
@@ -123,7 +118,7 @@ def taken_out(data: Any) -> tuple[Any, list[Problem]]:
     characters that results can't have.
     """
     rest = copy.deepcopy(data)
-    return rest, [*_keys(rest), *_values(rest), *_unwritable(rest)]
+    return rest, [*_keys(rest), *_unwritable(rest)]
 
 
 def _keys(data: Any) -> Iterator[Problem]:
@@ -132,13 +127,6 @@ def _keys(data: Any) -> Iterator[Problem]:
             del value_at(data, path[:-1])[path[-1]]
             if not _among(value, off):
                 yield Problem(path, "not supported yet", "leave the key out")
-
-
-def _values(data: Any) -> Iterator[Problem]:
-    for pattern, refused in VALUES.items():
-        for path, value in matching(data, pattern):
-            if _among(value, refused):
-                yield Problem(path, "not supported yet", "choose another value or leave the key out")
 
 
 def _unwritable(data: Any, path: KeyPath = ()) -> Iterator[Problem]:

@@ -7,6 +7,7 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 from riser_soil.core.quantities import (
     FROZEN,
     SHORTEST,
+    Density,
     Interval,
     Length,
     Ratio,
@@ -167,7 +168,7 @@ AutoOrBlock = Annotated[
 
 
 class SoilScene(BaseModel):
-    """A continuum of soil under the touchdown zone; quasi-static."""
+    """A continuum of soil under the touchdown zone; quasi-static, unless it has inertia."""
 
     model_config = FROZEN
 
@@ -204,8 +205,18 @@ class SoilScene(BaseModel):
         description="whether cells move with the soil (large) or stay where they were (small); auto: large where the "
         "soil yields and the pipe's surface touches it",
     )
-    inertia: Literal[False] = Field(
-        default=False, description="whether the soil has mass; false: quasi-static"
+    inertia: bool = Field(
+        default=False, description="whether the soil has mass in dynamic stages, at small strain; false: quasi-static"
+    )
+    density: Density | None = Field(
+        default=None,
+        description="of soil with inertia, pore water included [kg/m3]; by default that of its submerged unit weight "
+        "in the water",
+    )
+    absorbing: bool = Field(
+        default=False,
+        description="whether bottom and sides of soil with inertia let waves out in dynamic stages, by dashpots, in "
+        "place of holding it",
     )
     line: Text | None = Field(
         default=None, description="of several lines the one that lies on it, by name; the others meet the seabed alone"
@@ -247,6 +258,23 @@ class SoilScene(BaseModel):
         if self.strain == "large" and self.is_linear:
             raise wrong("strain", "linear elastic soil is computed at small strain", "leave strain out")
         return self
+
+    @model_validator(mode="after")
+    def _waves_with_inertia(self) -> Self:
+        for key in ("density", "absorbing"):
+            if getattr(self, key) and not self.inertia:
+                raise wrong(key, "belongs to soil with inertia", "write inertia: true, or leave it out")
+        if self.inertia and self.strain == "large":
+            raise wrong("strain", "soil with inertia is computed at small strain", "leave strain out, or inertia")
+        if self.inertia and self.density is None and self.lightest == 0.0:
+            raise wrong("inertia", "nothing tells the density", "give density, or submerged_unit_weight")
+        return self
+
+    @property
+    def lightest(self) -> float:
+        """Least submerged unit weight of its layers [N/m3]."""
+        own = [layer.submerged_unit_weight for layer in self.layers or ()] or [None]
+        return min(self.submerged_unit_weight if weight is None else weight for weight in own)
 
     @model_validator(mode="after")
     def _strong_to_the_bottom(self) -> Self:

@@ -11,7 +11,10 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_layers import boundaries
 
+SEA_WATER, STANDARD_GRAVITY = 1025.0, 9.80665
+
 if TYPE_CHECKING:
+    from riser_soil.scene.scene import Scene
     from riser_soil.soil.grid import DistributedMesh
     from riser_soil.soil.law import Formula
     from riser_soil.soil.layered import LayeredWeight
@@ -74,6 +77,17 @@ def initial_stress(given: SoilScene, depth: Array) -> Array:
     vertical = weight * depth if isinstance(weight, float) else weight.stress(depth)
     ratios = np.array([given.K0, given.K0, 1.0, 0.0, 0.0, 0.0])
     return np.asarray(-vertical[:, None] * ratios)
+
+
+def density_of(given: SoilScene, scene: Scene) -> Callable[[Array], Array]:
+    """What tells the density (n,) [kg/m3] of soil and pore water at depths (n,) [m]."""
+    from riser_soil.soil.layered import LayeredWeight
+
+    own, weight = given.density, weight_of(given)
+    layers = weight if isinstance(weight, LayeredWeight) else LayeredWeight((), (weight,))
+    water = SEA_WATER if scene.water is None else scene.water.density
+    g = scene.gravity or STANDARD_GRAVITY
+    return lambda depth: np.full_like(depth, own) if own is not None else water + layers.at(depth) / g
 
 
 def volumes(given: SoilScene) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.c_function import CFunction
 from riser_soil.core.compiled import njit
 from riser_soil.soil.families import Family
-from riser_soil.soil.ffcx_compat import cell_kernel, point_kernel
+from riser_soil.soil.ffcx_compat import cell_kernel, facet_kernel, point_kernel
 from riser_soil.soil.weak_form import WeakForm
 
 
@@ -58,6 +58,14 @@ class CellKernels:
     @cached_property
     def tangent(self) -> CFunction:
         return cell_kernel(self._form.tangent())
+
+    @cached_property
+    def mass(self) -> CFunction:
+        return cell_kernel(self._form.mass())
+
+    @cached_property
+    def dashpots(self) -> CFunction:
+        return facet_kernel(self._form.dashpots())
 
 
 def kernels_of(family: Family) -> CellKernels:
@@ -137,6 +145,19 @@ def renew_matrices(
             else:
                 for j in range(n):
                     K[i, j] = shares[c] * A[i, j]
+
+
+@njit
+def write_facet_matrices(kernel: CFunction, at: Array, facets: IntArray, given: Array, out: Array) -> None:
+    """Write matrices (nf, n, n) of facets (nf,), by their numbers in cells with nodes at (nf, nn, 3); given (nf, m):
+    coefficients of the form.
+    """
+    number = np.zeros(1, np.int32)
+    for f in range(at.shape[0]):
+        number[0] = facets[f]
+        out[f] = 0.0
+        kernel(place(out, f), place(given, f), 0, place(at, f), place(number, 0), 0, 0)
+    number[0] = 0
 
 
 @njit

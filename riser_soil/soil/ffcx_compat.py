@@ -51,9 +51,11 @@ def lagrange(cell: str, degree: int, components: int = 0) -> Any:
     return _basix_ufl().element("Lagrange", cell, degree, shape=shape)
 
 
-def constant(cell: str) -> Any:
-    """Element of one number in each cell."""
-    return ufl.FiniteElement("DG", cell, 0) if OLD else _basix_ufl().element("DG", cell, 0)
+def constant(cell: str, components: int = 0) -> Any:
+    """Element of one value in each cell, 0 components: of one number."""
+    if OLD:
+        return ufl.VectorElement("DG", cell, 0, dim=components) if components else ufl.FiniteElement("DG", cell, 0)
+    return _basix_ufl().element("DG", cell, 0, shape=(components,) if components else ())
 
 
 def at_points(cell: str, degree: int, components: int) -> Any:

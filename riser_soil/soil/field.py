@@ -39,8 +39,18 @@ class SoilField:
         own = (twins == np.arange(len(twins))) & (np.arange(len(twins)) < nodes.owned)
         self.owned: BoolArray = np.repeat(own, 3)
         self.prescribed: BoolArray = grid.supported(nodes.points).ravel()
+        self._ways_held = {True: self.prescribed, False: grid.supported(nodes.points, by_boundary=False).ravel()}
         self.section = None if grid.section is None else np.repeat(grid.section, 3)
         self.total: Array = np.zeros(self.size)
+
+    def hold(self, by_boundary: bool) -> None:
+        """From now on bottom and sides hold what they hold by default, or nothing."""
+        self.prescribed = self._ways_held[by_boundary]
+
+    @property
+    def held_by_boundary(self) -> BoolArray:
+        """Entries that bottom and sides alone can hold."""
+        return np.asarray(self._ways_held[True] & ~self._ways_held[False])
 
     def own(self, values: Array) -> Array:
         """The field's slice of a local array."""

@@ -29,7 +29,8 @@ NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
 
 
 class Soil:
-    """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step).
+    """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step); in group F
+    for soil with inertia, see `inertia`.
 
     Each step is linear about the geometry where it starts: that at first, or for soil at large strain (`moves`) the one
     that the steps before have left, see `large_strain`. Strength belongs to the material and moves along.
@@ -54,9 +55,10 @@ class Soil:
         K0: float = 1.0,
         start: Literal["geostatic", "unstressed"] = "geostatic",
         moves: bool = False,
+        inertia: bool = False,
     ) -> None:
         _check_level(grid, level)
-        self.grid, self.moves = grid, moves
+        self.grid, self.moves, self._has_inertia = grid, moves, inertia
         self.field = SoilField(grid)
         self.mesh: GatheredMesh = gather(grid)
         self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
@@ -66,7 +68,7 @@ class Soil:
         depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
         self._initial, self._unit_weight, self.law = on_all_ranks(grid.nodes.comm, self._material)
-        self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful, Yielding))
+        self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=(Limited, Stateful, Yielding))
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
         self._in_balance = self._found.stress  # as the last step left it, before cells that moved asked the law again
@@ -92,7 +94,16 @@ class Soil:
         return {"soil": MatrixBlock(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        self.field.own(forces.end)[:] += self._answer(state).force
+        self.field.own(forces.force if self._has_inertia else forces.end)[:] += self._answer(state).force
+
+    def hold(self, by_boundary: bool) -> None:
+        """From now on bottom and sides hold what they hold by default, or nothing; in systems that are made."""
+        self.field.hold(by_boundary)
+        self.surface.prescribed = self.grid.supported(self.surface.points, by_boundary).ravel()
+
+    def mean_by_depth(self, of_depth: Callable[[Array], Array]) -> Array:
+        """Means (nc,) in the cells of values by depth (n,) [m]."""
+        return self.cells.mean(of_depth(self.cells.at_points(self._depth)))
 
     def mix_elastic(self, share: float) -> None:
         """From now on the tangent has a share of the elastic one; with 1 it is that of unloading, as in small
@@ -101,7 +112,8 @@ class Soil:
         self._elastic_share = share
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        values["soil"] += self.cells.stiffness(self._moduli(self._answer(state).found.tangent))
+        K = self.cells.stiffness(self._moduli(self._answer(state).found.tangent))
+        values["soil"] += weights.force * K if self._has_inertia else K
 
     def _moduli(self, consistent: Array) -> Array:
         """The law's (n, 6, 6) [Pa], with the elastic ones' share."""
@@ -130,9 +142,13 @@ class Soil:
         its end value over the whole step, so the riser gives up that much more than the soil stores; counting it
         closes the energy balance exactly. The law's own is that of its backward Euler step: exact where the stress
         stays at its limit, nothing where no plastic strain grows; backstress and elements in parallel add half the
-        product of the changes of their own stress and strain.
+        product of the changes of their own stress and strain. With inertia the mean stress of the step counts, and
+        nothing is the scheme's.
         """
         _, _, strain, found, _ = self._answer(after)
+        if self._has_inertia:
+            taken = self.cells.integral(0.5 * (found.stress + self._found.stress), strain)
+            return Work(dissipated=taken - self._stores(found) + self._stored)
         taken = self.cells.integral(found.stress, strain)
         by_scheme = 0.5 * self.cells.integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
         return Work(dissipated=taken - self._stores(found) + self._stored, by_scheme=by_scheme)

@@ -116,6 +116,27 @@ class SoilCells:
         )
         return out
 
+    def mass(self, density: Array) -> Array:
+        """Mass matrices (nc, d nn, d nn) [kg] of the cells, of densities (nc,) [kg/m3]."""
+        nc, n = self._dofs.shape
+        out, rho = np.zeros((nc, n, n)), np.ascontiguousarray(density)[:, None]
+        none = self._placed.mean[:, :0]
+        cell_loops.renew_matrices(
+            self._kernels.mass, self._placed.at, none, self._shares, rho, np.full_like(rho, np.nan), out
+        )
+        return out
+
+    def dashpots(self, facets: IntArray, impedances: Array) -> Array:
+        """Matrices (nf, d nn, d nn) [kg/s] of facets (nf, 2), cells and their local facets, with impedances (nf, 2)
+        [Pa s/m] along the normal and along the side.
+        """
+        cells, n = facets[:, 0], self._dofs.shape[1]
+        out, at = np.empty((len(cells), n, n)), self._placed.at[cells]
+        cell_loops.write_facet_matrices(
+            self._kernels.dashpots, at, np.ascontiguousarray(facets[:, 1]), np.ascontiguousarray(impedances), out
+        )
+        return out * self._shares[cells][:, None, None]
+
     def _by_cell(self, values: Array) -> Array:
         """Values (n, ...) at points as a row for each cell."""
         return np.ascontiguousarray(values).reshape(self.shape[0], -1)

@@ -1,4 +1,4 @@
-"""The mechanics of the soil in UFL: strain, internal force, tangent, weight and spin of a cell.
+"""The mechanics of the soil in UFL: strain, internal force, tangent, weight, spin, mass and dashpots of a cell.
 
 Displacement u, its variation v; stress and strain by their components xx, yy, zz, √2 xy, √2 xz, √2 yz, with which the
 laws of the soil work (mandel.py).
@@ -15,6 +15,9 @@ and q, cell by cell. Ten-node tetrahedra, with curved sides where nodes have mov
 
 A section across the riser is in plane strain: nothing changes along it, its cells have two dimensions, and its
 gradients are put at their places in space, so that the laws see six components there, too.
+
+With inertia there is the mass, ∫ ρ a·v dx, of a quadrature of its own, and on a boundary where waves leave dashpots of
+the impedances ρ c_p along the normal and ρ c_s along the side.
 
 Forms belong to no mesh: a kernel is given a cell's nodes where they are. Stress σ, moduli C and unit weight γ are
 numbers at the points of the quadrature. One form has one quadrature degree: FFCx is silently wrong where a rule of one
@@ -52,6 +55,13 @@ class WeakForm:
         self.displacement = given(vector, 3)
         self.dilatation = given(constant(cell), 4)
         self.nodal = given(lagrange(cell, degree), 5)
+        self.density = given(constant(cell), 6)
+        self.impedances = given(constant(cell, 2), 7)
+        whole = {"quadrature_degree": max(quadrature, 2 * degree + 2)}  # of two displacements, in distorted cells
+        self.dx_of_products = ufl.Measure("dx", mesh, metadata=whole)
+        self.ds_of_products = ufl.Measure("ds", mesh, metadata=whole)
+        plain = ufl.FunctionSpace(mesh, vector)
+        self.plain_u, self.plain_v = ufl.TrialFunction(plain), ufl.TestFunction(plain)
         if mean_dilatation:
             space = ufl.FunctionSpace(mesh, mixed(vector, constant(cell)))
             (self.u, self.p), (self.v, self.q) = ufl.TrialFunctions(space), ufl.TestFunctions(space)
@@ -93,6 +103,15 @@ class WeakForm:
     def weight(self) -> Any:
         """Downwards: the last axis points up."""
         return -self.unit_weight[0] * self.v[len(self.axes) - 1] * self.dx
+
+    def mass(self) -> Any:
+        return self.density * ufl.inner(self.plain_u, self.plain_v) * self.dx_of_products
+
+    def dashpots(self) -> Any:
+        u, v, n = self.plain_u, self.plain_v, ufl.FacetNormal(self.mesh)
+        along_normal = ufl.dot(u, n) * ufl.dot(v, n)
+        along_side = ufl.inner(u, v) - along_normal
+        return (self.impedances[0] * along_normal + self.impedances[1] * along_side) * self.ds_of_products
 
     def spin_at_points(self) -> Any:
         """Axial vector of the skew part of the displacement's gradient."""

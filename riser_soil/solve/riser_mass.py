@@ -1,4 +1,4 @@
-"""Inverse of the lines' mass.
+"""Inverse of the mass: of the lines, and of soil with inertia.
 
 Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme). A line's element matrices,
 projected onto what moves, are a banded matrix.
@@ -6,6 +6,7 @@ projected onto what moves, are a banded matrix.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Bound, Packed, in_turn
+from riser_soil.core.communicator import any_of
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.saved_state import Saved
@@ -21,6 +23,7 @@ from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData, matrix_workspace
 
 MASSLESS = 1e-12  # of a node's largest mass
+EXACT = 1e-13  # of a force: what its acceleration may lack, in the norm of the inverse diagonal
 
 
 class MassData(NamedTuple):
@@ -184,10 +187,15 @@ MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 
 
 class RiserMass:
-    """Inverse of the lines' mass, their own and the added one, on their free dofs; collective over all ranks."""
+    """Inverse of the mass of the lines, their own and the added one, and of other fields, on free dofs; collective over
+    all ranks.
+    """
 
     def __init__(self, system: System) -> None:
         self._system, self._parts = system, _with_inertia(system)
+        lines = {line.name for line in system.model.lines}
+        others = [part for part in self._parts if not lines & part.blocks().keys()]
+        self._others = OtherMass(system, others) if any_of(system.comm, bool(others)) else None
 
     @cached_property
     def _lines(self) -> list[tuple[LineField, LineMass | NodeMass]]:
@@ -197,8 +205,10 @@ class RiserMass:
         return mass_of(len(line.translation_dofs), line.prescribed, self._system.levers[local(line)])
 
     def accelerations(self, t: float, force: Array) -> Array:
-        """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the lines."""
+        """a with M a = force, in the accepted configuration at time t; local arrays, zero where there is no mass."""
         out, comm = np.zeros_like(force), self._system.comm
+        if self._others is not None:
+            self._others.write_accelerations(force, out)
         for line, mass in self._lines:
             out[local(line)] = comm.bcast(self._of_line(line, mass, t, force) if comm.rank == 0 else None)
         return out
@@ -212,7 +222,7 @@ class RiserMass:
         return mass.accelerations(force[local(line)])
 
     def kinetic_energy(self, state: State) -> float:
-        """Kinetic energy [J] of the lines at an accepted state."""
+        """Kinetic energy [J] at an accepted state."""
         mine = sum(part.energy(state).kinetic for part in self._parts)
         return float(self._system.comm.allreduce(mine))
 
@@ -223,6 +233,52 @@ class RiserMass:
     def restore(self, saved: Saved) -> None:
         for line, mass in self._lines:
             mass.restore(saved.get(line.name))
+
+
+class OtherMass:
+    """Inverse of the mass of fields that are no lines, the same in all configurations, by conjugate gradients with its
+    diagonal as preconditioner, which takes some twenty iterations on a mesh of any size; collective.
+    """
+
+    def __init__(self, system: System, parts: Sequence[Part]) -> None:
+        from scipy.sparse import coo_matrix
+
+        self._system, numbering = system, system.numbering
+        self._mass = coo_matrix((numbering.size, numbering.size)).tocsr()
+        state = State.at_rest(0.0, numbering.size)
+        for part in parts:
+            for key, block in part.blocks().items():
+                values = block.zeros()
+                part.tangent(state, MASS_ONLY, {key: values})
+                rows, cols = np.broadcast_to(block.rows[:, :, None], block.shape), block.cols[:, None, :]
+                at = rows.ravel(), np.broadcast_to(cols, block.shape).ravel()
+                self._mass = self._mass + coo_matrix((values.ravel(), at), shape=self._mass.shape).tocsr()
+        diagonal = numbering.sizes_to_global(self._mass.diagonal())
+        self._inverse = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > 0.0)
+
+    def write_accelerations(self, force: Array, out: Array) -> None:
+        """Write a with M a = force to local entries that are free; zero where there is no mass."""
+        numbering, inverse = self._system.numbering, self._inverse
+        left = np.where(inverse > 0.0, numbering.add_to_global(force), 0.0)
+        found, ahead = numbering.zeros(), inverse * left
+        size = limit = self._product(left, ahead)
+        limit *= EXACT**2
+        while size > limit:
+            along = self._times(ahead)
+            step = size / self._product(ahead, along)
+            found += step * ahead
+            left -= step * along
+            before, size = size, self._product(left, inverse * left)
+            ahead = inverse * left + size / before * ahead
+        numbering.to_local(found, out)
+
+    def _times(self, x: Array) -> Array:
+        local = np.zeros(self._system.numbering.size)
+        self._system.numbering.to_local(x, local)
+        return self._system.numbering.add_to_global(self._mass @ local)
+
+    def _product(self, a: Array, b: Array) -> float:
+        return self._system.sum([float(a @ b)])[0]
 
 
 def _with_inertia(system: System) -> list[Part]:
