@@ -66,6 +66,12 @@ def laid_and_lifted_on_clay() -> Scene:
     return scene_from_mapping(touchdown(LAY, lift, su=1000.0))
 
 
+def clay_with_inertia() -> Scene:
+    scene = touchdown(LAY, heave(0.6), su=1000.0)
+    scene["soil"] |= {"inertia": True, "absorbing": True}
+    return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3}})
+
+
 def sinks_into_clay() -> Scene:
     """On new meshes before and after it is left."""
     law = {"kind": "kinematic-hardening", "su": 5.0e3, "E_over_su": 400.0, "elastic_share": 0.1}
@@ -94,6 +100,7 @@ SHORT = {
     "surface contact on plastic clay": (surface_on_clay, (4, 10)),
     "kept factors": (kept_factors, (4, 10, 12)),
     "condensed soil": (condensed_soil, (4, 10)),
+    "clay with inertia": (clay_with_inertia, (4, 10)),
     "laid and lifted on clay": (laid_and_lifted_on_clay, (10,)),
     "sinks into clay": (sinks_into_clay, (5, 12)),
     "sinks into tetrahedra": (sinks_into_tetrahedra, (5, 9)),
