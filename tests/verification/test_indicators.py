@@ -25,6 +25,7 @@ from tests.support.indicator_scenes import (
     last_stage,
     two_periods,
 )
+from tests.support.pages import Tell
 from tests.support.said import line_with, lines_with
 
 # Of the largest tension: errors that must be told, and that should not be; those that are no round-off of a reference.
@@ -103,12 +104,12 @@ def test_steps_too_long_for_the_tension_are_reported(name: str) -> None:
 
 
 @pytest.mark.verify
-def test_estimate_of_the_tension_s_error_is_of_its_size() -> None:
+def test_estimate_of_the_tension_s_error_is_of_its_size(tell: Tell) -> None:
     rows = [row for name in STEPPED for row in tension_errors(name)]
     judged = [(error, estimate) for _, error, estimate, _, _ in rows if KNOWN < error < 1.0]
     ratios = np.array([estimate / error for error, estimate in judged])
     within = float(np.mean((ratios > 0.2) & (ratios < 5.0)))
-    print(f"{len(ratios)} errors: median ratio {np.median(ratios):.3g}, {within:.0%} within a factor 5")
+    tell({"indicators largest": f"{np.median(ratios):.1f} | {100.0 * within:.0f} %"})
     assert len(STEPPED) >= 12
     assert 0.5 < np.median(ratios) < 3.0
     assert within >= 0.8
@@ -135,13 +136,14 @@ def test_steps_too_long_for_the_least_tension_are_reported(name: str) -> None:
 
 
 @pytest.mark.verify
-def test_estimate_of_the_least_tension_s_error_is_of_its_size() -> None:
+def test_estimate_of_the_least_tension_s_error_is_of_its_size(tell: Tell) -> None:
     rows = [(name, *row) for name in STEPPED for row in least_tension_errors(name)]
     ratios = np.array([estimate / error for _, _, error, estimate, _ in rows if LEAST_KNOWN < error < 1.0])
     within = float(np.mean((ratios > 0.2) & (ratios < 5.0)))
     wrong, good = ([row for row in rows if kind(row[2])] for kind in (LEAST_WRONG.__lt__, LEAST_RIGHT.__gt__))
     silent, false = [row for row in wrong if not row[-1]], [row for row in good if row[3] > LEAST_WRONG]
-    print(f"{len(ratios)} errors: median ratio {np.median(ratios):.3g}, {within:.0%} within a factor 5")
+    tell({"indicators least": f"{np.median(ratios):.1f} | {100.0 * within:.0f} %"})
+    tell({"indicators told": f"{len(wrong) - len(silent)} of {len(wrong)}"})
     print(f"silent {len(silent)} of {len(wrong)}: {silent}; false {len(false)} of {len(good)}: {false}")
     assert 0.5 < np.median(ratios) < 3.0
     assert within >= 0.8
@@ -179,7 +181,7 @@ def test_snap_after_compression_is_reported_by_the_least_tension(name: str, dt: 
 
 
 @pytest.mark.verify
-def test_heaves_that_miss_the_tension_are_reported() -> None:
+def test_heaves_that_miss_the_tension_are_reported(tell: Tell) -> None:
     """By how far the largest tension at either end is off, over the larger one. The riser has no damping of its own, so
     that waves along it grow with finer steps: what no course of a figure shows is not told.
     """
@@ -196,6 +198,7 @@ def test_heaves_that_miss_the_tension_are_reported() -> None:
         print(f"| {kind} | {len(each)} | {sum(reported for *_, reported in each)} |")
         print([run for *run, reported in each if reported == (kind == "right")])
     reported = {kind: sum(reported for *_, reported in each) for kind, each in runs.items()}
+    tell({f"indicators heaves {kind}": f"{reported[kind]} of {len(runs[kind])}" for kind in ("wrong", "right")})
     assert len(runs["wrong"]) >= 20
     assert reported["wrong"] >= 0.9 * len(runs["wrong"])
     assert len(runs["right"]) >= 10

@@ -19,6 +19,7 @@ from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.said import lines_with
 
 W, SPAN, HEIGHT = 1400.0, 170.0, 115.0
 CHAIN = {"EA": 6e8, "EI": 0.0, "GJ": 1.0, "submerged_weight": W, "outer_diameter": 0.15, "mass": 165.0}
@@ -161,18 +162,36 @@ def test_a_heap_is_the_same_on_two_ranks(tmp_path: Path) -> None:
         np.testing.assert_allclose(both[name], alone[name], rtol=0.0, atol=1e-6 * scale, err_msg=name)
 
 
-def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> None:
-    """The top bears what hangs, within a percent at rest, and in motion its inertia, with what comes down."""
+def heaved(elements: int, folder: Path) -> Run:
+    """A heap in water whose top heaves for a period and a half."""
     stages = static(), dynamic(13.5, 0.1, motion=HEAVE) | {"time_step": "auto"}
     drag: Mapping = {"drag": {"normal": 1.2, "tangential": 0.1}, "added_mass": {"normal": 1.0, "tangential": 0.1}}
     water = {"surface_level": 130.0, "depth": 130.0}
-    found = done(slack(1.3 * (SPAN + HEIGHT), 10, stages=stages, pipe=CHAIN | drag, water=water), tmp_path)
+    return done(slack(1.3 * (SPAN + HEIGHT), elements, stages=stages, pipe=CHAIN | drag, water=water), folder)
+
+
+# N, of what hangs
+INERTIA = (CHAIN["mass"] + 0.1 * 1025.0 * np.pi / 4.0 * 0.15**2) * HEIGHT * (2.0 * np.pi / 9.0) ** 2
+
+
+def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> None:
+    """The top bears what hangs, within a percent at rest, and in motion its inertia, with what comes down."""
+    found = heaved(10, tmp_path)
     assert found["time"][-1] == pytest.approx(13.5)
-    top, mass = found["end_force"][:, 2], CHAIN["mass"] + 0.1 * 1025.0 * np.pi / 4.0 * 0.15**2
-    inertia = mass * HEIGHT * (2.0 * np.pi / 9.0) ** 2
+    top = found["end_force"][:, 2]
     assert top[0] == pytest.approx(W * HEIGHT, rel=1.5e-2)
-    assert np.abs(top - W * HEIGHT).max() < 4.0 * inertia
-    assert np.ptp(top) > inertia
+    assert np.abs(top - W * HEIGHT).max() < 4.0 * INERTIA
+    assert np.ptp(top) > INERTIA
+
+
+@pytest.mark.verify
+def test_short_elements_that_snap_under_a_moving_end_are_warned_of(tmp_path: Path) -> None:
+    """They are picked up one by one, by the wave of their speed: the top's tension is several times what it should."""
+    found = heaved(100, tmp_path)
+    assert np.abs(found["end_force"][:, 2] - W * HEIGHT).max() > 4.0 * INERTIA
+    warnings = found.summary["stages"][1]["warnings"]
+    for words in ("the line is compressed by", "the energy balance is"):
+        assert lines_with(warnings, words)
 
 
 @pytest.mark.parametrize(

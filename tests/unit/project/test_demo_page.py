@@ -11,7 +11,7 @@ from demos.page import ROOT, all_pages, block, csv_table, filled, places, plain,
 from tests.support.pages import same_figures
 
 VERIFIED = "".join(each.read_text(encoding="utf-8") for each in (ROOT / "tests/verification").glob("test_*.py"))
-TOLD = [re.sub(r"{.*?}", ".+", name) for name in re.findall(r'\btell\(\{f"(.*?)": ', VERIFIED)]  # by long tests
+TOLD = [re.sub(r"{.*?}", ".+", name) for name in re.findall(r'\btell\(\{f?"(.*?)": ', VERIFIED)]  # by long tests
 FIGURE = re.compile("<!-- figure ([^>]+) -->")
 PAGE = "Before.\n\n<!-- one -->\n<!-- end of one -->\nBetween.\n<!-- two -->\nold\n<!-- end of two -->\n"
 
