@@ -1,5 +1,6 @@
-"""Range graphs: least, mean and largest value of a quantity at each node of the riser over a stage's records, with its
-limits, whole and near the touchdown points.
+"""Range graphs: least, mean and largest value of a quantity at each node of the riser over a stage's records.
+
+With its limits, along the whole riser and near the touchdown points.
 """
 
 from __future__ import annotations
