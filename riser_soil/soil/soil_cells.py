@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -138,8 +139,8 @@ class SoilCells:
         return out * self._shares[cells][:, None, None]
 
     def _by_cell(self, values: Array) -> Array:
-        """Values (n, ...) at points as a row for each cell."""
-        return np.ascontiguousarray(values).reshape(self.shape[0], -1)
+        """Values (n, ...) at points as a row for each cell; a rank may have none."""
+        return np.ascontiguousarray(values).reshape(self.shape[0], self.shape[1] * math.prod(values.shape[1:]))
 
     def at_points(self, nodal: Array) -> Array:
         """Values (n, ...) of those (nodes, ...) at nodes."""

@@ -161,3 +161,18 @@ def matrix(form: Any, at: Array) -> Array:
     out, none = np.zeros((1, 24, 24)), np.zeros((1, 1))
     cell_loops.renew_matrices(cell_kernel(form), at, np.empty((1, 0)), np.ones(1), none, none * np.nan, out)
     return out
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_rank_without_cells_has_nothing_of_each(way: str) -> None:
+    grid = distorted(way)
+    none = replace(grid, nodes=replace(grid.nodes, cells=grid.nodes.cells[:0]), volume=grid.volume[:0])
+    cells, size = SoilCells(none), 3 * len(grid.nodes.points)
+    assert cells.strain(np.ones(size)).shape == (0, 6)
+    assert len(cells.stiffness(np.empty((0, 6, 6)))) == 0
+    assert not cells.internal_force(np.empty((0, 6)), size).any()
+    assert not cells.weight(np.empty(0), size).any()
+    strain, spin = cells.motion(grid.nodes.points, np.ones(size))
+    assert (strain.shape, spin.shape) == ((0, 6), (0, 3))
+    assert cells.slopes(np.ones(size // 3)).shape == (0, 3)
+    assert len(cells.mass(np.empty(0))) == 0
