@@ -221,12 +221,13 @@ IMPACTS = [(1e5, 2e-2), (1e5, 3e-3), (1e6, 1e-2), (1e6, 3e-3), (1e6, 1e-3), (1e7
 @pytest.mark.parametrize(
     ("k", "dt"), [each if each == (1e6, 1e-3) else pytest.param(*each, marks=pytest.mark.verify) for each in IMPACTS]
 )
-def test_force_of_an_impact_is_reported_to_be_too_small(k: float, dt: float) -> None:
+def test_force_of_an_impact_is_reported_to_be_too_small(tell: Tell, k: float, dt: float) -> None:
     """A pipe falls by h = 0.1 m on a lossless floor: at most w + sqrt(w² + 2 k w h) per length."""
     stage, w = last_stage(falling(dt, k)), 700.0
     exact = 40.0 * (w + math.sqrt(w * w + 2.0 * k * w * 0.1))
     error, found = 1.0 - stage["extremes"]["contact_force"]["max"] / exact, stage["indicators"]["impact"]
-    print(f"| {k:.0e} | {dt:g} | {error:.1%} | {found['force_error']:.1%} | {found['share_of_kinetic']:.0%} |")
+    shares = (100.0 * each for each in (error, found["force_error"], found["share_of_kinetic"]))
+    tell({f"impact {k:.0e} {dt:g}": "{:.1f} % | {:.1f} % | {:.0f} %".format(*shares)})
     lost = stage["energy"]["dissipated_by"]
     assert lost == {"seabed": 0.0, "seabed_time_scheme": stage["energy"]["dissipated"]}
     assert 0.4 * error < found["force_error"] < 2.0 * error
