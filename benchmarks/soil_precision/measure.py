@@ -85,7 +85,7 @@ def _of_pushed(run: Run) -> Found:
     """Load down by depth, the largest pressure in the soil, the trough across the pipe."""
     loads = np.array([stage["final"]["contact_force"] for stage in run.summary["stages"]])
     assert len(loads) == len(DEPTHS)
-    stress = float(np.abs(run.soil_frame().fields["mean_effective_stress"]).max())
+    stress = float(np.abs(run.soil_frame().fields["mean_stress"]).max())
     figures = {f"capacity at {DEPTHS[at]:g} D": float(loads[at]) for at in (0, -1)} | {"largest mean stress": stress}
     return figures, {"load": loads, "trough": run["settlement_across"][-1, 0]}
 

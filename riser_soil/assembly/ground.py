@@ -51,6 +51,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: A
     Collective.
     """
     with restoring_signal_handlers():  # imports gmsh
+        from riser_soil.soil.asked_fields import fields_of
         from riser_soil.soil.soil import Soil
 
     grid = _grid(scene, given, line, comm)
@@ -62,6 +63,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: A
         K0=given.K0,
         moves=scene.soil_moves,
         inertia=given.inertia,
+        fields=fields_of(scene.output.soil_fields, given.laws),
     )
 
 

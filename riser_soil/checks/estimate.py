@@ -52,6 +52,7 @@ UNSYMMETRIC = {
 # somewhat more than one.
 PER_NODE = PER_PICTURE = sum(output.numbers for output in ALONG_RISER)
 PER_STEP, PER_CELL = 60, 1 + sum(output.numbers for output in OF_SOIL)
+TENSOR = 9  # numbers, row by row
 COPIES = 2.0  # of each file while it grows
 
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
@@ -74,7 +75,8 @@ class ProblemSize:
     """Size of a scene: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
 
     components: of the waves. entries: of a cell's matrix. factor: bytes of the soil's factor. auto: whether there are
-    more steps, as some are automatic. stops: times that they have to hit. seconds: on one core.
+    more steps, as some are automatic. stops: times that they have to hit. seconds: on one core. asked: numbers
+    of a cell in a picture beyond those of all soil.
     """
 
     elements: int
@@ -90,6 +92,7 @@ class ProblemSize:
     records: float
     pictures: float
     seconds: float
+    asked: int = 0
 
     @property
     def reported_steps(self) -> str:
@@ -115,7 +118,7 @@ class ProblemSize:
         """Bytes of the results, while they are written."""
         nodes = self.elements + 1
         series = PER_NODE * nodes * self.records + PER_STEP * self.steps
-        pictures = (PER_PICTURE * nodes + PER_CELL * self.cells) * self.pictures
+        pictures = (PER_PICTURE * nodes + (PER_CELL + self.asked) * self.cells) * self.pictures
         return 8.0 * COPIES * (series + pictures)
 
 
@@ -198,6 +201,7 @@ def size_of(scene: Scene) -> ProblemSize:
         records=records,
         pictures=pictures,
         seconds=seconds,
+        asked=TENSOR * len(scene.output.soil_fields),
     )
 
 

@@ -290,7 +290,7 @@ OF_SOIL: tuple[OutputQuantity[SoilSnapshot], ...] = (
         ),
     ),
     OutputQuantity(
-        "mean_effective_stress", "p", "Pa", "mean stress beyond the water pressure at rest", "soil cells",
+        "mean_stress", "p", "Pa", "mean stress beyond the water pressure at rest", "soil cells",
         lambda soil: soil.mean_stress, "positive in compression",
     ),
     OutputQuantity(

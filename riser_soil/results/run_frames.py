@@ -57,7 +57,7 @@ def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Fra
     return Frame(
         stamp,
         {output.name: output.get(soil) for output in wanted if output.where == "soil points"},
-        {output.name: output.get(soil) for output in wanted if output.where == "soil cells"},
+        {output.name: output.get(soil) for output in wanted if output.where == "soil cells"} | {**soil.asked},
     )
 
 
@@ -105,7 +105,7 @@ class RunFrames:
         if soil is None:
             raise ValueError("pictures are due, so the soil's snapshot is needed too: both files share one time axis")
         self._soil.add(soil_frame(stamp, soil, {name for fields in self._fields.values() for name in fields}))
-        return waiting + _size(vars(soil))
+        return waiting + _size(vars(soil)) + _size(soil.asked)
 
     def tally(self, stage: StageTally, now: float, soil: SoilSnapshot | None) -> None:
         """Take note of the soil's largest values in a stage of the line that lies on it."""

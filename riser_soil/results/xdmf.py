@@ -22,6 +22,7 @@ from riser_soil.results.growing_file import GrowingFile, appending, behind, cutt
 from riser_soil.results.ownership import PROGRAM, XDMF_HEAD, quoted
 
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
+_KINDS = {3: "Vector", 9: "Tensor"}
 _GRID = '<Grid Name="frame_'
 _NUMBER = "\0"  # of a frame, in the text that all have alike: XML has no such character
 _FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
@@ -29,7 +30,7 @@ _FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One instant: values on points and cells, (n,) or (n, 3).
+    """One instant: values on points and cells, (n,), (n, 3), or (n, 9) of tensors, row by row.
 
     geometry: name of the values on points, (np, 3) m, that are the points; None where the mesh stays.
     """
@@ -194,5 +195,5 @@ def _polyline_of(cells: IntArray) -> str:
 
 
 def _attribute(name: str, centre: str, values: Array, item: str) -> str:
-    kind = "Vector" if values.ndim == 2 else "Scalar"
+    kind = "Scalar" if values.ndim == 1 else _KINDS[values.shape[1]]
     return f'<Attribute Name={quoted(name)} AttributeType="{kind}" Center="{centre}">{item}</Attribute>'

@@ -244,6 +244,11 @@ def _error_bars_from_the_beginning(scene: Scene) -> Iterator[Problem]:
             yield Problem((name,), "coarser meshes can't begin with another run's end", f"leave out {name} or initial")
 
 
+def _fields_of_soil(scene: Scene) -> Iterator[Problem]:
+    if scene.soil is None and scene.output.soil_fields:
+        yield Problem(("output", "soil_fields"), "the scene has no soil", "add soil, or leave it out")
+
+
 def _sections_across_soil(scene: Scene) -> Iterator[Problem]:
     sections, length = scene.output.sections, scene.line.length
     path: Path = ("output", "sections")
@@ -374,6 +379,7 @@ _CHECKS: tuple[_Check, ...] = (
     _unstressed_shape_fits,
     _initial_shape_meets_the_supports,
     _passes_over_block,
+    _fields_of_soil,
     _sections_across_soil,
     _error_bars_from_the_beginning,
     end_conflicts,

@@ -113,7 +113,7 @@ def _without_soil(scene: Scene) -> dict[str, Any]:
     contact = scene.contact if scene.seabed is not None else None
     if contact is not None and contact.method == "surface":
         contact = contact.model_copy(update={"method": "auto"})
-    output = scene.output.model_copy(update={"sections": SettlementSections()})
+    output = scene.output.model_copy(update={"sections": SettlementSections(), "soil_fields": ()})
     return {"soil": None, "contact": contact, "output": output}
 
 

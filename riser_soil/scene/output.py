@@ -76,6 +76,11 @@ class Output(BaseModel):
     fields: tuple[FieldName, ...] = Field(
         default=ALL_FIELDS, description="fields to record beside the positions; all by default"
     )
+    soil_fields: tuple[Text, ...] = Field(
+        default=(),
+        description="further fields of the soil's cells for ParaView: the tensors stress, effective_stress, strain and "
+        "plastic_strain, histories (all of the law), or single ones of these by name; none by default",
+    )
     sections: SettlementSections = Field(
         default=SettlementSections(), description="where settlement_across is recorded, with soil"
     )

@@ -30,6 +30,8 @@ from riser_soil.core.quantities import PoissonRatio, StrengthGradient, Stress, w
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, SoilLaw, StressUpdate
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
 
     from riser_soil.core.arrays import Array, IntArray
@@ -70,6 +72,10 @@ class DruckerPrager(SoilLaw):
                 "sand that dilated more would give off energy; take some 30 deg less than friction_angle_deg, or 0",
             )
         return self
+
+    def tells_effective(self, columns: Sequence[str]) -> bool:
+        """Sand drains: its stress is the effective one."""
+        return True
 
     def surface_modulus(self, width: float) -> float:
         return self.E

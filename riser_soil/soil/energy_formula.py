@@ -13,9 +13,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.soil import energy_kernel
-from riser_soil.soil.law import STRESS
+from riser_soil.soil.law import PLACES, STRESS
 from riser_soil.soil.law_source import LawError
-from riser_soil.soil.own_formula import PLACES, OwnFormula, asked_of_user
+from riser_soil.soil.own_formula import OwnFormula, asked_of_user
 
 STRAIN = tuple(f"strain_{place}" for place in PLACES)
 NONE = 1e-9  # of the moduli, which is no stress

@@ -13,10 +13,12 @@ from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import FROZEN
 from riser_soil.errors import SceneError
-from riser_soil.soil.law import Formula, SoilLaw
+from riser_soil.soil.law import PORE_PRESSURE, Formula, SoilLaw
 from riser_soil.soil.law_source import LawError, Source, arguments, asked
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
 
     from riser_soil.core.arrays import Array
@@ -54,6 +56,9 @@ class ImportedLaw(SoilLaw):
 
     def lies(self, key: str, unit_weight: float, K0: float) -> None:
         self._key, self._above = key, (unit_weight, K0)
+
+    def tells_effective(self, columns: Sequence[str]) -> bool:
+        return PORE_PRESSURE in columns
 
     def surface_modulus(self, width: float) -> float:
         """At half the width below the surface, of soil at rest under its weight."""

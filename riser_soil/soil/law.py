@@ -16,10 +16,14 @@ from riser_soil.core.quantities import FROZEN
 from riser_soil.seabed.bearing import Number
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from riser_soil.core.arrays import Array
 
 STRESS = ("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stress_yz")
+PLACES = tuple(name[-2:] for name in STRESS)
 PLASTIC_STRAIN = "equivalent_plastic_strain"
+PORE_PRESSURE = "pore_pressure"  # beyond that at rest, positive in compression; effective stress is so much less
 
 
 class StressUpdate(NamedTuple):
@@ -40,7 +44,7 @@ class StressUpdate(NamedTuple):
 
 class Formula(Protocol):
     """A law at n points. columns: names of what the history holds; PLASTIC_STRAIN goes to the
-    results, other names are the law's own.
+    results, and effective stress goes by PORE_PRESSURE, other names are the law's own.
     """
 
     @property
@@ -107,6 +111,12 @@ class SoilLaw(BaseModel, ABC):
         """What a law that is asked for more than its constants may note: its key in the scene, and of the soil at the
         seabed the submerged unit weight [N/m3] and K0.
         """
+
+    def tells_effective(self, columns: Sequence[str]) -> bool:
+        """Whether effective stress is known of soil whose histories are named so: it is the law's stress, or pore
+        pressure is one of the histories.
+        """
+        return False
 
     @abstractmethod
     def surface_modulus(self, width: float) -> float:

@@ -15,8 +15,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.soil import mandel
+from riser_soil.soil.law import PLACES
 from riser_soil.soil.law_source import LawError
-from riser_soil.soil.own_formula import PLACES, OwnFormula, at_point, infinite
+from riser_soil.soil.own_formula import OwnFormula, at_point, infinite
 
 POINTS = 6
 SIZES = (1e-5, 1e-4, 1e-3, 1e-2)  # of the strain

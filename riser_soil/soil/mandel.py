@@ -90,6 +90,12 @@ def elastic_strain(bulk: Array, shear: Array, stress: Array) -> Array:
     return np.stack(stretched(1.0 / (3.0 * bulk), 1.0 / (2.0 * shear), tuple(stress.T)), axis=1)
 
 
+def components(a: Array) -> Array:
+    """Components (..., 9) of tensors (..., 6), row by row: xx, xy, xz, yx, ..."""
+    result: Array = (a * np.array([1.0, 1.0, 1.0, *[np.sqrt(0.5)] * 3]))[..., [0, 3, 4, 3, 1, 5, 4, 5, 2]]
+    return result
+
+
 def product(a: Array, b: Array) -> Array:
     """a:b (n,) of two tensors (n, 6)."""
     result: Array = np.einsum("ni,ni->n", a, b)

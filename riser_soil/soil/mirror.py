@@ -113,6 +113,13 @@ class Unfolding:
         """All cells' rows, of those computed."""
         return np.concatenate([rows, rows[self.cells]])
 
+    def tensors(self, rows: Array) -> Array:
+        """All cells' tensors (nc, 9), row by row, of those computed."""
+        if self.mirror is None:
+            return rows
+        signs = np.outer(self.mirror.signs, self.mirror.signs).ravel()
+        return np.concatenate([rows, signs * rows[self.cells]])
+
     def connected(self, cells: IntArray) -> IntArray:
         """All cells (nc, nn), of those computed: an image has its nodes in the order that turns it right side out, one
         reference axis run the other way.

@@ -26,10 +26,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.soil import mandel
-from riser_soil.soil.law import STRESS, StressUpdate
+from riser_soil.soil.law import PLACES, STRESS, StressUpdate
 from riser_soil.soil.law_source import LawError, reported
 
-PLACES = tuple(name[-2:] for name in STRESS)
 SHORTEST, LONGEST = 1e-9, 1e12  # s; what stands for "at once" and "slow" where a law divides by the time
 PROBE = 1e-6  # strain
 

@@ -16,6 +16,7 @@ from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
+from riser_soil.soil.asked_fields import NO_FIELDS, AskedFields
 from riser_soil.soil.families import FOLDS, skewness
 from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
@@ -38,8 +39,8 @@ class Soil:
     law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3],
     or by layers. start: "geostatic": vertical stress the weight above, horizontal K0 times that, in equilibrium with
     the weight, so that displacement and strain count from there; "unstressed": no initial stress, the weight acts
-    at once. MeshError if the level misses the mesh or a cell is inverted, SceneError if the initial stress is
-    beyond the law's limit. Construction is collective.
+    at once. fields: that the output has beyond those of all soil. MeshError if the level misses the mesh or a cell is
+    inverted, SceneError if the initial stress is beyond the law's limit. Construction is collective.
     """
 
     name = "soil"
@@ -56,6 +57,7 @@ class Soil:
         start: Literal["geostatic", "unstressed"] = "geostatic",
         moves: bool = False,
         inertia: bool = False,
+        fields: AskedFields = NO_FIELDS,
     ) -> None:
         _check_level(grid, level)
         self.grid, self.moves, self._has_inertia = grid, moves, inertia
@@ -64,11 +66,12 @@ class Soil:
         self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
         self.cells = SoilCells(grid)
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
-        self._ground = _Ground(law, weight, K0, start == "geostatic")
+        self._ground = _Ground(fields.kept_by(law), weight, K0, start == "geostatic")
         depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
         self._initial, self._unit_weight, self.law = on_all_ranks(grid.nodes.comm, self._material)
         self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=(Limited, Stateful, Yielding))
+        self._asked = fields.of_law(self.law.columns)
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
         self._in_balance = self._found.stress  # as the last step left it, before cells that moved asked the law again
@@ -274,7 +277,15 @@ class Soil:
         return SoilSnapshot(
             np.concatenate([moved, moved]) if self.grid.family.plane else moved,
             *(all_of.of_cells(gather_rows(self.grid, self.cells.mean(values))) for values in self._invariants()),
+            {name: self._mean_of_all(values) for name, values in self._asked.at_points(self._in_balance, self._found)},
         )
+
+    def _mean_of_all(self, values: Array) -> Array:
+        """Means (nc,), or (nc, 9) of tensors (n, 6), of all cells; collective."""
+        if values.ndim == 1:
+            return self.mesh.unfolding.of_cells(gather_rows(self.grid, self.cells.mean(values)))
+        means = np.column_stack([self.cells.mean(component) for component in mandel.components(values).T])
+        return self.mesh.unfolding.tensors(gather_rows(self.grid, means))
 
     def stress_change(self) -> Array:
         """Equivalent stress of the change since the start, mean of each of this rank's cells [Pa]."""

@@ -102,7 +102,7 @@ def test_riser_and_soil_share_one_time_axis_and_have_the_names_that_paraview_sho
     np.testing.assert_allclose(riser_times, [0.0, 0.5, 1.0, 1.5, 2.0], atol=1e-12)
     names = ("effective_tension", "bending_moment", "curvature", "contact_force", "position")
     assert {f"point:{name}" for name in names} <= set(riser[-1])
-    fields = {"mean_effective_stress", "von_mises_stress", "strength_used", "equivalent_plastic_strain"}
+    fields = {"mean_stress", "von_mises_stress", "strength_used", "equivalent_plastic_strain"}
     assert {key for key in soil[-1] if ":" in key} == {"point:displacement", *(f"cell:{name}" for name in fields)}
 
 
