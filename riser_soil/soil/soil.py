@@ -277,7 +277,7 @@ class Soil:
         return SoilSnapshot(
             np.concatenate([moved, moved]) if self.grid.family.plane else moved,
             *(all_of.of_cells(gather_rows(self.grid, self.cells.mean(values))) for values in self._invariants()),
-            {name: self._mean_of_all(values) for name, values in self._asked.at_points(self._in_balance, self._found)},
+            asked={name: self._mean_of_all(values) for name, values in self._asked.at_points(self._in_balance, self._found)},
         )
 
     def _mean_of_all(self, values: Array) -> Array:
