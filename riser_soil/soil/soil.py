@@ -274,11 +274,11 @@ class Soil:
         owned = self.field.total[: 3 * self.grid.nodes.owned].reshape(-1, 3)
         all_of = self.mesh.unfolding
         moved = all_of.vectors(gather_rows(self.grid, owned))
-        return SoilSnapshot(
-            np.concatenate([moved, moved]) if self.grid.family.plane else moved,
-            *(all_of.of_cells(gather_rows(self.grid, self.cells.mean(values))) for values in self._invariants()),
-            asked={name: self._mean_of_all(values) for name, values in self._asked.at_points(self._in_balance, self._found)},
-        )
+        mean, mises, used, plastic = (self._mean_of_all(values) for values in self._invariants())
+        asked = self._asked.at_points(self._in_balance, self._found)
+        displacement = np.concatenate([moved, moved]) if self.grid.family.plane else moved
+        of_cells = {name: self._mean_of_all(values) for name, values in asked}
+        return SoilSnapshot(displacement, mean, mises, used, plastic, of_cells)
 
     def _mean_of_all(self, values: Array) -> Array:
         """Means (nc,), or (nc, 9) of tensors (n, 6), of all cells; collective."""
