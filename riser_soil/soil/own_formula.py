@@ -21,6 +21,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
+from weakref import WeakSet
 
 import numpy as np
 
@@ -31,6 +32,7 @@ from riser_soil.soil.law_source import LawError, reported
 
 SHORTEST, LONGEST = 1e-9, 1e12  # s; what stands for "at once" and "slow" where a law divides by the time
 PROBE = 1e-6  # strain
+_TOLD = WeakSet[type]()  # classes of which a failure has been reported
 
 
 def asked_of_user(call: Callable[[], Any]) -> Any:
@@ -50,7 +52,6 @@ class OwnFormula(ABC):
 
     def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
         self.law, self.depth, self.initial, self.label = law, depth, initial, label
-        self._warned = False
 
     @property
     def symmetric(self) -> bool:
@@ -107,10 +108,10 @@ class OwnFormula(ABC):
             self._tell(f"{infinite(self.depth[at], increment[at])}: the step is tried again with a smaller one")
 
     def _tell(self, text: str) -> None:
-        """Once: what follows is likely to be the same."""
-        if not self._warned:
+        """Once of a class: what follows is likely to be the same."""
+        if type(self.law) not in _TOLD:
             print(f"warning: {self.label}: {text}", file=sys.stderr)
-        self._warned = True
+        _TOLD.add(type(self.law))
 
     def overstress(self, stress: Array) -> Array:
         own = getattr(self.law, "overstress", None)
