@@ -63,6 +63,7 @@ class Assembly:
     mesh_renewal: MeshRenewal | None = None
     cushion: Cushion | None = None
     soil_in_motion: list[Part] = field(default_factory=list)
+    own_forms: list[Part] = field(default_factory=list)
     stage: Stage | None = None
 
     @property
@@ -173,7 +174,7 @@ class Assembly:
     def soil_parts(self) -> list[Part]:
         """The soil as it is solved for: whole, condensed, or none."""
         parts: tuple[Part | None, Part | None] = (self.condensed, self.soil if self.condensed is None else None)
-        return [part for part in parts if part is not None]
+        return [*(part for part in parts if part is not None), *self.own_forms]
 
     @property
     def lasting_parts(self) -> list[Part]:
@@ -415,6 +416,7 @@ def _add_soil(assembly: Assembly, own: LineAssembly, given: SoilScene) -> None:
     line, elements, diameter = own.line, own.elements, own.scales.diameter
     assembly.soil = soil = ground.soil_of(scene, given, line, diameter, comm)
     assembly.soil_in_motion = ground.soil_in_motion(scene, given, soil)
+    assembly.own_forms = ground.own_forms_of(given, soil)
     assembly.condensed = condensed_of(scene, soil, line, diameter)
     surface = soil.surface if assembly.condensed is None else assembly.condensed.top
     contact = ground.soil_contact_of(scene, settings, line, elements, surface, own.contact_stiffness["soil"])

@@ -78,6 +78,15 @@ def soil_in_motion(scene: Scene, given: SoilScene, soil: Soil) -> list[Part]:
     return [SoilInertia(soil, density), *boundary]
 
 
+def own_forms_of(given: SoilScene, soil: Soil) -> list[Part]:
+    """The part of a user's terms, if there are any."""
+    if given.forms is None:
+        return []
+    from riser_soil.soil.own_forms import SoilForms
+
+    return [SoilForms(soil, given.forms)]
+
+
 def _grid(scene: Scene, given: SoilScene, line: Line, comm: Any) -> DistributedMesh:
     from riser_soil.assembly.soil_block import block_of
     from riser_soil.soil.grid import block_grid, file_grid

@@ -62,6 +62,8 @@ def why_all(scene: Scene, soil: SoilScene) -> str:
     across = int(abs(plane.direction[1]) < abs(plane.direction[0]))
     if soil.symmetry == "whole":
         return "soil.symmetry is whole"
+    if soil.forms is not None:
+        return "terms of soil.forms may not be symmetric"
     if not isinstance(soil.mesh, GeneratedMesh) or soil.mesh.kind != "hex":
         return "it is no block of hexahedra"
     if soil.is_linear:
@@ -113,6 +115,8 @@ def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
         return f"it is not linear, its law is {' and '.join(sorted({law.kind for law in scene.soil.laws}))}"
     if scene.soil.inertia:
         return "it has inertia"
+    if scene.soil.forms is not None:
+        return "terms of soil.forms are added to it"
     if scene.soil.model == "sections":
         return "it is made of sections"
     if ranks > 1:

@@ -90,6 +90,7 @@ def _reasons_of_line(scene: Scene) -> dict[str, str]:
         "friction": _no_friction(scene, "seabed"),
         "soil friction": _no_friction(scene, "soil"),
         "soil": "" if scene.soil is not None else "the scene has no soil",
+        "soil forms": "" if scene.soil is not None and scene.soil.forms is not None else "soil.forms is not asked for",
         "soil inertia": _no_soil_inertia(scene),
         "soil boundary": _no_soil_inertia(scene) or _no_soil_boundary(scene),
         "new mesh": no_new_mesh(scene),
@@ -109,7 +110,7 @@ SPLIT = {
     "contact": ("contact", "contact_time_scheme"),
     "body_contact": ("body_contact", "body_contact_time_scheme"),
 }
-WORKING = ("loads", "contents", "morison", "vortices", "vortices in line", "buoyancy", "body drag")
+WORKING = ("soil forms", "loads", "contents", "morison", "vortices", "vortices in line", "buoyancy", "body drag")
 
 
 def dissipating(scene: Scene) -> tuple[str, ...]:
@@ -153,6 +154,8 @@ def no_new_mesh(scene: Scene) -> str:
         return "the soil is elastic"
     if scene.soil.inertia:
         return "soil with inertia is computed at small strain"
+    if scene.soil.forms is not None:
+        return "terms of soil.forms are added at small strain"
     if scene.soil.strain == "small":
         return "soil.strain: small keeps the cells where they are"
     return "" if scene.soil_moves else "at contact.method: node cells stay where they are"

@@ -200,7 +200,7 @@ class Scene(BaseModel):
     @property
     def soil_moves(self) -> bool:
         """Whether the scene has soil at large strain, whose cells move with it."""
-        if self.soil is None or self.soil.is_linear or self.soil.inertia:
+        if self.soil is None or self.soil.is_linear or self.soil.inertia or self.soil.forms:
             return False
         on_surface = self.contact is not None and not self.contact.at_nodes
         return self.soil.strain == "large" or (self.soil.strain == "auto" and on_surface)

@@ -218,6 +218,11 @@ class SoilScene(BaseModel):
         description="whether bottom and sides of soil with inertia let waves out in dynamic stages, by dashpots, in "
         "place of holding it",
     )
+    forms: NamedFile | None = Field(
+        default=None,
+        description="a Python file whose function residual(soil) returns terms in UFL that are added to the soil's, at "
+        "small strain",
+    )
     line: Text | None = Field(
         default=None, description="of several lines the one that lies on it, by name; the others meet the seabed alone"
     )
@@ -260,12 +265,14 @@ class SoilScene(BaseModel):
         return self
 
     @model_validator(mode="after")
-    def _waves_with_inertia(self) -> Self:
+    def _inertia_and_forms(self) -> Self:
         for key in ("density", "absorbing"):
             if getattr(self, key) and not self.inertia:
                 raise wrong(key, "belongs to soil with inertia", "write inertia: true, or leave it out")
         if self.inertia and self.strain == "large":
             raise wrong("strain", "soil with inertia is computed at small strain", "leave strain out, or inertia")
+        if self.forms is not None and self.strain == "large":
+            raise wrong("strain", "terms of one's own are added at small strain", "leave strain out, or forms")
         if self.inertia and self.density is None and self.lightest == 0.0:
             raise wrong("inertia", "nothing tells the density", "give density, or submerged_unit_weight")
         return self

@@ -148,9 +148,9 @@ def renew_matrices(
 
 
 @njit
-def write_facet_matrices(kernel: CFunction, at: Array, facets: IntArray, given: Array, out: Array) -> None:
-    """Write matrices (nf, n, n) of facets (nf,), by their numbers in cells with nodes at (nf, nn, 3); given (nf, m):
-    coefficients of the form.
+def write_integrals(kernel: CFunction, at: Array, facets: IntArray, given: Array, out: Array) -> None:
+    """Write vectors (m, n) or matrices (m, n, n) of cells with nodes at (m, nn, 3), or of facets (m,) by their numbers
+    in these; given (m, k): coefficients of the form.
     """
     number = np.zeros(1, np.int32)
     for f in range(at.shape[0]):

@@ -15,7 +15,7 @@ from typing import Any
 import basix
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful
@@ -133,10 +133,10 @@ class SoilBoundary:
         self._held, self._done = saved["held"].copy(), float(saved["done"])
 
 
-def outer_facets(grid: DistributedMesh, nodes: IntArray) -> IntArray:
-    """Cells and their local facets (nf, 2) on the sides and the bottom of the soil."""
+def outer_facets(grid: DistributedMesh, nodes: IntArray, boundary: str = "") -> IntArray:
+    """Cells and their local facets (nf, 2) on the "sides" or the "bottom" of the soil, or on both."""
     family = grid.family
-    on_plane = planes_of(grid)[nodes[:, : family.vertices]]  # (nc, nv, planes)
+    on_plane = planes_of(grid, boundary)[nodes[:, : family.vertices]]  # (nc, nv, planes)
     found = [
         np.stack([cells, np.full(len(cells), number)], axis=1)
         for number, facet in enumerate(facets_of(family))
@@ -151,10 +151,12 @@ def facets_of(family: Family) -> list[list[int]]:
     return [list(facet) for facet in topology[len(family.axes) - 1]]
 
 
-def planes_of(grid: DistributedMesh) -> Any:
+def planes_of(grid: DistributedMesh, boundary: str = "") -> BoolArray:
     """Which nodes (n, planes) lie on each of the planes that end the soil, sides along its cells' axes and the bottom;
-    a mirror ends nothing.
+    a mirror ends nothing. boundary: as of `outer_facets`.
     """
     points, near = grid.nodes.points, 1e-6 * float(np.max(grid.high - grid.low))
     sides = [(axis, end[axis]) for axis in grid.family.axes if axis < 2 for end in (grid.low, grid.high)]
-    return np.stack([np.abs(points[:, axis] - at) < near for axis, at in [*sides, (2, grid.low[2])]], axis=1)
+    bottom = [(2, grid.low[2])]
+    planes = {"sides": sides, "bottom": bottom}.get(boundary, [*sides, *bottom])
+    return np.stack([np.abs(points[:, axis] - at) < near for axis, at in planes], axis=1)

@@ -58,9 +58,14 @@ def _module(name: str, file: Path | None) -> ModuleType:
         if name:
             return importlib.import_module(name)
         assert file is not None
-        return _run(file, file.stat().st_mtime_ns)
+        return run_file(file)
     except (Exception, SystemExit) as err:
         raise LawError(reported(err)) from err
+
+
+def run_file(file: Path) -> ModuleType:
+    """The module of a user's file, which this runs unless it has been run as it is now."""
+    return _run(file, file.stat().st_mtime_ns)
 
 
 @cache

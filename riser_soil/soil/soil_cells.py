@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.c_function import CFunction
 from riser_soil.soil import cell_loops
 from riser_soil.soil.cell_loops import kernels_of
 from riser_soil.soil.families import point_volumes
@@ -119,24 +121,27 @@ class SoilCells:
 
     def mass(self, density: Array) -> Array:
         """Mass matrices (nc, d nn, d nn) [kg] of the cells, of densities (nc,) [kg/m3]."""
-        nc, n = self._dofs.shape
-        out, rho = np.zeros((nc, n, n)), np.ascontiguousarray(density)[:, None]
-        none = self._placed.mean[:, :0]
-        cell_loops.renew_matrices(
-            self._kernels.mass, self._placed.at, none, self._shares, rho, np.full_like(rho, np.nan), out
-        )
-        return out
+        return self.integrals(self._kernels.mass, [density[:, None]], rank=2)
 
     def dashpots(self, facets: IntArray, impedances: Array) -> Array:
         """Matrices (nf, d nn, d nn) [kg/s] of facets (nf, 2), cells and their local facets, with impedances (nf, 2)
         [Pa s/m] along the normal and along the side.
         """
-        cells, n = facets[:, 0], self._dofs.shape[1]
-        out, at = np.empty((len(cells), n, n)), self._placed.at[cells]
-        cell_loops.write_facet_matrices(
-            self._kernels.dashpots, at, np.ascontiguousarray(facets[:, 1]), np.ascontiguousarray(impedances), out
-        )
-        return out * self._shares[cells][:, None, None]
+        return self.integrals(self._kernels.dashpots, [impedances], 2, facets)
+
+    def integrals(
+        self, kernel: CFunction, given: Sequence[Array], rank: int, facets: IntArray | None = None
+    ) -> Array:
+        """Vectors (m, d nn), rank 1, or matrices (m, d nn, d nn), rank 2, of a form over all cells, or over facets
+        (m, 2), with its coefficients given (m, ...).
+        """
+        cells, n = slice(None) if facets is None else facets[:, 0], self._dofs.shape[1]
+        at = np.ascontiguousarray(self._placed.at[cells])
+        numbers = np.zeros(len(at), dtype=np.int64) if facets is None else np.ascontiguousarray(facets[:, 1])
+        rows = np.concatenate([*given, np.zeros((len(at), 1))], axis=1)
+        out = np.empty((len(at), *[n] * rank))
+        cell_loops.write_integrals(kernel, at, numbers, rows, out)
+        return np.asarray(out * self._shares[cells].reshape(-1, *[1] * rank))
 
     def _by_cell(self, values: Array) -> Array:
         """Values (n, ...) at points as a row for each cell; a rank may have none."""
