@@ -14,13 +14,16 @@ from demos.own_law.run import HERE, PAGE, resistance, strength
 from demos.page import block
 from riser_soil import Scene
 from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
 from riser_soil.material.path import read_path
 from riser_soil.material.point import drive, point_at
+from riser_soil.material.study import study
 from riser_soil.soil import mandel
 from riser_soil.soil.imported_law import ImportedLaw
 from riser_soil.soil.law import Formula
 from tests.support.material_paths import initial_stress, random_paths
 from tests.support.pages import blocks
+from tests.support.said import line_with, telling
 
 M, LAM, KAPPA, E0, G_OVER_P = 0.9, 0.2, 0.04, 1.2, 50.0
 PRESSURE = np.array([1.5e3, 9.0e3])  # Pa, of two points
@@ -124,6 +127,34 @@ def test_the_page_shows_the_files() -> None:
     assert len((HERE / "my_clay.py").read_text(encoding="utf-8").splitlines()) <= 100
     su, gradient = strength(Scene.from_file(HERE / "scene.yaml"))
     assert f"{1e-3 * su:.2f} kPa at the seabed, {1e-3 * gradient:.2f} kPa/m more" in re.sub(r"\s+", " ", text)
+
+
+def test_the_page_s_energy_softens_in_shear_alone(tmp_path: Path) -> None:
+    """Its secant shear modulus is half of G where 1 + 2 e:e/g² = 4."""
+    (tmp_path / "softening.py").write_text(blocks(PAGE, "python")[1], encoding="utf-8")
+    given = {"kind": "imported", "from": f"{tmp_path / 'softening.py'}:Softening", "K": 2e7, "G": 1e6, "half_at": 2e-3}
+    law = ImportedLaw.model_validate(given).at_points(np.ones(1), np.zeros((1, 6)))
+    strain = np.array([[-1e-3, -1e-3, -1e-3, 0.0, 2e-3 * math.sqrt(1.5), 0.0]])
+    stress = law.update(strain, law.start()).stress
+    np.testing.assert_allclose(stress, [[-6e4, -6e4, -6e4, 0.0, 1e6 * strain[0, 4], 0.0]], rtol=1e-12, atol=1e-6)
+
+
+def test_the_material_command_drives_the_page_s_law(tmp_path: Path) -> None:
+    told = study(Scene.from_file(HERE / "scene.yaml").model, tmp_path / "point")
+    line_with(told, "imported at a depth of 0.75 m", "gamma_xz")
+    assert (tmp_path / "point" / "material.csv").is_file()
+
+
+@pytest.mark.parametrize("term", ["multiplier_by", "lost_by"])
+def test_a_tangent_without_a_term_is_refused(tmp_path: Path, term: str) -> None:
+    text = (HERE / "my_clay.py").read_text(encoding="utf-8")
+    line = "        K = self.elastic * p\n"
+    wrong = text.replace(line, f"        {term} = 0.0 * {term}\n{line}")
+    assert wrong != text
+    (tmp_path / "my_clay.py").write_text(wrong, encoding="utf-8")
+    law = Scene.from_file(HERE / "scene.yaml").model.soil.top_law.model_dump(by_alias=True)  # type: ignore[union-attr]
+    with pytest.raises(SceneError, match=telling("my_clay.py:CamClay", "tangent")):
+        ImportedLaw.model_validate(law | {"from": f"{tmp_path / 'my_clay.py'}:CamClay"}).surface_modulus(0.25)
 
 
 def test_a_pipe_meets_the_resistance_of_clay_of_the_same_strength() -> None:
