@@ -86,7 +86,9 @@ def test_no_value_causes_anything_but_a_reported_problem(data: st.DataObject, va
     for item in path[:-1]:
         holder = holder[item]
     holder[path[-1]] = value
-    assert all(line.startswith("scene: ") and "; " in line for line in reported(scene))
+    for line in reported(scene):  # what to do about it, or a likely unit
+        assert line.startswith("scene: ")
+        assert "; " in line or line.endswith("?")
 
 
 def reported(scene: Any) -> list[str]:
