@@ -239,10 +239,10 @@ def of_clay() -> dict[str, str]:
     }
     off = {name: [each["off riser_soil"] for each in rows[who]] for name, who in CALCULIX.items()}
     return {
-        "clay off": f"{max(off['I']):.1f}",
-        "clay off the finest": listed(f"{each['off the finest']:.1f}" for each in rows["riser_soil"]),
-        **{f"clay cost {name}": listed(f"{each:.2g}" for each in cost) for name, cost in costs.items()},
-        "clay off R": f"{min(off['R']):.1f} to {max(off['R']):.1f}",
+        "peers clay off": f"{max(off['I']):.1f}",
+        "peers clay off the finest": listed(f"{each['off the finest']:.1f}" for each in rows["riser_soil"]),
+        **{f"peers clay cost {name}": listed(f"{each:.2g}" for each in cost) for name, cost in costs.items()},
+        "peers clay off R": f"{min(off['R']):.1f} to {max(off['R']):.1f}",
     }
 
 

@@ -26,7 +26,7 @@ EXTRAS = {
     "raschii": "waves",
 }
 # Packages that PyPI has none of that work together.
-ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "basix", "gmsh")
+ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "basix", "ufl", "ffcx", "cffi", "gmsh")
 
 # Seconds that a rank leaves to the first one to tell an error that both have met.
 _PATIENCE = 5.0

@@ -143,7 +143,8 @@ OF_LAWS: dict[str, Mapping] = {
 
 
 def test_every_law_is_known_here() -> None:
-    assert OF_LAWS.keys() == LAWS.keys()
+    """The tangent of one from a file is tried where it is read."""
+    assert OF_LAWS.keys() | {"imported"} == LAWS.keys()
 
 
 LONG = "linear-elastic", "von-mises", "kinematic-hardening"  # which others have within them
