@@ -65,21 +65,21 @@ stress: setup ## stiff and extreme scenes with known answers, each in a process 
 fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; also among those of verify
 	$(PYTHON) -m tests.fuzz.run --count 600 --seed 1
 
-mutants: setup ## some 70 places of the package broken one at a time: which of them the quick tests notice; half an hour
+mutants: setup ## some 70 places of the package broken one at a time: which of them the quick tests notice; takes long
 	$(PYTHON) -m tests.mutants.run
 
 bench: setup ## what steps of lines, soils, waves and storms cost: docs/speed.md; Newton iterations against the bare work in them, energy of an impact by scheme
 	$(PYTHON) -m benchmarks --page
 	$(PYTHON) -m benchmarks.large --page
 
-bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn and CalculiX: docs/peers.md; an hour
+bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn and CalculiX: docs/peers.md; takes long
 	@scripts/peers.sh
 	$(PYTHON) -m benchmarks.peers --page
 	$(PYTHON) -m benchmarks.peers.clay --page
 	$(PYTHON) -m benchmarks.peers.shaken --page
 	$(PYTHON) -m benchmarks.peers.hung --page
 
-bench-decks: setup ## what becomes of decks of public repositories, cloned into DECKS: docs/decks.md; a quarter of an hour
+bench-decks: setup ## what becomes of decks of public repositories, cloned into DECKS: docs/decks.md; takes long
 	@scripts/peers.sh
 	$(PYTHON) -m benchmarks.decks $(DECKS) --workers $(WORKERS) --page
 
@@ -92,7 +92,7 @@ bars: setup ## error bars of 211 scenes beside their true errors: docs/error_bar
 asked: setup ## scenes that ask for 1 %, whether they reach it and what it costs beside the best by hand: docs/asked_accuracy.md
 	$(PYTHON) -m benchmarks.asked_accuracy
 
-precision: setup ## error of soil's results against processor time, by method: docs/soil_precision.md; half an hour
+precision: setup ## error of soil's results against processor time, by method: docs/soil_precision.md; takes long
 	$(PYTHON) -m benchmarks.soil_precision
 
 quality: stress bars asked parts ## those four and a study of the first scene: docs/quality.md
@@ -104,7 +104,7 @@ verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for 
 docs: setup ## a site of all pages, with search: build/site
 	@scripts/site.sh
 
-figures: setup ## the figures that README, tutorials and the demo's page tell, from runs of their scenes; some five minutes
+figures: setup ## the figures that README, tutorials and the demo's page tell, from runs of their scenes
 	rm -rf build/figures
 	$(PYTHON) -m demos.figures --page
 	$(PYTHON) -m demos.offsets.run --page

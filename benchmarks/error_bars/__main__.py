@@ -1,6 +1,6 @@
 """Calibrate error bars: compute all scenes with comparison runs, and write the page docs/error_bars.md.
 
-Run from the project's folder. `--references` computes the references anew first, in about two hours; `--missing`
+Run from the project's folder. `--references` computes the references anew first, which takes long; `--missing`
 computes those that are not there, as after a stop; `--on-soil` takes the random scenes on soil alone, and writes their
 block of the page.
 """

@@ -138,7 +138,7 @@ Scene by scene in the calibration: [error_bars_scenes.csv](error_bars_scenes.csv
 - The width on which a pipe touches soil grows cell by cell, so errors fall in jumps, by which two meshes may agree by
   chance, in the touchdown point above all.
 
-`python -m benchmarks.error_bars --references` computes the references anew, in about two hours.
+`python -m benchmarks.error_bars --references` computes the references anew, which takes long.
 """
 
 Kind = Callable[[Judged], str]
