@@ -29,7 +29,7 @@ help: ## this list
 setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing when they are there
 	@scripts/setup.sh
 
-demo: setup ## a flexible riser comes down on 3D clay: results and a picture in demos/touchdown_clay/results
+demo: setup ## a flexible riser comes down on soft clay: results and a picture in demos/touchdown_clay/results
 	$(PYTHON) -m demos.touchdown_clay.run
 
 demos: demo ## that demo and the others (demos/*/README.md), with their tables and pictures
