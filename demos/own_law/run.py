@@ -16,6 +16,7 @@ import numpy as np
 from demos.page import publish, script, table
 from riser_soil import Scene, run
 from riser_soil.core.arrays import Array
+from riser_soil.scene.soil import SoilScene
 
 HERE = Path(__file__).parent
 PAGE = HERE / "README.md"
@@ -28,21 +29,26 @@ def main(results: Path, page: bool) -> None:
     publish({"resistance": resistance_page(scene)}, results, PAGE if page else None)
 
 
+def soil_of(scene: Scene) -> SoilScene:
+    soil = scene.model.soil
+    assert soil is not None
+    return soil
+
+
 def strength(scene: Scene) -> tuple[float, float]:
     """Undrained strength at the seabed [Pa] and its growth with depth [Pa/m].
 
     At constant volume the effective pressure goes from p to p (OCR/2)^(1 - kappa/lam), where q = M p, and q = √3 su.
     """
-    law = scene.model.soil.top_law.model_dump()  # type: ignore[union-attr]
+    law = soil_of(scene).top_law.model_dump()
     ratio = law["M"] / math.sqrt(3.0) * (0.5 * law["OCR"]) ** (1.0 - law["kappa"] / law["lam"])
-    weight = scene.model.soil.submerged_unit_weight  # type: ignore[union-attr]
-    return ratio * law["attraction"], ratio * weight
+    return ratio * law["attraction"], ratio * soil_of(scene).submerged_unit_weight
 
 
 def as_von_mises(scene: Scene) -> dict[str, Any]:
     """The clay of the same strength, and of the same shear modulus, G_over_p times the pressure."""
     su, gradient = strength(scene)
-    law = scene.model.soil.top_law.model_dump()  # type: ignore[union-attr]
+    law = soil_of(scene).top_law.model_dump()
     E_over_su = 2.0 * 1.49 * law["G_over_p"] * law["attraction"] / su
     return {"kind": "von-mises", "su": su, "su_gradient": gradient, "E_over_su": E_over_su, "nu": 0.49}
 
@@ -51,7 +57,9 @@ def resistance(scene: Scene) -> Array:
     """V/D [Pa] at the ends of the stages."""
     with TemporaryDirectory() as folder:
         V = run(scene, Path(folder) / "run", quiet=True).dataset["contact_force_sum"][:, 2].values
-    low, high = scene.model.soil.given_block.x  # type: ignore[union-attr]
+    block = soil_of(scene).given_block
+    assert block is not None
+    low, high = block.x
     return np.asarray(V / (high - low) / scene.model.largest_diameter)
 
 

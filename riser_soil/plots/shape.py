@@ -29,13 +29,24 @@ def filmed_records(stage: StageRecords, most: int) -> IntArray:
     """Records of the last whole cycle of the stage's motion; where it has no one period, those around the largest
     bending moment, at most `most` of them in either case.
     """
-    try:
-        of_cycle = cycles(stage.run, stage.number, period_of(stage.run, stage.number))[-1].records
+    of_cycle = _last_cycle(stage)
+    if of_cycle is not None:
         return of_cycle[:: -(-len(of_cycle) // most)]
+    first = max(0, min(_worst(stage) - most // 2, len(stage.records) - most))
+    return stage.records[first : first + most]
+
+
+def _last_cycle(stage: StageRecords) -> IntArray | None:
+    """Records of the last whole cycle of the stage's motion; None where it has no one period."""
+    try:
+        return cycles(stage.run, stage.number, period_of(stage.run, stage.number))[-1].records
     except ResultsError:
-        worst = int(stage["bending_moment"].max(axis=1).argmax()) if "bending_moment" in stage.run.variables else 0
-        first = max(0, min(worst - most // 2, len(stage.records) - most))
-        return stage.records[first : first + most]
+        return None
+
+
+def _worst(stage: StageRecords) -> int:
+    """Which of the stage's records has the largest bending moment; the first where moments were left out."""
+    return int(stage["bending_moment"].max(axis=1).argmax()) if "bending_moment" in stage.run.variables else 0
 
 
 def snapshots(stage: StageRecords) -> Figure:
@@ -74,8 +85,9 @@ def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
         return [(int(stage.records[-1]), f"{stage.run.time[stage.records[-1]]:.4g} s")]
     end, found = stage["position"][:, -1], dict[int, list[str]]()
     ways = end @ along(stage.run["position"][0])
-    asked = [("largest bending moment", stage["bending_moment"].max(axis=1).argmax())] if _has_moment(stage) else []
-    asked += [("least tension", stage["effective_tension"].min(axis=1).argmin())]
+    asked: list[tuple[str, Any]] = [("least tension", stage["effective_tension"].min(axis=1).argmin())]
+    if "bending_moment" in stage.run.variables:
+        asked.insert(0, ("largest bending moment", _worst(stage)))
     for words, motion in (("end {} the start", ways), ("end {}", end[:, 2])):
         near, far = ("nearest to", "farthest from") if motion is ways else ("lowest", "highest")
         if np.ptp(motion) > _MOVES * stage.run.arc[-1]:
@@ -85,19 +97,14 @@ def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
     return [(record, f"{', '.join(words)}: {stage.run.time[record]:.4g} s") for record, words in found.items()]
 
 
-def _has_moment(stage: StageRecords) -> bool:
-    return "bending_moment" in stage.run.variables
-
-
 def _one_cycle(stage: StageRecords) -> IntArray:
     """Records through the last whole cycle of a periodic motion, else through the cycle of the end's motion around the
     largest bending moment, from one upcrossing of its mean to the next; none of a stage at rest.
     """
     if not stage.moves:
         return np.zeros(0, dtype=int)
-    try:
-        records = cycles(stage.run, stage.number, period_of(stage.run, stage.number))[-1].records
-    except ResultsError:
+    records = _last_cycle(stage)
+    if records is None:
         records = stage.records[_around_the_worst(stage)]
     return records[np.unique(np.linspace(0, len(records) - 1, SNAPSHOTS).round().astype(int))]
 
@@ -107,7 +114,7 @@ def _around_the_worst(stage: StageRecords) -> slice:
     motion = end[:, int(np.ptp(end, axis=0).argmax())]
     above = motion > motion.mean()
     up = np.flatnonzero(~above[:-1] & above[1:])
-    worst = int(stage["bending_moment"].max(axis=1).argmax()) if _has_moment(stage) else len(end) // 2
+    worst = _worst(stage)
     before, after = up[up <= worst], up[up > worst]
     return slice(int(before[-1]) if before.size else 0, int(after[0]) + 2 if after.size else len(end))
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from demos.own_law.run import HERE, PAGE, resistance, strength
+from demos.own_law.run import HERE, PAGE, resistance, soil_of, strength
 from demos.page import block
 from riser_soil import Scene
 from riser_soil.core.arrays import Array
@@ -152,7 +152,7 @@ def test_a_tangent_without_a_term_is_refused(tmp_path: Path, term: str) -> None:
     wrong = text.replace(line, f"        {term} = 0.0 * {term}\n{line}")
     assert wrong != text
     (tmp_path / "my_clay.py").write_text(wrong, encoding="utf-8")
-    law = Scene.from_file(HERE / "scene.yaml").model.soil.top_law.model_dump(by_alias=True)  # type: ignore[union-attr]
+    law = soil_of(Scene.from_file(HERE / "scene.yaml")).top_law.model_dump(by_alias=True)
     with pytest.raises(SceneError, match=telling("my_clay.py:CamClay", "tangent")):
         ImportedLaw.model_validate(law | {"from": f"{tmp_path / 'my_clay.py'}:CamClay"}).surface_modulus(0.25)
 
