@@ -80,6 +80,12 @@ class WriteError(RiserSoilError):
     exit_status = 4
 
 
+class DiskShortageError(SceneError):
+    """The results would not fit on the disk: nothing was computed."""
+
+    exit_status = WriteError.exit_status
+
+
 class Interruption(KeyboardInterrupt):
     """A signal that asks the program to end; as KeyboardInterrupt passes all that catches errors.
 

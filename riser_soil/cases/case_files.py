@@ -1,4 +1,7 @@
-"""Files of all cases: cases.csv, a row for each; extremes.csv, a row for each quantity; cases.nc; cases.png."""
+"""Files of all cases: cases.csv, a row for each; extremes.csv, a row for each quantity; cases.nc; cases.png.
+
+Beside them characteristic.csv, a row for each quantity of each group of cases that differ in their seeds alone.
+"""
 
 from __future__ import annotations
 
@@ -14,17 +17,19 @@ import numpy as np
 import xarray
 
 from riser_soil import __version__
-from riser_soil.cases.case_folder import DATA, EXTREMES, FILES, PLOT, TABLE
+from riser_soil.cases.case_folder import CHARACTERISTIC, DATA, EXTREMES, FILES, PLOT, TABLE
 from riser_soil.cases.case_table import CaseTable
+from riser_soil.cases.characteristic import CharacteristicExtreme, row_of
 from riser_soil.plots.load_cases import Panel, draw_load_cases
 from riser_soil.results.whole_file import written_together
 
 
-def write_files(table: CaseTable, folder: Path) -> None:
+def write_files(table: CaseTable, extremes: Sequence[CharacteristicExtreme], folder: Path) -> None:
     """All files together."""
     with written_together(folder, FILES) as made:
         _write(made / TABLE, _rows(table))
         _write(made / EXTREMES, _extremes(table))
+        _write(made / CHARACTERISTIC, _characteristic(table, extremes))
         dataset(table).to_netcdf(made / DATA, engine="h5netcdf")
         _draw(table, made / PLOT)
 
@@ -46,13 +51,14 @@ def _write(file: Path, rows: Iterator[list[str]]) -> None:
 def _rows(table: CaseTable) -> Iterator[list[str]]:
     """Head and cases."""
     names = [f"{key} [{value.unit}]" for key, value in table.quantities.items()]
-    yield ["case", *table.paths, "status", "reason", "seconds [s]", "machine", *names]
+    yield ["case", *table.axes, *table.paths, "status", "reason", "seconds [s]", "machine", *names]
     columns = [table.column(key) for key in table.quantities]
     for n, case in enumerate(table.cases):
         outcome = table.outcomes[case.name]
         given = [_given(case.values[path]) if path in case.values else "" for path in table.paths]
         reported = [str(outcome.status), outcome.reason, f"{outcome.seconds:.3g}", outcome.machine]
-        yield [case.name, *given, *reported, *(_number(column[n]) for column in columns)]
+        labels = [case.labels.get(axis, "") for axis in table.axes]
+        yield [case.name, *labels, *given, *reported, *(_number(column[n]) for column in columns)]
 
 
 def _extremes(table: CaseTable) -> Iterator[list[str]]:
@@ -63,6 +69,15 @@ def _extremes(table: CaseTable) -> Iterator[list[str]]:
         most, least, known = int(np.nanargmax(column)), int(np.nanargmin(column)), column[np.isfinite(column)]
         ends = [cell for n in (most, least) for cell in (_number(column[n]), table.cases[n].name)]
         yield [key, value.unit, *ends, _number(known.mean()), _number(known.std()), str(known.size)]
+
+
+def _characteristic(table: CaseTable, extremes: Sequence[CharacteristicExtreme]) -> Iterator[list[str]]:
+    """Head, and a row for each group of seeds and each of its quantities."""
+    axes = list(dict.fromkeys(axis for each in extremes for axis in each.group.labels))
+    rows = [row_of(each, axes) for each in extremes]
+    yield list(rows[0]) if rows else ["group"]
+    for row in rows:
+        yield [_number(value) if isinstance(value, float) else str(value) for value in row.values()]
 
 
 def _given(value: Any) -> str:
@@ -84,6 +99,9 @@ def dataset(table: CaseTable) -> xarray.Dataset:
         "reason": ("case", _texts([o.reason for o in outcomes]), {"long_name": "why a case failed"}),
         "seconds": ("case", [o.seconds for o in outcomes], {"units": "s", "long_name": "from its start to its end"}),
     }
+    for axis in table.axes:
+        labels = _texts([case.labels.get(axis, "") for case in table.cases])
+        variables[_identifier(f"axis_{axis}")] = ("case", labels, {"long_name": axis})
     for path in table.paths:
         given = _given_values([case.values.get(path) for case in table.cases])
         variables[_identifier(f"set_{path}")] = ("case", given, {"long_name": path})

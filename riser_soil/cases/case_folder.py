@@ -19,8 +19,12 @@ from uuid import uuid4
 from riser_soil.results.folder import SCENE, is_finished
 
 CASES, ATTEMPTS = "cases", ".attempts"
+_FORMER = ".former"
 CASE, SAID = "case.json", "said.txt"  # what became of it, and what the run said
-TABLE, EXTREMES, DATA, PLOT = FILES = ("cases.csv", "extremes.csv", "cases.nc", "cases.png")  # of all cases
+TABLE, EXTREMES, CHARACTERISTIC, DATA, PLOT = FILES = (  # of all cases
+    *("cases.csv", "extremes.csv", "characteristic.csv"),
+    *("cases.nc", "cases.png"),
+)
 
 
 @dataclass(frozen=True)
@@ -75,10 +79,18 @@ def attempt(folder: Path, name: str, scene: str) -> Path:
     return made
 
 
+def running(folder: Path) -> set[str]:
+    """Names of cases that are being computed."""
+    with suppress(OSError):
+        attempts = [entry.name for entry in (folder / CASES / ATTEMPTS).iterdir()]
+        return {name.rpartition(".")[0] for name in attempts if not name.endswith(_FORMER)}
+    return set()
+
+
 def settle(made: Path, folder: Path, outcome: Outcome) -> Outcome:
     """Give an attempt that has ended the case's place; what stood there goes, unless it is the same, finished."""
     (made / CASE).write_text(json.dumps(outcome.as_dict(), indent=1) + "\n", encoding="utf-8")
-    target, former = place(folder, outcome.name), made.with_suffix(".former")
+    target, former = place(folder, outcome.name), made.with_suffix(_FORMER)
     while (known := found(folder, outcome.name, outcome.key)) is None:
         with suppress(FileNotFoundError):
             target.rename(former)

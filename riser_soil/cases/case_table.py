@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import key_results
 from riser_soil.cases.case_folder import Outcome, place
+from riser_soil.cases.case_values import CaseValue, case_values
 from riser_soil.cases.expansion import Case
 from riser_soil.core.arrays import Array
-from riser_soil.errors import ResultsError
-from riser_soil.results.read import Run
-
-MEAN, DEVIATION = ", mean", ", standard deviation"
-_SIGNS = {"tension": "positive in tension", "contact force": "positive where the ground pushes"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +29,12 @@ class CaseTable:
     def paths(self) -> list[str]:
         """Of all values in which cases differ from the base scene."""
         return list(dict.fromkeys(path for case in self.cases for path in case.values))
+
+    @cached_property
+    def axes(self) -> list[str]:
+        """Names of what cases differ in, where that isn't a path of the scene."""
+        known = dict.fromkeys(axis for case in self.cases for axis in case.labels)
+        return [axis for axis in known if axis not in self.paths]
 
     @cached_property
     def quantities(self) -> dict[str, CaseValue]:
@@ -64,73 +65,3 @@ def case_table(
     done = [case.name for case in cases if outcomes[case.name].done]
     values = {name: {value.key: value for value in case_values(place(folder, name), since)} for name in done}
     return CaseTable(title, cases, outcomes, values)
-
-
-@dataclass(frozen=True)
-class CaseValue:
-    """stage and name of a quantity, its unit (SI), and its value in one case."""
-
-    stage: str
-    name: str
-    unit: str
-    value: float
-
-    @property
-    def key(self) -> str:
-        return f"{self.stage}: {self.name}"
-
-    @property
-    def in_time(self) -> bool:
-        """Whether it is of the statistics in time, and no extreme."""
-        return self.name.endswith((MEAN, DEVIATION))
-
-    @property
-    def sign(self) -> str:
-        """What its sign means; of a standard deviation or a magnitude nothing."""
-        if self.name.endswith(DEVIATION):
-            return ""
-        return next((sign for word, sign in _SIGNS.items() if word in self.name), "")
-
-
-def case_values(folder: Path, since: float) -> list[CaseValue]:
-    """Of a run's folder, those of several lines and bodies behind their names. since: time of the last dynamic stage
-    [s] from which on its records count in statistics.
-    """
-    run = Run(folder)
-    found = [CaseValue(each.stage, each.label, each.unit, each.value) for each in key_results(run.summary).values()]
-    each = ((line, value) for line, own in run.of_lines.items() for value in _statistics(own, since))
-    return [*found, *(replace(value, name=f"{line} {value.name}".strip()) for line, value in each)]
-
-
-def _statistics(run: Run, since: float) -> Iterator[CaseValue]:
-    """Mean and standard deviation of what is recorded; nan, where nothing touches, doesn't count."""
-    stages = run.summary["stages"]
-    number = max((n for n, stage in enumerate(stages) if stage["kind"] == "dynamic"), default=None)
-    if number is None:
-        return
-    start = sum(stage["time"] for stage in stages[:number])
-    seen = (run["stage"] == number) & (run.time >= start + since)
-    for name, unit, series in _series(run):
-        values = series[seen]
-        values = values[np.isfinite(values)]
-        if values.size:
-            yield CaseValue(stages[number]["name"], name + MEAN, unit, float(values.mean()))
-            yield CaseValue(stages[number]["name"], name + DEVIATION, unit, float(values.std()))
-
-
-def _series(run: Run) -> Iterator[tuple[str, str, Array]]:
-    """Name, unit and records (nt,) of what a run may have recorded; moments are those at nodes."""
-    height = run["position"][-1][:, 2]
-    upper = 0 if height[0] > height[-1] else -1
-    for name, unit, variable, of in (
-        ("top tension", "N", "effective_tension", lambda T: T[:, upper]),
-        ("least effective tension", "N", "effective_tension", lambda T: T.min(axis=1)),
-        ("largest bending moment at nodes", "N.m", "bending_moment", lambda M: M.max(axis=1)),
-        ("touchdown arc", "m", "touchdown_arc", lambda arc: arc),
-        ("contact force", "N", "contact_force_sum", lambda F: F[:, 2]),
-    ):
-        try:
-            values = run[variable]
-        except ResultsError:  # not recorded
-            continue
-        yield name, unit, of(values)

@@ -42,7 +42,10 @@ def outcomes(
     with dask.config.set(SETTINGS), _client(jobs, scheduler) as client:
         begin()
         mark = uuid4().hex
-        futures = {client.submit(on_worker, t, key=f"{t['name']}-{mark}", pure=False): t for t in tasks}
+        futures = {
+            client.submit(on_worker, task, key=f"{task['name']}-{mark}", pure=False, priority=-n): task
+            for n, task in enumerate(tasks)  # the first ones first
+        }
         try:
             for future in as_completed(list(futures)):
                 yield _outcome(future, futures.pop(future))

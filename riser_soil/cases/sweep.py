@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from datetime import timedelta
 from pathlib import Path
-from types import TracebackType
-from typing import Self
-
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from riser_soil import __version__
-from riser_soil.cases.case_folder import ATTEMPTS, CASE, CASES, FILES, Outcome, clear_attempts, found, place
+from riser_soil.cases.case_folder import ATTEMPTS, CASE, CASES, FILES, Outcome, clear_attempts, found, place, running
 from riser_soil.cases.case_table import CaseTable, case_table
+from riser_soil.cases.characteristic import CharacteristicExtreme, characteristic_extremes
 from riser_soil.cases.expansion import Case, read_cases
+from riser_soil.cases.progress import CaseProgress
 from riser_soil.cases.work import Task
-from riser_soil.errors import Interruption, SceneError
+from riser_soil.errors import Interruption, SceneError, WriteError
 from riser_soil.results.folder import FolderLock
 from riser_soil.results.ownership import sealed
 from riser_soil.results.whole_file import refuse_file, unusable
@@ -39,11 +34,12 @@ class Workers:
 
 def run_cases(
     file: Path, folder: Path, workers: Workers, overrides: Sequence[str] = (), says: Callable[[str], None] = print
-) -> CaseTable:
-    """Run the cases of a file that are not done yet, and leave their table in the folder.
+) -> tuple[CaseTable, list[CharacteristicExtreme]]:
+    """Run the cases of a file that are not done yet, and leave their tables in the folder.
 
     overrides: of the base scene, beside those of the file. Cases that fail are rows with their reasons. Raises
-    SceneError before the first case is run; Interruption leaves what has ended, and a further call goes on.
+    SceneError before the first case is run; Interruption, and WriteError where the disk is full, leave what has ended,
+    and a further call goes on.
     """
     reported, cases = read_cases(file, overrides)
     folder = folder.absolute()
@@ -51,15 +47,16 @@ def run_cases(
         outcomes = {case.name: known for case in cases if (known := found(folder, case.name, case.key))}
         todo = [_task(case, folder, workers.limit) for case in cases if case.name not in outcomes]
         says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
-        outcomes |= _computed(todo, workers, len(cases), folder) if todo else {}
+        outcomes |= _computed(cases, todo, workers, folder) if todo else {}
         table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, reported.statistics.since)
+        extremes = characteristic_extremes(table, reported.extremes)
         from riser_soil.cases.case_files import write_files
 
-        write_files(table, folder)
-    return table
+        write_files(table, extremes, folder)
+    return table, extremes
 
 
-def _computed(todo: Sequence[Task], workers: Workers, count: int, folder: Path) -> dict[str, Outcome]:
+def _computed(cases: Sequence[Case], todo: Sequence[Task], workers: Workers, folder: Path) -> dict[str, Outcome]:
     from riser_soil.cases.pool import outcomes
 
     found = {}
@@ -74,15 +71,22 @@ def _computed(todo: Sequence[Task], workers: Workers, count: int, folder: Path) 
         except OSError as err:
             raise unusable(folder, err) from err
 
-    with CaseProgress(count, count - len(todo)) as progress:
+    groups = {case.name: case.group_labels for case in cases}
+    with CaseProgress(groups, {task["name"] for task in todo}, lambda: running(folder)) as progress:
         try:
             for outcome in outcomes(todo, min(workers.jobs, len(todo)), workers.scheduler, begin):
+                if outcome.status == WriteError.exit_status:
+                    raise WriteError(f"{outcome.name}: {outcome.reason}; {_kept(progress, folder)}")
                 found[outcome.name] = outcome
                 progress.take(outcome)
         except Interruption as end:
-            end.place = f"when {progress.ended} of {count} cases had ended; {folder} keeps them, call again to go on"
+            end.place = f"when {_kept(progress, folder)}"
             raise
     return found
+
+
+def _kept(progress: CaseProgress, folder: Path) -> str:
+    return f"{progress.ended} of {progress.count} cases had ended; {folder} keeps them, call again to go on"
 
 
 def _task(case: Case, folder: Path, limit: float | None) -> Task:
@@ -121,57 +125,3 @@ def _refuse(folder: Path, cases: Sequence[Case]) -> None:
         at = place(folder, case.name)
         if at.exists() and not (at / CASE).is_file():
             raise SceneError(f"{at}: is no case's folder, and would be replaced; move it away, or choose another (-o)")
-
-
-class CaseProgress:
-    """Cases that have ended, and the time left. Use in a `with` statement.
-
-    The bar goes to standard error, so that what the command prints can be piped; lines go to standard output, on a
-    terminal those of failed cases alone.
-    """
-
-    def __init__(self, count: int, known: int, console: Console | None = None) -> None:
-        console = console or Console(stderr=True)
-        self._count, self._ended, self._failed = count, known, 0
-        self._on_terminal = console.is_terminal
-        self._bar = Progress(
-            TextColumn("[bold]cases"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[failed]}"),
-            TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
-            console=console, disable=not self._on_terminal, refresh_per_second=4,
-        )  # fmt: skip
-        self._task = self._bar.add_task("", total=count, completed=known, failed="", left="")
-        self._known, self._start = known, time.monotonic()
-
-    def __enter__(self) -> Self:
-        self._bar.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._bar.stop()
-
-    @property
-    def ended(self) -> int:
-        """Cases that have ended, those of earlier calls included."""
-        return self._ended
-
-    def take(self, outcome: Outcome) -> None:
-        """One more has ended."""
-        self._ended += 1
-        self._failed += not outcome.done
-        failed = f"{self._failed} failed" if self._failed else ""
-        self._bar.update(self._task, completed=self._ended, failed=failed, left=self._left())
-        if not (outcome.done and self._on_terminal):
-            print(f"{self._ended} of {self._count}: {outcome.name}: {_reported(outcome)}", flush=True)
-
-    def _left(self) -> str:
-        """By the mean over this call: cases that run side by side end in bunches."""
-        seconds = (time.monotonic() - self._start) / (self._ended - self._known) * (self._count - self._ended)
-        return f"{timedelta(seconds=round(seconds))} left"
-
-
-def _reported(outcome: Outcome) -> str:
-    if outcome.done:
-        return f"done in {outcome.seconds:.3g} s"
-    return f"failed with status {outcome.status}: {outcome.reason}"

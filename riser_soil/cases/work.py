@@ -6,6 +6,7 @@ Tasks and outcomes are plain data, so that a worker may be on another machine.
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from riser_soil import __version__
-from riser_soil.cases.case_folder import SAID, Outcome, attempt, found, settle
+from riser_soil.cases.case_folder import SAID, Outcome, attempt, found, place, settle
 from riser_soil.core.environment import environment_alone
 from riser_soil.errors import ResultsError, WriteError
 from riser_soil.results.folder import SCENE
@@ -57,9 +58,12 @@ def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
     if stopped == STOPPED_BY_LIMIT:
         reason = f"took longer than the limit of {task['limit']:g} s"
     elif status:
-        reason = _last_words(process.returncode, made / SAID)
+        reason = _last_words(process.returncode, made / SAID).replace(str(made), str(place(folder, task["name"])))
     seconds = time.monotonic() - since
     outcome = Outcome(task["name"], task["key"], status, reason, seconds, socket.gethostname())
+    if status == WriteError.exit_status:  # what it has written would fill the disk
+        shutil.rmtree(made, ignore_errors=True)
+        return outcome
     return outcome if stopped == NOT_WANTED else settle(made, folder, outcome)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from riser_soil.checks.estimate import WITHIN, ProblemSize, riser_memory, size_of
 from riser_soil.core.communicator import Communicator
-from riser_soil.errors import SceneError
+from riser_soil.errors import DiskShortageError, SceneError
 from riser_soil.scene.scene import Scene
 
 NOTED, LONG = 20.0, 3600.0  # s: a run tells its estimate; a run is warned of
@@ -32,15 +32,15 @@ _GROUPS = (
 
 def size_that_fits(scene: Scene, folder: Path, comm: Communicator) -> ProblemSize:
     """The size of a scene whose results go to a folder; SceneError, with the numbers, where it exceeds the memory that
-    is available, by more than the forecast may be off, or the disk that is free. Collective: all ranks come to the same
-    answer.
+    is available, by more than the forecast may be off; DiskShortageError, the disk that is free. Collective: all ranks
+    come to the same answer.
     """
     size = size_of(scene)
     most, free = _memory_left(comm), min(comm.allgather(free_disk(folder)))
     if size.memory(comm.size) > WITHIN * most:
         raise SceneError(_too_much_memory(size, comm.size, most))
     if size.disk > free:
-        raise SceneError(_too_much_disk(size, free))
+        raise DiskShortageError(_too_much_disk(size, free))
     return size
 
 

@@ -13,7 +13,9 @@ _NAMED = 5
 
 
 def cases(
-    file: Annotated[Path, typer.Argument(metavar="CASES", help="case file (.yaml): base scene, table or product")],
+    file: Annotated[
+        Path, typer.Argument(metavar="CASES", help="case file (.yaml): base scene, and in what the cases differ")
+    ],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the case file's name without its ending"),
@@ -30,19 +32,26 @@ def cases(
     ] = None,
     overrides: Overrides = None,
 ) -> None:
-    """Run load cases on many cores or machines: a folder for each, a table and a plot of all; call again to go on."""
+    """Run load cases on many cores or machines: a folder for each, tables and extremes of all; call again to go on."""
     with expected_errors():
         if rank() > 0:
             return
         positive("limit", limit)
         if jobs is not None and (jobs < 1 or scheduler is not None):
             raise ResultsError(f"--jobs {jobs}: must be 1 or more, and does not go with --scheduler")
+        from rich.console import Console
+
+        from riser_soil.cases.characteristic import governing_table, warnings_of
         from riser_soil.cases.pool import cores
         from riser_soil.cases.sweep import Workers, run_cases
 
         folder = output or Path(file.stem)
         workers = Workers(jobs or cores(), scheduler, limit)
-        table = run_cases(file, folder, workers, overrides or (), typer.echo)
+        table, extremes = run_cases(file, folder, workers, overrides or (), typer.echo)
+        if extremes:
+            Console(force_jupyter=False).print(governing_table(extremes))
+        for warning in warnings_of(extremes, table.cases):
+            typer.echo(warning)
         typer.echo(f"{len(table.cases) - len(table.failed)} of {len(table.cases)} cases done; tables are in {folder}")
         if failed := table.failed:
             names = ", ".join(outcome.name for outcome in failed[:_NAMED])

@@ -99,7 +99,7 @@ def _beside(problem: Problem, others: Iterable[Problem]) -> bool:
 
 def error_of(problems: Sequence[Problem], document: Document) -> SceneError:
     """One line for each problem, with its place in the file."""
-    placed = sorted((*document.where(problem.path), _with_line(problem, document)) for problem in problems)
+    placed = sorted({(*document.where(problem.path), _with_line(problem, document)) for problem in problems})
     lines = [f"{place}: {text}" for _, place, text in placed]
     more = len(lines) - _MOST_LINES
     return SceneError(

@@ -23,7 +23,7 @@ from riser_soil.accuracy.settings import SETTINGS, settings_of, varied
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.assembly import build
 from riser_soil.assembly.stage import times_to_hit
-from riser_soil.cases.case_table import case_values
+from riser_soil.cases.case_values import case_values
 from riser_soil.checks.check import describe
 from riser_soil.checks.overload import overload
 from riser_soil.checks.plausibility import physical_warnings

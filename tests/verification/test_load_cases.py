@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -19,7 +20,7 @@ from distributed import LocalCluster
 from riser_soil import __version__
 from tests.support.case_files import case_file
 from tests.support.case_sweeps import Watched, sweep
-from tests.support.on_ranks import HANGS
+from tests.support.on_ranks import HANGS, finished
 from tests.support.said import line_with
 
 pytestmark = pytest.mark.verify
@@ -94,6 +95,56 @@ def test_ctrl_c_stops_all_and_a_second_call_goes_on(tmp_path: Path) -> None:
     line_with(out, "6 cases", f"{len(done)} of them done")
     assert {name: (tmp_path / "out/cases" / name / "case.json").stat().st_mtime_ns for name in done} == before
     assert [row["case"] for row in rows(tmp_path)] == names(*FEW)
+
+
+def test_a_command_that_is_killed_is_called_again_and_goes_on(tmp_path: Path) -> None:
+    """Its workers and their runs end with it; what was done is not done again."""
+    case_file(tmp_path, product(*FEW))
+    with sweep(tmp_path, "--jobs", "2") as job:
+        watched = Watched(job, tmp_path)
+        watched.until(lambda: len(watched.done) >= 2 and len(watched.runs()) > 0)
+        job.process.kill()
+        since = time.monotonic()
+        while job.processes():
+            assert time.monotonic() - since < 60.0
+            time.sleep(0.05)
+    done = {name: (tmp_path / "out/cases" / name / "case.json").stat().st_mtime_ns for name in watched.done}
+    assert 2 <= len(done) < 6
+    with sweep(tmp_path, "--jobs", "2") as again:
+        out, err = again.process.communicate(timeout=HANGS)
+    assert (again.process.returncode, err) == (0, "")
+    line_with(out, "6 cases", f"{len(done)} of them done")
+    assert [row["status"] for row in rows(tmp_path)] == ["0"] * 6
+    assert {name: (tmp_path / "out/cases" / name / "case.json").stat().st_mtime_ns for name in done} == done
+
+
+ON_A_SMALL_DISK = """
+mount -t tmpfs -o size={small}k none out || exit 99
+"$@"; status=$?
+ls out/cases > done.txt
+mount -o remount,size=100m out
+"$@" && cp -r out kept && exit $status
+"""
+
+
+def test_a_full_disk_loses_nothing(tmp_path: Path) -> None:
+    """A disk that has room for some of six cases: one line, status 4; when it has more the others are computed."""
+    case_file(tmp_path, product(*FEW))
+    with sweep(tmp_path, "--jobs", "1") as job:
+        assert job.process.wait(HANGS) == 0
+    size = sum(file.stat().st_size for file in (tmp_path / "out/cases").rglob("*") if file.is_file()) // 1024
+    shutil.rmtree(tmp_path / "out")
+    (tmp_path / "out").mkdir()
+    call = [sys.executable, "-m", "riser_soil", "cases", "sweep.yaml", "-o", "out", "--jobs", "1"]
+    alone = ["unshare", "--map-root-user", "--mount", "sh", "-c", ON_A_SMALL_DISK.format(small=size // 2), "sh"]
+    ended = finished([*alone, *call], tmp_path)
+    assert ended.returncode == 4, ended.stderr
+    line_with(ended.stderr, "of 6 cases had ended", "out keeps them", "call again")
+    done = (tmp_path / "done.txt").read_text().split()
+    assert 1 <= len(done) < 6
+    line_with(ended.stdout, "6 cases", f"{len(done)} of them done")
+    with (tmp_path / "kept/cases.csv").open(newline="", encoding="utf-8") as file:
+        assert [row["status"] for row in csv.DictReader(file)] == ["0"] * 6
 
 
 def test_a_case_that_kills_its_workers_is_a_row(tmp_path: Path) -> None:

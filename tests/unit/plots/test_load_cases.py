@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import os
-import re
 import sys
 import threading
 import time
@@ -23,8 +23,8 @@ from riser_soil import __version__
 from riser_soil.cases import case_files, pool, work
 from riser_soil.cases.case_folder import ATTEMPTS, CASES, Outcome, attempt, found, settle
 from riser_soil.cases.case_process import die_with
-from riser_soil.cases.case_table import case_values
-from riser_soil.cases.sweep import CaseProgress
+from riser_soil.cases.case_values import case_values
+from riser_soil.cases.progress import CaseProgress
 from riser_soil.cases.work import NOT_WANTED, STOPPED_BY_LIMIT, Task, run_case
 from riser_soil.commands.app import app
 from riser_soil.results.read import Run
@@ -122,7 +122,7 @@ def test_the_first_of_two_attempts_that_finish_stays(tmp_path: Path, fake: Fake,
     ("code", "status", "reason"),
     [
         ("print('a'); print('no  convergence at arc 3 m'); raise SystemExit(3)", 3, "no convergence at arc 3 m"),
-        ("raise SystemExit(4)", 4, "ended with status 4"),
+        ("raise SystemExit(7)", 7, "ended with status 7"),
         ("raise ZeroDivisionError('bug')", 1, "ZeroDivisionError: bug"),
         ("import os; os.kill(os.getpid(), 9)", 137, "killed by SIGKILL, as where memory runs out"),
         ("import os; os.abort()", 134, "killed by SIGABRT"),
@@ -215,6 +215,54 @@ def test_values_of_a_run(recorded: Path) -> None:
     assert values["heave: top tension, standard deviation"].sign == ""
     assert values["heave: largest touchdown arc"].value == pytest.approx(Run(recorded)["touchdown_arc"].max())
     assert "lay: touchdown arc, mean" not in values
+
+
+def test_an_extreme_within_the_transient_is_that_of_the_records_behind_it(recorded: Path) -> None:
+    """Touchdown at 30 - 2 sin t: the least arc is that of t = 1.57 s, before 2.05 s, the largest that of 4.71 s."""
+    samples = {value.key: value.sample for value in case_values(recorded, since=2.05)}
+    least, largest = samples["heave: least touchdown arc"], samples["heave: largest touchdown arc"]
+    assert least == pytest.approx((30.0 - 2.0 * np.sin(2.1), True, 4.95))
+    assert largest == pytest.approx((32.0, False, 4.95), rel=1e-5)
+    assert samples["lay: touchdown arc"] is None
+    assert samples["heave: touchdown arc, mean"] is None
+    all_of_it = {value.key: value.sample for value in case_values(recorded, since=0.0)}
+    assert all_of_it["heave: least touchdown arc"] == pytest.approx((28.0, True, 7.0), rel=1e-4)
+
+
+def test_extremes_of_cases_without_seeds_are_those_of_the_runs(
+    tmp_path: Path, fake: Fake, invoke: Callable[..., Any]
+) -> None:
+    case_file(tmp_path, SWEEP)
+    done = invoke()
+    assert done.exit_code == 0
+    line_with(done.stdout, "top tension [kN]")
+    assert "warning" not in done.stdout
+    table = rows(tmp_path / "sweep/characteristic.csv")
+    assert list(dict.fromkeys(row["group"] for row in table)) == NAMES
+    row = next(row for row in table if row["quantity"] == "heave: top tension")
+    tension = max(Run(tmp_path / "sweep/cases" / NAMES[0])["effective_tension"][2:, -1])
+    assert (row["of seeds"], row["seeds"], row["characteristic"], row["low"]) == (f"{tension:.8g}", "1", "", "")
+
+
+def test_a_full_disk_ends_the_call_and_keeps_what_is_done(
+    tmp_path: Path, fake: Fake, invoke: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Further cases would fail for it, too. What the one has written is gone; a second call does what is missing."""
+    case_file(tmp_path, SWEEP)
+    monkeypatch.setattr(case_files, "draw_load_cases", lambda png, title, panels: png.touch())
+    full = "if '=200-position_0=8' in sys.argv[2]: print('results.nc: No space left on device'); sys.exit(4)"
+    fake(f"import sys\n{full}\n{FINISHED}")
+    ended = invoke()
+    assert ended.exit_code == 4
+    says = (NAMES[2], "No space left", "2 of 4 cases had ended", "sweep keeps them", "call again to go on")
+    line_with(ended.stderr.splitlines(), *says)
+    assert sorted(each.name for each in (tmp_path / "sweep" / CASES).iterdir()) == NAMES[:2]
+    assert not (tmp_path / "sweep/cases.csv").exists()
+    fake(FINISHED)
+    again = invoke()
+    assert again.exit_code == 0
+    line_with(again.stdout, "4 cases", "2 of them done")
+    assert [row["status"] for row in rows(tmp_path / "sweep/cases.csv")] == ["0"] * 4
 
 
 def test_tables_of_all_cases(tmp_path: Path, fake: Fake, invoke: Callable[..., Any]) -> None:
@@ -314,15 +362,32 @@ def test_a_scheduler_that_does_not_answer_leaves_all_as_it_was(
 
 
 @pytest.mark.parametrize("terminal", [True, False])
-def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(
+def test_progress_is_a_table_on_a_terminal_and_lines_elsewhere(
     terminal: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    console = Console(force_terminal=terminal, stderr=True, width=80)
-    with CaseProgress(12, 9, console) as progress:
-        progress.take(Outcome("a", "", 0, seconds=1.5))
-        progress.take(Outcome("b", "", 3, "no convergence"))
+    """Twelve cases of two sea states, nine of them done before."""
+    groups = {f"{sea}{n}": (sea, "far") for sea in ("mild", "storm") for n in range(6)}
+    console = Console(force_terminal=terminal, stderr=True, width=80, height=20)
+    todo = {"storm3", "storm4", "storm5"}
+    with CaseProgress(groups, todo, lambda: {"storm4", "storm5"}, console) as progress:
+        progress.take(Outcome("storm3", "", 0, seconds=1.5))
+        progress.take(Outcome("storm4", "", 3, "no convergence"))
+        Console(width=80, file=(table := io.StringIO())).print(progress.table())
     out, err = capsys.readouterr()
-    assert "11 of 12:" in line_with(out + err, "b:", "failed", "status 3:", "no convergence")
-    assert ["10 of 12:" in line for line in lines_with(out, "a:", "done", "1.5 s")] == [True] * (not terminal)
-    assert bool(re.search(r"11/12\S* 1 failed", err)) is terminal
+    assert "11 of 12:" in line_with(out + err, "storm4:", "failed", "status 3:", "no convergence")
+    assert ["10 of 12:" in line for line in lines_with(out, "storm3:", "done", "1.5 s")] == [True] * (not terminal)
+    assert ("11 of 12 ended" in err) is terminal
     assert progress.ended == 11
+    shown = [[cell.strip() for cell in line.split("│")[1:-1]] for line in table.getvalue().splitlines()]
+    assert [row for row in shown if row] == [
+        ["mild, far", "6", "", "", "", ""],
+        ["storm, far", "4", "1", "", "1", "0.75"],
+        ["all", "10", "1", "", "1", "0.75"],
+    ]
+
+
+def test_a_table_of_progress_has_no_more_rows_than_the_screen() -> None:
+    labels = [(sea, place) for sea in ("a", "b", "c", "d") for place in ("near", "far")]
+    groups = {f"{sea}-{place}-{n}": (sea, place) for sea, place in labels for n in range(3)}
+    high, low = (CaseProgress(groups, set(), set, Console(height=height)).table().row_count for height in (40, 13))
+    assert (high, low) == (9, 5)

@@ -1,0 +1,216 @@
+"""Characteristic extremes: Gumbel's distribution fitted to those of cases that differ in their waves' seed alone.
+
+The extremes of n seeds, each over a time T, follow Gumbel's distribution of location μ and scale β, fitted by maximum
+likelihood. Over a duration D the largest value is below μ + β (ln(D/T) − ln(−ln p)) with the probability p; p = 1/e
+gives the most probable one, μ + β ln(D/T). Of least values it is that of their negatives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from rich.markup import escape
+from rich.table import Table
+
+from riser_soil.cases.axes import is_seed
+from riser_soil.cases.case_file import WantedExtremes
+from riser_soil.cases.case_table import CaseTable
+from riser_soil.cases.case_values import Sample
+from riser_soil.cases.expansion import Case
+from riser_soil.core.arrays import Array
+from riser_soil.plots.scales import shown
+from riser_soil.statistics.extremes import FEWEST, Interval, LocationScale, fit_gumbel
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Cases that differ in the seed of their waves alone. labels: by the axes on which they have one in common."""
+
+    name: str
+    labels: Mapping[str, str]
+    cases: Sequence[Case]
+
+
+def groups_of(cases: Sequence[Case]) -> list[Group]:
+    """All cases in their groups, in their order."""
+    found: dict[str, list[Case]] = {}
+    for case in cases:
+        found.setdefault(case.group, []).append(case)
+    return [Group(name, _in_common(own), own) for name, own in found.items()]
+
+
+def _in_common(cases: Sequence[Case]) -> dict[str, str]:
+    first, *others = (case.labels for case in cases)
+    return {axis: label for axis, label in first.items() if all(other[axis] == label for other in others)}
+
+
+@dataclass(frozen=True, eq=False)
+class CharacteristicExtreme:
+    """One quantity of one group: the extremes of its seeds (n,) in SI, each over `simulated` [s], and what follows."""
+
+    group: Group
+    stage: str
+    name: str
+    unit: str
+    least: bool
+    samples: Array
+    simulated: float
+    wanted: WantedExtremes
+
+    @property
+    def key(self) -> str:
+        """As in the table of cases."""
+        return f"{self.stage}: {self.name}"
+
+    @property
+    def of_seeds(self) -> float:
+        """The extreme of all seeds."""
+        return float(self.samples.min() if self.least else self.samples.max())
+
+    def worse_than(self, other: CharacteristicExtreme) -> bool:
+        """Of the same quantity."""
+        mine, others = (
+            each.of_seeds if math.isnan(each.characteristic.value) else each.characteristic.value
+            for each in (self, other)
+        )
+        return mine < others if self.least else mine > others
+
+    @property
+    def most_probable(self) -> float:
+        return self._at(self._longer).value
+
+    @cached_property
+    def characteristic(self) -> Interval:
+        """Of the fractile, within its limits of confidence, the lower one first."""
+        found = self._at(self._longer - math.log(-math.log(self.wanted.fractile)))
+        return Interval(found.value, *sorted((found.low, found.high)))
+
+    @property
+    def location(self) -> float:
+        return self._sign * self._fit.location
+
+    @property
+    def scale(self) -> float:
+        return self._fit.scale
+
+    @cached_property
+    def _fit(self) -> LocationScale:
+        return fit_gumbel(self._sign * self.samples)
+
+    @property
+    def _sign(self) -> float:
+        return -1.0 if self.least else 1.0
+
+    @property
+    def _longer(self) -> float:
+        """ln(D/T)."""
+        return math.log(self.wanted.duration / self.simulated)
+
+    def _at(self, k: float) -> Interval:
+        return Interval(*(self._sign * value for value in self._fit.at(k, self.wanted.confidence)))
+
+
+def characteristic_extremes(table: CaseTable, wanted: WantedExtremes) -> list[CharacteristicExtreme]:
+    """Of each group with extremes in a dynamic stage, its quantities in the table's order."""
+    return [found for group in groups_of(table.cases) for found in _of_group(table, group, wanted)]
+
+
+def _of_group(table: CaseTable, group: Group, wanted: WantedExtremes) -> Iterator[CharacteristicExtreme]:
+    for key, value in table.quantities.items():
+        samples = [sample for case in group.cases if (sample := _sample(table, case, key)) is not None]
+        if samples:
+            values = np.array([sample.value for sample in samples])
+            simulated = min(sample.duration for sample in samples)
+            least = samples[0].least
+            yield CharacteristicExtreme(group, value.stage, value.name, value.unit, least, values, simulated, wanted)
+
+
+def _sample(table: CaseTable, case: Case, key: str) -> Sample | None:
+    value = table.values.get(case.name, {}).get(key)
+    return None if value is None or value.sample is None or not math.isfinite(value.sample.value) else value.sample
+
+
+def row_of(found: CharacteristicExtreme, axes: Sequence[str]) -> dict[str, Any]:
+    """A row of characteristic.csv; nan where seeds are too few."""
+    interval = found.characteristic
+    return {
+        "group": found.group.name,
+        **{axis: found.group.labels.get(axis, "") for axis in axes},
+        "quantity": found.key,
+        "unit": found.unit,
+        "extreme": "least" if found.least else "largest",
+        "seeds": len(found.samples),
+        "simulated [s]": found.simulated,
+        "mean": float(found.samples.mean()),
+        "standard deviation": float(found.samples.std(ddof=1)) if len(found.samples) > 1 else math.nan,
+        "of seeds": found.of_seeds,
+        "duration [s]": found.wanted.duration,
+        "most probable": found.most_probable,
+        "fractile": found.wanted.fractile,
+        "characteristic": interval.value,
+        "low": interval.low,
+        "high": interval.high,
+        "confidence": found.wanted.confidence,
+        "location": found.location,
+        "scale": found.scale,
+    }
+
+
+def governing(extremes: Sequence[CharacteristicExtreme]) -> list[CharacteristicExtreme]:
+    """Of each quantity that of the group that it is worst in, by the characteristic value where there is one."""
+    found: dict[str, CharacteristicExtreme] = {}
+    for each in extremes:
+        if each.key not in found or each.worse_than(found[each.key]):
+            found[each.key] = each
+    return list(found.values())
+
+
+def governing_table(extremes: Sequence[CharacteristicExtreme]) -> Table:
+    """For the screen: of each quantity its worst group, in units as engineers read them."""
+    wanted, fitted = extremes[0].wanted, any(math.isfinite(each.scale) for each in extremes)
+    over = f" in {wanted.duration:g} s" if fitted else ""
+    table = Table(title=f"{extremes[0].stage}: extremes{over}, each under what governs", title_justify="left")
+    table.add_column("quantity")
+    heads = ["extreme"]
+    if fitted:
+        percent = [f"{100.0 * share:g} %" for share in (wanted.fractile, wanted.confidence)]
+        heads = ["of seeds", "most probable", f"{percent[0]} fractile", f"{percent[1]} interval"]
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=head.endswith("interval"))
+    by_group: dict[str, list[CharacteristicExtreme]] = {}
+    for each in governing(extremes):
+        by_group.setdefault(each.group.name, []).append(each)
+    for name, found in by_group.items():
+        table.add_section()
+        table.add_row(f"[bold]{escape(name)}")
+        for each in found:
+            table.add_row(*_cells(each)[: len(heads) + 1])
+    return table
+
+
+def _cells(found: CharacteristicExtreme) -> list[str]:
+    unit, scale = shown(found.unit.replace(".", " "))
+    numbers = (found.of_seeds, found.most_probable, *found.characteristic)
+    of_seeds, most_probable, characteristic, low, high = (_figures(scale * value) for value in numbers)
+    interval = f"{low} to {high}" if low and high else ""
+    return [escape(f"{found.name} [{unit}]"), of_seeds, most_probable, characteristic, interval]
+
+
+def _figures(value: float) -> str:
+    return f"{value:.4g}" if math.isfinite(value) else ""
+
+
+def warnings_of(extremes: Sequence[CharacteristicExtreme], cases: Sequence[Case]) -> Iterator[str]:
+    """Where seeds are too few for a fit, or some have no extreme after the transient."""
+    few = {each.group.name for each in extremes if len(each.samples) < FEWEST}
+    seeded = any(is_seed(path) for case in cases for path in case.values)
+    if few and seeded:
+        yield (
+            f"warning: {len(few)} of {len({each.group.name for each in extremes})} groups have fewer than {FEWEST} "
+            f"seeds, as {min(few)}, and no characteristic extreme; give seeds: {FEWEST} or more"
+        )
