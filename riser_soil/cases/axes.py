@@ -70,7 +70,8 @@ def axes_of(file: Path, reported: Cases, base: Document) -> list[CaseAxis]:
     found = [*_of_table(reported, short), *_of_waves(file, reported, base)]
     if reported.offsets is not None:
         found.append(_of_offsets(file, reported.offsets, base))
-    found += [CaseAxis("soil", [Point(name, name, values) for name, values in reported.soil.items()])] * bool(reported.soil)
+    if reported.soil:
+        found.append(CaseAxis("soil", [Point(name, name, values) for name, values in reported.soil.items()]))
     found += [CaseAxis(path, _points(path, values, short)) for path, values in reported.product.items()]
     found.sort(key=lambda axis: axis.name == SEED)  # it changes first
     _refuse_twice(file, found)

@@ -200,7 +200,9 @@ class Cases(BaseModel):
         "for each of its rows",
     )
     statistics: Statistics = Field(default=Statistics(), description="mean and standard deviation in time")
-    extremes: WantedExtremes = Field(default=WantedExtremes(), description="characteristic extremes over the seeds of a sea state")
+    extremes: WantedExtremes = Field(
+        default=WantedExtremes(), description="characteristic extremes over the seeds of a sea state"
+    )
 
 
 def read_case_file(file: Path) -> Cases:
