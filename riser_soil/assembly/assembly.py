@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
+    from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.riser.wall_stress import Pressures, WallSections
     from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
@@ -139,6 +140,9 @@ class Assembly:
     @property
     def wall_sections(self) -> WallSections | None:
         return self.only.wall_sections
+
+    def code_checks(self) -> LineChecks | None:
+        return self.only.code_checks()
 
     @property
     def ground_fields(self) -> list[Field]:

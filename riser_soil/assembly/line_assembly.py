@@ -36,6 +36,7 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage,
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
+    from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
@@ -119,6 +120,16 @@ class LineAssembly:
         from riser_soil.riser.wall_stress import walls_of
 
         return walls_of(self.elements)
+
+    def code_checks(self) -> LineChecks | None:
+        """Its code checks, at the beginning of a run; None where the scene asks for none of its line types."""
+        segments, names = self.scene.line.segments, self.scene.used_line_types
+        if not any(check.applies_to(name) for check in self.scene.code_check for name in names):
+            return None
+        from riser_soil.code_checks.line_checks import LineChecks
+
+        of_elements = [segment.line_type for segment in segments for _ in segment.element_lengths]
+        return LineChecks(self.scene, of_elements, self.elements.borne_by_pipe, self.line.arc)
 
     @property
     def slack(self) -> float:

@@ -28,6 +28,16 @@ Need = Literal[
     "ground",
     "friction",
     "soil",
+    "code check",
+    "bursting",
+    "hoop buckling",
+    "propagating buckling",
+    "combined loading",
+    "bend radius",
+    "tension limit",
+    "compression",
+    "crushing",
+    "capacity curve",
 ]
 
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
 _ON_START = "right-hand rule; exerted by the part towards the end on the part towards the start"
 _RIGHT_HAND = "right-hand rule; " + _ON_RISER
+_EXCEEDED = "above 1 the code is not met"
 _TOP = Row("top tension", "kN", 1e-3)
 
 ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
@@ -117,6 +118,56 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
         lambda i: i.riser.wall and i.riser.wall.stress_utilisation, "above 1 the wall is stressed too much",
         needs="yield stress",
         figures=(greatest_known("max_stress_utilisation", Row("stress over what is allowed")),),
+    ),
+    OutputQuantity(
+        "code_utilisation", "", "1", "largest utilisation by codes, of all checks of code_check", "nodes",
+        lambda i: i.riser.code and i.riser.code.utilisation, _EXCEEDED, needs="code check",
+        figures=(greatest_known("max_code_utilisation", Row("code checks: largest utilisation")),),
+    ),
+    OutputQuantity(
+        "bursting_utilisation", "", "1", "utilisation in bursting by the code", "nodes",
+        lambda i: i.riser.code and i.riser.code.bursting, _EXCEEDED, needs="bursting",
+        figures=(greatest_known("max_bursting_utilisation", Row("code: bursting")),),
+    ),
+    OutputQuantity(
+        "hoop_buckling_utilisation", "", "1", "utilisation in hoop buckling, or collapse, by the code", "nodes",
+        lambda i: i.riser.code and i.riser.code.hoop_buckling, _EXCEEDED, needs="hoop buckling",
+        figures=(greatest_known("max_hoop_buckling_utilisation", Row("code: hoop buckling")),),
+    ),
+    OutputQuantity(
+        "propagating_buckling_utilisation", "", "1", "utilisation in propagating buckling by the code", "nodes",
+        lambda i: i.riser.code and i.riser.code.propagating_buckling, _EXCEEDED, needs="propagating buckling",
+        figures=(greatest_known("max_propagating_buckling_utilisation", Row("code: propagating buckling")),),
+    ),
+    OutputQuantity(
+        "combined_loading_utilisation", "", "1", "utilisation under combined loading by the code", "nodes",
+        lambda i: i.riser.code and i.riser.code.combined_loading, _EXCEEDED, needs="combined loading",
+        figures=(greatest_known("max_combined_loading_utilisation", Row("code: combined loading")),),
+    ),
+    OutputQuantity(
+        "bend_radius_utilisation", "", "1", "curvature times the least bend radius of the stage's kind of service", "nodes",
+        lambda i: i.riser.code and i.riser.code.bend_radius, _EXCEEDED, needs="bend radius",
+        figures=(greatest_known("max_bend_radius_utilisation", Row("code: bend radius")),),
+    ),
+    OutputQuantity(
+        "tension_limit_utilisation", "", "1", "effective tension over the limit of the code check", "nodes",
+        lambda i: i.riser.code and i.riser.code.tension_limit, _EXCEEDED, needs="tension limit",
+        figures=(greatest_known("max_tension_limit_utilisation", Row("code: tension")),),
+    ),
+    OutputQuantity(
+        "compression_utilisation", "", "1", "effective compression over the limit of the code check", "nodes",
+        lambda i: i.riser.code and i.riser.code.compression, _EXCEEDED, needs="compression",
+        figures=(greatest_known("max_compression_utilisation", Row("code: compression")),),
+    ),
+    OutputQuantity(
+        "crushing_utilisation", "", "1", "contact force over the limit of the code check", "nodes",
+        lambda i: i.riser.code and i.riser.code.crushing, _EXCEEDED, needs="crushing",
+        figures=(greatest_known("max_crushing_utilisation", Row("code: crushing")),),
+    ),
+    OutputQuantity(
+        "capacity_curve_utilisation", "", "1", "tension and curvature over the capacity curve", "nodes",
+        lambda i: i.riser.code and i.riser.code.capacity_curve, _EXCEEDED, needs="capacity curve",
+        figures=(greatest_known("max_capacity_curve_utilisation", Row("code: capacity curve")),),
     ),
     OutputQuantity(
         "contact_force", "f", "N m-1", "contact force per length of riser", "nodes",

@@ -39,6 +39,26 @@ class WallSnapshot(NamedTuple):
     most_used_stress: Array | None  # Pa, von Mises', of the side with the larger utilisation
 
 
+class CodeSnapshot(NamedTuple):
+    """Utilisations by codes at the nodes (nn,), nan where not checked; None where no line type is checked so.
+
+    utilisation: the largest of all. largest (m,): of each check of each line type, and place (m,): its arc length [m].
+    """
+
+    utilisation: Array
+    largest: Array
+    place: Array
+    bursting: Array | None = None
+    hoop_buckling: Array | None = None
+    propagating_buckling: Array | None = None
+    combined_loading: Array | None = None
+    bend_radius: Array | None = None
+    tension_limit: Array | None = None
+    compression: Array | None = None
+    crushing: Array | None = None
+    capacity_curve: Array | None = None
+
+
 class RiserSnapshot(NamedTuple):
     """The riser at one instant.
 
@@ -66,6 +86,7 @@ class RiserSnapshot(NamedTuple):
     end_tangent: Array  # (3,) the same at the end
     tension_utilisation: Array | None = None  # (nn,) effective tension over the largest allowed; None without one
     wall: WallSnapshot | None = None  # None where no wall is given
+    code: CodeSnapshot | None = None  # None where no code check is made
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,6 +225,22 @@ class StepRecord(NamedTuple):
 
 
 @dataclass(frozen=True)
+class CodeCheckFacts:
+    """One check of one line type: its code, words, clause, and the variable of results.nc with its utilisation.
+
+    limit_state: or design case; "" where the code knows none, as safety_class.
+    """
+
+    line_type: str
+    code: str
+    check: str
+    clause: str
+    variable: str
+    limit_state: str
+    safety_class: str
+
+
+@dataclass(frozen=True)
 class RunFacts:
     """Facts about a run, known before its first step."""
 
@@ -224,3 +261,4 @@ class RunFacts:
     on_soil: str = ""  # of several lines the one that lies on the soil
     sections: int = 0  # across the riser in which the soil's settlement is recorded
     offsets: tuple[float, ...] = ()  # m, places along the sections
+    code_checks: Mapping[str, tuple[CodeCheckFacts, ...]] = field(default_factory=dict)  # by line

@@ -17,7 +17,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, SectionSnapshot, mapped
-from riser_soil.results.riser_snapshot import look_inside, snapshot_of
+from riser_soil.results.riser_snapshot import code_snapshot, look_inside, snapshot_of
 from riser_soil.results.settlement_trough import sections_of
 from riser_soil.riser.hermite import axis_at
 from riser_soil.riser.line import Line
@@ -60,6 +60,12 @@ class InstantReader:
         self._assembly, self._fields = assembly, fields
         self._embedment: Array = np.zeros(assembly.line.nodes)
         self._sections = sections_of(assembly) if "settlement_across" in self._fields else None
+        self._checks = assembly.code_checks()
+
+    def begin_stage(self, name: str) -> None:
+        """All looks before have been told of."""
+        if self._checks is not None:
+            self._checks.begin_stage(name)
 
     def look(self, stepper: TimeStepper, lay_sections: bool = False) -> Look:
         """At the accepted state.
@@ -90,7 +96,10 @@ class InstantReader:
         found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
         pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
         ground = mapped(lambda *values: np.stack(values), *(each.ground for each in looks))
-        riser = snapshot_of(self._assembly, inside, pressed, np.array([each.pressure for each in looks]))
+        pressure = np.array([each.pressure for each in looks])
+        riser = snapshot_of(self._assembly, inside, pressed, pressure)
+        if self._checks is not None:
+            riser = riser._replace(code=code_snapshot(self._assembly, self._checks, inside, pressed, pressure))
         return Instant(self._assembly.line.arc, riser, self._touch(inside, found, ground))
 
     def _inside(self, numbers: Array) -> SectionForces:
@@ -170,7 +179,8 @@ class InstantReader:
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        return {} if self._sections is None else {"sections": self._sections}
+        found: dict[str, Stateful] = {} if self._sections is None else {"sections": self._sections}
+        return found if self._checks is None else found | {"code checks": self._checks}
 
 
 """Of a contact: its points along the line; gaps and forces there, as in `ContactResults`."""

@@ -23,7 +23,15 @@ from riser_soil.core.environment import versions
 from riser_soil.core.output import Need
 from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import Instants, RunFacts, SoilSnapshot, StepRecord, StepStatistics, instants_at
+from riser_soil.core.snapshot import (
+    CodeCheckFacts,
+    Instants,
+    RunFacts,
+    SoilSnapshot,
+    StepRecord,
+    StepStatistics,
+    instants_at,
+)
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
@@ -47,6 +55,10 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
 
+_CHECKED: tuple[Need, ...] = (  # fields of `CodeSnapshot`
+    *("bursting", "hoop buckling", "propagating buckling", "combined loading"),
+    *("bend radius", "tension limit", "compression", "crushing", "capacity curve"),
+)
 MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # that are looked at before they are told of
 
 
@@ -143,6 +155,8 @@ class Observer:
         self._schedule.begin_stage(stage.kind)
         self._balance = EnergyLedger(start, static, dissipating(scene), working(scene))
         self._relaxed = 0
+        for reader in self._instants.values():
+            reader.begin_stage(stage.name)
         for each in self._plausibility.values():
             each.begin_stage(stage)
 
@@ -355,7 +369,15 @@ def _known_of_line(assembly: Assembly) -> list[Need]:
         "friction": bool(assembly.frictions),
         "soil": assembly.soil_contact is not None,
     }
+    if (checks := assembly.code_checks()) is not None:
+        has |= {"code check": True} | {need: need.replace(" ", "_") in checks.fields for need in _CHECKED}
     return [need for need, there in has.items() if there]
+
+
+def _code_checks(assembly: Assembly) -> dict[str, tuple[CodeCheckFacts, ...]]:
+    """By line."""
+    checks = {name: line.code_checks() for name, line in assembly.by_line.items()}
+    return {name: each.facts for name, each in checks.items() if each is not None}
 
 
 def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
@@ -379,4 +401,5 @@ def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
         on_soil=assembly.name_on_soil,
         sections=count_of(lying) if lying is not None else 0,
         offsets=offsets_of(lying) if lying is not None else (),
+        code_checks=_code_checks(assembly),
     )

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import ExtremeAlong, RiserSnapshot, WallSnapshot
+from riser_soil.core.snapshot import CodeSnapshot, ExtremeAlong, RiserSnapshot, WallSnapshot
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import add_at_ends, at_most, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces, largest_between_nodes
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.wall_stress import WallSections, bending_stress, hoop_and_radial_stress, largest_von_mises
 from riser_soil.solve.time_stepper import TimeStepper
+
+if TYPE_CHECKING:
+    from riser_soil.code_checks.line_checks import LineChecks
 
 
 def look_inside(assembly: Assembly, stepper: TimeStepper) -> Array:
@@ -152,6 +157,26 @@ def wall_snapshot(
         stress_utilisation=used,
         most_used_stress=most_used,
     )
+
+
+def code_snapshot(
+    assembly: Assembly, checks: LineChecks, forces: SectionForces, contact_force: Array, pressure: Array
+) -> CodeSnapshot:
+    """Utilisations by codes at many instants; pressure (nt,): change of that inside [Pa]."""
+    from riser_soil.code_checks.load_effects import SectionEffects
+
+    _, moment_y, moment_z = np.moveaxis(forces.about_axes * assembly.elements.bends_beside[:, None], -1, 0)
+    effects = SectionEffects(forces.effective_tension, moment_y, moment_z)
+    return checks.at(effects, _pressures(assembly, forces, pressure), forces.curvature_beside, contact_force)
+
+
+def _pressures(assembly: Assembly, forces: SectionForces, pressure: Array) -> tuple[Array, Array, Array]:
+    """Inside and outside at the nodes, and inside at the level to which the contents' pressure refers [Pa]."""
+    none, pressures = np.zeros_like(forces.effective_tension), assembly.pressures
+    if pressures is None:
+        return none, none, none[..., :1]
+    at_level = 0.0 if pressures.inside is None else pressures.inside.pressure
+    return *pressures.at(forces.position[..., 2], pressure), at_level + pressure[:, None]
 
 
 def _utilisation(sections: WallSections, von_mises: Array, nodes: int) -> tuple[Array, Array] | tuple[None, None]:

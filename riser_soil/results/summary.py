@@ -15,12 +15,13 @@ import numpy as np
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, StepStatistics
+from riser_soil.results.code_tally import CodeTally
 from riser_soil.results.figures import Extremes, final_state
 from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
 from riser_soil.results.indicators import StageIndicators
 
 _USED = ("tightest", "pulled", "stressed")
-_PARTS = ("lines", "hung", "seen", "extremes", "energy", "worst_residual", "implausible", "soil", "indicators")
+_PARTS = ("lines", "hung", "seen", "extremes", "energy", "worst_residual", "implausible", "soil", "indicators", "code")
 _NOT_PLAIN = (*_USED, *_PARTS)
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
@@ -128,6 +129,7 @@ class StageTally:
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
     indicators: StageIndicators = field(default_factory=StageIndicators)
+    code: CodeTally = field(default_factory=CodeTally)
     soil: dict[str, Any] = field(default_factory=dict)  # largest values in the soil, see `figures`
     hung: dict[str, Any] = field(default_factory=dict)
     lines: dict[str, StageTally] = field(default_factory=dict)
@@ -190,7 +192,12 @@ class StageTally:
         if self.lines:
             reported["lines"] = {name: own._of_line(self.steps > 0) for name, own in self.lines.items()}
             reported |= self.hung
-        return plain | reported | self._soil
+        return plain | reported | self._soil | self._code_check
+
+    @property
+    def _code_check(self) -> dict[str, Any]:
+        found = self.code.as_list()
+        return {"code_check": found} if found else {}
 
     @property
     def _soil(self) -> dict[str, Any]:
@@ -201,7 +208,8 @@ class StageTally:
         self._finish()
         extremes = self.extremes.nested() if stepped else None
         reported = {"final": self.final, "extremes": extremes, "warnings": self._own_warnings}
-        return reported | {"indicators": self.indicators.of_figures(self.kind == "dynamic")} | self._soil
+        own = {"indicators": self.indicators.of_figures(self.kind == "dynamic")}
+        return reported | own | self._soil | self._code_check
 
     @property
     def _own_warnings(self) -> list[str]:
@@ -234,10 +242,11 @@ class StageTally:
         yield from self.stressed.warnings(
             unit, "the wall is stressed beyond design_factor times yield_stress", "von Mises' stress is {:.4g} Pa"
         )
+        yield from self.code.warnings(unit)
 
     def state(self) -> Saved:
         self._finish()
-        own = ("seen", "extremes", "indicators", "lines")
+        own = ("seen", "extremes", "indicators", "code", "lines")
         plain = {name: value for name, value in vars(self).items() if name not in own}
         reported = plain | {name: asdict(vars(self)[name]) for name in _RECORDS} | {"lines": [*self.lines]}
         return gathered(self._followers) | {"told": packed(reported)}
@@ -252,7 +261,7 @@ class StageTally:
 
     @property
     def _followers(self) -> dict[str, Stateful]:
-        found: dict[str, Stateful] = {"extremes": self.extremes, "indicators": self.indicators}
+        found: dict[str, Stateful] = {"extremes": self.extremes, "indicators": self.indicators, "code": self.code}
         return found | {f"lines/{name}": own for name, own in self.lines.items()}
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import Instants, RunFacts, StepRecord, instants_at
+from riser_soil.results.code_tally import CodeTally
 from riser_soil.results.figures import pack
 from riser_soil.results.hung_figures import HungExtremes
 from riser_soil.results.indicators import StageIndicators
@@ -25,7 +26,7 @@ class Tallies:
     def __init__(self, facts: RunFacts, lines: Sequence[str]) -> None:
         self.summary, self.now = Summary(facts), 0.0
         self._scales = facts.diameter, facts.weight, facts.contact_period
-        self._lines, self._on_soil = lines, facts.on_soil
+        self._lines, self._on_soil, self._code_checks = lines, facts.on_soil, facts.code_checks
         self._hung, self._time = HungExtremes(), SimulatedTime()
         self._latest: dict[str, Array] = {}
 
@@ -42,15 +43,16 @@ class Tallies:
     def begin_stage(self, name: str, kind: str, automatic: bool) -> None:
         """As of `Recorder.begin_stage`."""
         self._time.begin_stage(kind)
-        stage = self._new(name, kind, automatic)
-        stage.lines = {line: self._new(name, kind, automatic) for line in self._lines if line}
+        stage = self._new(name, kind, automatic, "")
+        stage.lines = {line: self._new(name, kind, automatic, line) for line in self._lines if line}
         self.summary.stages.append(stage)
         self._hung = HungExtremes()
         if kind != "static":
             self._begin_from_latest()
 
-    def _new(self, name: str, kind: str, automatic: bool) -> StageTally:
-        return StageTally(name, kind, indicators=StageIndicators(*self._scales, automatic=automatic))
+    def _new(self, name: str, kind: str, automatic: bool, line: str) -> StageTally:
+        indicators = StageIndicators(*self._scales, automatic=automatic)
+        return StageTally(name, kind, indicators=indicators, code=CodeTally(self._code_checks.get(line, ())))
 
     def _begin_from_latest(self) -> None:
         """Count the state that the stage begins with."""
@@ -99,6 +101,7 @@ class Tallies:
             tally.seen = instants_at(instant, -1)
             tally.bend(at, instant.riser)
             tally.pull(at, instant.arc, instant.riser)
+            tally.code.update(at, instant.riser.code)
 
     def stamp(self) -> float:
         """Time of a record made now [s], later than that of every record before."""

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import assert_never
 
 from riser_soil.core.quantities import Vector
+from riser_soil.scene.code_check_conflicts import code_check_conflicts
 from riser_soil.scene.end_checks import end_conflicts, hang_off_conflicts
 from riser_soil.scene.ground_checks import feature_conflicts, ground_conflicts
 from riser_soil.scene.line_types import LineType
@@ -387,4 +388,5 @@ _CHECKS: tuple[_Check, ...] = (
     feature_conflicts,
     water_conflicts,
     stage_conflicts,
+    code_check_conflicts,
 )

@@ -338,6 +338,11 @@ class LineType(BaseModel):
         return outer or self.outer_diameter or 0.0, inner or self.inner_diameter
 
     @property
+    def steel_diameters(self) -> tuple[float, float]:
+        """Outer and inner diameter [m] of the wall that a code checks: its wall's, else its own; 0 where not given."""
+        return self.wall_diameters if self.wall is not None else (self.outer_diameter or 0.0, self.inner_diameter)
+
+    @property
     def bending_stiffness(self) -> tuple[float, float]:
         """EI about the section's y axis and z axis [N.m2]."""
         if self.EI_y is not None and self.EI_z is not None:

@@ -10,6 +10,7 @@ from riser_soil.core.quantities import FROZEN, AutoOrTime, Count, Gravity, Ratio
 from riser_soil.errors import SceneError
 from riser_soil.scene.accuracy import Accuracy, with_placeholders
 from riser_soil.scene.bodies import Body
+from riser_soil.scene.code_check import CHECK, CodeChecks
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.files import NamedFolder
 from riser_soil.scene.joints import Joint
@@ -140,6 +141,9 @@ class Scene(BaseModel):
     stages: tuple[Stage, ...] = Field(min_length=1, description="what happens, one stage after the other")
     solver: Solver = Field(default=Solver(), description="settings of the nonlinear solver")
     output: Output = Field(default=Output(), description="what the run writes")
+    code_check: CodeChecks = Field(
+        default=(), description=f"checks by codes, a list of {CHECK.words}; none by default, and then no code check is made"
+    )
     accuracy: Accuracy | None = Field(
         default=None,
         description="accuracy of all key results, as 1 % or 0.01 (0.01 to 20 %), in place of elements, time "

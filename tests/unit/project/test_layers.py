@@ -20,7 +20,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("seabed",),
     ("soil",),
     ("scene", "riser"),
-    ("sea", "motion"),
+    ("sea", "motion", "code_checks"),
     ("contact",),
     ("bodies",),
     ("solve",),
