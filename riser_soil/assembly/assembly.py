@@ -29,6 +29,7 @@ from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 if TYPE_CHECKING:
     from riser_soil.assembly.bodies_and_joints import Hung
     from riser_soil.assembly.vessels import Vessels
+    from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.mesh_renewal import MeshRenewal
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
-    from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.riser.wall_stress import Pressures, WallSections
     from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil

@@ -73,6 +73,10 @@ def _of_one(assembly: Assembly) -> Iterator[str]:
         from riser_soil.checks.ground_plausibility import ground_warnings
 
         yield from ground_warnings(assembly)
+    if assembly.scene.code_check:
+        from riser_soil.checks.code_plausibility import code_check_warnings
+
+        yield from code_check_warnings(assembly.scene)
     yield from _beyond_the_rao(assembly)
     yield from _loads_that_end(assembly.scene)
     if assembly.scene.water is not None and assembly.scene.water.waves is not None:

@@ -1,4 +1,4 @@
-"""API STD 2RD (2013), Dynamic risers for floating production systems: burst, collapse, combined loads by method 1 and 2.
+"""API STD 2RD (2013), Dynamic risers for floating production systems: burst, collapse, combined loads by two methods.
 
 Symbols: D outer diameter and t thickness of the wall [m]; S, U specified minimum yield and tensile strength [Pa]; F a
 design factor, which depends on the case: operating, extreme or survival. All are arrays, or numbers, of any shape that

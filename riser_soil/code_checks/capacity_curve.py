@@ -1,4 +1,4 @@
-"""Capacity curve of an umbilical or cable: pairs of tension and curvature that it bears together (API 17E, ISO 13628-5)."""
+"""Capacity curve of an umbilical or cable (API 17E, ISO 13628-5): tension and curvature that it bears together."""
 
 from __future__ import annotations
 

@@ -80,8 +80,9 @@ class Steel(NamedTuple):
 
 
 def local_design_pressure(check: SteelCheck, loads: NodeLoads) -> tuple[Array, Array]:
-    """Local design pressure (..., n), and design pressure (..., 1) at the contents' level [Pa]: those of the run, unless
-    the scene gives the latter.
+    """Local design pressure (..., n), and design pressure (..., 1) at the contents' level [Pa].
+
+    Those of the run, unless the scene gives the latter.
     """
     if check.design_pressure is None:
         return loads.inside, loads.at_reference
@@ -167,14 +168,22 @@ class DnvCriteria:
         }
 
     def _combined(self, effects: LoadEffects, inner: Array, outer: Array) -> Array:
-        """inner: p_ld - p_e, by whose sign the criterion goes; outer: p_e - p_min, at least 0 [Pa]."""
+        """The larger of both criteria, where each applies. inner: p_ld - p_e; outer: p_e - p_min, at least 0 [Pa].
+
+        Under the least pressure inside no hoop stress hardens the wall.
+        """
         D, t, (fy, fu), gamma = self.pipe.diameter, self.t2, self.strengths, self.gamma
         p_b = dnv_st_f201.bursting_resistance(D, t, fy, fu)
-        alpha_c = dnv_st_f201.flow_stress_parameter(D, t, fy, fu, inner, p_b)
         M_d, T_d = design_effects(effects, dnv_st_f201.LOAD_FACTORS[self.check.limit_state])
-        m, T = M_d / dnv_st_f201.plastic_moment(D, t, fy, alpha_c), T_d / dnv_st_f201.plastic_tension(D, t, fy, alpha_c)
-        within = dnv_st_f201.combined_internal(m, T, np.maximum(inner, 0.0), p_b, gamma)
-        return np.where(inner >= 0.0, within, dnv_st_f201.combined_external(m, T, outer, self.collapse(t), gamma))
+
+        def shares(overpressure: Array | float) -> tuple[Array, Array]:
+            alpha_c = dnv_st_f201.flow_stress_parameter(D, t, fy, fu, overpressure, p_b)
+            M_k, T_k = (of(D, t, fy, alpha_c) for of in (dnv_st_f201.plastic_moment, dnv_st_f201.plastic_tension))
+            return M_d / M_k, T_d / T_k
+
+        internal = dnv_st_f201.combined_internal(*shares(inner), np.maximum(inner, 0.0), p_b, gamma)
+        external = dnv_st_f201.combined_external(*shares(0.0), outer, self.collapse(t), gamma)
+        return np.maximum(np.where(inner >= 0.0, internal, 0.0), np.where((inner < 0.0) | (outer > 0.0), external, 0.0))
 
 
 _API = "API STD 2RD (2013) "
@@ -223,11 +232,11 @@ class ApiCriteria:
         c, (p_b, p_c), p_e = self.check, self.resistances, loads.outside
         p_ld, _ = local_design_pressure(c, loads)
         p_min = minimum_pressure(c, loads)
-        outer = np.maximum(p_e - p_min, 0.0) / p_c
+        pressure = np.maximum(np.maximum(p_ld - p_e, 0.0) / p_b, np.maximum(p_e - p_min, 0.0) / p_c)
         return {
             "bursting": api_std_2rd.overpressure(p_ld, p_e, p_b, c.burst_factor),
             "hoop_buckling": api_std_2rd.overpressure(p_e, p_min, p_c, c.collapse_factor),
-            "combined_loading": self._combined(loads.effects, np.where(p_ld >= p_e, (p_ld - p_e) / p_b, outer)),
+            "combined_loading": self._combined(loads.effects, pressure),
         }
 
     def _combined(self, effects: LoadEffects, pressure: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Limits of a flexible pipe as its maker states them (API 17J, ISO 13628-2): bend radius, tension, compression, crushing.
+"""Limits of a flexible pipe as its maker states them (API 17J, ISO 13628-2).
 
 A utilisation is what there is over what is allowed, and must not exceed 1.
 """

@@ -29,9 +29,6 @@ class SectionEffects(NamedTuple):
     moment_y: Array
     moment_z: Array
 
-    def __sub__(self, other: SectionEffects) -> SectionEffects:  # type: ignore[override]
-        return SectionEffects(*(a - b for a, b in zip(self, other, strict=True)))
-
 
 class LoadEffects(NamedTuple):
     """Load effects of one kind each."""
@@ -43,7 +40,7 @@ class LoadEffects(NamedTuple):
     @property
     def all(self) -> SectionEffects:
         """Their sum without factors."""
-        return SectionEffects(*(sum(each) for each in zip(*self, strict=True)))
+        return SectionEffects(*(F + E + A for F, E, A in zip(*self, strict=True)))
 
 
 def design_effects(effects: LoadEffects, factors: LoadFactors) -> tuple[Array, Array]:

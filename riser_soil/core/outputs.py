@@ -145,7 +145,7 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
         figures=(greatest_known("max_combined_loading_utilisation", Row("code: combined loading")),),
     ),
     OutputQuantity(
-        "bend_radius_utilisation", "", "1", "curvature times the least bend radius of the stage's kind of service", "nodes",
+        "bend_radius_utilisation", "", "1", "curvature times the least bend radius allowed in the stage", "nodes",
         lambda i: i.riser.code and i.riser.code.bend_radius, _EXCEEDED, needs="bend radius",
         figures=(greatest_known("max_bend_radius_utilisation", Row("code: bend radius")),),
     ),

@@ -370,7 +370,8 @@ def _known_of_line(assembly: Assembly) -> list[Need]:
         "soil": assembly.soil_contact is not None,
     }
     if (checks := assembly.code_checks()) is not None:
-        has |= {"code check": True} | {need: need.replace(" ", "_") in checks.fields for need in _CHECKED}
+        has["code check"] = True
+        has.update({need: need.replace(" ", "_") in checks.fields for need in _CHECKED})
     return [need for need, there in has.items() if there]
 
 

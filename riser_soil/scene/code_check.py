@@ -101,7 +101,7 @@ class DnvCheck(SteelCheck):
         default=0.96, description="alpha_U, on yield and tensile strength; 1 with supplementary requirement U [-]"
     )
     fabrication_factor: Part = Field(
-        default=0.85, description="alpha_fab, on the yield strength in hoop compression: 0.85 of UOE pipe, 1 seamless [-]"
+        default=0.85, description="alpha_fab, on the yield strength in hoop compression: 1 of seamless pipe [-]"
     )
     fabrication_tolerance: LengthOrNone = Field(
         description="how much thinner than nominal the wall may be made [m]"
@@ -114,8 +114,8 @@ class DnvCheck(SteelCheck):
     )
     functional_stage: Text | None = Field(
         default=None,
-        description="stage at whose end load effects are functional; what later stages add is environmental; by default "
-        "the last static stage",
+        description="stage at whose end load effects are functional; what later stages add is environmental; the last "
+        "static stage by default",
     )
     accidental_stage: Text | None = Field(
         default=None,
@@ -210,8 +210,7 @@ class CapacityCurveCheck(Check):
         if tensions[0] > 0.0 or tensions[-1] <= 0.0:
             raise wrong("curve", "must reach from tension 0 or less to a tension above 0", "add the missing point")
         corners = [*([(tensions[0], 0.0)] if tensions[0] < 0.0 else []), *self.curve, (tensions[-1], 0.0)]
-        kept = [corner for corner, after in pairwise([*corners, None]) if corner != after]
-        if any(a[1] * b[0] - a[0] * b[1] <= 0.0 for a, b in pairwise(kept)):
+        if any(a != b and a[1] * b[0] - a[0] * b[1] <= 0.0 for a, b in pairwise(corners)):
             allowed = "each ray from no tension and no curvature must meet it once"
             raise wrong("curve", allowed, "give curvatures above 0, but for the ends, and no deep notches")
         return self

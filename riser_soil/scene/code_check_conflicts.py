@@ -33,7 +33,8 @@ def _names(scene: Scene) -> Iterator[Problem]:
         for m, name in enumerate(check.line_types or ()):
             if name not in scene.line_types:
                 known = f"must be a key of line_types ({', '.join(scene.line_types)})"
-                yield Problem(("code_check", n, "line_types", m), known, f"name one of them{hint(name, scene.line_types)}")
+                remedy = f"name one of them{hint(name, scene.line_types)}"
+                yield Problem(("code_check", n, "line_types", m), known, remedy)
         if isinstance(check, DnvCheck):
             for key in ("functional_stage", "accidental_stage"):
                 name = getattr(check, key)
@@ -64,7 +65,8 @@ def _wall(path: Path, check: SteelCheck, name: str, line: LineType) -> Iterator[
     lost = check.corrosion_allowance + (check.fabrication_tolerance if isinstance(check, DnvCheck) else 0.0)
     if lost >= t:
         allowed = f"leaves nothing of the wall of {name}, which is {t:g} m thick"
-        yield Problem((*path, "corrosion_allowance"), allowed, "lower it or fabrication_tolerance, or give a thicker wall")
+        remedy = "lower it or fabrication_tolerance, or give a thicker wall"
+        yield Problem((*path, "corrosion_allowance"), allowed, remedy)
         return
     slender = outer / (t - check.corrosion_allowance)
     if slender > MOST_SLENDER:

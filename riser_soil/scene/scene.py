@@ -142,7 +142,8 @@ class Scene(BaseModel):
     solver: Solver = Field(default=Solver(), description="settings of the nonlinear solver")
     output: Output = Field(default=Output(), description="what the run writes")
     code_check: CodeChecks = Field(
-        default=(), description=f"checks by codes, a list of {CHECK.words}; none by default, and then no code check is made"
+        default=(),
+        description=f"checks by codes, a list of {CHECK.words}; none by default, and then no code check is made",
     )
     accuracy: Accuracy | None = Field(
         default=None,

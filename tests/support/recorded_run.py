@@ -12,6 +12,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.snapshot import (
+    CodeCheckFacts,
+    CodeSnapshot,
     ContactSnapshot,
     ExtremeAlong,
     Instant,
@@ -30,6 +32,9 @@ from riser_soil.results.record import Recorder
 from riser_soil.results.schedule import DueOutputs, Schedule
 
 EI, WEIGHT, RADIUS = 5.0e4, 650.0, 0.15  # N.m2, N/m, m
+CHECK = CodeCheckFacts(
+    "flexible", "DNV-ST-F201", "combined loading", "D600", "combined_loading_utilisation", "ULS", "high"
+)
 FACTS = RunFacts(
     title="Touchdown on soft clay",
     version="0.1.0",
@@ -40,12 +45,18 @@ FACTS = RunFacts(
     soil_dofs=9000,
     sections=1,
     offsets=(-1.0, -0.5, 0.0, 0.5, 1.0),
+    code_checks={"": (CHECK,)},
 )
 SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 0.3}}\n"
 
 
 def _largest(arc: Array, values: Array) -> ExtremeAlong:
     return ExtremeAlong(float(values.max()), float(arc[values.argmax()]))
+
+
+def _code(arc: Array, used: Array) -> CodeSnapshot:
+    """One check of one line type, as if it were all of them."""
+    return CodeSnapshot(used, np.array([used.max()]), np.array([arc[used.argmax()]]), *(used,) * 9)
 
 
 def _wall(tension: Array, moment: Array) -> WallSnapshot:
@@ -98,6 +109,7 @@ class Catenary:
             end_tangent=top / np.linalg.norm(top),
             tension_utilisation=tension / 2.0e5,
             wall=_wall(tension, EI * curvature),
+            code=_code(arc, tension / 3.0e5 + 10.0 * curvature),
         )
 
     def seen(self, arc: Array) -> Instant:

@@ -21,6 +21,13 @@ LINE = Catenary(32.0, 30.0)
 END = {"position", "force", "resultant_force", "moment", "effective_tension", "angle_deg"}
 PLACE = "touchdown_position"
 SPAN = {"min", "max", "t_min", "t_max", "arc_min", "arc_max"}
+CODE = {
+    f"max_{name}_utilisation"
+    for name in (
+        *("code", "bursting", "hoop_buckling", "propagating_buckling", "combined_loading"),
+        *("bend_radius", "tension_limit", "compression", "crushing", "capacity_curve"),
+    )
+}
 WHOLE = {
     "touchdown_arc",
     "touchdown_points",
@@ -30,6 +37,7 @@ WHOLE = {
     "max_wall_von_mises_stress",
     "max_stress_utilisation",
     "max_embedment",
+    *CODE,
     "max_bending_moment",
     "max_curvature",
     "min_effective_tension",
@@ -73,11 +81,11 @@ def test_final_state_of_a_catenary() -> None:
 def test_what_is_unknown_is_left_out() -> None:
     unused = ExtremeAlong(math.nan, math.nan)
     riser = LINE.riser(ARC)._replace(wall_tension=None, largest_bend_utilisation=unused)
-    riser = riser._replace(tension_utilisation=None, wall=None)
+    riser = riser._replace(tension_utilisation=None, wall=None, code=None)
     touch, extremes = LINE.touch(ARC)._replace(embedment=None), Extremes()
     extremes.update(0.0, pack(Instant(ARC, riser, touch)))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
-    unknown |= {"max_tension_utilisation", "max_wall_von_mises_stress", "max_stress_utilisation"}
+    unknown |= {"max_tension_utilisation", "max_wall_von_mises_stress", "max_stress_utilisation", *CODE}
     for found in (final_state(Instant(ARC, riser, touch)), extremes.nested()):
         assert set(found) == {"start", "end", PLACE} | WHOLE - unknown
 
@@ -167,7 +175,7 @@ def test_never_touching_is_null(tmp_path: Path) -> None:
 
 
 def test_packing_and_unpacking_agree() -> None:
-    vector = np.arange(42.0)
+    vector = np.arange(52.0)
     nested = unpack(vector)
     assert nested["start"]["position"] == [0.0, 1.0, 2.0]
     assert nested["end"]["angle_deg"] == 23.0

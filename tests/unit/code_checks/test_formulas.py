@@ -1,0 +1,174 @@
+"""Formulas of codes against closed forms: equations that they solve, limits, and scaling."""
+
+import numpy as np
+import pytest
+
+from riser_soil.code_checks import api_std_2rd, capacity_curve, dnv_st_f201, flexible_pipe
+from riser_soil.code_checks.load_effects import LoadEffects, LoadFactors, SectionEffects, design_effects
+
+RNG = np.random.default_rng(7)
+
+
+def one(tension: float = 0.0, moment_y: float = 0.0, moment_z: float = 0.0) -> SectionEffects:
+    return SectionEffects(*(np.array([value]) for value in (tension, moment_y, moment_z)))
+
+
+@pytest.mark.parametrize(
+    ("functional", "environmental", "design"),
+    [
+        (100.0, 50.0, 1.1 * 100.0 + 1.3 * 50.0),
+        (100.0, -50.0, 1.1 * 100.0 - 50.0 / 1.3),  # the environment relieves
+        (100.0, -300.0, 1.3 * 300.0 - 100.0 / 1.1),  # what acts at rest relieves
+        (-100.0, -50.0, 1.1 * 100.0 + 1.3 * 50.0),
+    ],
+)
+def test_what_relieves_counts_with_one_over_its_factor(
+    functional: float, environmental: float, design: float
+) -> None:
+    effects = LoadEffects(one(functional, functional), one(environmental, environmental), one())
+    moment, tension = design_effects(effects, dnv_st_f201.LOAD_FACTORS["ULS"])
+    assert [moment[0], tension[0]] == pytest.approx([design, design])
+
+
+def test_moments_of_both_planes_add_as_vectors() -> None:
+    effects = LoadEffects(one(moment_y=30.0), one(moment_z=40.0), one())
+    moment, _ = design_effects(effects, LoadFactors(1.0, 1.0, 1.0))
+    assert moment[0] == pytest.approx(50.0)
+
+
+@pytest.mark.parametrize(("state", "factor"), [("ALS", 1.0), ("SLS", 1.0), ("ULS", 0.0), ("FLS", 0.0)])
+def test_accidental_effects_count_in_some_limit_states_alone(state: str, factor: float) -> None:
+    moment, _ = design_effects(LoadEffects(one(), one(), one(moment_y=9.0)), dnv_st_f201.LOAD_FACTORS[state])
+    assert moment[0] == pytest.approx(9.0 * factor)
+
+
+def test_collapse_resistance_is_the_least_positive_root() -> None:
+    for _ in range(50):
+        p_el, p_p, f0, slender = RNG.uniform([1e6, 1e6, 0.005, 15.0], [1e8, 1e8, 0.03, 45.0])
+        roots = np.roots([1.0, -p_el, -(p_p**2 + p_el * p_p * f0 * slender), p_el * p_p**2])
+        least = min(root.real for root in roots if root.real > 0.0)
+        found = dnv_st_f201.collapse_resistance(p_el, p_p, f0, slender, 1.0)
+        assert found == pytest.approx(least, rel=1e-9)
+        assert found < min(p_el, p_p)
+
+
+def test_a_round_pipe_collapses_at_the_lower_of_both_pressures() -> None:
+    assert dnv_st_f201.collapse_resistance(4e6, 9e6, 0.0, 20.0, 1.0) == pytest.approx(4e6, rel=1e-6)
+    assert dnv_st_f201.collapse_resistance(9e6, 4e6, 0.0, 20.0, 1.0) == pytest.approx(4e6, rel=1e-6)
+
+
+@pytest.mark.parametrize(("slender", "share"), [(10.0, 0.4), (15.0, 0.4), (37.5, 0.2), (60.0, 0.0), (80.0, 0.0)])
+def test_flow_stress_between_yield_and_tensile_strength(slender: float, share: float) -> None:
+    """D/t below 15 counts as 15, above 60 there is no hardening."""
+    alpha_c = dnv_st_f201.flow_stress_parameter(slender, 1.0, 400.0, 500.0, -5.0, 30.0)
+    assert alpha_c == pytest.approx(1.0 + 0.25 * share)
+
+
+def test_strength_in_bursting_is_the_lower_of_yield_and_reduced_tensile() -> None:
+    by_yield = dnv_st_f201.bursting_resistance(11.0, 1.0, 400.0, 500.0)
+    assert by_yield == pytest.approx(2.0 / np.sqrt(3.0) * 2.0 / 10.0 * 400.0)
+    by_tensile = dnv_st_f201.bursting_resistance(11.0, 1.0, 460.0, 500.0)
+    assert by_tensile == pytest.approx(2.0 / np.sqrt(3.0) * 0.2 * 500.0 / 1.15)
+
+
+def test_pressures_that_relieve_use_nothing() -> None:
+    assert dnv_st_f201.bursting(1.0, 2.0, 5.0, 1.3) == 0.0
+    assert dnv_st_f201.hoop_buckling(1.0, 2.0, 5.0, 1.3) == 0.0
+    assert dnv_st_f201.propagating_buckling(1.0, 2.0, 5.0, 1.3) == 0.0
+    assert api_std_2rd.overpressure(1.0, 2.0, 5.0, 0.6) == 0.0
+
+
+def test_combined_loading_at_its_corners() -> None:
+    """Each load alone at its resistance over the factors is allowed, and no more."""
+    gamma = 1.15 * 1.26
+    assert dnv_st_f201.combined_internal(1.0 / gamma, 0.0, 0.0, 1.0, gamma) == pytest.approx(1.0)
+    assert dnv_st_f201.combined_internal(0.0, gamma**-0.5, 0.0, 1.0, gamma) == pytest.approx(1.0)
+    assert dnv_st_f201.combined_internal(0.0, 0.0, 1.0, 1.0, gamma) == pytest.approx(1.0)
+    assert dnv_st_f201.combined_external(1.0 / gamma, 0.0, 0.0, 1.0, gamma) == pytest.approx(1.0)
+    assert dnv_st_f201.combined_external(0.0, gamma**-0.5, 0.0, 1.0, gamma) == pytest.approx(1.0)
+    assert dnv_st_f201.combined_external(0.0, 0.0, 1.0 / gamma, 1.0, gamma) == pytest.approx(1.0)
+
+
+def test_a_pipe_beyond_bursting_is_overused_whatever_bends_it() -> None:
+    assert dnv_st_f201.combined_internal(0.0, 0.0, 1.2, 1.0, 1.3) == pytest.approx(1.44)
+
+
+def test_collapse_pressure_between_yield_and_elastic_one() -> None:
+    assert api_std_2rd.collapse_pressure(3.0, 4.0) == pytest.approx(12.0 / 5.0)
+    assert api_std_2rd.yield_collapse_pressure(20.0, 1.0, 450.0) == pytest.approx(45.0)
+
+
+def test_yield_and_plastic_resistances_of_a_thin_ring() -> None:
+    """Of a ring of mean radius r: T = 2 pi r t S, M_y = pi r^2 t S, M_p = 4 r^2 t S."""
+    r, t, S = 5.0, 0.01, 400.0
+    D = 2.0 * r + t
+    assert api_std_2rd.yield_tension(D, t, S) == pytest.approx(2.0 * np.pi * r * t * S)
+    assert api_std_2rd.yield_moment(D, t, S) == pytest.approx(np.pi * r**2 * t * S)
+    assert api_std_2rd.plastic_moment(D, t, S) == pytest.approx(4.0 * r**2 * t * S)
+
+
+def test_method_1_is_met_on_its_line() -> None:
+    q, F = 0.3, 0.8
+    allowed = np.sqrt(F**2 - q**2)
+    tension = np.linspace(0.0, allowed, 9)
+    assert api_std_2rd.method_1(tension, allowed - tension, q, F) == pytest.approx(np.ones(9))
+
+
+def test_method_2_is_met_on_its_curve() -> None:
+    q, F = 0.3, 0.8
+    s = np.sqrt(F**2 - q**2)
+    tension = np.linspace(0.0, s, 9)
+    moment = s * np.cos(0.5 * np.pi * tension / s)
+    assert api_std_2rd.method_2(tension, moment, q, F) == pytest.approx(np.ones(9))
+
+
+def test_both_methods_grow_in_proportion_to_the_loads() -> None:
+    tension, moment, q = RNG.uniform(0.01, 0.5, (3, 40))
+    for method in (api_std_2rd.method_1, api_std_2rd.method_2):
+        assert method(2.5 * tension, 2.5 * moment, 2.5 * q, 0.8) == pytest.approx(2.5 * method(tension, moment, q, 0.8))
+
+
+def test_method_2_allows_more_than_method_1() -> None:
+    """M_p = 4/pi M_y, and the cosine lies above the line."""
+    tension, moment, q = RNG.uniform(0.0, 0.5, (3, 40))
+    second = api_std_2rd.method_2(tension, 0.25 * np.pi * moment, q, 0.8)
+    assert (second <= api_std_2rd.method_1(tension, moment, q, 0.8) + 1e-12).all()
+
+
+def test_no_loads_use_nothing_by_both_methods() -> None:
+    assert api_std_2rd.method_1(0.0, 0.0, 0.0, 0.8) == 0.0
+    assert api_std_2rd.method_2(0.0, 0.0, 0.0, 0.8) == 0.0
+
+
+def test_limits_of_flexible_pipe() -> None:
+    assert flexible_pipe.bend_radius(0.1, 5.0) == pytest.approx(0.5)
+    assert flexible_pipe.tension(np.array([200.0, -50.0]), 400.0) == pytest.approx([0.5, 0.0])
+    assert flexible_pipe.compression(np.array([200.0, -50.0]), 100.0) == pytest.approx([0.0, 0.5])
+    assert flexible_pipe.crushing(np.array([30.0, -5.0]), 60.0) == pytest.approx([0.5, 0.0])
+
+
+CURVE = np.array([[-2.0e4, 0.1], [0.0, 0.4], [1.0e5, 0.3], [2.0e5, 0.0]])
+
+
+def test_capacity_curve_is_used_up_on_itself() -> None:
+    first, second = CURVE[:-1, None], CURVE[1:, None]
+    share = np.linspace(0.0, 1.0, 5)[:, None]
+    T, kappa = np.moveaxis(first + share * (second - first), -1, 0)
+    assert capacity_curve.utilisation(T, kappa, CURVE) == pytest.approx(np.ones((3, 5)))
+    assert capacity_curve.utilisation(2.0 * T, 2.0 * kappa, CURVE) == pytest.approx(2.0 * np.ones((3, 5)))
+    assert capacity_curve.utilisation(np.zeros(1), np.zeros(1), CURVE) == pytest.approx([0.0])
+
+
+def test_capacity_curve_bounds_tension_and_compression_alone() -> None:
+    used = capacity_curve.utilisation(np.array([1.0e5, -1.0e4, -4.0e4]), np.zeros(3), CURVE)
+    assert used == pytest.approx([0.5, 0.5, 2.0])
+
+
+def test_capacity_curve_from_no_tension_says_nothing_of_compression() -> None:
+    used = capacity_curve.utilisation(np.array([-1.0e6, -1.0e6]), np.array([0.0, 0.2]), CURVE[1:])
+    assert used == pytest.approx([0.0, 0.5])
+
+
+def test_capacity_curve_with_an_upright_end() -> None:
+    curve = np.array([[0.0, 0.4], [1.0e5, 0.2]])
+    assert capacity_curve.utilisation(np.array([2.0e5]), np.array([0.1]), curve) == pytest.approx([2.0])
