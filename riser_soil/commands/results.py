@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -107,26 +107,65 @@ def plot(
 
 
 def report(
-    folders: Annotated[
-        list[Path], typer.Argument(metavar="RUN…", help="folders of runs; several are put side by side")
+    sources: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="REPORT|FOLDER…",
+            help="report file (.yaml); or folders of runs, cases, fatigue and modes, known by their files",
+        ),
     ],
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="FILE", help="the page; by default report.html")
-    ] = Path("report.html"),
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="a .html, .pdf or .docx; by default report.html"),
+    ] = None,
     stage: Annotated[
-        str | None, typer.Option("--stage", metavar="NAME", help="the stage that is drawn; by default all dynamic ones")
+        str | None, typer.Option("--stage", metavar="NAME", help="load step that is drawn; by default the last in time")
+    ] = None,
+    title: Annotated[str | None, typer.Option("--title", help="on the cover; by default that of the first run")] = None,
+    client: Annotated[str | None, typer.Option("--client", help="for whom it is written")] = None,
+    document: Annotated[str | None, typer.Option("--document", help="document number")] = None,
+    revision: Annotated[str | None, typer.Option("--revision", help="revision")] = None,
+    author: Annotated[list[str] | None, typer.Option("--author", help="who prepared it; may be repeated")] = None,
+    checked: Annotated[str | None, typer.Option("--checked", help="who checked it")] = None,
+    approved: Annotated[str | None, typer.Option("--approved", help="who approved it")] = None,
+    logo: Annotated[Path | None, typer.Option("--logo", metavar="FILE", help="picture for the cover")] = None,
+    statistics: Annotated[
+        list[Path] | None,
+        typer.Option("--statistics", metavar="FILE", help=".json of riser-soil statistics; may be repeated"),
+    ] = None,
+    reference: Annotated[
+        str | None, typer.Option("--reference", metavar="CASE", help="case that sensitivities count from")
+    ] = None,
+    required_life: Annotated[
+        float | None, typer.Option("--required-life", metavar="YEARS", help="that the pipe must last")
+    ] = None,
+    design_fatigue_factor: Annotated[
+        float | None, typer.Option("--design-fatigue-factor", help="DFF, on the required life")
     ] = None,
 ) -> None:
-    """Report runs on one HTML page: scene, warnings, extremes, pictures, energy, solver, how to reproduce them."""
+    """Write a design report of runs, load cases, fatigue, statistics and modes, as HTML, PDF or Word document."""
     with expected_errors():
+        if rank() > 0:
+            return
         from riser_soil.plots.progress import DrawingProgress
         from riser_soil.report.report import write_report
+        from riser_soil.report.report_file import of_folders, read_report_file
 
-        if output.suffix not in (".html", ".htm"):
-            raise ResultsError(f"{output}: a report is an .html file; change its ending")
+        options: dict[str, Any] = {
+            "title": title, "client": client, "document": document, "revision": revision, "authors": author,
+            "checked": checked, "approved": approved, "logo": logo and str(logo),
+            "statistics": statistics and [str(each) for each in statistics], "reference": reference,
+            "required_life": required_life, "design_fatigue_factor": design_fatigue_factor, "stage": stage,
+        }  # fmt: skip
+        asked = {key: value for key, value in options.items() if value is not None}
+        files = [each for each in sources if each.suffix in (".yaml", ".yml") and not each.is_dir()]
+        if files and len(sources) > 1:
+            raise ResultsError(f"{files[0]}: a report file stands alone; name the folders in it")
+        given = read_report_file(files[0], asked) if files else of_folders(sources, asked)
+        file = output or (files[0].with_suffix(".html") if files else Path("report.html"))
         with DrawingProgress() as progress:
-            page = write_report(folders, output, stage, progress.tell)
-        typer.echo(page)
+            made = write_report(given, file, progress.tell)
+        typer.echo(made)
 
 
 def fatigue(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from riser_soil.results.cycles import dynamic_stage
 from riser_soil.riser.wall_stress import Wall
 
 FEW_RECORDS = 10.0  # in a mean period: a sine's turns are missed by up to 1 - cos(pi/10) = 5 % of its amplitude
+_WAVES = ("airy", "jonswap", "pierson_moskowitz", "regular")
 LARGE_SCATTER = 0.2  # standard error of a case's damage by that of its quarters
 
 
@@ -29,6 +30,7 @@ class CaseDamage:
     seconds: counted. period [s] and records: of the stress where all cases together damage most: its mean time between
     upward crossings of its mean, inf for fewer than two of them, and how many records that has; scatter: relative
     standard error of the damage there. touchdown: least and greatest arc length [m], nan where nothing touches.
+    sea: height [m], period [s] and direction [deg] of the waves, of a scene with one train of them.
     """
 
     case: FatigueCase
@@ -38,6 +40,7 @@ class CaseDamage:
     records: float
     scatter: float
     touchdown: tuple[float, float]
+    sea: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +141,18 @@ def _case(
     known = touchdown[np.isfinite(touchdown)]
     zone = (float(known.min()), float(known.max())) if known.size else (np.nan, np.nan)
     scatter = standard_error(history, how, section, point)
-    return CaseDamage(case, per_year, history.duration, period, records, scatter, zone)
+    return CaseDamage(case, per_year, history.duration, period, records, scatter, zone, _sea(run))
+
+
+def _sea(run: Run) -> dict[str, float]:
+    """Height, period and direction of the waves of a run's scene; nothing where it has several trains, or none."""
+    waves = (run.scene.get("water") or {}).get("waves") or {}
+    trains = [train for name, train in waves.items() if name in _WAVES and train]
+    if len(trains) != 1:
+        return {}
+    keys = {"height": ("Hs", "height"), "period": ("Tp", "period"), "direction_deg": ("direction_deg",)}
+    found = {key: next((trains[0][name] for name in names if name in trains[0]), None) for key, names in keys.items()}
+    return {key: float(value) for key, value in found.items() if value is not None}
 
 
 def _doubts(each: CaseDamage) -> Iterator[str]:
@@ -157,6 +171,6 @@ def _doubts(each: CaseDamage) -> Iterator[str]:
     if each.scatter > LARGE_SCATTER:
         yield (
             f"{name}: the damage of its quarters, {0.25 * each.seconds:.4g} s each, differs so much that its own is "
-            f"uncertain by some {each.scatter:.0%} (standard error, told above {LARGE_SCATTER:.0%}); simulate longer "
+            f"uncertain by some {each.scatter:.0%} (standard error, more than {LARGE_SCATTER:.0%}); simulate longer "
             "or skip more"
         )

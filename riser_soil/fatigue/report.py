@@ -73,6 +73,7 @@ def as_dict(found: YearlyDamage) -> dict[str, Any]:
             "standard_error": each.scatter,
             "damage_per_year": float(each.per_year[section, point]),
             "touchdown_arc": list(each.touchdown),
+            "sea": dict(each.sea),
         }
         for each in found.cases
     ]
@@ -131,8 +132,10 @@ def result_lines(found: YearlyDamage) -> list[str]:
 
 
 def _draw(png: Path, found: YearlyDamage) -> None:
-    from riser_soil.plots.load_cases import draw_damage
+    from riser_soil.plots.fatigue_life import Damage, draw_damage
 
-    zone = np.array([each.touchdown for each in found.cases])
+    zone, given = np.array([each.touchdown for each in found.cases]), found.given
     reach = (np.nanmin(zone), np.nanmax(zone)) if np.isfinite(zone).any() else None
-    draw_damage(png, found.arc, np.degrees(found.how.angles), found.per_year, reach, result_lines(found)[:3])
+    required = None if given.design_life is None else given.design_life * given.design_fatigue_factor
+    damage = Damage(found.arc, np.degrees(found.how.angles), found.per_year, reach, required)
+    draw_damage(png, damage, result_lines(found)[:3])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -10,14 +9,17 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from riser_soil.errors import ResultsError
 from riser_soil.plots import film, histories, picture
-from riser_soil.plots.curves import save, sheet
+from riser_soil.plots.bodies import pipe_radius
+from riser_soil.plots.curves import PAGE, STYLE, save, sheet
 from riser_soil.plots.progress import Tell, in_turn, silent
 from riser_soil.plots.ranges import names, range_sheet
-from riser_soil.plots.shape import snapshots
+from riser_soil.plots.shape import seabed_under, snapshots
 from riser_soil.results import Run
 from riser_soil.results.stage_records import StageRecords, stage_records
 from riser_soil.results.whole_file import refuse_file, written_whole
@@ -26,17 +28,28 @@ FORMATS = ("png", "svg", "pdf")
 GROUPS = ("ranges", "histories", "shape", "soil", "energy", "solver", "touchdown", "film")
 _ALONE = {"touchdown": "touchdown.png", "film": "film.gif"}  # drawn by a process of their own, in one format
 _UNASKED = ("touchdown",)  # of these
-_TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A sheet of curves: the name of its file without ending, its group, its caption, and how it is drawn."""
+    """A sheet of curves of a stage: the name of its file without ending, its group, its caption, how it is drawn."""
 
     name: str
     group: str
     caption: str
-    draw: Callable[[], Figure]
+    stage: StageRecords
+    sheet: Callable[[StageRecords], Figure]
+
+    def bare(self) -> Figure:
+        """The sheet without a title, for where its caption stands below."""
+        return self.sheet(self.stage)
+
+    def draw(self) -> Figure:
+        """The sheet with the run's title, in the style of a page."""
+        with rc_context(STYLE):
+            figure = self.sheet(self.stage)
+            figure.suptitle(f"{self.stage.run.summary['title']}: {when(self.stage)}")
+        return figure
 
 
 def pictures(stage: StageRecords) -> list[Picture]:
@@ -91,7 +104,7 @@ def _check(what: Sequence[str], there: Sequence[Picture]) -> None:
 def _ranges(stage: StageRecords) -> Iterator[Picture]:
     for name in names(stage):
         caption = f"{name.replace('_', ' ')} along the riser: {when(stage)}"
-        yield Picture(f"range_{name}", "ranges", caption, partial(_titled, stage, partial(range_sheet, name=name)))
+        yield Picture(f"range_{name}", "ranges", caption, stage, partial(range_sheet, name=name))
 
 
 def _others(stage: StageRecords) -> Iterator[Picture]:
@@ -100,7 +113,7 @@ def _others(stage: StageRecords) -> Iterator[Picture]:
         yield _sheet(stage, "history_ends", "histories", "ends in time", histories.ends)
         if _touches(stage):
             yield _sheet(stage, "history_touchdown", "histories", "touchdown and contact in time", histories.touchdown)
-        words = "least tension and smallest bend radius in time"
+        words = "minimum effective tension and minimum bend radius in time"
         yield _sheet(stage, "history_extremes", "histories", words, histories.least_and_tightest)
     yield _sheet(stage, "shape", "shape", "shape of the riser", snapshots)
     if has_trough(stage):
@@ -117,13 +130,7 @@ def _touches(stage: StageRecords) -> bool:
 def _sheet(
     stage: StageRecords, name: str, group: str, words: str, draw: Callable[[StageRecords], Figure]
 ) -> Picture:
-    return Picture(name, group, f"{words}: {when(stage)}", partial(_titled, stage, draw))
-
-
-def _titled(stage: StageRecords, draw: Callable[[StageRecords], Figure]) -> Figure:
-    figure = draw(stage)
-    figure.suptitle(f"{stage.run.summary['title']}: {when(stage)}", fontsize="medium")
-    return figure
+    return Picture(name, group, f"{words}: {when(stage)}", stage, draw)
 
 
 def when(stage: StageRecords) -> str:
@@ -146,40 +153,56 @@ def _drawn_alone(name: str, stage: StageRecords, file: Path, asked: bool, tell: 
         return None, f"no {name}: {err}"
 
 
-def embedded(figure: Figure) -> str:
-    """A sheet of curves as SVG, whose letters are drawn: no font is needed where it is looked at."""
-    return _drawn(".svg", lambda file: save(figure, file))
+@dataclass(frozen=True, eq=False)
+class TouchdownView:
+    """The picture of the touchdown zone at a run's end, which a process of its own draws as PNG."""
 
+    run: Run
+    endings: tuple[str, ...] = (".png",)
 
-def embedded_png(draw: Callable[[Path], object]) -> str:
-    """What `draw` writes to a PNG file."""
-    return _drawn(".png", draw)
-
-
-def _drawn(ending: str, draw: Callable[[Path], object]) -> str:
-    with tempfile.TemporaryDirectory() as place:
-        file = Path(place) / f"picture{ending}"
-        draw(file)
-        return f"data:{_TYPES[ending]};base64,{base64.b64encode(file.read_bytes()).decode()}"
+    def content(self, ending: str) -> bytes:
+        """Bytes of a PNG file; ResultsError where it can't be drawn."""
+        with tempfile.TemporaryDirectory() as place:
+            return picture(self.run.place, Path(place) / f"touchdown{ending}").read_bytes()
 
 
 def trough(stage: StageRecords) -> Figure:
-    """Settlement of the soil's surface across the riser, as the stage begins and ends, and the deepest in between."""
+    """Settlement of the soil's surface across the riser, as the stage begins and ends, and the deepest in between, with
+    the outline of the pipe where it is at the end.
+    """
     settlement, offset = 1e3 * stage["settlement_across"], stage.run["offset"]
     arc = stage["section_arc"][-1]
-    figure, panels = sheet(1, len(arc), width=max(6.0, 4.0 * len(arc)))
-    for n, axes in enumerate(panels):
+    figure, panels = sheet(-(-len(arc) // 2), min(len(arc), 2), width=PAGE, height=2.8)
+    for axes in panels[len(arc) :]:
+        axes.remove()
+    for n, axes in enumerate(panels[: len(arc)]):
         if stage.moves:
-            axes.plot(offset, settlement[0, n], color="0.5", label="as the stage begins")
+            axes.plot(offset, settlement[0, n], color="0.5", label="as the load step begins")
         axes.plot(offset, settlement[-1, n], color="C0", label="at its end")
         if stage.moves:
             deepest = settlement[:, n].max(axis=0)
             axes.plot(offset, deepest, color="C3", linestyle=":", label="deepest")
+        _draw_pipe(axes, stage, n)
         axes.invert_yaxis()
-        axes.set(title=f"section at arc {arc[n]:.4g} m", xlabel="offset to the left of the riser [m]")
-    panels[0].set_ylabel("settlement of the soil's\nsurface [mm], + down")
-    panels[0].legend(fontsize="small")
+        axes.set(title=f"section at arc {arc[n]:.4g} m", xlabel="distance to the left of the riser [m]")
+        if n % 2 == 0:
+            axes.set_ylabel("settlement of the soil's\nsurface [mm], + down")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
+
+
+def _draw_pipe(axes: Axes, stage: StageRecords, section: int) -> None:
+    """The pipe's underside at the stage's end, as far as it is beside the settled surface."""
+    place, r = stage["section_position"][-1, section], pipe_radius(stage.run)
+    level = seabed_under(stage.run, place[None])
+    if level is None or not np.isfinite(place).all():
+        return
+    low, high = axes.get_ylim()
+    x = r * np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 181))
+    below = 1e3 * (level[0] - place[2] + np.sqrt(r**2 - x**2))
+    axes.plot(x, below, color="k", linewidth=1.6, label="underside of the pipe at the end")
+    room = 0.1 * abs(high - low)
+    axes.set_ylim(min(low, high) - room, max(low, high, float(below.max())) + room)
 
 
 def has_trough(stage: StageRecords) -> bool:

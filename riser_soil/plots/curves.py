@@ -6,7 +6,9 @@ make and write a figure. Records are counted as in results.nc: 0 is the first, â
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import io
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,10 @@ from riser_soil.results.stage_records import along, reactions
 ALONG_ARC: dict[str, tuple[str, float]] = {
     **{output.name: axis_words(output.text, output.units) for output in ALONG_RISER if not output.vector},
     "effective_tension": ("effective tension [kN], + pulls", 1e-3),
+    "wall_tension": ("true wall tension [kN], + pulls", 1e-3),
+    "stress_utilisation": ("von Mises stress over the allowable stress [-]", 1.0),
+    "bend_utilisation": ("allowable over actual bend radius [-]", 1.0),
+    "tension_utilisation": ("effective tension over the allowable tension [-]", 1.0),
     "bending_moment": ("bending moment, magnitude [kN m]", 1e-3),
     "curvature": ("curvature, magnitude [1/m]", 1.0),
     "contact_force": ("contact force per length [kN/m], + pushes", 1e-3),
@@ -39,7 +45,15 @@ _REACTIONS = {
     "V1": "V at the start [kN], + upwards",
     "V2": "V at the end [kN], + upwards",
 }
-ARC, TIME = "arc length from the start [m]", "time [s]"
+BELOW: dict[str, Any] = {  # a legend of many names, below the panel
+    "loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 4, "frameon": False, "fontsize": "small",
+}  # fmt: skip
+ARC, TIME = "arc length from end A, the start [m]", "time [s]"
+PAGE = 6.7  # in, width of the text on A4: pictures of this width are printed as large as they are
+STYLE: dict[str, Any] = {  # of pictures of this width; "small" is 7.5 pt then, the least that reads well on paper
+    "font.size": 9.0, "axes.labelsize": 8.5, "axes.titlesize": 9.0, "xtick.labelsize": 8.0, "ytick.labelsize": 8.0,
+    "legend.fontsize": 7.5, "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.2,
+}  # fmt: skip
 
 
 def sheet(rows: int, columns: int, width: float = 9.0, height: float = 3.2) -> tuple[Figure, list[Axes]]:
@@ -51,12 +65,30 @@ def sheet(rows: int, columns: int, width: float = 9.0, height: float = 3.2) -> t
     return figure, list(panels.flat)
 
 
+_UNSTAMPED = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+
+
 def save(figure: Figure, file: Path | str) -> Path:
     """In the format of the file's ending: PNG, SVG or PDF; the same run gives the same file, but for the library."""
-    unstamped = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with rc_context({"svg.hashsalt": "riser_soil"}):
-        figure.savefig(file, dpi=120, metadata=unstamped.get(Path(file).suffix))
+        figure.savefig(file, dpi=120, metadata=_UNSTAMPED.get(Path(file).suffix))
     return Path(file)
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """A sheet of curves that is drawn when its content is asked for, in the style of a printed page."""
+
+    draw: Callable[[], Figure]
+    endings: tuple[str, ...] = (".svg", ".png")
+    dpi: int = 200
+
+    def content(self, ending: str) -> bytes:
+        """Bytes of a file with this ending; letters of an SVG are drawn, so that no font is needed."""
+        stream = io.BytesIO()
+        with rc_context(STYLE | {"svg.hashsalt": "riser_soil"}):
+            self.draw().savefig(stream, format=ending[1:], dpi=self.dpi, metadata=_UNSTAMPED.get(ending))
+        return stream.getvalue()
 
 
 def shapes(axes: Axes, run: Run, at: Sequence[int] = (-1,), labels: Sequence[str] = (), **style: Any) -> None:

@@ -8,33 +8,34 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from riser_soil.core.arrays import Array
-from riser_soil.plots.curves import TIME, sheet
+from riser_soil.plots.curves import PAGE, TIME, sheet
 from riser_soil.results.stage_records import StageRecords, along
 
 _STILL = 1e-9  # of the riser's length: an end that moves less stays
+_ENDS = (("start", 0, "end A"), ("end", -1, "end B"))
 _ENERGIES = {
     "kinetic_energy": "kinetic",
     "strain_energy": "elastic",
     "potential_energy": "potential",
     "dissipated": "dissipated",
-    "work": "put in",
+    "work": "work",
 }
 _SIZES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"))
 
 
 def ends(stage: StageRecords) -> Figure:
-    """Motion of both ends since the stage began, effective tension there, and what the supports exert."""
-    figure, (moved, tension, upright, level) = sheet(4, 1, height=2.1)
+    """Motion of both ends since the load step began, effective tension there, and what the supports exert."""
+    figure, (moved, tension, upright, level) = sheet(4, 1, width=PAGE, height=1.75)
     position, t = stage["position"], stage.time
     direction = along(stage.run["position"][0])
     _draw_motion(moved, t, position)
-    for n, (name, at) in enumerate((("start", 0), ("end", -1))):
+    for n, (name, at, label) in enumerate(_ENDS):
         force = stage[f"{name}_force"]
         toward = -1.0 if name == "start" else 1.0
-        tension.plot(t, 1e-3 * stage["effective_tension"][:, at], color=f"C{n}", label=name)
-        upright.plot(t, 1e-3 * force[:, 2], color=f"C{n}", label=name)
-        level.plot(t, 1e-3 * toward * (force @ direction), color=f"C{n}", label=name)
-    _name(moved, "moved since the\nstage began [m]")
+        tension.plot(t, 1e-3 * stage["effective_tension"][:, at], color=f"C{n}", label=label)
+        upright.plot(t, 1e-3 * force[:, 2], color=f"C{n}", label=label)
+        level.plot(t, 1e-3 * toward * (force @ direction), color=f"C{n}", label=label)
+    _name(moved, "displacement\nof the ends [m]")
     _name(tension, "effective tension\n[kN], + pulls")
     _name(upright, "support's vertical\nforce [kN], + up")
     _name(level, "support's horizontal\nforce [kN], + taut")
@@ -43,7 +44,7 @@ def ends(stage: StageRecords) -> Figure:
 
 def touchdown(stage: StageRecords) -> Figure:
     """Arc length of the touchdown point, contact force and deepest penetration."""
-    figure, (arc, force, deep) = sheet(3, 1, height=2.1)
+    figure, (arc, force, deep) = sheet(3, 1, width=PAGE, height=1.75)
     arc.plot(stage.time, stage["touchdown_arc"])
     force.plot(stage.time, 1e-3 * stage["contact_force_sum"][:, 2])
     deep.plot(stage.time, 1e3 * stage["max_penetration"])
@@ -54,23 +55,26 @@ def touchdown(stage: StageRecords) -> Figure:
 
 
 def least_and_tightest(stage: StageRecords) -> Figure:
-    """Least effective tension and smallest bend radius along the riser, with their places."""
-    figure, panels = sheet(4, 1, height=1.8)
-    tension, of_tension, radius, of_radius = panels
-    tension.plot(stage.time, 1e-3 * stage["min_effective_tension"])
-    of_tension.plot(stage.time, stage["min_effective_tension_arc"], ".", markersize=3)
-    radius.plot(stage.time, stage["min_bend_radius"])
-    of_radius.plot(stage.time, stage["min_bend_radius_arc"], ".", markersize=3)
-    _name(tension, "least effective\ntension [kN]")
-    _name(of_tension, "its arc\nlength [m]")
-    _name(radius, "smallest bend\nradius [m]")
-    _name(of_radius, "its arc\nlength [m]")
+    """Minimum effective tension and bend radius along the riser, the least of each marked with its time and place."""
+    figure, panels = sheet(2, 1, width=PAGE, height=2.1)
+    for axes, name, factor, unit, words in (
+        (panels[0], "min_effective_tension", 1e-3, "kN", "minimum effective\ntension [kN]"),
+        (panels[1], "min_bend_radius", 1.0, "m", "minimum bend\nradius (MBR) [m]"),
+    ):
+        values, arcs = factor * stage[name], stage[f"{name}_arc"]
+        axes.plot(stage.time, values)
+        if np.isfinite(values).any():
+            n = int(np.nanargmin(values))
+            axes.plot(stage.time[n], values[n], "o", color="C3", markersize=4.0)
+            at = f"{values[n]:.4g} {unit} at {stage.time[n]:.4g} s, arc length {arcs[n]:.4g} m"
+            axes.set_title(at, loc="right", color="C3", fontsize="small")
+        _name(axes, words)
     return _in_time(figure)
 
 
 def energy(stage: StageRecords) -> Figure:
     """Energy stored, dissipated and put in since the stage began; the balance's residual over what was turned over."""
-    figure, (stored, residual) = sheet(2, 1, height=2.6)
+    figure, (stored, residual) = sheet(2, 1, width=PAGE, height=2.1)
     of_step = stage.run["step_stage"] == stage.number
     t = stage.run["step_time"][of_step]
     curves = {words: stage.run[name][of_step] for name, words in _ENERGIES.items()}
@@ -83,13 +87,13 @@ def energy(stage: StageRecords) -> Figure:
     _name(stored, f"energy [{unit}]")
     above = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0)}
     stored.legend(fontsize="small", ncols=5, frameon=False, **above)
-    _name(residual, "residual, % of what\nwas turned over")
+    _name(residual, "residual, % of the\nlargest energy")
     return _in_time(figure)
 
 
 def solver(stage: StageRecords) -> Figure:
     """Newton iterations, time step and failed attempts of every step."""
-    figure, (iterations, length, cuts) = sheet(3, 1, height=1.7)
+    figure, (iterations, length, cuts) = sheet(3, 1, width=PAGE, height=1.5)
     of_step = stage.run["step_stage"] == stage.number
     t = stage.run["step_time"][of_step]
     for axes, name, words in (
@@ -116,11 +120,11 @@ def compare(axes: Axes, stages: dict[str, StageRecords], values: dict[str, Array
 
 def _draw_motion(axes: Axes, t: Array, position: Array) -> None:
     length = float(np.ptp(position, axis=(0, 1)).max())
-    for name, at in (("start", 0), ("end", -1)):
+    for _, at, label in _ENDS:
         moved = position[:, at] - position[0, at]
         for axis, direction in enumerate("xyz"):
             if np.ptp(moved[:, axis]) > _STILL * length:
-                axes.plot(t, moved[:, axis], label=f"{name}, {direction}")
+                axes.plot(t, moved[:, axis], label=f"{label}, {direction}")
 
 
 def _name(axes: Axes, words: str) -> None:

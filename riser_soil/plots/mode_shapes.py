@@ -8,16 +8,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from riser_soil.core.arrays import Array
-from riser_soil.plots.curves import save, sheet
+from riser_soil.plots.curves import ARC, PAGE, STYLE, save, sheet
 
 LineMoved = tuple[Array, Array, Array]  # arc (nn,), position (nn, 3) at rest [m], displacements (n, nn, 3)
 STYLES = ("-", "--", ":", "-.")  # of lines in turn
-WITHIN: dict[str, Any] = {"fontsize": 7, "loc": "upper right"}  # legends: within the panel, of many curves above it
+WITHIN: dict[str, Any] = {"fontsize": 7.5, "loc": "upper right"}  # legends: within the panel, of many curves above it
 ABOVE: dict[str, Any] = {
-    "fontsize": 6, "loc": "lower right", "bbox_to_anchor": (1.0, 0.98), "ncols": 9, "columnspacing": 0.8,
+    "fontsize": 7.5, "loc": "lower right", "bbox_to_anchor": (1.0, 0.98), "ncols": 9, "columnspacing": 0.8,
     "frameon": False, "handlelength": 1.5, "handletextpad": 0.4,
 }  # fmt: skip
 COMPONENTS = ("x", "y", "z")
@@ -30,21 +32,29 @@ def draw_modes(png: Path, lines: Mapping[str, LineMoved], titles: Sequence[str])
 
     lines: by name, "" the only one; their displacements are at most 1.
     """
-    figure, panels = sheet(len(titles), 2, width=10.0, height=2.3)
+    with rc_context(STYLE):
+        return save(mode_sheet(lines, titles), png)
+
+
+def mode_sheet(lines: Mapping[str, LineMoved], titles: Sequence[str]) -> Figure:
+    """The same as a figure."""
+    figure, panels = sheet(len(titles), 2, width=PAGE, height=1.8)
     position = np.concatenate([place for _, place, _ in lines.values()])
     horizontal = _horizontal(position)
     for n, (title, left, right) in enumerate(zip(titles, panels[::2], panels[1::2], strict=True)):
         _draw_view(left, [(place, shape[n]) for _, place, shape in lines.values()], position, horizontal)
-        left.set_title(title, fontsize=9, loc="left")
+        left.set_title(title, loc="left")
         for (name, (arc, _, shape)), style in zip(lines.items(), cycle(STYLES)):
             for component, axis in enumerate(COMPONENTS):
                 if np.abs(shape[n, :, component]).max() > UNSEEN:
                     right.plot(arc, shape[n, :, component], f"C{component}{style}", label=f"{name} {axis}".strip())
-        right.set_xlabel("arc length from the start [m]", fontsize=8)
-        right.set_ylabel("displacement\nover the largest [-]", fontsize=8)
+        right.set_xlabel(ARC)
+        right.set_ylabel("displacement\nover the largest [-]")
         if right.lines:
             right.legend(**(ABOVE if len(lines) > 1 else WITHIN))
-    return save(figure, png)
+    for axes in panels[:-2]:
+        axes.set_xlabel("")
+    return figure
 
 
 def _draw_view(axes: Axes, lines: Sequence[tuple[Array, Array]], position: Array, horizontal: Array) -> None:
@@ -60,8 +70,8 @@ def _draw_view(axes: Axes, lines: Sequence[tuple[Array, Array]], position: Array
         for place, moves in lines:
             seen = place + factor * moves - origin
             axes.plot(seen @ horizontal, seen @ upwards, style, linewidth=0.9)
-    axes.set_xlabel("horizontal distance from the start [m]", fontsize=8)
-    axes.set_ylabel("from above:\nto the left [m]" if above else "z [m], upwards", fontsize=8)
+    axes.set_xlabel("horizontal distance from the start [m]")
+    axes.set_ylabel("from above:\nto the left [m]" if above else "z [m], upwards")
 
 
 def _horizontal(position: Array) -> Array:

@@ -6,7 +6,6 @@ With its limits, along the whole riser and near the touchdown points.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,12 +16,12 @@ from riser_soil.assembly.riser import elements_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.outputs import ALONG_RISER
 from riser_soil.errors import RiserSoilError
-from riser_soil.plots.curves import ALONG_ARC, ARC, sheet
+from riser_soil.plots.curves import ALONG_ARC, ARC, BELOW, PAGE, sheet
 from riser_soil.results.stage_records import StageRecords
 
 _LIMITED = "utilisation"  # quantities that are limited by 1 have this in their names
 _NEAR_LIMIT = 0.4  # of the limit, from which on it is drawn; a quantity that is smaller would be a flat line under it
-_LINE = 32  # characters of an axis's name in one line
+_LINE = 24  # characters of an axis's name in one line
 _ROUND_OFF = 1e-9  # of the largest value
 _SIDE = 0.1  # of the span where a quantity acts: shown beside it
 _ZONE = 0.04  # of the riser's length, shown on both sides of the touchdown points
@@ -41,9 +40,9 @@ def draw_range(axes: Axes, stage: StageRecords, name: str, legend: bool = True) 
     words, factor = ALONG_ARC[name]
     values, arc = factor * stage[name], stage.run.arc
     if len(values) == 1:
-        axes.plot(arc, values[0], color="C0", label=f"at the stage's end, {_extremes(arc, values[0])}")
+        axes.plot(arc, values[0], color="C0", label=f"static, {_extremes(stage, name, values[0])}")
     else:
-        _draw_band(axes, arc, values, stage.time)
+        _draw_band(axes, stage, name, values)
     _mark_touchdown(axes, stage)
     _draw_limit(axes, stage, name, float(np.nanmax(values)), factor)
     axes.set_xlim(*_span(arc, values))
@@ -54,13 +53,13 @@ def draw_range(axes: Axes, stage: StageRecords, name: str, legend: bool = True) 
 
 
 def range_sheet(stage: StageRecords, name: str) -> Figure:
-    """The range along the whole riser, and beside it that near the touchdown points, if there are any."""
+    """The range along the whole riser, and below it that near the touchdown points, if there are any."""
     near = _near_touchdown(stage)
-    figure, panels = sheet(1, 1 if near is None else 2, width=8.0 if near is None else 13.0, height=3.6)
+    figure, panels = sheet(1 if near is None else 2, 1, width=PAGE, height=2.7 if near is None else 2.05)
     draw_range(panels[0], stage, name)
     if near is not None:
         draw_range(panels[1], stage, name, legend=False)
-        panels[1].set(title="near the touchdown points", xlim=near, ylim=_limits_within(stage, name, near))
+        panels[1].set(title="near the TDP", xlim=near, ylim=_limits_within(stage, name, near))
     return figure
 
 
@@ -127,7 +126,7 @@ def compare_ranges(axes: Axes, stages: dict[str, StageRecords], name: str) -> No
     axes.set_xlim(min(low for low, _ in spans), max(high for _, high in spans))
     axes.set_xlabel(ARC)
     axes.set_ylabel(textwrap.fill(words, _LINE))
-    axes.legend(fontsize="small", title="largest, dotted least")
+    axes.legend(**BELOW)
 
 
 def mean_in_time(time: Array, values: Array) -> Array:
@@ -137,23 +136,40 @@ def mean_in_time(time: Array, values: Array) -> Array:
     return np.average(values, axis=0, weights=weights if weights.sum() > 0.0 else None)
 
 
-def _draw_band(axes: Axes, arc: Array, values: Array, time: Array) -> None:
-    least, most = values.min(axis=0), values.max(axis=0)
+def _draw_band(axes: Axes, stage: StageRecords, name: str, values: Array) -> None:
+    arc, least, most = stage.run.arc, values.min(axis=0), values.max(axis=0)
     axes.fill_between(arc, least, most, color="C0", alpha=0.2, linewidth=0.0)
-    axes.plot(arc, most, color="C3", linewidth=1.2, label=f"max, {_place('largest', arc, most, np.nanargmax)}")
-    axes.plot(arc, mean_in_time(time, values), color="k", linewidth=0.9, linestyle="--", label="mean")
-    axes.plot(arc, least, color="C0", linewidth=1.2, label=f"min, {_place('least', arc, least, np.nanargmin)}")
+    axes.plot(arc, most, color="C3", linewidth=1.2, label=f"max, {_place(stage, name, 'max', most)}")
+    axes.plot(arc, mean_in_time(stage.time, values), color="k", linewidth=0.9, linestyle="--", label="mean")
+    axes.plot(arc, least, color="C0", linewidth=1.2, label=f"min, {_place(stage, name, 'min', least)}")
 
 
-def _place(word: str, arc: Array, values: Array, at: Callable[[Array], Any]) -> str:
-    """What is round-off beside the largest value is told as 0."""
-    n = int(at(values))
-    reported = values[n] if abs(values[n]) > _ROUND_OFF * np.nanmax(np.abs(values)) else 0.0
-    return f"{word} {reported:.4g} at {arc[n]:.4g} m"
+def _place(stage: StageRecords, name: str, which: str, values: Array) -> str:
+    """The extreme of a quantity and where it is: that of the summary, which knows it between nodes and records, so that
+    there is one maximum; else that of the values (nn,) at nodes. Round-off beside the largest value counts as 0.
+    """
+    n = int(np.nanargmax(values) if which == "max" else np.nanargmin(values))
+    value, arc = values[n], stage.run.arc[n]
+    known = _of_summary(stage, f"{which}_{name}", which)
+    if known is not None:
+        value, arc = ALONG_ARC[name][1] * known[0], known[1]
+    reported = value if abs(value) > _ROUND_OFF * np.nanmax(np.abs(values)) else 0.0
+    return f"{'largest' if which == 'max' else 'least'} {reported:.4g} at {arc:.4g} m"
 
 
-def _extremes(arc: Array, values: Array) -> str:
-    return f"{_place('largest', arc, values, np.nanargmax)}, {_place('least', arc, values, np.nanargmin)}"
+def _of_summary(stage: StageRecords, figure: str, which: str) -> tuple[float, float] | None:
+    """An extreme of the summary with its arc length [m]; None where it has none."""
+    if stage.timed:
+        found = (stage.reported["extremes"] or {}).get(figure)
+        value, arc = (found.get(which), found.get(f"arc_{which}")) if isinstance(found, dict) else (None, None)
+    else:
+        found = (stage.reported["final"] or {}).get(figure)
+        value, arc = (found.get("value"), found.get("arc")) if isinstance(found, dict) else (None, None)
+    return None if value is None or arc is None else (value, arc)
+
+
+def _extremes(stage: StageRecords, name: str, values: Array) -> str:
+    return f"{_place(stage, name, 'max', values)}, {_place(stage, name, 'min', values)}"
 
 
 def _mark_touchdown(axes: Axes, stage: StageRecords) -> None:
@@ -161,7 +177,7 @@ def _mark_touchdown(axes: Axes, stage: StageRecords) -> None:
     if np.isnan(touchdown).all():
         return
     low, high = float(np.nanmin(touchdown)), float(np.nanmax(touchdown))
-    words = f"touchdown, {low:.4g} to {high:.4g} m" if high > low else f"touchdown, {low:.4g} m"
+    words = f"TDP, {low:.4g} to {high:.4g} m" if high > low else f"TDP, {low:.4g} m"
     axes.axvspan(low, high, color="tan", alpha=0.35, linewidth=1.0, label=words)
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError, RiserSoilError
-from riser_soil.plots.curves import sheet
+from riser_soil.plots.curves import PAGE, sheet
 from riser_soil.results import Run
 from riser_soil.results.cycles import cycles, period_of
 from riser_soil.results.stage_records import StageRecords, along
@@ -55,7 +55,9 @@ def snapshots(stage: StageRecords) -> Figure:
     at = np.concatenate([[record for record, _ in extremes], cycle]).astype(int)
     position = run["position"]
     aside = _aside(position[at])
-    figure, panels = sheet(1, 2 + (aside is not None), width=10.0 if aside is None else 13.0, height=4.6)
+    figure, panels = sheet(1 + (aside is not None), 2, width=PAGE, height=3.2)
+    if aside is not None:
+        panels[3].remove()
     ahead, origin = along(position[0]), position[0, 0]
     lines: list[tuple[int, dict[str, Any]]] = [(record, {"color": "0.6", "linewidth": 0.6}) for record in cycle]
     if len(cycle):
@@ -73,7 +75,7 @@ def snapshots(stage: StageRecords) -> Figure:
     _add_surface_and_floater(panels[0], run, _in_plane(position[at, -1], origin, ahead), position[at, -1, 2])
     _zone(panels[1], stage, position[at], ahead)
     _draw_seabed(panels[:2], run, position[at], ahead)
-    panels[0].legend(fontsize="x-small")
+    figure.legend(*panels[0].get_legend_handles_labels(), fontsize="small", loc="outside lower center", ncols=2)
     if aside is not None:
         panels[2].set(title="from above", xlabel=_AHEAD, ylabel="to the left of the plane [m]")
     return figure

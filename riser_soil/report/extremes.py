@@ -1,4 +1,4 @@
-"""Tables of a stage: figures at its end and their extremes, with times, places and error bars."""
+"""Tables of a load step: reactions of the ends, bodies and joints, key results with error bars."""
 
 from __future__ import annotations
 
@@ -9,21 +9,19 @@ from typing import Any
 import numpy as np
 
 from riser_soil.accuracy.key_results import key_results
-from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.output import Figure, OutputQuantity, Row
-from riser_soil.plots.scales import shown
+from riser_soil.core.output import Row
 from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
 
 READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}  # units of key results, as they are read
-_AT_THE_END = ("quantity", "unit", "value", "at arc [m]", "±")
-_OVER_THE_STAGE = (
-    *("quantity", "unit", "at the end", "min", "at t [s]", "at arc [m]", "±"),
-    *("max", "at t [s]", "at arc [m]", "±"),
+_ENDS = {"start": "A", "end": "B"}
+_REACTIONS = (  # path below an end, words, unit, how many of it are one of SI
+    ("effective_tension", "effective tension", "kN", 1e-3),
+    ("resultant_force", "force, resultant", "kN", 1e-3),
+    ("force", "force", "kN", 1e-3),
+    ("moment", "moment", "kN m", 1e-3),
+    ("angle_deg", "angle from the vertical", "°", 1.0),
 )
-_AXES, _ALL = ("x", "y", "z"), ", x, y, z"
-_NOTE = "Times are those of the run, arc lengths count from the riser's start. "
-_LEFT_OUT = "Components that stay 0 are left out. "
 _SPOKEN = {"bodies": "body", "joints": "joint", "clearance": "clearance"}
 _OF_HUNG = {  # of bodies, joints and clearances
     "bodies": {
@@ -34,17 +32,69 @@ _OF_HUNG = {  # of bodies, joints and clearances
     "joints": {"force": Row("force", "kN", 1e-3), "moment": Row("moment", "kN m", 1e-3)},
     "clearance": {"distance": Row("least distance", "m")},
 }
+_REACTIONS_NOTE = (
+    "Forces and moments of the supports on the line; global axes, z upwards. Components below 1e-9 of the force and "
+    "1e-4 of the maximum bending moment have no row."
+)
+_SMALL = 1e-4  # of the largest bending moment: moments of supports that are less have no row
+_FIELD_WORDS = {
+    "top tension": "tension at the hang-off",
+    "force at end": "force at end B",
+    "force at start": "force at end A",
+    "least effective tension": "minimum effective tension",
+    "touchdown arc": "arc length of the TDP",
+    "largest": "maximum",
+    "least": "minimum",
+}
 _ROUND_OFF = 1e-9  # of the largest component, or of the largest bending moment
 
 
-def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> ReportTable:
-    """The figures of a stage that an engineer reads first: those of the screen, with places and error bars."""
-    return _table(stage, key_result=True, bars=error_bars(summary, stage["name"]))
+def reactions_table(stage: Mapping[str, Any]) -> ReportTable:
+    """Forces and moments of the supports at both ends by component, tension and angle there."""
+    static = stage["kind"] == "static"
+    least = _SMALL * abs(found(stage["final"], ("max_bending_moment", "value")) or 0.0)
+    rows = [
+        row
+        for end, name in _ENDS.items()
+        for key, words, unit, scale in _REACTIONS
+        for row in _reaction(stage, (end, key), f"end {name}: {words}", (unit, scale), least * (key == "moment"))
+    ]
+    head = ("reaction", "unit", "at the end", *(() if static else ("min.", "at t [s]", "max.", "at t [s]")))
+    return ReportTable(head, rows, _REACTIONS_NOTE)
 
 
-def ends_table(stage: Mapping[str, Any]) -> ReportTable:
-    """Positions of the ends, forces and moments of their supports, by component."""
-    return _table(stage, key_result=False, bars={})
+def _reaction(
+    stage: Mapping[str, Any], path: tuple[str, str], words: str, unit: tuple[str, float], least: float
+) -> Iterator[list[str]]:
+    """A row, of a vector one for each component that is more than round-off."""
+    final, extremes = found(stage["final"], path), found(stage["extremes"], path)
+    if final is None or extremes is None:
+        return
+    if not isinstance(final, list):
+        if path[1] == "angle_deg":  # the steeper the line, the less it leans
+            final, extremes = _from_the_vertical(final, extremes)
+        yield [words, unit[0], number(final * unit[1], 4), *_sides(stage, extremes, unit[1])]
+        return
+    least = max(least, _ROUND_OFF * max(abs(x) for side in (final, extremes["min"], extremes["max"]) for x in side))
+    for n, axis in enumerate("xyz"):
+        own = {key: values[n] for key, values in extremes.items()}
+        if max(abs(final[n]), abs(own["min"]), abs(own["max"])) > least:
+            yield [f"{words}, {axis}", unit[0], number(final[n] * unit[1], 4), *_sides(stage, own, unit[1])]
+
+
+def _from_the_vertical(final: float, extremes: Mapping[str, float]) -> tuple[float, dict[str, float]]:
+    low, high = sorted((90.0 - abs(extremes[side]), extremes[f"t_{side}"]) for side in ("min", "max"))
+    return 90.0 - abs(final), {"min": low[0], "t_min": low[1], "max": high[0], "t_max": high[1]}
+
+
+def _sides(stage: Mapping[str, Any], extremes: Mapping[str, float], scale: float) -> list[str]:
+    if stage["kind"] == "static":
+        return []
+    return [
+        text
+        for which in ("min", "max")
+        for text in (number(extremes[which] * scale, 4), number(extremes[f"t_{which}"], 4))
+    ]
 
 
 def hung_table(summary: Mapping[str, Any]) -> ReportTable:
@@ -56,10 +106,10 @@ def hung_table(summary: Mapping[str, Any]) -> ReportTable:
         for name, found_here in stage.get(group, {}).items()
         for row in _hung_rows(stage["kind"], f"{_SPOKEN[group]} {name}", named, found_here)
     ]
-    head = ("stage", "of", "quantity", "unit", "at the end", "min", "at t [s]", "max", "at t [s]")
+    head = ("load step", "of", "quantity", "unit", "at the end", "min", "at t [s]", "max", "at t [s]")
     note = (
         "Vectors are (x, y, z), their min and max those of each component. Forces are those of the first point on "
-        "the second; moments that are zero are left out. Of static stages the end is told."
+        "the second; moments that are zero have no row. Static load steps have the values at their end alone."
     )
     return compact(ReportTable(head, rows, note))
 
@@ -106,101 +156,22 @@ def key_results_table(summary: Mapping[str, Any]) -> ReportTable:
         unit, scale = READ_IN.get(each.unit, (each.unit, 1.0))
         bar = bars.get(key, {})
         shares = (_bar(bar.get("by_source", {}).get(source), scale) for source in sources)
-        rows.append([each.stage, each.name, unit, number(each.value * scale), _whole_bar(bar, scale), *shares])
-    head = ("stage", "quantity", "unit", "value", "±", *(f"by {source}" for source in sources))
-    note = "Of static stages at their end, of others the extremes over the stage."
+        value = number(each.value * scale)
+        rows.append([each.stage, in_field_words(each.name), unit, value, _whole_bar(bar, scale), *shares])
+    head = ("load step", "quantity", "unit", "value", "±", *(f"by {source}" for source in sources))
+    note = "Static load steps: values at their end; others: extremes over the load step. ±: error bar, and its parts."
     return compact(ReportTable(head, rows, note))
+
+
+def in_field_words(name: str) -> str:
+    """A key result as reports call it."""
+    for old, new in _FIELD_WORDS.items():
+        name = name.replace(old, new)
+    return name
 
 
 def _whole_bar(bar: Mapping[str, Any], scale: float) -> str:
     return "not known" if "reason" in bar else _bar(bar.get("bar"), scale)
-
-
-def _table(stage: Mapping[str, Any], key_result: bool, bars: Mapping[tuple[str, str], float | None]) -> ReportTable:
-    head = _AT_THE_END if stage["kind"] == "static" else _OVER_THE_STAGE
-    if stage["final"] is None:
-        return ReportTable(head, [])
-    rows: list[list[str]] = []
-    signs: dict[str, list[str]] = {}
-    for output, figure in outputs.figures(()):
-        final, extremes = found(stage["final"], figure.path), found(stage["extremes"], figure.path)
-        row = outputs.row_of(figure, stage["final"])
-        if final is None or (row is not None) != key_result:
-            continue
-        words, unit, scale = _words(output, figure, row)
-        bar = {which: bars.get((figure.name, which)) for which in ("min", "max")}
-        if isinstance(final, list):
-            final, extremes = _without_round_off(stage, output, final, extremes)
-        reported_here = list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
-        rows += reported_here
-        if output.sign and reported_here:
-            signs.setdefault(output.sign, []).append(words.removesuffix(_ALL))
-    reported = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
-    return compact(ReportTable(head, rows, _NOTE + ("" if key_result else _LEFT_OUT) + " ".join(reported)))
-
-
-def _without_round_off(
-    stage: Mapping[str, Any], output: OutputQuantity[Any], final: list[float], extremes: Mapping[str, Any] | None
-) -> tuple[list[float], Mapping[str, Any] | None]:
-    """A vector and its extremes with 0 for what is round-off beside its largest component, or the riser's moments."""
-    sides = {which: (extremes or {}).get(which) for which in ("min", "max")}
-    known = [abs(x) for values in (final, *sides.values()) for x in values or () if x is not None]
-    if output.units == "N m":
-        known.append(abs(found(stage["final"], ("max_bending_moment", "value")) or 0.0))
-    least = _ROUND_OFF * max(known, default=0.0)
-
-    def cleared(values: list[float]) -> list[float]:
-        return [x if x is None or abs(x) > least else 0.0 for x in values]
-
-    reported = {which: cleared(values) for which, values in sides.items() if values is not None}
-    return cleared(final), extremes if extremes is None else {**extremes, **reported}
-
-
-def _words(output: OutputQuantity[Any], figure: Figure, row: Row | None) -> tuple[str, str, float]:
-    if row is not None:
-        return row.words, row.unit, row.scale
-    unit, scale = shown(output.units)
-    end = f", {figure.path[0]}" if output.where == "nodes" and len(figure.path) > 1 else ""
-    size = ", resultant" if "resultant" in figure.name else ""
-    named = f"{output.text}{end}{size}"
-    return (named if end or output.where != "nodes" else figure.name.replace("_", " ")), unit, scale
-
-
-def _rows(
-    kind: str,
-    quantity: tuple[str, str, float],
-    final: Any,
-    extremes: Mapping[str, Any] | None,
-    bars: Mapping[str, float | None],
-) -> Iterator[list[str]]:
-    words, unit, scale = quantity
-    if isinstance(final, list):
-        for n, axis in enumerate(_AXES):
-            part = {key: values[n] for key, values in (extremes or {}).items() if isinstance(values, list)}
-            if not (final[n] or part.get("min") or part.get("max")):
-                continue
-            yield from _rows(kind, (f"{words.removesuffix(_ALL)}, {axis}", unit, scale), final[n], part, bars)
-        return
-    arc = final.get("arc") if isinstance(final, dict) else None
-    value = final["value"] if isinstance(final, dict) else final
-    if kind == "static":
-        yield [words, unit, _scaled(value, scale), number(arc), _bar(bars["max"] or bars["min"], scale)]
-        return
-    reported = extremes or {}
-    sides = []
-    for which in ("min", "max"):
-        place = number(reported.get(f"arc_{which}"))
-        sides += [
-            _scaled(reported.get(which), scale),
-            number(reported.get(f"t_{which}"), 4),
-            place,
-            _bar(bars[which], scale),
-        ]
-    yield [words, unit, _scaled(value, scale), *sides]
-
-
-def _scaled(value: float | None, scale: float) -> str:
-    return NOTHING if value is None else number(value * scale)
 
 
 def _bar(bar: float | None, scale: float) -> str:

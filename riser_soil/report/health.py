@@ -1,8 +1,8 @@
-"""Tables on how a run was solved: soil, energy, solver, indicators of the numerical error, seconds, versions."""
+"""Tables on how a run was solved: soil, energy, solver, versions, warnings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from riser_soil.core import outputs
@@ -11,13 +11,25 @@ from riser_soil.report.tables import NOTHING, ReportTable, number
 _ENERGY = (
     ("kinetic", "kinetic energy, added mass included"),
     ("strain", "elastic energy"),
-    ("potential", "energy of weight, buoyancy and contact; its zero is anywhere"),
-    ("dissipated", "dissipated since the stage began"),
-    ("numerical", "taken out by the time scheme; negative where it put energy in"),
-    ("work", "put in since the stage began; negative where it was taken out"),
-    ("residual", "residual of the balance; positive where energy appears from nowhere"),
-    ("turned_over", "turned over: the largest of kinetic, elastic, dissipated energy and work"),
+    ("potential", "potential energy of weight, buoyancy and contact, from an arbitrary zero"),
+    ("dissipated", "dissipated since the load step began"),
+    ("numerical", "numerical damping of the time integration"),
+    ("work", "work of external forces on line and ground since the load step began"),
+    ("residual", "residual of the balance"),
+    ("turned_over", "largest of kinetic, elastic, dissipated energy and work, by which the shares count"),
 )
+_SOURCES = {  # of energy, by the names of parts
+    "morison": "drag and inertia forces of the water",
+    "supports": "motions of the ends",
+    "seabed": "the seabed",
+    "seabed_time_scheme": "time integration in the contact with the seabed",
+    "buoyancy": "buoyancy",
+    "gravity": "gravity",
+    "loads": "loads",
+    "soil": "plastic work in the soil",
+    "friction": "friction",
+    "structural damping": "structural damping",
+}
 
 
 def soil_table(stage: Mapping[str, Any]) -> ReportTable:
@@ -47,24 +59,24 @@ def energy_table(stage: Mapping[str, Any]) -> ReportTable:
         for name, words in _ENERGY
         if energy[name] is not None
     ]
-    for kind, title in (("dissipated_by", "dissipated by"), ("work_by", "put in by")):
+    for kind, title in (("dissipated_by", "dissipated by"), ("work_by", "work of")):
         for name, value in energy[kind].items():
             if value:
-                words = f"{title} {name.replace('_', ' ')}"
+                words = f"{title} {_SOURCES.get(name, name.replace('_', ' '))}"
                 rows.append([words, number(value * 1e-3), percent(value)])
     worst = energy["worst_residual"]
     note = "Energy is not balanced in statics." if stage["kind"] != "dynamic" else ""
     if worst["value"] is not None and worst["time"] is not None:
         share = percent(worst["value"])
         size, at = number(worst["value"], 3), number(worst["time"], 4)
-        note = f"Largest residual on the way: {size} J, {share} % of what was turned over, at {at} s."
-    return ReportTable(("energy", "kJ", "% of turned over"), rows, note)
+        note = f"Largest residual on the way: {size} J, {share} % of the largest energy, at {at} s."
+    return ReportTable(("energy", "kJ", "% of the largest"), rows, note)
 
 
 def solver_table(summary: Mapping[str, Any]) -> ReportTable:
     """Steps and iterations, stage by stage."""
     counts = ("steps", "failed attempts", "Newton iterations a step", "most")
-    head = ("stage", "kind", "simulated [s]", *counts, "found by")
+    head = ("load step", "kind", "simulated [s]", *counts, "found by")
     rows = []
     for stage in summary["stages"]:
         mean = stage["newton_iterations"] / max(1, stage["steps"])
@@ -72,16 +84,6 @@ def solver_table(summary: Mapping[str, Any]) -> ReportTable:
         found_by = stage["method"] or "time steps"
         rows.append([stage["name"], stage["kind"], number(stage["time"]), *numbers, found_by])
     return ReportTable(head, rows)
-
-
-def indicators_table(stage: Mapping[str, Any]) -> ReportTable:
-    """Estimates of the numerical error that cost no other run."""
-    return ReportTable(("indicator", "value"), list(_indicators(stage.get("indicators", {}), ())))
-
-
-def seconds_table(summary: Mapping[str, Any]) -> ReportTable:
-    """Where the time went."""
-    return ReportTable(("part", "seconds"), [[part, number(took, 3)] for part, took in summary["seconds"].items()])
 
 
 def versions_table(summary: Mapping[str, Any]) -> ReportTable:
@@ -94,18 +96,3 @@ def warnings_of(summary: Mapping[str, Any]) -> list[str]:
     """All warnings: those told before the first step, and stage by stage those that only results can tell."""
     before = [*summary.get("warnings", [])]
     return before + [f"{stage['name']}: {words}" for stage in summary["stages"] for words in stage["warnings"]]
-
-
-def parts_words(summary: Mapping[str, Any]) -> tuple[str, list[str]]:
-    """The parts that were built, and each that was left out with its reason."""
-    parts = summary["parts"]
-    return ", ".join(parts["built"]), [f"{name}: {reason}" for name, reason in parts["left_out"].items()]
-
-
-def _indicators(nested: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[list[str]]:
-    for name, value in nested.items():
-        if isinstance(value, Mapping):
-            yield from _indicators(value, (*path, name))
-        else:
-            yield [", ".join((*path, name)).replace("_", " "), number(value, 3) if value is not None else NOTHING]
-

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 NOTHING = "–"
+_NUMERIC = re.compile(r"([+−-]?[0-9][0-9.,e+−-]*( ?[%m°]| ± .*| \(.*\)| to .*| [0-9−-].*)?$|[–>]|$)")
+_PATH = re.compile(r"(?<![\w.])(?:/[\w.+=-]+)+/(?=[\w.+=-])")
 
 
 @dataclass(frozen=True)
@@ -41,9 +45,35 @@ def number(value: float | None, digits: int = 5) -> str:
     return f"{value:.{digits}g}"
 
 
+def given_value(value: Any) -> str:
+    """A value of a scene, or its text in a table of cases, in short words: a list without brackets, a plain number."""
+    if isinstance(value, str):
+        try:
+            value = json.loads(value)
+        except ValueError:
+            return without_paths(value) or NOTHING
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no"}.get(value, NOTHING) if value is not None else NOTHING
+    if isinstance(value, int | float):
+        return number(float(value))
+    if isinstance(value, list | tuple):
+        return ", ".join(map(given_value, value)) if len(value) <= 6 else f"{len(value)} values"
+    return without_paths(str(value))
+
+
+def is_number(text: str) -> bool:
+    """Whether a cell is aligned as a number: it begins with one, or is a dash."""
+    return bool(_NUMERIC.match(text))
+
+
 def found(nested: Mapping[str, Any] | None, path: Sequence[str]) -> Any:
     """The entry of nested mappings at a path, or None."""
     value: Any = nested
     for key in path:
         value = value.get(key) if isinstance(value, Mapping) else None
     return value
+
+
+def without_paths(text: str) -> str:
+    """The text with the last names alone of absolute paths, which are no reader's business."""
+    return _PATH.sub("", text)

@@ -38,11 +38,13 @@ UNSPACED = re.compile(r"([A-Za-z_]\w*):(?=[^\s/:\\])")  # a key with its value r
 FILE_KINDS = {
     "scene": {"line_types", "riser", "lines", "stages"},
     "fatigue file": {"curve", "stress_concentration", "design_life"},
+    "report file": {"runs", "client", "revision", "required_life"},
     "case file": {"base", "product", "table"},
 }
 READERS = {
     "scene": "riser-soil run and check read",
     "fatigue file": "riser-soil fatigue reads",
+    "report file": "riser-soil report reads",
     "case file": "riser-soil cases reads",
 }
 _OPEN_POINT = re.compile(r"(?<=[0-9])\.(?![0-9])")

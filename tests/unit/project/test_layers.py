@@ -47,6 +47,8 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
     "matplotlib": "riser_soil.plots",
     "pyvista": "riser_soil.plots",
     "jinja2": "riser_soil.report",
+    "weasyprint": "riser_soil.report",
+    "docx": "riser_soil.report",
     "numba": "riser_soil.core",
     "fatpack": "riser_soil.fatigue",
     "scipy.optimize": ("riser_soil.calibration", "riser_soil.assembly.hang_off", "riser_soil.hang_off"),

@@ -1,0 +1,69 @@
+"""Chapter on code checks: the largest utilisation of each check, and of the allowable values of the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from riser_soil.report.document import Block, Paragraph, ReportSection, TableBlock
+from riser_soil.report.governing import governing, is_check, uses
+from riser_soil.report.sources import LoadCase, Sources
+from riser_soil.report.tables import NOTHING, ReportTable, compact, number
+
+NO_CHECK = "No code check is made: no load case asks for one."
+_BY_VALUE = "Utilisations of allowable values"
+
+
+def chapter(sources: Sources) -> ReportSection:
+    return ReportSection("Code checks", [*_blocks(sources)])
+
+
+def largest(sources: Sources) -> list[tuple[LoadCase, str, dict[str, Any]]]:
+    """Each check of each line type with the case and load step in which its utilisation is largest."""
+    found: dict[tuple[str, ...], tuple[LoadCase, str, dict[str, Any]]] = {}
+    for case in sources.cases:
+        for stage in case.stages:
+            for check in stage.get("code_check", ()):
+                key = tuple(str(check[name]) for name in ("line_type", "code", "check", "limit_state"))
+                known = found.get(key)
+                if check["utilisation"] is not None and (
+                    known is None or check["utilisation"] > known[2]["utilisation"]
+                ):
+                    found[key] = (case, stage["name"], check)
+    return [*found.values()]
+
+
+def _blocks(sources: Sources) -> Iterator[Block]:
+    checks = largest(sources)
+    if checks:
+        rows = [_row(case, stage, check) for case, stage, check in checks]
+        of_checks = ("line type", "code", "check", "clause", "limit state", "safety class", "utilisation", "load case",
+                "load step", "arc length [m]", "time [s]")  # fmt: skip
+        note = "A utilisation above 1 means that the limit is exceeded."
+        content = compact(ReportTable(of_checks, rows, note))
+        yield TableBlock("Code checks, the largest utilisation of each", content, 6, "checks")
+        beyond = [row for row in rows if float(row[6]) > 1.0]
+        if beyond:
+            names = "; ".join(f"{row[2]} of {row[0]} by {row[1]}, {row[6]} in {row[7]}" for row in beyond)
+            yield Paragraph(f"Exceeded: {names}.", "warning")
+        else:
+            yield Paragraph("All checks are fulfilled.")
+    else:
+        yield Paragraph(NO_CHECK)
+    own = [each for each in uses(governing(sources.cases)) if not is_check(each.kind)]
+    if own:
+        rows = [
+            [each.kind.words, each.text, each.case.name, each.stage, number(each.arc), number(each.time, 4)]
+            for each in own
+        ]
+        head = ("utilisation", "value [-]", "load case", "load step", "arc length [m]", "time [s]")
+        note = "Allowable values are those of the line types; they stand for no code."
+        yield TableBlock(_BY_VALUE, compact(ReportTable(head, rows, note)), key="allowable")
+
+
+def _row(case: LoadCase, stage: str, check: dict[str, Any]) -> list[str]:
+    words = [str(check.get(name) or NOTHING) for name in ("line_type", "code", "check", "clause", "limit_state",
+                                                           "safety_class")]  # fmt: skip
+    static = next(each["kind"] for each in case.stages if each["name"] == stage) == "static"
+    time = NOTHING if static else number(check.get("time"), 4)
+    return [*words, f"{check['utilisation']:.3f}", case.name, stage, number(check.get("arc")), time]

@@ -1,0 +1,199 @@
+"""Results that a reviewer asks for, of each case and load step, in units of the field; which case governs each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from riser_soil.core import outputs
+from riser_soil.plots.scales import shown
+from riser_soil.report.extremes import error_bars
+from riser_soil.report.sources import LoadCase
+from riser_soil.report.tables import NOTHING, found, number
+
+Which = Literal["max", "min"]
+_ROUND_OFF = 1e-4  # of a result: differences that are smaller are none, where no error bar is known
+
+
+@dataclass(frozen=True)
+class ResultKind:
+    """A kind of result: the summary's figure with its place there, words, unit, how many of it are one of SI, and
+    whether its maximum or minimum is asked for. use: figure of the utilisation that belongs to it; check: whether it is
+    itself the utilisation of a check, with the limit 1. turned: whether it is an angle that counts from the vertical.
+    """
+
+    figure: str
+    words: str
+    unit: str
+    scale: float
+    which: Which
+    use: str = ""
+    check: bool = False
+    turned: bool = False
+
+    @property
+    def key(self) -> str:
+        return f"{self.which} {self.figure}"
+
+
+@dataclass(frozen=True)
+class Result:
+    """A kind of result in one load step of a case: value and error bar in its unit, arc length [m], time [s]."""
+
+    kind: ResultKind
+    case: LoadCase
+    stage: str
+    static: bool
+    value: float
+    arc: float | None = None
+    time: float | None = None
+    bar: float | None = None
+
+    @property
+    def text(self) -> str:
+        return number(self.value, 4)
+
+
+_UPPER = "upper"  # stands for the end that hangs off
+NAMED: tuple[ResultKind, ...] = (
+    ResultKind(f"{_UPPER}.effective_tension", "maximum effective tension at the hang-off", "kN", 1e-3, "max",
+         "max_tension_utilisation"),
+    ResultKind("min_effective_tension", "minimum effective tension", "kN", 1e-3, "min"),
+    ResultKind("max_wall_tension", "maximum true wall tension", "kN", 1e-3, "max"),
+    ResultKind("max_bending_moment", "maximum bending moment", "kN m", 1e-3, "max"),
+    ResultKind("min_bend_radius", "minimum bend radius (MBR)", "m", 1.0, "min", "max_bend_utilisation"),
+    ResultKind("max_wall_von_mises_stress", "maximum von Mises stress in the wall", "MPa", 1e-6, "max",
+         "max_stress_utilisation"),
+    ResultKind(f"{_UPPER}.angle_deg", "minimum hang-off angle from the vertical", "°", 1.0, "min", turned=True),
+    ResultKind(f"{_UPPER}.angle_deg", "maximum hang-off angle from the vertical", "°", 1.0, "max", turned=True),
+    ResultKind("touchdown_arc", "minimum arc length of the TDP", "m", 1.0, "min"),
+    ResultKind("touchdown_arc", "maximum arc length of the TDP", "m", 1.0, "max"),
+    ResultKind("contact_force", "maximum vertical force of the seabed", "kN", 1e-3, "max"),
+    ResultKind("max_embedment", "maximum embedment", "mm", 1e3, "max"),
+    ResultKind("soil.max_settlement", "maximum settlement of the soil", "mm", 1e3, "max"),
+)  # fmt: skip
+_USES = {
+    "max_stress_utilisation": "von Mises stress over the allowable stress",
+    "max_bend_utilisation": "allowable over actual bend radius",
+    "max_tension_utilisation": "effective tension over the allowable tension",
+}
+
+
+def kinds() -> list[ResultKind]:
+    """All kinds of results: those above, and every utilisation in the table of outputs, code checks among them."""
+    known = [
+        ResultKind(figure.name, _USES.get(figure.name, output.text), "-", 1.0, "max", figure.name, check=True)
+        for output, figure in outputs.figures(())
+        if "utilisation" in figure.name and len(figure.path) == 1
+    ]
+    return [*NAMED, *known]
+
+
+def results_of(case: LoadCase) -> list[Result]:
+    """All results of a case, load step by load step."""
+    return [result for stage in case.stages for kind in kinds() for result in _of_stage(case, stage, kind)]
+
+
+def of_stage(case: LoadCase, stage: str) -> dict[str, Result]:
+    """Those of one load step by the keys of their kinds."""
+    return {result.kind.key: result for result in results_of(case) if result.stage == stage}
+
+
+def governing(cases: Iterable[LoadCase]) -> dict[str, Result]:
+    """The largest or least of each kind over cases and load steps, by the keys of kinds; of equal ones that of the
+    first case, in its last load step.
+    """
+    best: dict[str, Result] = {}
+    for case in cases:
+        for result in results_of(case):
+            known = best.get(result.kind.key)
+            later = known is not None and result.case is known.case and result.value == known.value
+            if known is None or later or _beats(result, known):
+                best[result.kind.key] = result
+    return {kind.key: best[kind.key] for kind in kinds() if kind.key in best}
+
+
+def is_check(kind: ResultKind) -> bool:
+    """Whether it is a utilisation by a code, and not by an allowable value of the scene."""
+    return kind.check and kind.figure not in _USES
+
+
+def uses(results: Mapping[str, Result]) -> list[Result]:
+    """The utilisations among results, the largest one first."""
+    return sorted((each for each in results.values() if each.kind.check), key=lambda each: -each.value)
+
+
+def used(result: Result, results: Mapping[str, Result]) -> Result | None:
+    """The utilisation that belongs to a result."""
+    return results.get(f"max {result.kind.use}") if result.kind.use else None
+
+
+def difference(value: Result, reference: Result) -> float | None:
+    """By how much a result is more than another of its kind; None where that is less than their error bars."""
+    apart = value.value - reference.value
+    bars = [each.bar for each in (value, reference) if each.bar is not None]
+    least = max(bars, default=_ROUND_OFF * max(abs(value.value), abs(reference.value)))
+    return None if abs(apart) <= least else apart
+
+
+def signed(value: float | None, digits: int = 3) -> str:
+    """A difference with its sign; a dash for none."""
+    return NOTHING if value is None else f"{'+' if value > 0.0 else '−'}{number(abs(value), digits)}"
+
+
+def _beats(one: Result, other: Result) -> bool:
+    return one.value > other.value if one.kind.which == "max" else one.value < other.value
+
+
+def _of_stage(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind) -> Iterator[Result]:
+    if kind.figure.startswith("soil."):
+        largest = found(stage, kind.figure.split("."))
+        if largest is not None and largest["value"] is not None:
+            static = stage["kind"] == "static"
+            time = None if static else largest["time"]
+            yield Result(kind, case, stage["name"], static, kind.scale * largest["value"], time=time)
+        return
+    path = [outputs.upper_end(stage["final"]) if part == _UPPER else part for part in kind.figure.split(".")]
+    if kind.turned and not _hangs(stage["final"], path[0]):
+        return
+    yield from _static(case, stage, kind, path) if stage["kind"] == "static" else _moving(case, stage, kind, path)
+
+
+def _hangs(final: Mapping[str, Any], end: str) -> bool:
+    """Whether the end lies above the other."""
+    heights = [found(final, (each, "position"))[2] for each in (end, "start" if end == "end" else "end")]
+    return bool(heights[0] > heights[1])
+
+
+def _static(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Sequence[str]) -> Iterator[Result]:
+    value, arc = found(stage["final"], path), None
+    if isinstance(value, Mapping):
+        value, arc = value["value"], value.get("arc")
+    if value is not None:
+        yield _result(case, stage, kind, path, value, kind.which, arc)
+
+
+def _moving(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Sequence[str]) -> Iterator[Result]:
+    extremes = found(stage["extremes"], path)
+    which: Which = kind.which
+    if kind.turned:  # the steeper, the less it leans
+        which = "min" if kind.which == "max" else "max"
+    if extremes is not None and extremes.get(which) is not None:
+        arc, time = extremes.get(f"arc_{which}"), extremes.get(f"t_{which}")
+        yield _result(case, stage, kind, path, extremes[which], which, arc, time)
+
+
+def _result(
+    case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Sequence[str], value: float, which: str,
+    arc: float | None = None, time: float | None = None,
+) -> Result:  # fmt: skip
+    bar = error_bars(case.run.summary, stage["name"]).get((".".join(path), which))
+    shown_value = 90.0 - abs(value) if kind.turned else kind.scale * value
+    shown_bar = None if bar is None else kind.scale * bar
+    return Result(kind, case, stage["name"], stage["kind"] == "static", shown_value, arc, time, shown_bar)
+
+
+def unit_of(units: str) -> tuple[str, float]:
+    """The unit shown for one of a table of cases or statistics (N, N.m), and how many of it are one of SI."""
+    return shown(units.replace(".", " "))
