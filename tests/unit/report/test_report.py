@@ -261,9 +261,19 @@ def test_the_basis_has_the_scene_in_units_of_the_field(items: list[Item]) -> Non
     line_with("\n".join(texts(items)), "load step heave", "end B moves", "(0, 0, 1.5) m", "10 s")
 
 
-def test_without_a_code_check_that_is_said(items: list[Item]) -> None:
-    said = [item.text for item in items if isinstance(item, Paragraph) and "No code check" in item.text]
-    assert len(said) == 2, "in the summary and in its chapter"
+def test_without_a_code_check_that_is_said(run: Run, items: list[Item], tmp_path: Path) -> None:
+    def said(found: list[Item]) -> list[str]:
+        return [item.text for item in found if isinstance(item, Paragraph) and "No code check" in item.text]
+
+    assert table(items, "checks").rows
+    assert said(items) == []
+    shutil.copytree(run.folder, tmp_path / "run")
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
+    for stage in summary["stages"]:
+        del stage["code_check"]
+    (tmp_path / "run" / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    unchecked = said(numbered(document_of(opened(of_folders([tmp_path / "run"], {})))))
+    assert len(unchecked) == 2, "in the summary and in its chapter"
 
 
 def test_walls_contents_and_hang_off_of_the_scene(run: Run, tmp_path: Path) -> None:
