@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from riser_soil.scene.code_check import DnvCheck, checks_of
+from riser_soil.scene.code_check import LEAST_SLENDER, MOST_SLENDER, DnvCheck, checks_of
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage
-
-LEAST_SLENDER = 15.0  # D/t from which on the formula of propagating buckling was fitted
 
 
 def code_check_warnings(scene: Scene) -> Iterator[str]:
@@ -25,7 +23,8 @@ def code_check_warnings(scene: Scene) -> Iterator[str]:
             if check.applies_to(name) and slender < LEAST_SLENDER:
                 yield (
                     f"code_check.{n}: {name} has D/t = {slender:.4g} without its corrosion_allowance, and the formula "
-                    f"of propagating buckling was fitted from {LEAST_SLENDER:g} to 45: judge that utilisation by itself"
+                    f"of propagating buckling was fitted from {LEAST_SLENDER:g} to {MOST_SLENDER:g}: judge that "
+                    "utilisation by itself"
                 )
         if check.functional_stage is None and not isinstance(scene.stages[0], StaticStage):
             yield (

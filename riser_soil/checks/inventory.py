@@ -27,6 +27,7 @@ def left_out(scene: Scene) -> dict[str, str]:
     """Parts and results that the scene leaves out, each with its reason."""
     reasons = [no_wall_tension(view) for view in by_line(scene).values()]
     reported = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": _why_all(reasons)}
+    reported["code check"] = "" if scene.code_check else "the scene has no code_check"
     return {name: reason for name, reason in reported.items() if reason}
 
 

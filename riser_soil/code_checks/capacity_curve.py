@@ -7,19 +7,14 @@ import numpy as np
 from riser_soil.core.arrays import Array
 
 
-def is_star_shaped(curve: Array) -> bool:
-    """Whether each ray from the origin meets a curve (n, 2) of `utilisation` once."""
-    corners = _closed(curve)
-    turn = _cross(corners[:-1], corners[1:])
-    return bool((turn > 0.0).all())
-
-
 def utilisation(tension: Array, curvature: Array, curve: Array) -> Array:
     """The share of the loads in those on the curve, along the ray from the origin through both.
 
-    curve: (n, 2) tension [N] and curvature [1/m] >= 0, tensions growing from 0 or less; from its ends it falls to
-    curvature 0 at the same tension. Where it begins at tension 0, compression counts as no tension. Loads divided by
-    their utilisation lie on the curve. Source: API 17E (2010), allowable bend radius at a tension.
+    curve: (n, 2) tension [N] and curvature [1/m] >= 0, tensions growing from 0 or less, which each ray meets once; from
+    its ends it falls to curvature 0 at the same tension. Where it begins at tension 0, compression counts as no
+    tension. Loads divided by their utilisation lie on the curve.
+
+    Source: API 17E (2010), allowable bend radius at a tension.
     """
     corners = _closed(curve)
     if curve[0, 0] == 0.0:

@@ -32,10 +32,6 @@ MATERIAL_FACTORS = MappingProxyType({"ULS": 1.15, "ALS": 1.15, "FLS": 1.0})
 SAFETY_CLASS_FACTORS = MappingProxyType({"low": 1.04, "normal": 1.14, "high": 1.26})
 """Safety class resistance factors, sec. 5 C."""
 
-LEAST_OVALITY = 0.005
-MOST_SLENDER = 45.0  # D/t2 up to which the formulas of collapse and propagation hold
-LEAST_SLENDER = 15.0  # below which that of propagation was not fitted
-
 
 def characteristic_strength(specified: Number, derating: Number, factor: Number) -> Array:
     """(S - S_temp) alpha_U [Pa]: a specified minimum strength less its loss by temperature [Pa], times the material

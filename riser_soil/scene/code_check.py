@@ -27,6 +27,7 @@ from riser_soil.core.quantities import (
 )
 
 LEAST_OVALITY = 0.005  # DNV-OS-F201 (2010) sec. 5 D400
+LEAST_SLENDER, MOST_SLENDER = 15.0, 45.0  # D/t for which formulas of collapse and propagation were fitted
 _OF_ACCIDENTS = ("SLS", "ALS")
 
 OrContents = Annotated[

@@ -2,12 +2,10 @@
 
 from collections.abc import Iterator
 
-from riser_soil.scene.code_check import DnvCheck, SteelCheck, checks_of
+from riser_soil.scene.code_check import MOST_SLENDER, DnvCheck, SteelCheck, checks_of
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.scene import Scene
-
-MOST_SLENDER = 45.0  # D/t up to which formulas of collapse hold
 
 
 def code_check_conflicts(scene: Scene) -> Iterator[Problem]:

@@ -34,6 +34,9 @@ _STIFFNESS = Size(500.0, 1e12, "N/m2", {"kN/m2": 1e3, "MN/m2": 1e6})
 _SPEED = Size(0.0, 4.0, "m/s", {"knots": 0.514444, "cm/s": 0.01, "km/h": 1.0 / 3.6})
 _WAVE_HEIGHT = Size(1e-3, 35.0, "m", {"cm": 0.01, "mm": 1e-3, "ft": 0.3048})
 _PERIOD = Size(0.2, 60.0, "s", {"ms": 1e-3})
+_STRENGTH_OF_STEEL = Size(1.5e8, 2e9, "Pa", _STRESSES)
+_BEND = Size(0.01, 1e3, "m", _LONG)
+_WALL = Size(0.0, 0.1, "m", _LENGTHS)
 _SEA = Size(900.0, 1100.0, "kg/m3", _DENSITIES)
 
 _OF_LINE: dict[Pattern, Size] = {
@@ -63,6 +66,13 @@ _OF_WAVES = {
     **{(kind, "height"): _WAVE_HEIGHT for kind in ("airy", "regular")},
     **{(kind, "period"): _PERIOD for kind in ("airy", "regular")},
 }
+_OF_CODE_CHECK = {
+    **dict.fromkeys(("yield_stress", "tensile_strength"), _STRENGTH_OF_STEEL),
+    **dict.fromkeys(("design_pressure", "minimum_pressure"), _PRESSURE),
+    **dict.fromkeys(("corrosion_allowance", "fabrication_tolerance"), _WALL),
+    **dict.fromkeys(("storage_radius", "static_radius", "dynamic_radius"), _BEND),
+    "E": Size(5e9, 1e12, "Pa", _STRESSES),
+}
 _ENDS = {(end, *path): size for end in ("start", "end") for path, size in _OF_END.items()}
 _LAWS = (("seabed", "law"), ("soil", "law"), ("soil", "layers", "*", "law"))
 _WAVES = (("water", "waves"), ("water", "waves", "trains", "*"))
@@ -74,16 +84,17 @@ KEYS: dict[Pattern, Size] = {
     ("water", "density"): _SEA,
     ("water", "surface_level"): _HEIGHT,
     ("water", "depth"): _HEIGHT,
-    ("line_types", "*", "min_bend_radius"): Size(0.01, 1e3, "m", _LONG),
+    ("line_types", "*", "min_bend_radius"): _BEND,
     ("line_types", "*", "wall", "outer_diameter"): DIAMETER,
     ("line_types", "*", "wall", "inner_diameter"): DIAMETER,
-    ("line_types", "*", "wall", "yield_stress"): Size(1.5e8, 2e9, "Pa", _STRESSES),
+    ("line_types", "*", "wall", "yield_stress"): _STRENGTH_OF_STEEL,
     ("seabed", "stiffness"): _STIFFNESS,
     ("contact", "stiffness"): _STIFFNESS,
     ("soil", "submerged_unit_weight"): _UNIT_WEIGHT,
     ("soil", "block", "depth"): Size(0.0, 1e3, "m", _LONG),
     ("stages", "*", "pressure"): _PRESSURE,
     ("stages", "*", "motion", "*", "harmonic", "amplitude", "*"): Size(0.0, 100.0, "m", _LONG),
+    **{("code_check", "*", key): size for key, size in _OF_CODE_CHECK.items()},
     **{(*profile, axis): _SPEED for profile in _PROFILES for axis in ("1", "2")},
     **{(*line, *path): size for line in LINES for path, size in (_OF_LINE | _ENDS).items()},
     **{(*law, *path): size for law in _LAWS for path, size in _OF_LAW.items()},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,9 @@ from riser_soil.assembly import build
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import SceneError
 from riser_soil.results import Run
+from riser_soil.scene.problem import dotted
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.sizes import doubts
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
@@ -246,6 +249,7 @@ def test_without_a_check_nothing_of_it_is_there(tmp_path: Path) -> None:
     done = finished(scene, tmp_path / "run")
     assert not [name for name in done.variables if name.startswith(("code", "bursting", "combined"))]
     assert "code_check" not in done.summary["stages"][0]
+    assert done.summary["parts"]["left_out"]["code check"] == "the scene has no code_check"
 
 
 SLIM = STEEL | {"inner_diameter": 0.11, "mass": 6.0, "EA": 1.5e8, "EI": 2.3e5}
@@ -276,6 +280,21 @@ def test_accident_before_what_is_functional_is_refused() -> None:
     check = DNV | {"limit_state": "ALS", "functional_stage": "current", "accidental_stage": "hang"}
     with pytest.raises(SceneError, match=r"accidental_stage.*must come after functional_stage"):
         scene_from_mapping(hanging(check))
+
+
+@pytest.mark.parametrize(
+    ("change", "reported"),
+    [
+        ({"yield_stress": 448.0, "tensile_strength": 531.0}, "yield_stress: 448 Pa.*MPa"),
+        ({"corrosion_allowance": 3.0, "fabrication_tolerance": 1.5}, "corrosion_allowance: 3 m.*mm"),
+        ({"design_pressure": 345.0}, "design_pressure: 345 Pa.*bar"),
+    ],
+)
+def test_other_units_are_named(change: Mapping, reported: str) -> None:
+    (check,) = hanging(DNV | {"yield_derating": 0.0} | change)["code_check"]
+    found = [f"{dotted(path)}: {text}" for path, text in doubts({"code_check": [check]})]
+    assert any(re.search(reported, each) for each in found)
+    assert not doubts({"code_check": [DNV]})
 
 
 def warnings_of(scene: Mapping) -> list[str]:

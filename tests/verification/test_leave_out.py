@@ -79,6 +79,7 @@ def test_without_soil_its_libraries_are_not_imported(name: str, tmp_path: Path) 
     assert ("riser_soil.sea.morison" in found) == (name != "hanging, static")
     assert ("riser_soil.riser.inertia" in found) == (name != "hanging, static")
     assert "riser_soil.riser.loads" not in found
+    assert not {m for m in found if m.startswith("riser_soil.code_checks")}
     assert not {m for m in found if m.startswith("riser_soil.motion.")} - FOR_HEAVE[name != "hanging, static"]
 
 
