@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,6 +18,7 @@ from riser_soil.results.cycles import beginning
 from riser_soil.results.read import Run
 
 MEAN, DEVIATION = ", mean", ", standard deviation"
+_USED = "_utilisation"
 _SIGNS = {"tension": "positive in tension", "contact force": "positive where the ground pushes"}
 
 
@@ -55,10 +56,14 @@ class CaseValue:
 
     @property
     def sign(self) -> str:
-        """What its sign means; of a standard deviation or a magnitude nothing."""
-        if self.name.endswith(DEVIATION):
+        """What its sign means; of a standard deviation, a utilisation or a magnitude nothing."""
+        if self.name.endswith((DEVIATION, _spoken(_USED))):
             return ""
         return next((sign for word, sign in _SIGNS.items() if word in self.name), "")
+
+
+def _spoken(figure: str) -> str:
+    return figure.removeprefix("max_").replace("_", " ")
 
 
 def case_values(folder: Path, since: float) -> list[CaseValue]:
@@ -69,10 +74,21 @@ def case_values(folder: Path, since: float) -> list[CaseValue]:
     last = _LastDynamic.of(run, since)
     found = [
         CaseValue(each.stage, each.label, each.unit, each.value, last.sample(each) if last else None)
-        for each in key_results(run.summary).values()
+        for each in (*key_results(run.summary).values(), *_utilisations(run.summary["stages"]))
     ]
     each = ((line, value) for line, own in run.of_lines.items() for value in _statistics(own, since))
     return [*found, *(replace(value, name=f"{line} {value.name}".strip()) for line, value in each)]
+
+
+def _utilisations(stages: Sequence[Mapping[str, Any]]) -> Iterator[KeyResult]:
+    """Largest ones of each stage and line: of limits, of stress, and by codes."""
+    known = [figure.name for _, figure in outputs.figures(()) if figure.name.endswith(_USED)]
+    for stage in stages:
+        place, side = ("final", "value") if stage["kind"] == "static" else ("extremes", "max")
+        for line, own in stage.get("lines", {"": stage}).items():
+            there = own[place] or {}
+            for name in (name for name in known if name in there):
+                yield KeyResult(stage["name"], _spoken(name), "1", there[name][side], 0.0, name, "max", line)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import build
+from riser_soil.cases.case_values import case_values
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import SceneError
 from riser_soil.results import Run
@@ -147,6 +148,17 @@ def test_summary_has_the_largest_of_each_check(dnv: Run) -> None:
     at, node = np.unravel_index(used.argmax(), used.shape)
     assert heave["utilisation"] == pytest.approx(used[at, node], rel=1e-15)
     assert (heave["arc"], heave["time"]) == (dnv.arc[node], pytest.approx(dnv["time"][dnv["stage"] == 2][at]))
+
+
+def test_load_cases_have_the_utilisations(dnv: Run) -> None:
+    found = {value.key: value for value in case_values(dnv.folder, 0.0)}
+    for stage in dnv.summary["stages"]:
+        for each in stage["code_check"]:
+            value = found[f"{stage['name']}: {each['variable'].replace('_', ' ')}"]
+            assert (value.value, value.unit, value.sign) == (pytest.approx(each["utilisation"], rel=1e-15), "1", "")
+    sample = found["heave: combined loading utilisation"].sample
+    assert sample is not None
+    assert (sample.value, sample.least) == (found["heave: combined loading utilisation"].value, False)
 
 
 def test_largest_utilisation_is_not_made_of_largest_moment_and_tension(dnv: Run) -> None:
