@@ -24,7 +24,7 @@ resolved() { # run or dev, arguments of the resolver
     local file=requirements/$1-pins.txt
     shift
     $tools/bin/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
-        --no-emit-package=numpy --no-emit-package=scipy --output-file "$file" "$@" >/dev/null
+        --no-emit-package=numpy --no-emit-package=scipy --no-emit-package=cffi --no-emit-package=pycparser --output-file "$file" "$@" >/dev/null
     sed -i -e "/^#/d; /^$/d" -e "s/ and $linux//; s/ ; $linux//" "$file"
     sed -i "1i # Written by scripts/pin.sh from the lists beside this file." "$file"
 }

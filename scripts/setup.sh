@@ -19,12 +19,13 @@ debian_packages=(
     python3-gmsh python3-numpy python3-scipy python3-h5py python3-h5py-mpi
     libopenblas0-serial # without it MUMPS falls back to the reference BLAS, seven times slower
     libegl1 libegl-mesa0 libgl1-mesa-dri # pictures without a display
+    python3-cffi libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0 fonts-dejavu-core # reports as PDF
 )
 test_packages=(
     chromium-headless-shell # opens the pages that riser_soil writes
 )
 run_modules=(
-    dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib jinja2 raschii
+    dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib jinja2 weasyprint docx raschii
 )
 dev_modules=(pytest xdist hypothesis xarray meshio ruff mypy)
 

@@ -23,6 +23,7 @@ from riser_soil.report import (
     summary_chapter,
 )
 from riser_soil.report.document import PictureBlock, ReportCover, ReportDocument, ReportSection, numbered
+from riser_soil.report.html import Began
 from riser_soil.report.report_file import ReportFile
 from riser_soil.report.sources import LoadCase, Sources, opened
 from riser_soil.results.stage_records import stage_records
@@ -56,7 +57,7 @@ def write_report(given: ReportFile, file: Path, tell: Tell = silent) -> Path:
     Raises ResultsError where a folder holds no results, nothing was recorded, or the ending is of no format; the file
     is then as it was.
     """
-    refuse_ending(file)
+    write = writer_of(file)
     document = document_of(opened(given))
     count = sum(isinstance(item, PictureBlock) for item in numbered(document))
     begun = 0
@@ -66,9 +67,8 @@ def write_report(given: ReportFile, file: Path, tell: Tell = silent) -> Path:
         tell(item.caption.partition(":")[0], begun, count)
         begun += 1
 
-    module, function, needed = WRITERS[file.suffix.lower()]
     with written_whole(file) as part:
-        _writer(module, function, needed, file)(document, part, began)
+        write(document, part, began)
     return file
 
 
@@ -78,21 +78,20 @@ def document_of(sources: Sources) -> ReportDocument:
     return ReportDocument(_cover(sources), [section for chapter in CHAPTERS if (section := chapter(sources))])
 
 
-def refuse_ending(file: Path) -> None:
-    """ResultsError for a file of no format that a report has."""
+def writer_of(file: Path) -> Callable[[ReportDocument, Path, Began], None]:
+    """What writes a file with this ending; ResultsError where that is of no format, or its package is not there."""
     if file.suffix.lower() not in WRITERS:
         raise ResultsError(f"{file}: a report is one of {', '.join(WRITERS)}; change its ending")
-
-
-def _writer(module: str, function: str, needed: str, file: Path) -> Callable[..., None]:
+    module, function, needed = WRITERS[file.suffix.lower()]
     try:
-        found: Callable[..., None] = getattr(import_module(module), function)
         if needed:
             import_module(needed)
-    except ImportError as err:
+        found: Callable[[ReportDocument, Path, Began], None] = getattr(import_module(module), function)
+    except (ImportError, OSError) as err:  # OSError: a library of the system that the package loads
+        reason = " ".join(str(err).split())[:200]
         raise ResultsError(
-            f"{file}: a {file.suffix} file needs {needed or err.name}, which is not there ({err}); install "
-            "riser_soil[report], or write an .html file"
+            f"{file}: a {file.suffix} file needs {needed or err}, which cannot be loaded ({reason}); install "
+            "riser_soil[report] and, for PDF, Pango (Debian: libpangoft2-1.0-0), or write an .html file"
         ) from err
     return found
 

@@ -34,8 +34,11 @@ _ACCENT, _WARN = RGBColor(0x1F, 0x4F, 0x79), RGBColor(0x8A, 0x4B, 0x00)
 
 def write_word(document: ReportDocument, file: Path, began: Began) -> None:
     """Write the document."""
-    made, items = docx.Document(), numbered(document)
-    _set_up(made, running_title(document.cover))
+    made, items, cover = docx.Document(), numbered(document), document.cover
+    about = made.core_properties
+    about.title, about.subject, about.author = cover.title, cover.subtitle, cover.authors
+    about.comments = cover.program
+    _set_up(made, running_title(cover))
     _add_cover(made, document)
     _add_contents(made, items)
     for item in items:

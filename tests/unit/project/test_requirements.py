@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 import riser_soil
 from tests.support.on_ranks import ROOT
 
-DEBIAN = {"numpy", "scipy", "h5py"}  # as its PETSc was compiled with them
+DEBIAN = {"numpy", "scipy", "h5py", "cffi"}  # as its PETSc and dolfinx were compiled with them
 APART = {"dev", "all", "small"}  # extras that set-up doesn't bring as such; small asks for an older numba than others
 pythons = pytest.mark.parametrize("python", ["3.11", "3.13", "3.14"])
 
