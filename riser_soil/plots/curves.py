@@ -45,9 +45,6 @@ _REACTIONS = {
     "V1": "V at the start [kN], + upwards",
     "V2": "V at the end [kN], + upwards",
 }
-BELOW: dict[str, Any] = {  # a legend of many names, below the panel
-    "loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "ncols": 4, "frameon": False, "fontsize": "small",
-}  # fmt: skip
 ARC, TIME = "arc length from end A, the start [m]", "time [s]"
 PAGE = 6.7  # in, width of the text on A4: pictures of this width are printed as large as they are
 STYLE: dict[str, Any] = {  # of pictures of this width; "small" is 7.5 pt then, the least that reads well on paper
@@ -65,6 +62,15 @@ def sheet(rows: int, columns: int, width: float = 9.0, height: float = 3.2) -> t
     return figure, list(panels.flat)
 
 
+def legend_below(axes: Axes) -> None:
+    """A legend of many names below the panel, in as many columns as the page is wide for."""
+    longest = max((len(label) for label in axes.get_legend_handles_labels()[1]), default=0)
+    columns = max(1, min(4, _LETTERS // (longest + _HANDLE)))
+    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.2), "frameon": False}
+    axes.legend(ncols=columns, fontsize="small", **place)
+
+
+_LETTERS, _HANDLE = 100, 8  # of a legend's line on a page; what a line's sample and the gap take
 _UNSTAMPED = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
 

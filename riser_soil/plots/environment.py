@@ -28,14 +28,19 @@ def current_sheet(profiles: Mapping[str, Array], surface: float | None) -> Figur
     return figure
 
 
-def spectrum_sheet(seas: Mapping[str, tuple[float, float, float]]) -> Figure:
-    """Spectra of irregular seas by name: Hs [m], Tp [s] and peak enhancement factor of each."""
+def peaked_spectrum(Hs: float, Tp: float, gamma: float) -> tuple[Array, Array]:
+    """Frequencies [Hz] and density [m2/Hz] of a sea by its height [m], peak period [s] and enhancement factor."""
     from riser_soil.sea.spectra import spectrum
 
+    f = np.linspace(_LOWEST, _HIGHEST, 400) / Tp
+    return f, 2.0 * math.pi * spectrum(2.0 * math.pi * f, Hs, Tp, gamma)
+
+
+def spectrum_sheet(seas: Mapping[str, tuple[Array, Array]]) -> Figure:
+    """Spectra of irregular seas by name: frequencies [Hz] and density [m2/Hz] of each."""
     figure, (axes,) = sheet(1, 1, width=PAGE, height=2.4)
-    for name, (Hs, Tp, gamma) in seas.items():
-        f = np.linspace(_LOWEST, _HIGHEST, 400) / Tp
-        axes.plot(f, 2.0 * math.pi * spectrum(2.0 * math.pi * f, Hs, Tp, gamma), label=name)
+    for name, (f, density) in seas.items():
+        axes.plot(f, density, label=name)
     axes.set(xlabel="frequency [Hz]", ylabel="spectral density [m²/Hz]", ylim=(0.0, None))
     axes.legend()
     return figure

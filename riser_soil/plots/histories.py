@@ -25,7 +25,7 @@ _SIZES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"))
 
 def ends(stage: StageRecords) -> Figure:
     """Motion of both ends since the load step began, effective tension there, and what the supports exert."""
-    figure, (moved, tension, upright, level) = sheet(4, 1, width=PAGE, height=1.75)
+    figure, (moved, tension, upright, level) = sheet(4, 1, width=PAGE, height=1.45)
     position, t = stage["position"], stage.time
     direction = along(stage.run["position"][0])
     _draw_motion(moved, t, position)
@@ -44,7 +44,7 @@ def ends(stage: StageRecords) -> Figure:
 
 def touchdown(stage: StageRecords) -> Figure:
     """Arc length of the touchdown point, contact force and deepest penetration."""
-    figure, (arc, force, deep) = sheet(3, 1, width=PAGE, height=1.75)
+    figure, (arc, force, deep) = sheet(3, 1, width=PAGE, height=1.35)
     arc.plot(stage.time, stage["touchdown_arc"])
     force.plot(stage.time, 1e-3 * stage["contact_force_sum"][:, 2])
     deep.plot(stage.time, 1e3 * stage["max_penetration"])
@@ -56,7 +56,7 @@ def touchdown(stage: StageRecords) -> Figure:
 
 def least_and_tightest(stage: StageRecords) -> Figure:
     """Minimum effective tension and bend radius along the riser, the least of each marked with its time and place."""
-    figure, panels = sheet(2, 1, width=PAGE, height=2.1)
+    figure, panels = sheet(2, 1, width=PAGE, height=1.8)
     for axes, name, factor, unit, words in (
         (panels[0], "min_effective_tension", 1e-3, "kN", "minimum effective\ntension [kN]"),
         (panels[1], "min_bend_radius", 1.0, "m", "minimum bend\nradius (MBR) [m]"),

@@ -16,7 +16,7 @@ from riser_soil.assembly.riser import elements_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.outputs import ALONG_RISER
 from riser_soil.errors import RiserSoilError
-from riser_soil.plots.curves import ALONG_ARC, ARC, BELOW, PAGE, sheet
+from riser_soil.plots.curves import ALONG_ARC, ARC, PAGE, legend_below, sheet
 from riser_soil.results.stage_records import StageRecords
 
 _LIMITED = "utilisation"  # quantities that are limited by 1 have this in their names
@@ -126,7 +126,7 @@ def compare_ranges(axes: Axes, stages: dict[str, StageRecords], name: str) -> No
     axes.set_xlim(min(low for low, _ in spans), max(high for _, high in spans))
     axes.set_xlabel(ARC)
     axes.set_ylabel(textwrap.fill(words, _LINE))
-    axes.legend(**BELOW)
+    legend_below(axes)
 
 
 def mean_in_time(time: Array, values: Array) -> Array:

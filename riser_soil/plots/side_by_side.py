@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.plots import histories
-from riser_soil.plots.curves import ALONG_ARC, ARC, BELOW, PAGE, sheet
+from riser_soil.plots.curves import ALONG_ARC, ARC, PAGE, legend_below, sheet
 from riser_soil.plots.ranges import compare_ranges, names
 from riser_soil.plots.shape import seabed_under, surface_level
 from riser_soil.results import Run
@@ -70,7 +70,7 @@ def _in_time(stages: dict[str, StageRecords]) -> Figure:
         legend = axes.get_legend()
         if legend is not None:
             legend.remove()
-    arc.legend(**BELOW)
+    legend_below(arc)
     return figure
 
 
@@ -135,5 +135,5 @@ def static_tensions(stages: Mapping[str, StageRecords]) -> Figure:
         for label, stage in stages.items():
             axes.plot(stage.run.arc, factor * stage[name][-1], label=label)
         axes.set(xlabel=ARC, ylabel=textwrap.fill(words, 24))
-    panels[-1].legend(**BELOW)
+    legend_below(panels[-1])
     return figure

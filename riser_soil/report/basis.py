@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
+from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import Curves
-from riser_soil.plots.environment import current_sheet, rao_sheet, spectrum_sheet
+from riser_soil.plots.environment import current_sheet, peaked_spectrum, rao_sheet, spectrum_sheet
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock
-from riser_soil.report.parameters import GROUND_WORDS, PROPERTIES, in_words, reference_of, words_of_path
-from riser_soil.report.sources import LoadCase, Sources
+from riser_soil.report.parameters import GROUND_WORDS, PROPERTIES, in_words, reference_of, seeds_of, words_of_path
+from riser_soil.report.sources import LoadCase, Sources, flattened, is_seed
 from riser_soil.report.tables import NOTHING, ReportTable, compact, given_value, number, without_paths
 from riser_soil.results import Run
 from riser_soil.scene.motions import Vessel, VesselHistory
@@ -147,17 +148,23 @@ def _current(water: Any) -> Iterator[Block]:
 def _waves(sources: Sources) -> Iterator[Block]:
     """All different sea states of the cases."""
     rows: dict[tuple[str, ...], list[str]] = {}
-    spectra: dict[str, tuple[float, float, float]] = {}
+    spectra: dict[str, tuple[Array, Array]] = {}
+    known: dict[str, Sequence[WaveKind]] = {}
     for case in sources.cases:
-        water = None if case.scene is None else case.scene.water
-        if water is None or water.waves is None:
-            continue
-        for _, train in water.waves.each:
-            row = _train(train)
-            rows.setdefault(tuple(row), []).append(str(getattr(train, "seed", "")))
+        given = case.value("water.waves")
+        key = str([(path, value) for path, value in flattened(given, "") if not is_seed(path)])
+        if key not in known:  # a scene is read once for all seeds
+            water = None if case.scene is None else case.scene.water
+            known[key] = () if water is None or water.waves is None else [train for _, train in water.waves.each]
+        for train in known[key]:
+            rows.setdefault(tuple(_train(train)), []).extend(seeds_of(case))
+            name = f"Hs {number(train.height, 3)} m, Tp {number(train.period, 3)} s"
             if isinstance(train, PeakedSea):
                 gamma = train.gamma if isinstance(train, Jonswap) else 1.0
-                spectra[f"Hs {number(train.Hs)} m, Tp {number(train.Tp)} s"] = (train.Hs, train.Tp, gamma)
+                spectra[name] = peaked_spectrum(train.Hs, train.Tp, gamma)
+            elif isinstance(train, GivenSpectrum):
+                w, density = np.array(train.table.frequency), np.array(train.table.density)
+                spectra[name] = 0.5 * w / math.pi, 2.0 * math.pi * density
     head = ("waves", "Hs or height [m]", "Tp or period [s]", "peak factor [-]", "towards [°]", "components", "seeds")
     table = [[*row, _seeds(seeds)] for row, seeds in rows.items()]
     note = "Directions are those towards which waves travel, from x towards y."
@@ -189,6 +196,8 @@ def _train(train: WaveKind) -> list[str]:
     height = getattr(train, "height", None)
     toward = ", ".join(number(math.degrees(angle) + 0.0) for angle in train.toward[:4])
     components = str(train.components) if isinstance(train, DrawnSea) else ""
+    if isinstance(train, DrawnSea) and train.spreading is not None:
+        shape += f", spread with s = {number(train.spreading.s)}"
     return [shape, number(height), number(train.period), gamma, toward, components]
 
 
@@ -219,6 +228,8 @@ def _vessel(scene: Scene, case: LoadCase) -> Iterator[Block]:
         )
         if isinstance(way, Vessel):
             yield from _raos(way, scene)
+        else:
+            yield Paragraph(f"The vessel's motions in time are those of the file {way.file.name}.")
     if offset is not None:
         yield Paragraph("Offsets of the vessel are those of the load cases below; hang-offs are found without offset.")
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
-from riser_soil.report.document import Block, Paragraph, ReportSection, TableBlock
+from riser_soil.plots.curves import Curves
+from riser_soil.plots.utilisations import utilisation_sheet
+from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock
 from riser_soil.report.governing import governing, is_check, uses
 from riser_soil.report.sources import LoadCase, Sources
 from riser_soil.report.tables import NOTHING, ReportTable, compact, number
+from riser_soil.results.stage_records import stage_records
 
 NO_CHECK = "No code check is made: no load case asks for one."
 _BY_VALUE = "Utilisations of allowable values"
@@ -59,6 +63,25 @@ def _blocks(sources: Sources) -> Iterator[Block]:
         head = ("utilisation", "value [-]", "load case", "load step", "arc length [m]", "time [s]")
         note = "Allowable values are those of the line types; they stand for no code."
         yield TableBlock(_BY_VALUE, compact(ReportTable(head, rows, note)), key="allowable")
+    yield from _pictures(sources)
+
+
+def _pictures(sources: Sources) -> Iterator[Block]:
+    """Utilisations along the line of the case and load step in which the largest one is: of codes, of values."""
+    every = uses(governing(sources.cases))
+    for words, chosen in (
+        ("code checks", [each for each in every if is_check(each.kind)]),
+        ("allowable values", [each for each in every if not is_check(each.kind)]),
+    ):
+        if not chosen:
+            continue
+        case, stage = chosen[0].case, chosen[0].stage
+        variables = {each.kind.figure.removeprefix("max_"): each.kind.words for each in chosen}
+        there = {name: text.removeprefix("code check: ") for name, text in variables.items() if case.run.has(name)}
+        if there:
+            draw = partial(utilisation_sheet, stage_records(case.run, stage), there)
+            caption = f"Utilisations of {words} along the line, maxima of {case.name} in the load step {stage}"
+            yield PictureBlock(caption, Curves(draw))
 
 
 def _row(case: LoadCase, stage: str, check: dict[str, Any]) -> list[str]:

@@ -19,6 +19,7 @@ from riser_soil.report.tables import ReportTable, number, without_paths
 
 MOST_HOTSPOTS, MOST_ROWS = 5, 20
 _LONGEST = 1e6  # years: a life beyond it is told as more than that
+_LEAST = 1e-3  # of the largest damage: a hotspot has at least this
 _APART = 0.02  # of the line's length: hotspots that are nearer are one
 
 
@@ -51,7 +52,7 @@ class FatigueResults:
         apart = _APART * float(np.ptp(arc))
         beside = np.maximum(np.append(damage[1:], 0.0), np.append(0.0, damage[:-1]))
         for n in np.argsort(-damage):
-            peak = damage[n] > 0.0 and damage[n] >= beside[n]
+            peak = damage[n] > _LEAST * damage.max() and damage[n] >= beside[n]
             if peak and all(abs(arc[n] - arc[other]) > apart for other in found):
                 found.append(int(n))
             if len(found) == MOST_HOTSPOTS:
@@ -127,7 +128,7 @@ def _hotspots(found: FatigueResults) -> ReportTable:
     for rank, n in enumerate(found.hotspots, 1):
         angle = found.damage.angles[int(found.damage.per_year[n].argmax())]
         damage = float(found.damage.largest[n])
-        row = [str(rank), number(found.damage.arc[n], 5), number(angle, 4), f"{damage:.2e}", years(1.0 / damage)]
+        row = [str(rank), number(found.damage.arc[n], 5), number(angle, 4), number(damage, 3), years(1.0 / damage)]
         rows.append([*row, *_use(found, damage)])
     return ReportTable(_head(found, ("hotspot", "arc length [m]", "angle [°]")), rows, _use_note(found))
 
@@ -155,7 +156,7 @@ def _life_table(found: FatigueResults) -> ReportTable:
         damage = float(found.damage.largest[n])
         life = math.inf if damage == 0.0 else 1.0 / damage
         mark = "hotspot" if n in found.hotspots else ""
-        rows.append([number(found.damage.arc[n], 5), f"{damage:.2e}", years(life), *_use(found, damage), mark])
+        rows.append([number(found.damage.arc[n], 5), number(damage, 3), years(life), *_use(found, damage), mark])
     return ReportTable((*_head(found, ("arc length [m]",)), ""), rows, "The shortest life around each section.")
 
 
@@ -166,7 +167,7 @@ def _shares(found: FatigueResults) -> ReportTable:
     for case in sorted(cases, key=lambda each: -each["damage_per_year"]):
         scatter = f"{100.0 * case['standard_error']:.0f}"
         damage, share = case["damage_per_year"], 100.0 * case["damage_per_year"] / whole
-        row = [without_paths(case["run"]), number(100.0 * case["share"], 4), f"{damage:.2e}", number(share, 3)]
+        row = [without_paths(case["run"]), number(100.0 * case["share"], 4), number(damage, 3), number(share, 3)]
         rows.append([*row, scatter])
     head = ("sea state", "share of the year [%]", "damage in a year [1/year]", "share of the damage [%]",
             "standard error [%]")  # fmt: skip

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from riser_soil.core import outputs
+from riser_soil.core.output import Figure
 from riser_soil.plots.scales import shown
 from riser_soil.report.extremes import error_bars
 from riser_soil.report.sources import LoadCase
@@ -83,11 +84,19 @@ _USES = {
 def kinds() -> list[ResultKind]:
     """All kinds of results: those above, and every utilisation in the table of outputs, code checks among them."""
     known = [
-        ResultKind(figure.name, _USES.get(figure.name, output.text), "-", 1.0, "max", figure.name, check=True)
-        for output, figure in outputs.figures(())
+        ResultKind(figure.name, _words(figure), "-", 1.0, "max", figure.name, check=True)
+        for _, figure in outputs.figures(())
         if "utilisation" in figure.name and len(figure.path) == 1
     ]
     return [*NAMED, *known]
+
+
+def _words(figure: Figure) -> str:
+    """What a utilisation is called: by the code check's row on the screen where it is one."""
+    if figure.name in _USES:
+        return _USES[figure.name]
+    row = figure.row.words if figure.row is not None else figure.name.replace("_", " ")
+    return row.replace("code: ", "code check: ")
 
 
 def results_of(case: LoadCase) -> list[Result]:

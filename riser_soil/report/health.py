@@ -18,6 +18,12 @@ _ENERGY = (
     ("residual", "residual of the balance"),
     ("turned_over", "largest of kinetic, elastic, dissipated energy and work, by which the shares count"),
 )
+_SOIL = {
+    "max_settlement": "maximum settlement",
+    "max_von_mises_stress": "maximum von Mises stress",
+    "max_strength_used": "maximum share of the strength used",
+    "max_equivalent_plastic_strain": "maximum plastic strain",
+}
 _SOURCES = {  # of energy, by the names of parts
     "morison": "drag and inertia forces of the water",
     "supports": "motions of the ends",
@@ -41,7 +47,8 @@ def soil_table(stage: Mapping[str, Any]) -> ReportTable:
             continue
         place = ", ".join(number(round(x, 3) + 0.0, 4) for x in largest["position"])
         value = number(largest["value"] * figure.row.scale)
-        rows.append([figure.row.words, figure.row.unit or "-", value, place, number(largest["time"], 4)])
+        words = _SOIL.get(figure.name, figure.row.words)
+        rows.append([words, figure.row.unit or "-", value, place, number(largest["time"], 4)])
     time = "at load factor" if stage["kind"] == "static" else "at t [s]"
     return ReportTable(("quantity", "unit", "value", "at x, y, z [m]", time), rows)
 

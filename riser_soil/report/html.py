@@ -11,7 +11,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from riser_soil.report.document import Item, PictureBlock, ReportCover, ReportDocument, headings, numbered
-from riser_soil.report.tables import is_number
 
 TYPES = {".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 
@@ -41,7 +40,6 @@ def page_of(document: ReportDocument, began: Began) -> str:
         contents=headings(items),
         image=image,
         kind_of=_kind_of,
-        is_number=is_number,
     )
     return page
 

@@ -69,6 +69,8 @@ def chapter(sources: Sources) -> ReportSection:
 
 
 def _side_by_side(sources: Sources) -> Iterator[Block]:
+    if len(sources.cases) == 1:
+        return
     rows, shown = [], sources.cases[:MOST_ROWS]
     for case in shown:
         stage = moving(case, sources.given.stage)
@@ -198,15 +200,10 @@ def _governing(sources: Sources) -> Iterator[Block]:
     if soil:
         yield TableBlock("Soil", soil, key="soil")
     for each in pictures(records):
-        if each.group in ("shape", "histories", "soil") or _is_shown(each.name.removeprefix("range_")):
+        if each.group in ("shape", "histories", "soil") or each.name.removeprefix("range_") in _DRAWN:
             yield _picture(each, records)
     if case.run.has_soil:
         yield PictureBlock("Touchdown zone and whole line at the end of the run", TouchdownView(case.run))
-
-
-def _is_shown(name: str) -> bool:
-    """Whether a quantity along the line is drawn: main results and utilisations."""
-    return name in _DRAWN or "utilisation" in name
 
 
 def _results(case: LoadCase, stage: str) -> ReportTable:

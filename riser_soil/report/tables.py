@@ -22,6 +22,10 @@ class ReportTable:
     rows: Sequence[Sequence[str]]
     note: str = ""
 
+    def has_words(self, column: int) -> bool:
+        """Whether a column has words, and is aligned to the left; one of numbers and dashes is not."""
+        return any(not is_number(row[column]) for row in self.rows)
+
     def __bool__(self) -> bool:
         return bool(self.rows)
 

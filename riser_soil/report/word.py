@@ -25,7 +25,6 @@ from riser_soil.report.document import (
     numbered,
 )
 from riser_soil.report.html import Began, running_title
-from riser_soil.report.tables import is_number
 
 _MARGIN, _TEXT = Mm(20), Mm(170)
 _WIDE = 7  # columns, from which on a table has smaller letters
@@ -144,7 +143,7 @@ def _add_table(made: Any, item: TableBlock) -> None:
             paragraph = cell.paragraphs[0]
             run = paragraph.add_run(text)
             run.font.size, run.bold = size, row == 0
-            if place >= item.words and (row == 0 or is_number(text)):
+            if place >= item.words and not item.content.has_words(place):
                 paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
     repeat = OxmlElement("w:tblHeader")
     repeat.set(qn("w:val"), "true")
