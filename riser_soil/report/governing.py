@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, Literal
 
 from riser_soil.core import outputs
@@ -14,6 +15,7 @@ from riser_soil.report.sources import LoadCase
 from riser_soil.report.tables import NOTHING, found, number
 
 Which = Literal["max", "min"]
+Bars = Mapping[tuple[str, str], float | None]
 _ROUND_OFF = 1e-4  # of a result: differences that are smaller are none, where no error bar is known
 
 
@@ -81,6 +83,7 @@ _USES = {
 }
 
 
+@cache
 def kinds() -> list[ResultKind]:
     """All kinds of results: those above, and every utilisation in the table of outputs, code checks among them."""
     known = [
@@ -99,9 +102,14 @@ def _words(figure: Figure) -> str:
     return row.replace("code: ", "code check: ")
 
 
-def results_of(case: LoadCase) -> list[Result]:
+@cache  # chapters ask for them again and again
+def results_of(case: LoadCase) -> tuple[Result, ...]:
     """All results of a case, load step by load step."""
-    return [result for stage in case.stages for kind in kinds() for result in _of_stage(case, stage, kind)]
+    found = []
+    for stage in case.stages:
+        bars = error_bars(case.run.summary, stage["name"])
+        found += [result for kind in kinds() for result in _of_stage(case, stage, kind, bars)]
+    return tuple(found)
 
 
 def of_stage(case: LoadCase, stage: str) -> dict[str, Result]:
@@ -138,11 +146,26 @@ def used(result: Result, results: Mapping[str, Result]) -> Result | None:
     return results.get(f"max {result.kind.use}") if result.kind.use else None
 
 
-def difference(value: Result, reference: Result) -> float | None:
-    """By how much a result is more than another of its kind; None where that is less than their error bars."""
+def bar_shares(cases: Iterable[LoadCase]) -> dict[tuple[str, str], float]:
+    """Error bars over values by kind and load step, the largest among the cases that have some: what stands for the
+    others, which have the same mesh and time step.
+    """
+    found: dict[tuple[str, str], float] = {}
+    for result in (each for case in cases for each in results_of(case)):
+        if result.bar is not None and result.value:
+            key = (result.kind.key, result.stage)
+            found[key] = max(found.get(key, 0.0), result.bar / abs(result.value))
+    return found
+
+
+def difference(value: Result, reference: Result, shares: Mapping[tuple[str, str], float]) -> float | None:
+    """By how much a result is more than another of its kind; None where that is less than their error bars, or than
+    those of other cases, `bar_shares`.
+    """
     apart = value.value - reference.value
     bars = [each.bar for each in (value, reference) if each.bar is not None]
-    least = max(bars, default=_ROUND_OFF * max(abs(value.value), abs(reference.value)))
+    share = shares.get((reference.kind.key, reference.stage), _ROUND_OFF)
+    least = max(bars, default=share * max(abs(value.value), abs(reference.value)))
     return None if abs(apart) <= least else apart
 
 
@@ -155,7 +178,7 @@ def _beats(one: Result, other: Result) -> bool:
     return one.value > other.value if one.kind.which == "max" else one.value < other.value
 
 
-def _of_stage(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind) -> Iterator[Result]:
+def _of_stage(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, bars: Bars) -> Iterator[Result]:
     if kind.figure.startswith("soil."):
         largest = found(stage, kind.figure.split("."))
         if largest is not None and largest["value"] is not None:
@@ -166,7 +189,10 @@ def _of_stage(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind) -> Ite
     path = [outputs.upper_end(stage["final"]) if part == _UPPER else part for part in kind.figure.split(".")]
     if kind.turned and not _hangs(stage["final"], path[0]):
         return
-    yield from _static(case, stage, kind, path) if stage["kind"] == "static" else _moving(case, stage, kind, path)
+    for result in (_static if stage["kind"] == "static" else _moving)(case, stage, kind, path):
+        which = _side(kind) if not result.static else kind.which
+        bar = bars.get((".".join(path), which))
+        yield result if bar is None else replace(result, bar=kind.scale * bar)
 
 
 def _hangs(final: Mapping[str, Any], end: str) -> bool:
@@ -180,27 +206,26 @@ def _static(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Se
     if isinstance(value, Mapping):
         value, arc = value["value"], value.get("arc")
     if value is not None:
-        yield _result(case, stage, kind, path, value, kind.which, arc)
+        yield Result(kind, case, stage["name"], True, _shown(kind, value), arc)
 
 
 def _moving(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Sequence[str]) -> Iterator[Result]:
     extremes = found(stage["extremes"], path)
-    which: Which = kind.which
-    if kind.turned:  # the steeper, the less it leans
-        which = "min" if kind.which == "max" else "max"
+    which = _side(kind)
     if extremes is not None and extremes.get(which) is not None:
         arc, time = extremes.get(f"arc_{which}"), extremes.get(f"t_{which}")
-        yield _result(case, stage, kind, path, extremes[which], which, arc, time)
+        yield Result(kind, case, stage["name"], False, _shown(kind, extremes[which]), arc, time)
 
 
-def _result(
-    case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Sequence[str], value: float, which: str,
-    arc: float | None = None, time: float | None = None,
-) -> Result:  # fmt: skip
-    bar = error_bars(case.run.summary, stage["name"]).get((".".join(path), which))
-    shown_value = 90.0 - abs(value) if kind.turned else kind.scale * value
-    shown_bar = None if bar is None else kind.scale * bar
-    return Result(kind, case, stage["name"], stage["kind"] == "static", shown_value, arc, time, shown_bar)
+def _side(kind: ResultKind) -> Which:
+    """The summary's extreme that a kind of result is: the steeper a line, the less it leans."""
+    if not kind.turned:
+        return kind.which
+    return "min" if kind.which == "max" else "max"
+
+
+def _shown(kind: ResultKind, value: float) -> float:
+    return 90.0 - abs(value) if kind.turned else kind.scale * value
 
 
 def unit_of(units: str) -> tuple[str, float]:

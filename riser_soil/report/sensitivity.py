@@ -9,7 +9,7 @@ from statistics import fmean
 from riser_soil.plots.curves import Curves
 from riser_soil.plots.sensitivity import Bar, tornado
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock
-from riser_soil.report.governing import Result, ResultKind, difference, results_of, signed
+from riser_soil.report.governing import Result, ResultKind, bar_shares, difference, results_of, signed
 from riser_soil.report.parameters import Parameter, parameters, reference_of, seeds_of
 from riser_soil.report.response import moving
 from riser_soil.report.sources import LoadCase, Sources
@@ -40,12 +40,13 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     alike = [case for case in sources.cases if all(name.of(case) == base[name.paths] for name in names)]
     own = _mean(alike, sources)
     kinds = [own[key].kind for key in _COLUMNS if key in own]
-    rows = [["reference", ", ".join(name.label(base[name.paths]) for name in names), *(own[k.key].text for k in kinds)]]
+    rows = [["reference", "; ".join(name.label(base[name.paths]) for name in names), *(own[k.key].text for k in kinds)]]
     bars: dict[str, list[Bar]] = {}
+    shares = bar_shares(sources.cases)
     for name in names:
         changes = dict(_changes(sources, alike, _varied(sources.cases, names, name, base)))
         for value, found in changes.items():
-            each = (_change(*found.get(kind.key, (None, None))) for kind in kinds)
+            each = (_change(shares, *found.get(kind.key, (None, None))) for kind in kinds)
             rows.append([name.words, name.label(value), *each])
         for kind in kinds:
             ends = [
@@ -64,7 +65,7 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     head = ("parameter", "value", *(f"{_short(kind)} [{kind.unit}]" for kind in kinds))
     note = (
         f"First row: values of the reference; below: changes from them, of arc lengths in m. {NOTHING}: less than the "
-        "error bar, or less than 0.01 % where no error bar was asked for."
+        "error bar (of any case that has one), or less than 0.01 % where no error bar was asked for."
     )
     yield TableBlock("Sensitivity of the extremes", compact(ReportTable(head, rows, note)), words=2, key="sensitivity")
     shown = next((own[key].kind for key in _FIRST if key in own), None)
@@ -120,10 +121,10 @@ def _changes(
         yield value, {key: (found[key], own[key]) for key in found if key in own}
 
 
-def _change(found: Result | None, own: Result | None) -> str:
+def _change(shares: Mapping[tuple[str, str], float], found: Result | None, own: Result | None) -> str:
     if found is None or own is None:
         return NOTHING
-    apart = difference(found, own)
+    apart = difference(found, own, shares)
     if apart is None:
         return NOTHING
     if own.value == 0.0 or "touchdown" in own.kind.figure:

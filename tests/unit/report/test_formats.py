@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Sequence
 from pathlib import Path
 
 import docx
@@ -38,7 +37,7 @@ from tests.support.said import line_with
 class Square:
     """A picture of 20 by 20 red dots."""
 
-    endings: Sequence[str] = (".png",)
+    endings: tuple[str, ...] = (".png",)
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / "square.png"
