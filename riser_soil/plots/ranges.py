@@ -53,13 +53,14 @@ def draw_range(axes: Axes, stage: StageRecords, name: str, legend: bool = True) 
 
 
 def range_sheet(stage: StageRecords, name: str) -> Figure:
-    """The range along the whole riser, and below it that near the touchdown points, if there are any."""
+    """The range along the whole riser, and below it that near the touchdown points, if anything is known there."""
     near = _near_touchdown(stage)
-    figure, panels = sheet(1 if near is None else 2, 1, width=PAGE, height=2.7 if near is None else 2.05)
+    within = None if near is None else _limits_within(stage, name, near)
+    figure, panels = sheet(1 if within is None else 2, 1, width=PAGE, height=2.7 if within is None else 2.05)
     draw_range(panels[0], stage, name)
-    if near is not None:
+    if within is not None:
         draw_range(panels[1], stage, name, legend=False)
-        panels[1].set(title="near the TDP", xlim=near, ylim=_limits_within(stage, name, near))
+        panels[1].set(title="near the TDP", xlim=near, ylim=within)
     return figure
 
 
@@ -73,11 +74,13 @@ def _near_touchdown(stage: StageRecords) -> tuple[float, float] | None:
     return (low, high) if high - low < _WHOLE * arc[-1] else None
 
 
-def _limits_within(stage: StageRecords, name: str, near: tuple[float, float]) -> tuple[float, float]:
-    """Least and largest value between two arc lengths, with some room."""
+def _limits_within(stage: StageRecords, name: str, near: tuple[float, float]) -> tuple[float, float] | None:
+    """Least and largest value between two arc lengths, with some room; None where nothing is known there."""
     arc, values = stage.run.arc, ALONG_ARC[name][1] * stage[name]
     at = [*near, *arc[(arc > near[0]) & (arc < near[1])]]
     seen = [np.interp(at, arc, edge(values, axis=0)) for edge in (np.min, np.max)]
+    if np.isnan(seen[1]).all():
+        return None
     low, high = float(np.nanmin(seen[0])), float(np.nanmax(seen[1]))
     room = 0.06 * (high - low) or 1e-9 + abs(high)
     return low - room, high + room

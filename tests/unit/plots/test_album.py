@@ -7,6 +7,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -96,6 +97,18 @@ def test_a_range_is_shown_near_the_touchdown_points_too(run: Run) -> None:
     assert whole.get_xlim() == pytest.approx((run.arc[0], run.arc[-1]))
     low, high = close.get_xlim()
     assert low <= np.nanmin(touchdown) <= np.nanmax(touchdown) <= high < run.arc[-1]
+
+
+def test_what_is_unknown_near_the_touchdown_points_is_not_shown_there(run: Run, tmp_path: Path) -> None:
+    """As a utilisation of the upper half of a riser, of another line type than what touches down."""
+    folder = tmp_path / "half"
+    record(folder, duration=0.3)
+    (folder / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    with h5py.File(folder / "results.nc", "r+") as file:
+        file["code_utilisation"][:, file["arc"][...] < 75.0] = np.nan
+    (whole,) = range_sheet(stage_records(Run(folder)), "code_utilisation").axes
+    assert whole.get_xlim()[1] == pytest.approx(run.arc[-1])
+    assert len(range_sheet(stage_records(Run(folder)), "bursting_utilisation").axes) == 2
 
 
 def test_the_shape_shows_extremes_once_and_one_cycle(run: Run) -> None:
