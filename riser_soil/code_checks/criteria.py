@@ -264,7 +264,7 @@ class FlexibleCriteria:
     def criteria(self) -> tuple[Criterion, ...]:
         c, stated = self.check, "limit stated by the maker"
         given = {
-            Criterion("bend_radius", "bend radius", "API 17J (2008) 5.3.1.6"): c.bends,
+            Criterion("bend_radius", "bend radius", stated): c.bends,
             Criterion("tension_limit", "tension", stated): c.max_tension,
             Criterion("compression", "compression", stated): c.max_compression,
             Criterion("crushing", "crushing", stated): c.max_contact_force,

@@ -14,7 +14,7 @@ from riser_soil.core.arrays import Array
 def bend_radius(curvature: Number, allowed_radius: Number) -> Array:
     """Curvature [1/m] times the least bend radius allowed [m]: that of storage, static or dynamic service.
 
-    Source: API 17J (2008) 5.3.1.6, the operating bend radius.
+    Source: API 17J (2008), least bend radius in storage and service.
     """
     return np.asarray(curvature * allowed_radius)
 
