@@ -21,6 +21,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.sizes import doubts
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
+from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.run_on_ranks import ran
 from tests.support.said import line_with
@@ -253,6 +254,16 @@ def test_two_ranks_find_the_same(dnv: Run, tmp_path: Path) -> None:
     two = ran(hanging(DNV | {"functional_stage": "hang"}), tmp_path / "two", ranks=2)
     for name in ("combined_loading_utilisation", "hoop_buckling_utilisation", "code_utilisation"):
         assert two[name] == pytest.approx(dnv[name], rel=1e-6)
+
+
+def test_a_run_goes_on_with_what_was_functional(tmp_path: Path) -> None:
+    scene = scene_from_mapping(hanging(DNV | {"functional_stage": "hang"}))
+    kept = whole(scene, tmp_path / "whole", (5,))
+    again = resumed(scene, tmp_path / "rest", kept.states[5])
+    assert differing(kept.last, again.last) == []
+    assert differing_rows(tmp_path / "whole", tmp_path / "rest") == []
+    checked = [summary(tmp_path / name)["stages"][-1]["code_check"] for name in ("whole", "rest")]
+    assert checked[0] == checked[1]
 
 
 def test_without_a_check_nothing_of_it_is_there(tmp_path: Path) -> None:
