@@ -84,7 +84,7 @@ def of_first(run: Run, weight: float) -> Texts:
 
 ALONG: tuple[tuple[str, tuple[str, ...], float, int, str], ...] = (
     ("top tension", ("end", "effective_tension"), 1e-3, 2, " kN"),
-    ("touchdown arc length", ("touchdown_arc",), 1.0, 2, " m"),
+    ("TDP, arc length", ("touchdown_arc",), 1.0, 2, " m"),
     ("largest bending moment", ("max_bending_moment",), 1e-3, 3, " kN m"),
 )
 
@@ -124,9 +124,9 @@ def of_steel(run: Run) -> Texts:
          f"{top[0] / 1e3:.1f} to {top[1] / 1e3:.1f} ± {bars['top tension'] / 1e3:.1f} kN"],
         ["largest bending moment", f"{at_rest(final, 'max_bending_moment') / 1e3:.2f} kN m",
          f"up to {moment / 1e3:.2f} ± {bars['largest bending moment'] / 1e3:.2f} kN m"],
-        ["touchdown arc length", f"{at_rest(final, 'touchdown_arc'):.2f} m",
+        ["TDP, arc length", f"{at_rest(final, 'touchdown_arc'):.2f} m",
          f"{arc[0]:.2f} to {arc[1]:.2f} ± {apart:.2f} m"],
-        ["stress over what is allowed", f"{at_rest(final, 'max_stress_utilisation'):.3f}", f"up to {stress:.3f}"],
+        ["stress utilisation", f"{at_rest(final, 'max_stress_utilisation'):.3f}", f"up to {stress:.3f}"],
     ]  # fmt: skip
     return {
         "steel catenary": table(["steel catenary riser", "at rest", "in heave of 1 m, 12 s"], rows),
@@ -138,7 +138,7 @@ def of_steel(run: Run) -> Texts:
 def said_of_steel(folder: Path) -> Texts:
     """What check, fatigue and modes print of it."""
     (folder / "fatigue.yaml").write_text(code(TUTORIAL, "curve:"), encoding="utf-8")
-    checked = found(r"  end: (\S+) kN; by hand H \+ sum of w h = (.*) kN", command(folder, "check", str(STEEL)))
+    checked = found(r"effective tension (\S+) kN; H \+ sum of w h = (.*) kN", command(folder, "check", str(STEEL)))
     worn = found(
         r"largest damage (\S+) a year, life (\S+) years, at arc (\S+) m, (\S+) degrees",
         command(folder, "fatigue", "fatigue.yaml", "--force"),

@@ -23,7 +23,7 @@ def _line_in_short(line: str) -> str:
     if len(line) <= LONGEST:
         return line
     head, tail = line[: LONGEST // 2], line[-LONGEST // 3 :]
-    return f"{head} ... ({len(line) - len(head) - len(tail)} characters left out) ... {tail}"
+    return f"{head} ... ({len(line) - len(head) - len(tail)} more characters) ... {tail}"
 
 
 def _first_items(found: re.Match[str]) -> str:

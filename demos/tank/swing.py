@@ -37,7 +37,7 @@ class Swing:
 
     @property
     def stage(self) -> dict[str, float]:
-        """Newton iterations a step, step cuts, largest energy residual over the energy turned over; of the motion."""
+        """Newton iterations a step, step cuts, largest energy residual over the energy exchanged; of the motion."""
         reported = self.run.summary["stages"][-1]
         residual = abs(reported["energy"]["worst_residual"]["value"]) / reported["energy"]["turned_over"]
         return {

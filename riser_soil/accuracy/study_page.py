@@ -111,7 +111,7 @@ def _quantities(reported: Mapping[str, Any]) -> str:
     rows = []
     for key, each in reported["quantities"].items():
         shares = (f"{percent(setting['share'])}, {_order(setting['order'])}" for setting in each["knobs"].values())
-        error = percent(each["error"]) if each["judged"] else "not told"
+        error = percent(each["error"]) if each["judged"] else "unknown"
         numbers = (f"{each[name]:.5g}" for name in ("value", "reference"))
         rows.append([key, *numbers, f"{each['uncertainty']:.2g}", each["unit"], error, *shares])
     return _table(head, rows)
@@ -172,8 +172,7 @@ def _unknown(quantities: Quantities) -> Iterator[str]:
     unknown = _doubtful(quantities, TELLING)
     if unknown:
         yield (
-            f"no error can be told of {unknown}, as no refinement closes in on a value; they are left out of what "
-            "follows"
+            f"the error of {unknown} is unknown, as no refinement converges; what follows is without them"
         )
 
 
@@ -202,7 +201,7 @@ def _limiting(study: Study) -> Iterator[str]:
     largest = "; ".join(f"{setting} {percent(share)} ({key})" for share, key, setting in sorted(shares, reverse=True))
     most, key, setting = max(shares)
     if most <= quantities[key].doubt:
-        yield f"no setting limits the accuracy by more than the study can tell; largest shares of error: {largest}"
+        yield f"no setting limits the accuracy by more than the study resolves; largest shares of error: {largest}"
     else:
         yield f"what limits the accuracy is the {setting}; largest shares of error: {largest}"
 
@@ -226,7 +225,7 @@ def _cheapest(study: Study, target: float) -> Iterator[str]:
     if error <= target:
         yield f"{percent(target)} is reached{where} {at}"
     else:
-        yield f"{percent(target)} can't be told{where}; the reference is reached as far as it is known {at}"
+        yield f"{percent(target)} can't be judged{where}; the reference is reached as far as it is known {at}"
     beside = _doubtful(quantities, target)
     if beside:
         yield f"the reference is known less well than to {percent(target)} of {beside}"

@@ -105,5 +105,5 @@ def refuse_too_deep(measured: MeasuredResistance, diameter: float, data: Path | 
 
 def refuse_too_many(parameters: Sequence[FitParameter], measured: MeasuredResistance, data: Path | str) -> None:
     if len(measured.w) <= len(parameters):
-        allowed = f"{len(measured.w)} rows can't tell {len(parameters)} parameters"
+        allowed = f"{len(measured.w)} rows can't determine {len(parameters)} parameters"
         raise SceneError(f"{data}: {allowed}; measure more, or find fewer")

@@ -43,7 +43,7 @@ def result_lines(fit: Fit) -> list[str]:
     lines = [f"misfit {fit.misfit:.4g} N/m (root mean square) after {fit.runs} runs"]
     for each in fit.parameters:
         low, high = each.interval
-        known = f"{100 * CONFIDENCE:.0f} % within {low:.5g} to {high:.5g}" if each.known else "not told by these data"
+        known = f"{100 * CONFIDENCE:.0f} % within {low:.5g} to {high:.5g}" if each.known else "undetermined by the data"
         lines.append(f"{each.parameter.name} = {each.value:.6g}, {known}")
     bound = (each.parameter.name for each in fit.parameters if each.at_bound)
     lines += [f"warning: {name} is at its bound; widen --fit" for name in bound]

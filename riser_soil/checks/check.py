@@ -1,4 +1,4 @@
-"""Report of `riser-soil check`: parts, lines, unknowns, memory, disk, run time and plausibility warnings."""
+"""Report of `riser-soil check`: tensions and touchdown by hand, warnings, lines, mesh, cost, and what the model has."""
 
 from __future__ import annotations
 
@@ -7,21 +7,16 @@ from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.seabed_reach import why_apart
-from riser_soil.assembly.shape import tensions_of_taut
 from riser_soil.assembly.soil_block import why_all, why_whole
+from riser_soil.checks.bending_plausibility import proposal
+from riser_soil.checks.by_hand import by_hand
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth
 from riser_soil.checks.inventory import built, left_out, no_new_mesh, unknowns
-from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
+from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
-from riser_soil.core.arrays import Array
-from riser_soil.riser.catenary import Catenary
-from riser_soil.riser.sections import Elements
-from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -30,26 +25,46 @@ if TYPE_CHECKING:
 
 HEADS = ("line type", "from m", "to m", "OD m", "ID m", "empty kg/m", "filled kg/m", "in air N/m", "in water N/m")
 STIFFNESSES = ("EA N", "EI N.m2")
-TOUCHING = 1e-6  # of the length: what rests on the seabed
+WORDS = {  # of parts, where an engineer has others
+    "springs": "rotational springs at the ends",
+    "contents": "internal flow",
+    "morison": "drag and added mass",
+    "vortices": "vortex forces",
+    "vortices in line": "vortex forces in line",
+    "friction": "friction on the seabed",
+    "soil friction": "friction on soil",
+    "new mesh": "large strain of soil",
+    "cushion": "laying on a cushion",
+    "wall tension": "true wall tension",
+}
+WITH_REASON = ("morison", "buoyancy", "body contact", "wall tension")  # absent for a reason that a scene doesn't show
+WITHIN_SOIL = (  # details of the soil's and the riser's model, absent by default
+    *("soil forms", "soil inertia", "soil boundary", "new mesh", "cushion", "half of the soil"),
+    *("soil friction", "rotary inertia", "vortices in line", "body friction"),
+)
 
 
 def describe(scene: Scene, place: Callable[[str], str] = str) -> str:
     """The report of `riser-soil check`; collective. Raises SceneError or MeshError.
 
-    place: puts before a warning that begins with a key where that key comes from.
+    What an engineer checks first comes first: tensions and touchdown point by hand, then warnings; line, mesh and cost
+    follow, and at last what the model has and what it hasn't. place: puts before a warning that begins with a key
+    where that key comes from.
     """
     comm, scene = communicator_of(scene), sized(scene)
     size = size_that_fits(scene, Path(), comm)
-    tell(size, comm)
     of_size = [*tight(size, comm), *too_long(size)]
     refuse_impossible(scene)
     assembly = build(scene, comm)
-    lines = [*_parts(assembly)]
+    warnings = [place(warning) for warning in (*physical_warnings(assembly), *of_size)]
+    lines = [_title(assembly)]
+    for name, line in assembly.by_line.items():
+        lines += [f"{name}: {text}" if name and not text.startswith(" ") else text for text in by_hand(line)]
+    lines += [*reported_waves(assembly), *(f"warning: {warning}" for warning in warnings), _verdict(warnings)]
     for name, line in assembly.by_line.items():
         lines += [*_unknowns(line, name)]
-    lines += [*_hung(assembly), _memory_line(assembly), *_results(size)]
-    warnings = [place(warning) for warning in (*physical_warnings(assembly), *of_size)]
-    return "\n".join([*lines, *(f"warning: {warning}" for warning in warnings), _verdict(warnings)])
+    lines += [*_hung(assembly), _memory_line(assembly), *_results(size), *_model(assembly.scene)]
+    return "\n".join(lines)
 
 
 def _verdict(warnings: list[str]) -> str:
@@ -69,14 +84,21 @@ def reported_waves(assembly: Assembly) -> Iterator[str]:
         yield from reported_regular(assembly.scene)
 
 
-def _parts(assembly: Assembly) -> Iterator[str]:
-    stages = len(assembly.scene.stages)
+def _title(assembly: Assembly) -> str:
+    steps = len(assembly.scene.stages)
     what = "riser" if not assembly.scene.lines else _counted(len(assembly.lines), "line")
     dimension = next(iter(assembly.lines.values())).line.dimension
-    yield f"{assembly.scene.title}: {_counted(stages, 'stage')}, {what} in {dimension} dimensions"
-    yield "built: " + ", ".join(built(assembly.scene))
-    yield from (f"left out: {name}: {reason}" for name, reason in left_out(assembly.scene).items())
-    yield from reported_waves(assembly)
+    return f"{assembly.scene.title}: {_counted(steps, 'load step')}, {what} in {dimension} dimensions"
+
+
+def _model(scene: Scene) -> Iterator[str]:
+    """What the model has, and in short what it hasn't; why, where the scene doesn't say so."""
+    yield "model: " + ", ".join(WORDS.get(name, name) for name in built(scene))
+    absent = left_out(scene)
+    without = [WORDS.get(name, name) for name in absent if name not in (*WITH_REASON, *WITHIN_SOIL)]
+    without += [f"{WORDS.get(name, name)} ({absent[name]})" for name in WITH_REASON if name in absent]
+    if without:
+        yield "not in the model: " + ", ".join(without)
 
 
 def _hung(assembly: Assembly) -> Iterator[str]:
@@ -107,8 +129,6 @@ def _touches(hung: Hung, name: str) -> str:
 
 
 def _unknowns(assembly: Assembly, name: str) -> Iterator[str]:
-    from riser_soil.checks.bending_plausibility import proposal
-
     line = assembly.line
     yield (
         f"{name or 'riser'}: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
@@ -190,8 +210,8 @@ def memory(assembly: Assembly) -> float:
 
 
 def line_summary(assembly: Assembly) -> list[str]:
-    """Lines of text."""
-    return [*_table(_rows(assembly)), *_whole(assembly), *tensions_by_hand(assembly)]
+    """Segments with their weights, and the weight of the whole line: lines of text."""
+    return [*_table(_rows(assembly)), *_whole(assembly)]
 
 
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
@@ -233,61 +253,3 @@ def _whole(assembly: Assembly) -> Iterator[str]:
     if assembly.attachments:
         parts.append(f"with attachments {(wet + held) / 1e3:.4g} kN")
     yield ", ".join(parts)
-
-
-def tensions_by_hand(assembly: Assembly) -> Iterator[str]:
-    """Effective tensions at the ends, at rest: of the cable without bending stiffness, and by formula beside it."""
-    start, end = assembly.scene.line.start, assembly.scene.line.end
-    if not (isinstance(start, Support) and isinstance(end, Support)):
-        return
-    places = np.array(start.position), np.array(end.position)
-    if assembly.catenary is not None and assembly.catenary.slack == 0.0:
-        yield from _of_cable(assembly, assembly.catenary)
-    elif (tension := tensions_of_taut(assembly.elements, *places)) is not None:
-        yield _of_taut(assembly.elements, tension, *places)
-
-
-def _of_cable(assembly: Assembly, cable: Catenary) -> Iterator[str]:
-    """Beside the cable's tensions H + sum of w dz, from the lowest point up: dT = w dz along a cable, whatever its
-    shape. An attachment's weight P adds some P sin(slope).
-    """
-    z = cable.curve.position[:, 2]
-    low, near = int(z.argmin()), TOUCHING * float(assembly.line.arc[-1])
-    yield f"tensions at rest, as a cable: horizontal {_kN(cable.H)} kN, lowest at z = {z[low]:.4g} m"
-    for name, at, part in (("start", 0, slice(None, low)), ("end", -1, slice(low, None))):
-        if z[at] - z[low] > near:
-            terms = _by_weight(assembly.elements.weight[part], np.diff(z)[part] * (1.0 if name == "end" else -1.0))
-            held = _held(assembly, cable, low, name == "end")
-            reported = [_kN(cable.H), *(f"{w / 1e3:.4g} * {h:.5g}" for w, h in terms), *([_kN(held)] if held else [])]
-            by_hand = cable.H + sum(w * h for w, h in terms) + held
-            formula = "H + sum of w h" + (" + attachments" if held else "")
-            tension = _kN(cable.tension[at])
-            yield f"  {name}: {tension} kN; by hand {formula} = {' + '.join(reported)} = {_kN(by_hand)} kN"
-
-
-def _by_weight(weight: Array, climb: Array) -> list[tuple[float, float]]:
-    """Height climbed (m) in pipe of each weight per length (N/m), in the order along the riser."""
-    distinct = dict.fromkeys(float(w) for w in weight)
-    return [(w, float(climb[weight == w].sum())) for w in distinct]
-
-
-def _held(assembly: Assembly, cable: Catenary, low: int, towards_end: bool) -> float:
-    """Of the attachments between the lowest point and an end: weight times the sine of the slope there [N]."""
-    arc, z = assembly.line.arc, cable.curve.position[:, 2]
-    steep = np.diff(z) / np.linalg.norm(cable.curve.chord, axis=1) * (1.0 if towards_end else -1.0)
-    here = (each for each in assembly.attachments if (each.arc > arc[low]) == towards_end)
-    return float(sum(each.net_weight * steep[assembly.line.element_at(each.arc)[0]] for each in here))
-
-
-def _of_taut(elements: Elements, tension: Array, start: Array, end: Array) -> str:
-    distance, rise = float(np.linalg.norm(end - start)), float(end[2] - start[2])
-    half = 0.5 * elements.weight * elements.length * rise / distance
-    first, last = tension[0] - half[0], tension[-1] + half[-1]
-    return (
-        f"tensions at rest by hand, pulled straight to {distance:.6g} m, by the sum of T l/EA and T growing by w dz: "
-        f"start {_kN(first)} kN, end {_kN(last)} kN"
-    )
-
-
-def _kN(force: float) -> str:
-    return f"{force / 1e3:.4g}"

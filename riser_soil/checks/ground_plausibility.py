@@ -67,8 +67,8 @@ def _forgets(scene: Scene) -> Iterator[str]:
     if laws and cycles >= MANY_CYCLES:
         yield (
             f"soil: {laws[0].kind} lets go of a mean stress, half of it in each cycle of {laws[0].forgets_at:.2%} "
-            f"shear strain, and strains on in each under a mean load; the scene has {cycles:.4g} cycles (told from "
-            f"{MANY_CYCLES} on): take iwan, whose loops close; riser-soil material shows both"
+            f"shear strain, and strains on in each under a mean load; the scene has {cycles:.4g} cycles (limit "
+            f"{MANY_CYCLES}): take iwan, whose loops close; riser-soil material shows both"
         )
 
 
@@ -150,7 +150,7 @@ def _small_strain(assembly: Assembly) -> Iterator[str]:
         yield (
             f"the soil is computed at small strain, and the riser's weight, {weight:.4g} N/m, is "
             f"{weight / bearing.capacity:.0%} of the {bearing.capacity:.4g} N/m that its clay bears at the surface "
-            f"(told above {SUNK_AT:.0%}): it sinks in by more than small strain follows, and is borne too little; take "
+            f"(limit {SUNK_AT:.0%}): it sinks in by more than small strain follows, and is borne too little; take "
             "soil.strain: large and contact.method: surface"
         )
 

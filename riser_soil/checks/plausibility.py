@@ -136,8 +136,8 @@ def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:
         yield (
             f"{path}: {100.0 * beyond.below:.3g} % of the waves' energy lies below the table's first frequency, "
             f"{beyond.first:.4g} rad/s, where the vessel moves as there, and {100.0 * beyond.above:.3g} % above its "
-            f"last, {beyond.last:.4g} rad/s, where it doesn't move: by the table's ends that is little; longer tables "
-            "would tell"
+            f"last, {beyond.last:.4g} rad/s, where it doesn't move: by the table's ends that is little; a longer table "
+            "would show"
         )
 
 

@@ -18,10 +18,10 @@ from riser_soil import __version__
 from riser_soil.commands.exit_status import expected_errors, rank
 from riser_soil.errors import ResultsError
 
-Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="tell warnings and errors alone")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="print warnings and errors alone")]
 LogFile = Annotated[
     Path | None,
-    typer.Option("--log-file", metavar="FILE", help="also write all that is told to this file, with times; appends"),
+    typer.Option("--log-file", metavar="FILE", help="also write all output to this file, with times; appends"),
 ]
 _OPTIONS = {"quiet": (Quiet, False), "log_file": (LogFile, None)}
 _WARNING, _NEWS = "warning: ", "compiling kernels"  # what is told nevertheless, and what is no error

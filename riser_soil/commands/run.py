@@ -56,7 +56,7 @@ def run(
 
 
 def check(scene: SceneFile, overrides: Overrides = None) -> None:
-    """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
+    """Check a scene: tensions and touchdown by hand, warnings, cost, what the model has; solve nothing."""
     with expected_errors():
         checked = read_start(scene, overrides)
         from riser_soil.checks.check import describe

@@ -51,7 +51,7 @@ def statistics(
     minima: Annotated[bool, typer.Option("--minima", help="smallest values in the place of largest ones")] = False,
     above: Annotated[
         list[float] | None,
-        typer.Option("--above", metavar="LEVEL", help="tell how often a level is passed; may be repeated"),
+        typer.Option("--above", metavar="LEVEL", help="how often a level is passed; may be repeated"),
     ] = None,
     confidence: Annotated[float, typer.Option("--confidence", help="of the fits' intervals")] = 0.95,
     segment: Annotated[

@@ -51,11 +51,11 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
         ),
     ),
     OutputQuantity(
-        "wall_tension", "T_w", "N", "tension in the pipe's wall, T + p_i A_i - p_o A_o", "nodes",
+        "wall_tension", "T_w", "N", "true wall tension, T + p_i A_i - p_o A_o", "nodes",
         lambda i: i.riser.wall_tension, "positive in tension", needs="pressures",
         figures=(
-            least("min_wall_tension", Row("least wall tension", "kN", 1e-3)),
-            greatest("max_wall_tension", Row("greatest wall tension", "kN", 1e-3)),
+            least("min_wall_tension", Row("least true wall tension", "kN", 1e-3)),
+            greatest("max_wall_tension", Row("largest true wall tension", "kN", 1e-3)),
         ),
     ),
     OutputQuantity(
@@ -67,14 +67,14 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
         lambda i: i.riser.curvature,
     ),
     OutputQuantity(
-        "bend_utilisation", "", "1", "curvature times the smallest bend radius allowed", "nodes",
+        "bend_utilisation", "", "1", "bend utilisation: curvature times the minimum bend radius allowed (MBR)", "nodes",
         lambda i: i.riser.bend_utilisation, "above 1 the pipe is bent too much", needs="min_bend_radius",
     ),
     OutputQuantity(
-        "tension_utilisation", "", "1", "effective tension over the largest allowed, max_tension", "nodes",
+        "tension_utilisation", "", "1", "tension utilisation: effective tension over max_tension", "nodes",
         lambda i: i.riser.tension_utilisation, "above 1 the riser is pulled too much, below 0 it is compressed",
         needs="max_tension",
-        figures=(greatest_known("max_tension_utilisation", Row("tension over what is allowed")),),
+        figures=(greatest_known("max_tension_utilisation", Row("tension utilisation")),),
     ),
     OutputQuantity(
         "internal_pressure", "p_i", "Pa", "pressure of the contents", "nodes",
@@ -111,13 +111,13 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "wall_von_mises_stress", "", "Pa", "largest von Mises stress around the wall, inside and outside", "nodes",
         lambda i: i.riser.wall and i.riser.wall.von_mises_stress, ">= 0", needs="wall",
-        figures=(greatest_known("max_wall_von_mises_stress", Row("largest stress in the wall", "MPa", 1e-6)),),
+        figures=(greatest_known("max_wall_von_mises_stress", Row("von Mises stress of the wall", "MPa", 1e-6)),),
     ),
     OutputQuantity(
-        "stress_utilisation", "", "1", "von Mises stress of the wall over design_factor times yield_stress", "nodes",
+        "stress_utilisation", "", "1", "stress utilisation: von Mises stress of the wall over the allowable", "nodes",
         lambda i: i.riser.wall and i.riser.wall.stress_utilisation, "above 1 the wall is stressed too much",
         needs="yield stress",
-        figures=(greatest_known("max_stress_utilisation", Row("stress over what is allowed")),),
+        figures=(greatest_known("max_stress_utilisation", Row("stress utilisation")),),
     ),
     OutputQuantity(
         "code_utilisation", "", "1", "largest utilisation by codes, of all checks of code_check", "nodes",
@@ -258,12 +258,12 @@ OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
         "touchdown_arc", "", "m",
         "arc length of the touchdown point towards the end: where a rigid contact with the resultant and moment of the "
         "contact forces would end; nan when nothing touches", "model",
-        lambda i: i.touch.touchdown_arc, figures=(Figure("touchdown_arc", row=Row("touchdown arc length", "m")),),
+        lambda i: i.touch.touchdown_arc, figures=(Figure("touchdown_arc", row=Row("TDP, arc length", "m")),),
     ),
     OutputQuantity(
         "touchdown_position", "", "m", "position of the riser's axis at the touchdown point", "model",
         lambda i: i.touch.touchdown_position, "global axes, z up", vector=True,
-        figures=(Figure("touchdown_position", size=3, row=Row("touchdown point, x, y, z", "m")),),
+        figures=(Figure("touchdown_position", size=3, row=Row("TDP, x, y, z", "m")),),
     ),
     OutputQuantity(
         "touchdown_points", "", "1",
@@ -298,21 +298,21 @@ OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
                 "min_bend_radius",
                 lambda largest: bend_radius(largest.value),
                 arc=lambda largest: largest.arc,
-                row=Row("smallest bend radius", "m"),
+                row=Row("minimum bend radius", "m"),
             ),
         ),
     ),
     OutputQuantity(
         "largest_bend_utilisation", "", "1", "largest bend utilisation, between nodes too", "summary",
         lambda i: i.riser.largest_bend_utilisation, needs="min_bend_radius",
-        figures=(extreme_along("max_bend_utilisation", Row("allowed over actual bend radius")),),
+        figures=(extreme_along("max_bend_utilisation", Row("bend utilisation, MBR over bend radius")),),
     ),
     OutputQuantity(
-        "min_bend_radius", "", "m", "smallest bend radius, one over the largest curvature, between nodes too", "model",
+        "min_bend_radius", "", "m", "minimum bend radius, one over the largest curvature, between nodes too", "model",
         lambda i: bend_radius(i.riser.largest_curvature.value),
     ),
     OutputQuantity(
-        "min_bend_radius_arc", "", "m", "arc length of the smallest bend radius", "model",
+        "min_bend_radius_arc", "", "m", "arc length of the minimum bend radius", "model",
         lambda i: i.riser.largest_curvature.arc,
     ),
     OutputQuantity(

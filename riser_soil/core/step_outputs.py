@@ -26,7 +26,7 @@ OF_STEP: tuple[OutputQuantity[StepRecord], ...] = (
     ),
     OutputQuantity(
         "relative_energy_residual", "", "1",
-        "residual of the energy balance since the stage began, over the energy turned over; nan in static stages",
+        "residual of the energy balance since the stage began, over the energy exchanged; nan in static stages",
         "step", lambda s: s.ledger.relative_residual, _FROM_NOWHERE,
     ),
     OutputQuantity(

@@ -28,7 +28,7 @@ def text(title: str, call: str, layout: LineLayout, sea: SeaState, wishes: Wishe
     """The scene file; call: the command that wrote it."""
     head = (
         f"# {title}: a first draft by `{call}`. Units are SI; z = 0 is the seabed.",
-        "# Its numbers are common ones, not yours: go through them.",
+        "# Its numbers are typical ones, not yours: check each of them.",
         f"title: {title}",
     )
     line = _line_types(layout), _riser(layout, wishes), _seabed(layout, wishes)
@@ -68,7 +68,7 @@ def _water(sea: SeaState) -> Iterator[Coded]:
         profile = f"[[0.0, 0.0, 0.0], [{number(sea.depth)}, {number(sea.current)}, 0.0]]"
         yield f"  current: {{profile: {profile}}}", "z, u_x, u_y"
     if sea.Hs:
-        yield "  waves:", "they act in dynamic stages"
+        yield "  waves:", "in dynamic load steps"
         height, period = number(sea.Hs), number(sea.Tp)
         yield f"    jonswap: {{Hs: {height}, Tp: {period}, seed: 1, direction_deg: 180.0}}", "m, s; towards -x"
 
@@ -98,7 +98,7 @@ def _line_type(name: str, pipe: CrossSection) -> Iterator[Coded]:
         yield f"    max_tension: {number(pipe.max_tension)}", "N"
     if pipe.yield_stress:
         wall = f"{{yield_stress: {number(pipe.yield_stress)}, design_factor: 0.67}}"
-        yield f"    wall: {wall}", "Pa; with it there are results of stress"
+        yield f"    wall: {wall}", "Pa; for stress results"
 
 
 def _riser(layout: LineLayout, wishes: Wishes) -> Iterator[Coded]:
@@ -106,19 +106,19 @@ def _riser(layout: LineLayout, wishes: Wishes) -> Iterator[Coded]:
     yield "riser:", ""
     if pipe.inner and pipe.contents:
         yield f"  contents: {{density: {number(pipe.contents)}}}", "kg/m3"
-    yield "  segments:", "from start to end; elements in m, or [first, last] of them"
+    yield "  segments:", "from end A (start) to end B (end); element lengths in m, or [first, last]"
     yield from ((f"    - {_segment(cut)}", "") for cut in layout.cuts)
-    yield f"  start: {{position: {_place(layout.start)}}}", "free to turn"
+    yield f"  start: {{position: {_place(layout.start)}}}", "end A; pinned"
     if layout.tension is not None:
-        yield "  end:", "held sideways, pulled up with one force at any height"
+        yield "  end:", "end B; guided sideways, with a tensioner of constant force"
         yield f"    position: {_place(layout.end)}", ""
         yield f"    tensioner: {{tension: {number(layout.tension, 3)}}}", "N"
     elif wishes.angle is not None:
-        yield "  end:", "at the floater"
+        yield "  end:", "end B, the hang-off"
         yield f"    position: {_place(layout.end)}", "x is a first guess: the angle decides"
         yield f"    hang_off: {{angle: {number(wishes.angle)}}}", "deg from the vertical, at rest"
     else:
-        yield f"  end: {{position: {_place(layout.end)}}}", "at the floater"
+        yield f"  end: {{position: {_place(layout.end)}}}", "end B, the hang-off"
 
 
 def _segment(cut: Cut) -> str:
@@ -139,7 +139,7 @@ def _seabed(layout: LineLayout, wishes: Wishes) -> Iterator[Coded]:
 
 
 def _stages(layout: LineLayout, sea: SeaState, rao: str | None) -> Iterator[Coded]:
-    yield "stages:", ""
+    yield "stages:", "load steps"
     yield "  - {name: rest, kind: static}", ""
     if not sea.Hs:
         return
@@ -148,7 +148,7 @@ def _stages(layout: LineLayout, sea: SeaState, rao: str | None) -> Iterator[Code
     yield f"    duration: {number(WAVES * sea.Tp)}", "s; extremes of a storm take hours, or several seeds"
     yield f"    time_step: {number(sea.Tp / STEPS, 3)}", ""
     if rao is None:
-        yield "    motion:", "stands for the floater's; {vessel: {rao: rao.csv, ...}} follows the waves"
+        yield "    motion:", "in place of the floater's; {vessel: {rao: rao.csv, ...}} follows the waves"
         yield f"      end: {{harmonic: {_harmonic(layout, sea)}}}", ""
     else:
         yield "    motion:", "reference: the point of the RAOs, here the hang-off: give the vessel's own"

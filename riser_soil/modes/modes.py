@@ -145,7 +145,7 @@ def _require_sound(found: Eigenpairs, least: float) -> None:
     if found.squares.min() < -least:
         raise SolveError(
             f"the riser at rest is unstable: the square of an angular frequency is {found.squares.min():.4g} rad2/s2; "
-            "look at the static stage, refine the riser or hold its ends"
+            "check the static load step, refine the riser or hold its ends"
         )
     if found.asymmetry > MOST_ASYMMETRY:
         raise SolveError(

@@ -31,7 +31,7 @@ def water_depth(environment: Item) -> float:
     (first, depth), *others = depths.items()
     for key, other in others:
         if other != depth:
-            environment.refuse(key, f"tells of a depth of {other:g} m, and {first} of {depth:g} m; correct one of them")
+            environment.refuse(key, f"gives a depth of {other:g} m, and {first} of {depth:g} m; correct one of them")
     return depth
 
 

@@ -35,7 +35,7 @@ def waves(environment: Item, build_up: float, g: float, depth: float) -> dict[st
         return None
     kinds = found[0] if len(found) == 1 else alone[0] if alone else {"trains": found}
     for _ in found[1:] if alone else []:
-        environment.left("WaveTrains", "a wave of finite height is alone here; the other trains are left out")
+        environment.left("WaveTrains", "a wave of finite height is alone here; the other trains are not carried over")
     if any(kind in train for train in found for kind in _PEAKED.values()):
         environment.get("WaveFrequencySpectrumDiscretisationMethod")
     ramp = {"ramp": build_up} if build_up else {}

@@ -112,14 +112,14 @@ def _others(stage: StageRecords) -> Iterator[Picture]:
     if stage.moves:
         yield _sheet(stage, "history_ends", "histories", "ends in time", histories.ends)
         if _touches(stage):
-            yield _sheet(stage, "history_touchdown", "histories", "touchdown and contact in time", histories.touchdown)
+            yield _sheet(stage, "history_touchdown", "histories", "TDP and contact force in time", histories.touchdown)
         words = "minimum effective tension and minimum bend radius in time"
         yield _sheet(stage, "history_extremes", "histories", words, histories.least_and_tightest)
     yield _sheet(stage, "shape", "shape", "shape of the riser", snapshots)
     if has_trough(stage):
         yield _sheet(stage, "trough", "soil", "trough across the riser", trough)
     if stage.moves and "kinetic_energy" in there:
-        yield _sheet(stage, "energy", "energy", "energy since the stage began", histories.energy)
+        yield _sheet(stage, "energy", "energy", "energy in the load step", histories.energy)
         yield _sheet(stage, "solver", "solver", "iterations and steps", histories.solver)
 
 

@@ -40,12 +40,12 @@ ALONG_ARC: dict[str, tuple[str, float]] = {
     "soil_settlement": ("settlement of the soil under the riser [mm], + down", 1e3),
 }
 _REACTIONS = {
-    "H1": "H at the start [kN], + towards start",
-    "H2": "H at the end [kN], + towards end",
-    "V1": "V at the start [kN], + upwards",
-    "V2": "V at the end [kN], + upwards",
+    "H1": "H at end A [kN], + towards end A",
+    "H2": "H at end B [kN], + towards end B",
+    "V1": "V at end A [kN], + upwards",
+    "V2": "V at end B [kN], + upwards",
 }
-ARC, TIME = "arc length from end A, the start [m]", "time [s]"
+ARC, TIME = "arc length from end A [m]", "time [s]"
 PAGE = 6.7  # in, width of the text on A4: pictures of this width are printed as large as they are
 STYLE: dict[str, Any] = {  # of pictures of this width; "small" is 7.5 pt then, the least that reads well on paper
     "font.size": 9.0, "axes.labelsize": 8.5, "axes.titlesize": 9.0, "xtick.labelsize": 8.0, "ytick.labelsize": 8.0,
@@ -104,7 +104,7 @@ def shapes(axes: Axes, run: Run, at: Sequence[int] = (-1,), labels: Sequence[str
     names = labels or [f"t = {run.time[i]:.3g} s" for i in at]
     for i, name in zip(at, names, strict=True):
         axes.plot((position[i] - position[0, 0]) @ direction, position[i, :, 2], label=name, **style)
-    axes.set_xlabel("horizontal distance from the start [m]")
+    axes.set_xlabel("horizontal distance from end A [m]")
     axes.set_ylabel("z [m], upwards")
     axes.set_aspect("equal")
     axes.legend()
@@ -143,7 +143,7 @@ def end_tension(axes: Axes, run: Run, since: float = 0.0, label: str | None = No
     """Effective tension at the end in time."""
     seen = run.time >= since
     axes.plot(run.time[seen], 1e-3 * run["effective_tension"][seen, -1], label=label, linewidth=1.0)
-    _name(axes, TIME, "tension at the end [kN], + pulls")
+    _name(axes, TIME, "effective tension at end B [kN], + pulls")
 
 
 def instants(run: Run, since: float, until: float, count: int) -> list[int]:

@@ -48,7 +48,7 @@ def touchdown(stage: StageRecords) -> Figure:
     arc.plot(stage.time, stage["touchdown_arc"])
     force.plot(stage.time, 1e-3 * stage["contact_force_sum"][:, 2])
     deep.plot(stage.time, 1e3 * stage["max_penetration"])
-    _name(arc, "touchdown point,\narc length [m]")
+    _name(arc, "TDP,\narc length [m]")
     _name(force, "sum of contact\nforces [kN], + up")
     _name(deep, "deepest\npenetration [mm]")
     return _in_time(figure)

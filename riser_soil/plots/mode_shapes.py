@@ -70,7 +70,7 @@ def _draw_view(axes: Axes, lines: Sequence[tuple[Array, Array]], position: Array
         for place, moves in lines:
             seen = place + factor * moves - origin
             axes.plot(seen @ horizontal, seen @ upwards, style, linewidth=0.9)
-    axes.set_xlabel("horizontal distance from the start [m]")
+    axes.set_xlabel("horizontal distance from end A [m]")
     axes.set_ylabel("from above:\nto the left [m]" if above else "z [m], upwards")
 
 

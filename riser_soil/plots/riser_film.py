@@ -56,7 +56,7 @@ def _pictures(run: Run, records: IntArray, tell: Tell) -> Iterator[Array]:
     figure, (axes,) = sheet(1, 1, *_INCHES)
     canvas = FigureCanvasAgg(figure)
     figure.set_dpi(_DPI)
-    axes.set(xlabel="horizontal distance from the start [m]", ylabel="z [m], upwards")
+    axes.set(xlabel="horizontal distance from end A [m]", ylabel="z [m], upwards")
     axes.set_aspect("equal", adjustable="datalim")
     axes.plot(x[records].T, z[records].T, color="0.85", linewidth=0.8)
     ground = np.linspace(x[records].min(), x[records].max(), 100)

@@ -22,7 +22,7 @@ _MOVES = 1e-6  # of the riser's length: what moves by less is at rest
 _ASIDE = 0.002  # of the riser's length: what goes out of the plane less is not drawn from above
 _ZONE = 0.06  # of the riser's length: to either side of the touchdown point
 _UNDER = 0.04  # of the height shown: how much of the ground is seen
-_AHEAD, _UP = "horizontal distance from the start [m]", "z [m], upwards"
+_AHEAD, _UP = "horizontal distance from end A [m]", "z [m], upwards"
 
 
 def filmed_records(stage: StageRecords, most: int) -> IntArray:
@@ -90,7 +90,7 @@ def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
     asked: list[tuple[str, Any]] = [("least tension", stage["effective_tension"].min(axis=1).argmin())]
     if "bending_moment" in stage.run.variables:
         asked.insert(0, ("largest bending moment", _worst(stage)))
-    for words, motion in (("end {} the start", ways), ("end {}", end[:, 2])):
+    for words, motion in (("end B {} end A", ways), ("end B {}", end[:, 2])):
         near, far = ("nearest to", "farthest from") if motion is ways else ("lowest", "highest")
         if np.ptp(motion) > _MOVES * stage.run.arc[-1]:
             asked += [(words.format(near), motion.argmin()), (words.format(far), motion.argmax())]

@@ -1,4 +1,4 @@
-"""Curves of several runs on one sheet: ranges along the riser, top tension and touchdown in time."""
+"""Curves of several runs on one sheet: ranges along the riser, top tension and TDP in time."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def sheets(runs: Mapping[str, Run], stage: str | None) -> Iterator[Sheet]:
     for name in (name for name in first if all(name in other for other in others)):
         yield Sheet(name, f"{name.replace('_', ' ')} along the riser: {chosen}", partial(_along, stages, name))
     if all(each.moves for each in stages.values()):
-        yield Sheet("", f"top tension and touchdown in time: {chosen}", partial(_in_time, stages))
+        yield Sheet("", f"top tension and TDP in time: {chosen}", partial(_in_time, stages))
 
 
 def _along(stages: dict[str, StageRecords], name: str) -> Figure:
@@ -65,7 +65,7 @@ def _in_time(stages: dict[str, StageRecords]) -> Figure:
     tensions = {label: _top_tension(stage) for label, stage in stages.items()}
     histories.compare(top, stages, tensions, "effective tension at\nthe upper end [kN]")
     arcs = {label: stage["touchdown_arc"] for label, stage in stages.items()}
-    histories.compare(arc, stages, arcs, "touchdown point,\narc length [m]")
+    histories.compare(arc, stages, arcs, "TDP,\narc length [m]")
     for axes in (top, arc):
         legend = axes.get_legend()
         if legend is not None:
@@ -95,7 +95,7 @@ def static_shapes(stages: Mapping[str, StageRecords]) -> Figure:
             near.plot(place, float(np.interp(arc, stage.run.arc, z)), "v", color=f"C{n}", markersize=5.0)
             zones.append(place)
     for axes in (whole, near):
-        axes.set(xlabel="horizontal distance from the start [m]", ylabel="z [m], upwards")
+        axes.set(xlabel="horizontal distance from end A [m]", ylabel="z [m], upwards")
     whole.set_aspect("equal", adjustable="datalim")
     level = surface_level(first.run)
     if level is not None:

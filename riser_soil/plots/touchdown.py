@@ -308,7 +308,7 @@ def _mark_touchdown(axes: Axes, still: _Frame, view: _View, place: Array) -> Non
 
 
 def _point_at(axes: Axes, still: _Frame, place: tuple[float, float], words_at: tuple[float, float]) -> None:
-    words, arrow = f"touchdown at arc {still.touchdown_arc:.4g} m", {"arrowstyle": "-|>", "color": _INK}
+    words, arrow = f"TDP at arc {still.touchdown_arc:.4g} m", {"arrowstyle": "-|>", "color": _INK}
     axes.annotate(words, place, words_at, ha="right", fontsize=12, arrowprops=arrow)
 
 
@@ -370,7 +370,7 @@ def _draw_zone(axes: Axes, still: _Frame) -> None:
     if still.touches:
         top = float(still.touchdown[2]) + still.radius
         _point_at(axes, still, (at, top), (at, top + 0.3 * (high - low)))
-    axes.set(xlabel="horizontal distance from the start [m]", ylabel="z [m], upwards")
+    axes.set(xlabel="horizontal distance from end A [m]", ylabel="z [m], upwards")
     axes.set_title("touchdown zone" if still.touches else "lowest point", fontsize=12)
     axes.grid(alpha=0.3)
 
@@ -413,7 +413,7 @@ def _draw_whole(axes: Axes, still: _Frame) -> None:
         )  # fmt: skip
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="upper left", fontsize=10)
-    axes.set(xlabel="horizontal distance from the start [m]", ylabel="z [m], upwards")
+    axes.set(xlabel="horizontal distance from end A [m]", ylabel="z [m], upwards")
     wide, high = float(np.ptp(x)), float(np.ptp(position[:, 2]))
     axes.set_title(f"whole riser, {metres(wide)} by {metres(high)}", fontsize=12)
     axes.grid(alpha=0.3)

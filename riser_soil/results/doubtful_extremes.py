@@ -83,7 +83,7 @@ class DoubtfulExtreme:
         fixed, auto = f"time_step of {self.dt * shorter:.2g} s, or auto", f"tolerance of {shorter**3:.2g} of this one"
         return (
             f"the {self.name} may be off by some {self.error:.3g} {self.unit}, {self.share:.2g} of {self.scale:.4g} "
-            f"{self.unit} (told above {self.allowed:.2g}): that sharply it turns between steps of {self.dt:.3g} s"
+            f"{self.unit} (limit {self.allowed:.2g}): that sharply it turns between steps of {self.dt:.3g} s"
             f"{self.then}; take a {auto if automatic else fixed}"
         )
 

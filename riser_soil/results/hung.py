@@ -107,7 +107,7 @@ class HungReader:
             allowed = GAPES * self._assembly.scales.diameter
             if largest > allowed and (stiffness is None or stiffness.translation is None):
                 told.append(
-                    f"joint {joint.name} gapes by up to {largest:.3g} m (told above {GAPES:g} diameters): it gives as "
+                    f"joint {joint.name} gapes by up to {largest:.3g} m (limit {GAPES:g} diameters): it gives as "
                     "the elements beside it do, which stretch as much; take shorter ones there, and check what pulls"
                 )
         return [*told, *self._sunk(found)]

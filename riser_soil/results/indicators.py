@@ -169,7 +169,7 @@ class StageIndicators:
             fine = step.dt * (allowed / step.local_error) ** (1 / 3)
             yield (
                 f"the step at {step.time:.5g} s misplaces the riser by some {step.local_error:.3g} m of its own, "
-                f"{step.local_error / self.diameter:.2g} diameters (told above {LARGE_LOCAL_ERROR:g}), by the change "
+                f"{step.local_error / self.diameter:.2g} diameters (limit {LARGE_LOCAL_ERROR:g}), by the change "
                 f"of its accelerations: take a time_step of {fine:.2g} s or less, or auto"
             )
 
@@ -178,7 +178,7 @@ class StageIndicators:
         if impact.share > LARGE_LOSS:
             yield (
                 f"at {impact.time:.5g} s impact lost {impact.largest:.3g} J to the time step and not to the ground, "
-                f"{impact.share:.0%} of the {impact.kinetic:.3g} J of the motion (told above {LARGE_LOSS:.0%}): forces "
+                f"{impact.share:.0%} of the {impact.kinetic:.3g} J of the motion (limit {LARGE_LOSS:.0%}): forces "
                 f"of impact may be {impact.force_error:.0%} too small, and rebounds too low; {self._shorter()}"
             )
 

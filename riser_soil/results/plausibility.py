@@ -219,7 +219,7 @@ class Plausibility:
                 yield (
                     f"elements of {length:.4g} m are too long for the bending at arc {found.arc:.5g} m: at "
                     f"{found.t:.5g} {self._unit} their turn and the moments at their ends differ by {found.value:.4g} "
-                    f"N.m, {share:.0%} of the stage's largest (told above {allowed:.0%}); moments may be off as much; "
+                    f"N.m, {share:.0%} of the stage's largest (limit {allowed:.0%}); moments may be off as much; "
                     "take elements half as long there"
                 )
                 return
@@ -250,7 +250,7 @@ class Plausibility:
                 f"the soil's surface under the riser is stretched to {self._stretch.value:.3g} times its area at "
                 f"{self._stretch.t:.5g} {self._unit}: this soil is computed at small strain, and soil that flows from "
                 f"under the pipe bears too little from some {LARGE_STRETCH:g} times on; take soil.strain: large and "
-                "contact.method: surface, or the depth that the riser sinks to for no figure"
+                "contact.method: surface, and don't quote the depth that the riser sinks to"
             )
 
     def _overloaded(self) -> Iterator[str]:
@@ -283,7 +283,7 @@ class Plausibility:
             if stress > NEAR_STRESS * nominal:
                 yield (
                     f"the riser changes the soil's stress at the block's {where} by {stress:.3g} Pa, "
-                    f"{stress / nominal:.0%} of its weight over its diameter (told above {NEAR_STRESS:.0%}): the block "
+                    f"{stress / nominal:.0%} of its weight over its diameter (limit {NEAR_STRESS:.0%}): the block "
                     f"holds the soil where the ground would give; take a {remedy} one"
                 )
 

@@ -37,6 +37,13 @@ _ORDER = (
     "max_embedment",
 )
 _NOTHING = object()
+SHOWN_SHARE = 0.1  # of the computing time, from which on a part's is shown; summary.json has all
+_PARTS = {  # of the program, in an engineer's words
+    "build": "setting up",
+    "linear_solve": "linear systems",
+    "compiled loop": "time steps",
+    "output": "writing results",
+}
 
 
 def print_summary(summary: dict[str, Any], console: Console | None = None) -> None:
@@ -69,8 +76,8 @@ def _table(title: str, rows: list[Row]) -> Table:
 
 
 def _stage_title(stage: dict[str, Any]) -> str:
-    ranges = "" if stage["kind"] == "static" else " (range over the stage)"
-    return f"{stage['name']} ({stage['kind']}), at its end{ranges}"
+    ranges = "" if stage["kind"] == "static" else " (range over the load step)"
+    return f"load step {stage['name']} ({stage['kind']}), at its end{ranges}"
 
 
 def _title(summary: dict[str, Any]) -> str:
@@ -100,10 +107,11 @@ def _hung_rows(stage: dict[str, Any]) -> Iterator[Row]:
 
 
 def _step_rows(stage: dict[str, Any]) -> list[Row]:
+    step = "load increment" if stage["kind"] == "static" else "step"
     return [
-        ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
-        ("Newton iterations per step", _newton(stage)),
-        *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),
+        (f"{step}s, shortened", f"{stage['steps']}, {stage['step_cuts']}"),
+        (f"Newton iterations per {step}", _newton(stage)),
+        *([("solved by", stage["method"])] if stage["method"] not in (None, "newton") else []),
         *_energy_rows(stage),
     ]
 
@@ -151,8 +159,11 @@ def _place(vector: list[float], unit: str, scale: float) -> str:
 
 def _run_rows(summary: dict[str, Any]) -> Iterator[Row]:
     yield "unknowns, riser and soil", f"{summary['dofs']['riser']} and {summary['dofs']['soil']}"
+    total = sum(summary["seconds"].values())
+    yield "computing time", f"{total:.2f} s"
     for part, seconds in summary["seconds"].items():
-        yield f"time in {part}", f"{seconds:.2f} s"
+        if seconds > SHOWN_SHARE * total:
+            yield f"  of which {_PARTS.get(part, part)}", f"{seconds:.2f} s"
 
 
 def _newton(stage: dict[str, Any]) -> str:
@@ -169,7 +180,7 @@ def _energy_rows(stage: dict[str, Any]) -> list[Row]:
     residual = f"{energy['residual'] * share:.2g} % of {energy['turned_over']:.3g} J{at}"
     return [
         ("energy residual", residual),
-        ("energy taken out by the time scheme", f"{energy['made'] * share:.2g} %"),
+        ("numerical damping of the time scheme", f"{energy['made'] * share:.2g} %"),
     ]
 
 

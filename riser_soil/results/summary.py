@@ -38,7 +38,7 @@ class TightestBend:
     def warnings(self, unit: str) -> Iterator[str]:
         if self.utilisation > 1.0:
             yield (
-                f"the pipe is bent beyond its min_bend_radius: {self.utilisation:.4g} times what is allowed at arc "
+                f"the pipe is bent beyond its min_bend_radius: {self.utilisation:.4g} times the limit at arc "
                 f"{self.arc:.5g} m and {self.t:.5g} {unit}, where the bend radius is {self.radius:.4g} m"
             )
 
@@ -66,7 +66,7 @@ class MostUsed:
     def warnings(self, unit: str, what: str, actual: str) -> Iterator[str]:
         if self.utilisation > 1.0:
             yield (
-                f"{what}: {self.utilisation:.4g} times what is allowed at arc {self.arc:.5g} m and {self.t:.5g} "
+                f"{what}: {self.utilisation:.4g} times the limit at arc {self.arc:.5g} m and {self.t:.5g} "
                 f"{unit}, where {actual.format(self.actual)}"
             )
 
@@ -77,25 +77,25 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
     if abs(worst) > allowed:
         yield (
             f"the energy balance is {worst:.3g} J off at {t:.5g} s, {abs(worst) / ledger.turned_over:.2%} of the "
-            f"{ledger.turned_over:.3g} J turned over, and {ledger.residual:.3g} J at the end: take a smaller time_step"
+            f"{ledger.turned_over:.3g} J exchanged, and {ledger.residual:.3g} J at the end: take a smaller time_step"
         )
     if abs(ledger.made) > allowed:
         done, own = ("took out" if ledger.made > 0.0 else "put in"), abs(ledger.made)
         yield (
             f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
-            "turned over: take a smaller time_step"
+            "exchanged: take a smaller time_step"
         )
     lost = ledger.dissipated_by.get("new_mesh", 0.0)
     if abs(lost) > allowed:
         yield (
             f"new meshes of the soil took {lost:.3g} J, {abs(lost) / ledger.turned_over:.2%} of the "
-            f"{ledger.turned_over:.3g} J turned over, as stress was transferred: take smaller cells under the riser"
+            f"{ledger.turned_over:.3g} J exchanged, as stress was transferred: take smaller cells under the riser"
         )
     given = -sum(ledger.dissipated_by.get(name, 0.0) for name in ("contact", "contact_time_scheme"))
     if given > allowed:
         yield (
             f"contact with the soil gave {given:.3g} J, {given / ledger.turned_over:.2%} of the "
-            f"{ledger.turned_over:.3g} J turned over: the pipe sank through the soil's surface, past its axis, or a "
+            f"{ledger.turned_over:.3g} J exchanged: the pipe sank through the soil's surface, past its axis, or a "
             "step threw the soil aside; take contact.stiffness auto, and a time_step in which the pipe falls by less "
             "than its radius"
         )

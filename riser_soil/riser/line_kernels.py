@@ -114,7 +114,7 @@ def folded(arc: float, length: float, diameter: float, ends: Array, chord: Array
     return (
         f"{found}; it had come to {math.degrees(swing):.0f} degrees before: loads or motion close a bend there, "
         f"whose radius is down to {radius:.3g} m, {radius / diameter:.2g} diameters, on an "
-        f"element of {length:.3g} m; much shorter elements follow it further, and tell whether it becomes a kink"
+        f"element of {length:.3g} m; much shorter elements follow it further, and show whether it becomes a kink"
     )
 
 

@@ -91,4 +91,4 @@ def _wanting_of_hang_off(scene: Scene, name: str) -> Iterator[tuple[str, str]]:
     if here.position[2] <= there.position[2]:
         yield f"the {name} is not above the {other}", "give it to the upper end, or correct the positions"
     if here.position[:2] == there.position[:2]:
-        yield f"the {name} is right above the {other}", "give a position aside of it: it tells the direction"
+        yield f"the {name} is right above the {other}", "give a position aside of it: it gives the direction"

@@ -243,7 +243,7 @@ class LineType(BaseModel):
 
     min_bend_radius: Length | None = Field(
         default=None,
-        description="smallest bend radius allowed [m]; a run warns where the pipe is bent more; any by default",
+        description="minimum bend radius allowed, MBR [m]; a run warns where the pipe is bent more; any by default",
     )
     max_tension: Tension | None = Field(
         default=None,

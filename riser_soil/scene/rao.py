@@ -110,13 +110,13 @@ def _modes(columns: CsvColumns) -> list[str]:
     place = f"{columns.file}:{columns.header}"
     modes = [mode for mode in MODES if mode in columns.values or f"{mode} phase" in columns.values]
     if not modes:
-        raise wrong_file(f"{place}: no column tells a response; give surge [m/m], surge phase [deg] and so on")
+        raise wrong_file(f"{place}: no column is a response; give surge [m/m], surge phase [deg] and so on")
     for mode in modes:
         for name in (mode, f"{mode} phase"):
             if name not in columns.values:
                 raise wrong_file(f"{place}: there is no column {name} [{next(iter(_KNOWN[name]))}]; add it")
     if ("frequency" in columns.values) == ("period" in columns.values):
-        raise wrong_file(f"{place}: waves are told by their frequency or their period; give one of these columns")
+        raise wrong_file(f"{place}: waves have a frequency or a period; give one of these columns")
     if not columns.rows:
         raise wrong_file(f"{place}: the table has no rows; give one for each wave")
     return modes

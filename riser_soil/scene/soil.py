@@ -274,7 +274,7 @@ class SoilScene(BaseModel):
         if self.forms is not None and self.strain == "large":
             raise wrong("strain", "terms of one's own are added at small strain", "leave strain out, or forms")
         if self.inertia and self.density is None and self.lightest == 0.0:
-            raise wrong("inertia", "nothing tells the density", "give density, or submerged_unit_weight")
+            raise wrong("inertia", "the density is missing", "give density, or submerged_unit_weight")
         return self
 
     @property

@@ -20,7 +20,7 @@ class Layer(BaseModel):
     model_config = FROZEN
 
     to: Length | None = Field(
-        default=None, description="depth of the layer's bottom below the seabed [m]; the last one's may be left out"
+        default=None, description="depth of the layer's bottom below the seabed [m]; the last one needs none"
     )
     volume: Text | None = Field(
         default=None, description="instead of to: the layer is this volume (physical group) of the mesh file"

@@ -195,10 +195,10 @@ class Record(BaseModel):
     )
     direction_deg: Angle = Field(default=0.0, description=_TOWARD)
     shortest_period: Time | None = Field(
-        default=None, description="shorter waves are left out [s]; by default those of two rows and less"
+        default=None, description="shorter waves are filtered out [s]; by default those of two rows and less"
     )
     longest_period: Time | None = Field(
-        default=None, description="longer waves are left out [s]; by default none but the mean"
+        default=None, description="longer waves are filtered out [s]; by default none but the mean"
     )
 
     @model_validator(mode="after")

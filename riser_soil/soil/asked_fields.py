@@ -61,7 +61,7 @@ class AskedFields:
         if untold:
             raise SceneError(
                 f"output.soil_fields: effective_stress is not known of {' and '.join(untold)}: its stress is total, "
-                "and nothing tells what share the pore water bears; ask for stress, or take a law with a history "
+                "and nothing says what share the pore water bears; ask for stress, or take a law with a history "
                 f"{PORE_PRESSURE}"
             )
 

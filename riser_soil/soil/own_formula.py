@@ -210,7 +210,7 @@ class ConstitutiveFormula(OwnFormula):
         probe[:, 5] = PROBE
         answers = np.abs(self._evaluated(probe, start, SHORTEST, [*range(6)])[0] - self.initial)[:, 4:].max(axis=0)
         if not 4.0 * answers.min() < answers.max():
-            raise LawError("whether yz or xz is its fifth component can't be told from its answer to a shear yz")
+            raise LawError("whether yz or xz is its fifth component can't be seen from its answer to a shear yz")
         return [0, 1, 2, 3, 4, 5] if answers[1] > answers[0] else [0, 1, 2, 3, 5, 4]
 
     def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:

@@ -238,7 +238,7 @@ class EnergyGain:
         moving = _into_motion(was, now, appeared)
         made = self._sum + moving
         if moving > adds + negligible and made > SUM * self._largest * turned:
-            return f"the steps' solutions make {made:.3g} J out of nothing, beside {turned:.3g} J turned over"
+            return f"the steps' solutions make {made:.3g} J out of nothing, beside {turned:.3g} J exchanged"
         return ""
 
     def accept(self, was: Energy, now: Energy, dissipated: float, work: float) -> None:

@@ -124,7 +124,7 @@ def _judged(status: int, output: str, long: bool) -> tuple[str, bool]:
     if os.WIFSIGNALED(status):
         name = signal.Signals(os.WTERMSIG(status)).name
         if name in ("SIGXCPU", "SIGKILL"):
-            return ("long, as told", True) if long else ("hang", False)
+            return ("long, as reported", True) if long else ("hang", False)
         return f"killed by {name}", False
     code = os.WEXITSTATUS(status)
     return STATUSES.get(code, f"status {code}"), code in STATUSES

@@ -19,7 +19,7 @@ from riser_soil.results.summary import plain_json
 from riser_soil.stress.bounds import ENERGY, Answer, worst_residual
 from riser_soil.stress.limited_process import Ending
 
-PASSED, REPORTED, WRONG, BROKEN, LONG = "passed", "told plainly", "QUIETLY WRONG", "broken", "out of time"
+PASSED, REPORTED, WRONG, BROKEN, LONG = "passed", "reported", "QUIETLY WRONG", "broken", "out of time"
 HEAD = ("case", "worst of its answers", "error", "energy residual", "Newton iterations", "cuts", "CPU s", "verdict")
 
 
@@ -111,7 +111,7 @@ def _message(ending: Ending, pattern: str | None) -> str:
     matching = [line for line in lines if pattern is not None and re.search(pattern, line)]
     if ending.finished:
         return matching[0] if matching else ""
-    return matching[0] if matching else (lines or ["nothing was told"])[-1]
+    return matching[0] if matching else (lines or ["no message"])[-1]
 
 
 def runs_in(place: Path, names: Iterable[str]) -> list[Run]:

@@ -45,7 +45,7 @@ def test_the_mooring_runs_in_waves_and_current(tmp_path: Path) -> None:
 
 
 def test_the_lazy_s_on_clay_is_built_without_a_warning() -> None:
-    assert describe(read_scene(DEMO / "lazy_s_on_clay.yaml")).endswith("no warnings")
+    assert "no warnings" in describe(read_scene(DEMO / "lazy_s_on_clay.yaml")).splitlines()
 
 
 @pytest.mark.parametrize(

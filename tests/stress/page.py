@@ -22,11 +22,11 @@ stress SCENE` does the same [around a scene of yours](command_line.md#stress).
 | verdict | meaning |
 | --- | --- |
 | passed | the run finished and all its answers hold |
-| told plainly | the program refused the scene, said why it found no solution, or warned of the wrong answer |
+| reported | the program refused the scene, said why it found no solution, or warned of the wrong answer |
 | QUIETLY WRONG | a run finished, an answer does not hold and no warning was given |
 
 A case has answers of its own. For every run, moreover, numbers are finite, at the end of a static stage reactions,
-contact, loads and weight are in balance, and the energy balance is within 1 % of the energy turned over.
+contact, loads and weight are in balance, and the energy balance is within 1 % of the energy exchanged.
 
 Shown is of each case the answer that is nearest to its limit, and its error relative to the exact value (of bounds: how
 far beyond them). [stress.json](stress.json) has of each case what is extreme and how the answer follows, values, the

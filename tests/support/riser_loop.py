@@ -223,7 +223,7 @@ def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
 
 
 def require_steps_of_snes(case: str) -> None:
-    """Iterations, states and energy turned over of a scene's steps by the loop are those by SNES."""
+    """Iterations, states and energy exchanged of a scene's steps by the loop are those by SNES."""
     compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
     assert compiled.newton.compiled is not None
     assert snes.newton.compiled is None

@@ -100,7 +100,7 @@ def test_the_warning_tells_where_and_when_the_pipe_is_bent_most(sag: Run) -> Non
     assert 1.0 < used.max() <= found["max"] < 1.01 * used.max()
     assert found["t_max"] == sag.time[row]
     reported = re.fullmatch(
-        rf"the pipe is bent beyond its min_bend_radius: {found['max']:.4g} times what is allowed at arc (\S+) m and "
+        rf"the pipe is bent beyond its min_bend_radius: {found['max']:.4g} times the limit at arc (\S+) m and "
         rf"{sag.time[row]:.5g} s, where the bend radius is {ALLOWED / found['max']:.4g} m",
         heave["warnings"][0],
     )

@@ -46,17 +46,23 @@ def with_value(mapping: Mapping, *path: str | int, value: Any) -> Mapping:
 def test_a_whole_scene() -> None:
     mapping = touchdown(LAY, heave(1.0))
     lines, scene = report(mapping).splitlines(), scene_from_mapping(mapping)
-    assert line_with(lines, "2 stages", "riser", "2 dimensions").startswith(mapping["title"])
+    assert line_with(lines, "2 load steps", "riser", "2 dimensions").startswith(mapping["title"])
     assert built(scene) == ("riser", "inertia", "morison", "seabed", "soil", "new mesh", "cushion", "contact")
-    assert lines[1] == "built: " + ", ".join(built(scene))
+    assert lines[1].startswith("by hand, at rest as a cable: H = ")
+    assert lines[-2] == "model: riser, inertia, drag and added mass, seabed, soil, large strain of soil, " + (
+        "laying on a cushion, contact"
+    )
     assert [*left_out(scene)][:2] == ["springs", "attachments"]
-    assert lines[2:4] == [f"left out: {part}: {left_out(scene)[part]}" for part in ("springs", "attachments")]
+    assert lines[-1].startswith("not in the model: rotational springs at the ends, attachments, internal flow, ")
+    assert lines[-1].endswith(f", true wall tension ({left_out(scene)['wall tension']})")
     line_with(lines, "riser:", "36 elements", "0.5 to 1.5 m", "107 unknowns")  # 37 nodes of 3, less two positions
     line_with(lines, "contact stiffness", "seabed", "1e+05 N/m2")
     line_with(lines, "warning:", "soil.mesh.size_at_riser 0.5 m", "2.1 times", "0.234 m")
-    assert lines[-1] == "2 warnings"
+    assert "2 warnings" in lines
+    places = [lines.index(line_with(lines, word)) for word in ("TDP", "2 warnings", "estimated time:", "model: riser,")]
+    assert places == sorted(places)
     at_nodes = report({**touchdown(LAY, heave(1.0)), "contact": {"method": "node"}}).splitlines()
-    line_with([at_nodes[-3]], "at its nodes only", "0.5 m apart", "cells of 0.5 m")
+    line_with([at_nodes[at_nodes.index("2 warnings") - 2]], "at its nodes only", "0.5 m apart", "cells of 0.5 m")
 
 
 def test_strain_of_the_soil_is_reported_with_its_reason() -> None:
@@ -68,7 +74,7 @@ def test_strain_of_the_soil_is_reported_with_its_reason() -> None:
 
 
 def test_a_scene_without_doubts() -> None:
-    assert report(without_soil(LAY, heave(1.0))).splitlines()[-1] == "no warnings"
+    assert "no warnings" in report(without_soil(LAY, heave(1.0))).splitlines()
 
 
 def test_unknowns_of_the_soil_are_those_that_are_free() -> None:

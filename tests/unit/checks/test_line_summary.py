@@ -1,4 +1,4 @@
-"""The line summary of `check`: masses and weights by their formulas, tensions at rest of a cable and by hand."""
+"""The line summary of `check`: masses and weights by their formulas; tensions and touchdown by hand, of a cable."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly import build
 from riser_soil.assembly.shape import tensions_of_taut
+from riser_soil.checks.by_hand import by_hand
 from riser_soil.checks.check import line_summary
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import SceneError
@@ -50,6 +51,10 @@ def reported(given: Scene) -> list[str]:
     return line_summary(build(given, MPI.COMM_SELF))
 
 
+def hand_checked(given: Scene) -> list[str]:
+    return [*by_hand(build(given, MPI.COMM_SELF))]
+
+
 def numbers(line: str) -> list[float]:
     return [float(x) for x in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]\d+)?", line)]
 
@@ -63,21 +68,57 @@ def test_weights_of_a_segment() -> None:
 def test_tension_by_hand_beside_the_cable() -> None:
     """T = H + w h over the touchdown point (Irvine, Cable Structures, 1981), and the riser's own is near."""
     given = scene()
-    *_, at_rest, top = reported(given)
-    cable, _, w, h, by_hand = numbers(top)
+    at_rest, top, _ = hand_checked(given)
+    cable, _, w, h, formula = numbers(top)
     H, level = numbers(at_rest)
     assert (w, h, level) == pytest.approx((WET / 1e3, 99.85, 0.15), rel=1e-3)
-    assert by_hand == pytest.approx(H + w * h, rel=1e-3)
-    assert cable == pytest.approx(by_hand, rel=1e-3)
+    assert formula == pytest.approx(H + w * h, rel=1e-3)
+    assert cable == pytest.approx(formula, rel=1e-3)
+    assert top.startswith("  hang-off (end B): ")
     (run,) = stage_histories(given)
     assert run.end.effective_tension[-1] == pytest.approx(1e3 * cable, rel=5e-3)
 
 
 def test_tension_by_hand_of_a_lazy_wave_with_attachments() -> None:
     row = {"from": 100.0, "to": 120.0, "spacing": 5.0, "mass": 100.0, "volume": 0.3}
-    *_, top = reported(scene(*LAZY, attachments=[row]))
-    cable, by_hand = numbers(top)[0], numbers(top)[-1]
-    assert cable == pytest.approx(by_hand, rel=5e-3)
+    _, top, touchdown = hand_checked(scene(*LAZY, attachments=[row]))
+    cable, formula = numbers(top)[0], numbers(top)[-1]
+    assert cable == pytest.approx(formula, rel=5e-3)
+    assert "TDP at arc" in touchdown
+
+
+def test_touchdown_by_hand_of_a_catenary() -> None:
+    """a = H/w, s = sqrt(h^2 + 2 a h) of pipe hang, over a asinh(s/a) in plan (Irvine); stretch is neglected."""
+    at_rest, _, touchdown = hand_checked(scene())
+    a = 1e3 * numbers(at_rest)[0] / WET
+    s = np.sqrt(99.85**2 + 2.0 * a * 99.85)
+    arc, plan, carried, hangs, before = (x for x in numbers(touchdown) if x != 2.0)  # the squares of its formula
+    assert (arc, plan, hangs) == pytest.approx((150.0 - s, a * np.arcsinh(s / a), s), abs=0.05)
+    assert carried == pytest.approx(WET * s / 1e3, rel=1e-3)
+    assert before == pytest.approx(np.sqrt(5.0e4 / (WET * a)), rel=5e-3)
+
+
+def test_touchdown_of_the_start_where_it_hangs() -> None:
+    """The same line from its other end."""
+    arc, plan, *_ = numbers(hand_checked(scene())[-1])
+    turned = scene(end=(80.0, 0.0, 0.15), start={"position": [0.0, 0.0, 100.0]})
+    _, top, touchdown = hand_checked(turned)
+    assert top.startswith("  hang-off (end A): ")
+    assert numbers(touchdown)[:2] == pytest.approx((150.0 - arc, plan), abs=0.02)
+
+
+def test_touchdown_of_a_lazy_wave_is_behind_its_hog() -> None:
+    """Three places carry V: the sag is no touchdown. The pipe of a run lies on the ground up to there."""
+    given = scene(*LAZY)
+    touchdown = numbers(hand_checked(given)[-1])[0]
+    (run,) = stage_histories(given)
+    lies = build(given, MPI.COMM_SELF).line.arc[run.position[-1][:, 2] < 0.16]
+    assert touchdown == pytest.approx(lies.max(), abs=5.0)
+
+
+def test_a_line_that_touches_nothing_has_no_touchdown() -> None:
+    lifted = scene(start={"position": [0.0, 0.0, 70.0]})
+    assert not [line for line in hand_checked(lifted) if "TDP" in line]
 
 
 def test_a_taut_vertical_riser_begins_in_balance() -> None:
@@ -86,7 +127,7 @@ def test_a_taut_vertical_riser_begins_in_balance() -> None:
     assembly = build(given, MPI.COMM_SELF)
     assert assembly.laying is None
     (run,) = stage_histories(given)
-    first, last = numbers(line_summary(assembly)[-1])[-2:]
+    first, last = numbers([*by_hand(assembly)][-1])[-2:]
     assert [first, last] == pytest.approx(run.end.effective_tension[[0, -1]] / 1e3, rel=1e-3)
     assert run.position[-1] == pytest.approx(assembly.line.to_global(assembly.line.x), abs=1e-9)
 

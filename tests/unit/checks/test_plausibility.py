@@ -122,7 +122,7 @@ def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("smooth", "steep", "limit"), [(9.9, 19.9, ""), (10.1, 0.0, "told above 10%"), (0.0, 20.1, "told above 20%")]
+    ("smooth", "steep", "limit"), [(9.9, 19.9, ""), (10.1, 0.0, "limit 10%"), (0.0, 20.1, "limit 20%")]
 )
 def test_bending_is_blurred_from_a_tenth_of_the_largest_moment_where_it_is_smooth_and_a_fifth_beside_a_clamp(
     smooth: float, steep: float, limit: str, monkeypatch: pytest.MonkeyPatch

@@ -33,11 +33,12 @@ def test_a_draft_is_checked_and_runs_as_it_is(kind: str, tmp_path: Path, monkeyp
     monkeypatch.chdir(tmp_path)
     written = called("new", kind, "--current", "0.5")
     assert written.exit_code == 0, written.output
-    verdict, last = written.output.splitlines()[-2:]
-    assert verdict == "no warnings"
-    line_with([last], f"{kind}.yaml: written", f"riser-soil run {kind}.yaml")
+    lines = written.output.splitlines()
+    assert "no warnings" in lines
+    line_with(lines[-1:], f"{kind}.yaml: written", f"riser-soil run {kind}.yaml")
     checked = called("check", f"{kind}.yaml")
-    assert (checked.exit_code, checked.output.splitlines()[-1]) == (0, "no warnings")
+    assert checked.exit_code == 0
+    assert "no warnings" in checked.output.splitlines()
     done = called("run", f"{kind}.yaml", "--set", "stages.1.duration=1.0")
     assert done.exit_code == 0, done.output
     assert "warning" not in done.output

@@ -44,7 +44,7 @@ def test_reactions_and_tension_in_time(run: Run, tmp_path: Path) -> None:
     end_reactions(panels[:4], {"one": run, "other": run}, since=0.5)
     seen = run.time >= 0.5
     assert panels[3].lines[1].get_data()[1] == pytest.approx(1e-3 * run["end_force"][seen, 2])
-    line_with(panels[0].get_ylabel(), "H at the start", "[kN]", "+ towards start")
+    line_with(panels[0].get_ylabel(), "H at end A", "[kN]", "+ towards end A")
     end_tension(panels[4], run)
     assert panels[4].lines[0].get_data()[1] == pytest.approx(1e-3 * run["effective_tension"][:, -1])
     assert save(figure, tmp_path / "curves.png").read_bytes().startswith(b"\x89PNG")

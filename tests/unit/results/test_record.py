@@ -336,7 +336,7 @@ def test_the_screen_tells_the_main_results(tmp_path: Path) -> None:
     assert "not balanced in statics" in text
     for words in (
         "top tension",
-        "touchdown arc length",
+        "TDP, arc length",
         "at 30 m",
         "1.5192 kN m at 28.5 m  (1.5148 to 1.5625)",
         "5.8117 mm at (10, -0.833, 0) m, 0.1 s",

@@ -285,7 +285,7 @@ WRONG: dict[str, tuple[str, str, str, tuple[str, ...]]] = {
         CONSTITUTIVE, "history_dim =", "stress_strain_dim = 4\n    history_dim =", ("4 components", "FULL"),
     ),
     "history in place of a dimension": (CONSTITUTIVE, '"count": 1', '"count": (3, 3)', ("count", "(3, 3)")),
-    "no answer to shear": (CONSTITUTIVE, "strain @ D", "0.0 * strain @ D", ("yz", "can't be told")),
+    "no answer to shear": (CONSTITUTIVE, "strain @ D", "0.0 * strain @ D", ("yz", "can't be seen")),
     "another history handed back": (
         CONSTITUTIVE, 'history["count"] += 1.0', 'history["count"] = np.zeros(3)', ("history count", "shape (3,)"),
     ),

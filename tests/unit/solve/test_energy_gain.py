@@ -48,7 +48,7 @@ def test_steps_that_make_a_little_each_are_rejected_once_their_sum_is_too_much()
     for _ in range(2):
         assert gain.rejection(STILL, moving(2.0), 0.0, 0.0, 0.0) == ""
         gain.accept(STILL, moving(2.0), 0.0, 0.0)
-    line_with(gain.rejection(STILL, moving(2.0), 0.0, 0.0, 0.0), "6 J out of nothing", "102 J turned over")
+    line_with(gain.rejection(STILL, moving(2.0), 0.0, 0.0, 0.0), "6 J out of nothing", "102 J exchanged")
     assert gain.rejection(STILL, moving(0.98), 0.0, 0.0, 0.0) == "", "4.98 J in all"
     assert gain.rejection(STILL, moving(1.2), 0.0, 0.0, 0.0) != ""
     assert gain.rejection(STILL, moving(2.0), 0.0, 0.0, negligible=1.4) != ""
@@ -84,7 +84,7 @@ def test_what_was_stored_or_went_through_counts_as_turned_over(
     for _ in range(4):
         assert gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0) == ""
         gain.accept(STILL, moving(12.0), 0.0, 0.0)
-    line_with(gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0), "60 J", "out of nothing", "1e+03 J turned over")
+    line_with(gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0), "60 J", "out of nothing", "1e+03 J exchanged")
 
 
 @pytest.mark.parametrize(("dissipated", "work"), [(500.0, 0.0), (0.0, 500.0)])
@@ -94,7 +94,7 @@ def test_work_and_losses_add_up_over_steps(dissipated: float, work: float) -> No
         gain.accept(STILL, Energy(kinetic=100.0, potential=work - dissipated), dissipated, work)
     for _ in range(4):
         gain.accept(STILL, moving(12.0), 0.0, 0.0)
-    assert "1e+03 J turned over" in gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0)
+    assert "1e+03 J exchanged" in gain.rejection(STILL, moving(12.0), 0.0, 0.0, 0.0)
 
 
 def test_what_may_have_moved_before_a_step_or_after_it_counts() -> None:
