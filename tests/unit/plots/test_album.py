@@ -268,7 +268,7 @@ def test_runs_on_one_sheet(run: Run) -> None:
     drawn = [*sheets({"one": run, "other": run}, None)]
     line_with(drawn[0].caption, "effective tension", "along the riser", "heave")
     assert len(drawn[0].draw().axes[0].lines) == 4
-    line_with(drawn[-1].caption, "top tension", "touchdown", "in time", "heave")
+    line_with(drawn[-1].caption, "top tension", "TDP", "in time", "heave")
     assert [*sheets({"one": run}, None)] == []
 
 
