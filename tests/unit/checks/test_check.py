@@ -62,7 +62,7 @@ def test_a_whole_scene() -> None:
     places = [lines.index(line_with(lines, word)) for word in ("TDP", "2 warnings", "estimated time:", "model: riser,")]
     assert places == sorted(places)
     at_nodes = report({**touchdown(LAY, heave(1.0)), "contact": {"method": "node"}}).splitlines()
-    line_with([at_nodes[at_nodes.index("2 warnings") - 2]], "at its nodes only", "0.5 m apart", "cells of 0.5 m")
+    line_with(at_nodes, "warning:", "at its nodes only", "0.5 m apart", "cells of 0.5 m")
 
 
 def test_strain_of_the_soil_is_reported_with_its_reason() -> None:
@@ -219,7 +219,7 @@ def test_several_warnings_are_counted() -> None:
     soft = {**touchdown(), "contact": {"stiffness": 1.0e4}}
     soft["line_types"]["flexible"]["EI"] = 500.0  # bends where a stiff pipe would not: twice told beside the soil
     lines = report(soft).splitlines()
-    assert lines[-1] == "6 warnings"
+    assert "6 warnings" in lines
     assert len(warnings(soft)) == 4
 
 

@@ -118,7 +118,7 @@ def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -
     hang, *others = reported(riser_scene(*stages, **options, gravity=9.81), tmp_path)
     assert hang == []
     for (warning,) in others:
-        line_with([warning], "7.5 m", "too long", "bending", "arc 146.25 m", "N.m, 46%", "above 20%")
+        line_with([warning], "7.5 m", "too long", "bending", "arc 146.25 m", "N.m, 46%", "limit 20%")
 
 
 @pytest.mark.parametrize(
