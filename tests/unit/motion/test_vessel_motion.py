@@ -317,9 +317,9 @@ HEAD = "frequency [rad/s], direction [deg], heave [m/m], heave phase [deg]\n"
     [
         ("", "rao.csv: the file is empty"),
         ("frequency [rad/s], heave [m/m], heave phase [deg]\n", "rao.csv:1: there is no column direction"),
-        ("frequency [rad/s], direction [deg]\n1, 0\n", "rao.csv:1: no column tells a response; give surge [m/m]"),
-        ("direction [deg], heave [m/m], heave phase [deg]\n", "rao.csv:1: waves are told by their frequency or their"),
-        ("period [s], " + HEAD + "1, 2, 0, 1, 0\n", "rao.csv:1: waves are told by their frequency or their period"),
+        ("frequency [rad/s], direction [deg]\n1, 0\n", "rao.csv:1: no column is a response; give surge [m/m]"),
+        ("direction [deg], heave [m/m], heave phase [deg]\n", "rao.csv:1: waves have a frequency or a"),
+        ("period [s], " + HEAD + "1, 2, 0, 1, 0\n", "rao.csv:1: waves have a frequency or a period"),
         ("frequency [rad/s], direction [deg], heave [m/m]\n1, 0, 1\n", "there is no column heave phase [deg]"),
         (HEAD.replace("m/m", "deg/m"), "rao.csv:1: heave can't be in [deg/m], accepted are m/m"),
         (HEAD.replace("rad/s", "1/s"), "rao.csv:1: frequency can't be in [1/s], accepted are rad/s, Hz"),

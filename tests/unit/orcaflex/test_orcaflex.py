@@ -251,7 +251,7 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
         ("NormalDragLiftDiameter: 0.36", "NormalDragLiftDiameter: 0", r"NormalDragLiftDiameter: is 0; give a number"),
         ("EI: [50, ~]", "EI: [[1, 2], ~]", r"riser.yml:\d+: .* EI: is \[1, 2\], not a number"),
         ("WavePeriod: 8", "WavePeriod: 0", r"riser.yml:\d+: .* WavePeriod: is 0; give a number above 0"),
-        ("WaterDepth: 100", "SeabedOriginDepth: 100\n  WaterDepth: 90", r"OriginDepth: tells of a depth of 100 m"),
+        ("WaterDepth: 100", "SeabedOriginDepth: 100\n  WaterDepth: 90", r"OriginDepth: gives a depth of 100 m"),
         ("    EA: 4.0e5\n", "", r"riser.yml:\d+: .* EA: is missing"),
         ("Cd: [1.2, ~, 0.01]", "Cd: [Table, ~, 0.01]", r"riser.yml:\d+: .* Cd: is 'Table', neither a number"),
         ("EI: [50, ~]", "EI: [Bending, ~]", r"riser.yml:\d+: .* EI: is 'Bending': a stiffness by a table"),

@@ -116,7 +116,7 @@ def test_a_tension_that_turns_sharply_is_a_warning() -> None:
     """Up and down by 200 N at 1000 N: 0.3 times 400 N of 1000 N; steps of 0.1 s sqrt(0.01/0.12)."""
     found = followed([600.0, 800.0, 1000.0, 800.0, 600.0])
     (reported,) = found.warnings()
-    line_with([reported], "largest tension", "at the end", "120 N", "0.12 of 1000 N", "above 0.03", "steps of 0.1 s")
+    line_with([reported], "largest tension", "at the end", "120 N", "0.12 of 1000 N", "limit 0.03", "steps of 0.1 s")
     line_with([reported], "time_step of 0.029 s", "auto")
     assert list(followed([980.0, 995.0, 1000.0, 995.0, 980.0]).warnings()) == []
 
@@ -137,7 +137,7 @@ def test_a_least_tension_that_turns_sharply_is_a_warning() -> None:
     as the square of the step; the largest value of the least tension is not asked.
     """
     (reported,) = judged([230.0, 190.0, 150.0, 190.0, 230.0])
-    line_with([reported], "least effective tension", "24 N", "0.024 of 1000 N", "above 0.015", "steps of 0.1 s")
+    line_with([reported], "least effective tension", "24 N", "0.024 of 1000 N", "limit 0.015", "steps of 0.1 s")
     line_with([reported], "time_step of 0.046 s", "auto")
     assert judged([150.0, 190.0, 230.0, 190.0, 150.0]) == []
 
