@@ -62,7 +62,7 @@ def filled(page: str, texts: Mapping[str, str]) -> str:
 
 def all_pages() -> list[Path]:
     """README.md, the paper, the pages in docs and those of the demos."""
-    in_folders = (sorted(ROOT.glob(pattern)) for pattern in ("docs/*.md", "demos/*/*.md"))
+    in_folders = (sorted(ROOT.glob(pattern)) for pattern in ("docs/**/*.md", "demos/*/*.md"))
     return [ROOT / "README.md", ROOT / "paper.md", *chain.from_iterable(in_folders)]
 
 

@@ -12,7 +12,7 @@ from tests.support.on_ranks import ROOT
 Tell = Callable[[Mapping[str, str]], None]  # see the fixture `tell`
 
 README = ROOT / "README.md"
-DOCS = sorted((ROOT / "docs").glob("*.md"))
+DOCS = sorted((ROOT / "docs").rglob("*.md"))
 DEMOS = sorted((ROOT / "demos").glob("*/*.md"))
 
 
