@@ -34,7 +34,8 @@ Written by `make asked`: riser-soil {version}, {date}, Python {python}, {cores} 
 
 With `accuracy: {accuracy:g} %` in a scene the run chooses elements, time steps, soil mesh and penalty
 ([scenes](scenes/accuracy_asked.md#accuracy)). Here {count} scenes of the [error bars'
-calibration](error_bars.md) ask for it, without the settings that they have there, so some become the same scene. The true error of a key result is that
+calibration](error_bars.md) ask for it, without the settings that they have there, so some become the same scene.
+The true error of a key result is that
 against its reference, over its scale. A scene reaches the accuracy if all its key results do; {left_out} of them,
 whose reference is not certain to
 {certain:g} %, are left out.
