@@ -23,6 +23,9 @@ EXTRAS = {
     "dask": "cases",
     "distributed": "cases",
     "jinja2": "report",
+    "markupsafe": "report",
+    "docx": "report",
+    "weasyprint": "report",
     "raschii": "waves",
 }
 # Packages that PyPI has none of that work together.

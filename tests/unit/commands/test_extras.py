@@ -13,6 +13,7 @@ from tests.support.on_ranks import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 COMING_WITH = {"llvmlite": "numba", "pydantic_core": "pydantic", "dask": "distributed", "PIL": "matplotlib"}
+COMING_WITH |= {"docx": "python-docx", "markupsafe": "jinja2"}
 
 
 def imported() -> Iterator[str]:

@@ -137,7 +137,7 @@ FATIGUE = "curve: {standard: DNV, name: D}\ncases: [{run: storm, share: 0.1}]\n"
         ("check", FATIGUE, ("is a fatigue file", "riser-soil fatigue reads it")),
         ("run", "base: scene.yaml\nproduct: {}\n", ("is a case file", "riser-soil cases reads it")),
         ("plot", SCENE, ("is an input file", "the folder of a run is wanted")),
-        ("report", SCENE, ("is an input file", "the folder of a run is wanted")),
+        ("report", SCENE, ("is a scene", "a report file is wanted")),
         ("statistics --of effective_tension", SCENE, ("is an input file", "the folder of a run is wanted")),
     ],
 )
