@@ -18,6 +18,7 @@ from riser_soil.errors import Interruption, MemoryShortageError, SolveError
 from riser_soil.interruption import agreeing, check, handling_signals, uninterrupted, unmasked
 from riser_soil.results.checkpoint import last_checkpoint
 from riser_soil.results.end_of_run import refuse_unfit
+from riser_soil.results.functional_run import refuse_unfit_runs
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
@@ -50,6 +51,8 @@ def run(
         assembly = build(scene, comm)
         if saved is None:
             refuse_unfit(assembly)
+        if scene.code_check:
+            refuse_unfit_runs(assembly)
         clock.add("build", since)
         if comm.rank == 0:
             for reported in (*reported_waves(assembly), *resolution(assembly)):

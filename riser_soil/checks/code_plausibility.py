@@ -9,6 +9,15 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage
 
 
+def _environment_at_rest(scene: Scene) -> str:
+    """What of the environment acts from the beginning, in words; "" for nothing. An offset of the vessel is a move."""
+    if scene.water is not None and scene.water.current is not None:
+        return "a current acts in all stages"
+    first = scene.stages[0]
+    moved = isinstance(first, StaticStage) and first.move is not None
+    return f"the first stage, {first.name}, moves an end, perhaps by an offset" if moved else ""
+
+
 def code_check_warnings(scene: Scene) -> Iterator[str]:
     """Of one line's scene, which has code checks."""
     unchecked = [name for name in scene.used_line_types if not checks_of(scene.code_check, name)]
@@ -26,7 +35,13 @@ def code_check_warnings(scene: Scene) -> Iterator[str]:
                     f"of propagating buckling was fitted from {LEAST_SLENDER:g} to {MOST_SLENDER:g}: judge that "
                     "utilisation by itself"
                 )
-        if check.functional_stage is None and not isinstance(scene.stages[0], StaticStage):
+        if (acts := _environment_at_rest(scene)) and check.limit_state == "ULS" and check.functional_run is None:
+            yield (
+                f"code_check.{n}: {acts}: its load effects count as functional, with a factor of 1.1, and "
+                "not as environmental, with 1.3; give functional_run, a run without it"
+            )
+        given = check.functional_stage is not None or check.functional_run is not None
+        if not given and not isinstance(scene.stages[0], StaticStage):
             yield (
                 f"code_check.{n}: no static stage comes before {scene.stages[0].name}: load effects of the run's first "
                 "instant count as functional; give functional_stage, or begin with a static stage"

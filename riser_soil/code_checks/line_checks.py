@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -46,7 +47,7 @@ class LineChecks:
     """
 
     def __init__(self, scene: Scene, line_types: Sequence[str], borne: Array, arc: Array) -> None:
-        self._arc = arc
+        self._arc, self._checks = arc, scene.code_check
         self._parts = [*_parts(scene, np.array(line_types), borne)]
         stages = [(stage.name, stage.kind) for stage in scene.stages]
         self._references = {
@@ -75,6 +76,16 @@ class LineChecks:
     def fields(self) -> frozenset[str]:
         """Fields of `CodeSnapshot` that there are."""
         return frozenset(criterion.field for part in self._parts for criterion in part.criteria.criteria)
+
+    @property
+    def functional_runs(self) -> dict[int, Path]:
+        """Folders of runs that give functional load effects, by the number of the check."""
+        checks = {n: self._checks[n] for n in self._references if n != _NOT_FUNCTIONAL}
+        return {n: check.functional_run for n, check in checks.items() if check.functional_run is not None}
+
+    def begin_from(self, number: int, functional: SectionEffects) -> None:
+        """With a check's functional load effects (nn,) from another run."""
+        self._references[number].begin_from(functional)
 
     def begin_stage(self, name: str) -> None:
         self._moving = self._kinds[name] == "dynamic"

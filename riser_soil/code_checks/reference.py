@@ -24,8 +24,12 @@ class Reference:
         self._last = None if functional is None else names.index(functional)
         self._accident = None if accidental is None else names.index(accidental)
         self._kinds, self._names = [kind for _, kind in stages], names
-        self._stage = 0
+        self._stage, self._given = 0, False
         self._found: dict[str, Array] = {}  # (3, nn) functional, accidental
+
+    def begin_from(self, functional: SectionEffects) -> None:
+        """With functional effects (nn,) from elsewhere: no stage of this run brings them about."""
+        self._found["functional"], self._given = np.stack(functional), True
 
     def begin_stage(self, name: str) -> None:
         self._stage = self._names.index(name)
@@ -49,7 +53,7 @@ class Reference:
     def _is_functional(self) -> bool:
         if self._last is not None:
             return self._stage <= self._last
-        return self._kinds[self._stage] == "static"
+        return not self._given and self._kinds[self._stage] == "static"
 
     def state(self) -> Saved:
         return dict(self._found)

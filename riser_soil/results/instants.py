@@ -25,6 +25,7 @@ from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.time_stepper import TimeStepper
 
 if TYPE_CHECKING:
+    from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.contact.contact import ContactResults
 
 Touching = tuple[PointsAlong, Array, Array]
@@ -53,14 +54,14 @@ class Look(NamedTuple):
 class InstantReader:
     """Looks at a run's states, and tells of them; on the rank that holds the riser.
 
-    fields: those of `ContactSnapshot` wanted.
+    fields: those of `ContactSnapshot` wanted. checks: its code checks, None for none.
     """
 
-    def __init__(self, assembly: Assembly, fields: Sequence[str] = ()) -> None:
+    def __init__(self, assembly: Assembly, fields: Sequence[str] = (), checks: LineChecks | None = None) -> None:
         self._assembly, self._fields = assembly, fields
         self._embedment: Array = np.zeros(assembly.line.nodes)
         self._sections = sections_of(assembly) if "settlement_across" in self._fields else None
-        self._checks = assembly.code_checks()
+        self._checks = checks
 
     def begin_stage(self, name: str) -> None:
         """All looks before have been told of."""

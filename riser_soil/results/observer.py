@@ -37,6 +37,7 @@ from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError,
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
 from riser_soil.results.energy_ledger import EnergyLedger
+from riser_soil.results.functional_run import line_checks
 from riser_soil.results.hung_figures import hung_reader, joined, looked_at
 from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
@@ -92,7 +93,8 @@ class Observer:
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         lines, fields = assembly.by_line, _known_fields(assembly)
-        self._instants = {name: InstantReader(line, fields[name]) for name, line in lines.items()}
+        checks = {name: line_checks(line, name) for name, line in lines.items()} if recorder is not None else {}
+        self._instants = {name: InstantReader(line, fields[name], checks.get(name)) for name, line in lines.items()}
         self._hung = hung_reader(assembly)
         self._seen: list[Seen] = []  # since they were handed over
         self._plausibility = {name: Plausibility(line) for name, line in lines.items()}

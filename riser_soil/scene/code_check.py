@@ -25,6 +25,7 @@ from riser_soil.core.quantities import (
     word_or_number,
     wrong,
 )
+from riser_soil.scene.files import NamedFolder
 
 LEAST_OVALITY = 0.005  # DNV-OS-F201 (2010) sec. 5 D400
 LEAST_SLENDER, MOST_SLENDER = 15.0, 45.0  # D/t for which formulas of collapse and propagation were fitted
@@ -118,9 +119,15 @@ class DnvCheck(SteelCheck):
         description="stage at whose end load effects are functional; what later stages add is environmental; the last "
         "static stage by default",
     )
+    functional_run: NamedFolder | None = Field(
+        default=None,
+        description="result folder of a finished run of the same line without current and offset, at whose end load "
+        "effects are functional, in place of functional_stage; sought beside the scene file",
+    )
     accidental_stage: Text | None = Field(
         default=None,
-        description="stage after functional_stage of which what it adds is accidental; in SLS and ALS; none by default",
+        description="stage of which what it adds to the functional load effects is accidental; in SLS and ALS; none by "
+        "default",
     )
 
     @model_validator(mode="after")
@@ -130,9 +137,11 @@ class DnvCheck(SteelCheck):
         if self.accidental_stage is not None and self.limit_state not in _OF_ACCIDENTS:
             allowed = f"there is no factor for accidental load effects in {self.limit_state}"
             raise wrong("accidental_stage", allowed, "take limit_state ALS or SLS, or leave it out")
-        if self.accidental_stage is not None and self.functional_stage is None:
+        if self.functional_stage is not None and self.functional_run is not None:
+            raise wrong("functional_run", "is given beside functional_stage", "give one of the two")
+        if self.accidental_stage is not None and self.functional_stage is None and self.functional_run is None:
             allowed = "needs to know which load effects are functional"
-            raise wrong("accidental_stage", allowed, "give functional_stage, a stage before it")
+            raise wrong("accidental_stage", allowed, "give functional_stage, a stage before it, or functional_run")
         return self
 
 

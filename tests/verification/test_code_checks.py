@@ -19,6 +19,7 @@ from riser_soil.results import Run
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.sizes import doubts
+from riser_soil.scene.variants import at_offset
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
@@ -177,6 +178,83 @@ def test_functional_effects_are_those_of_the_last_static_stage_by_default(dnv: R
     assert second[0] == pytest.approx(first[0], rel=1e-12)
     assert (np.abs(second[1] - first[1]) > 1e-6).any()  # the current's effects were environmental there
     assert second[1].max() < first[1].max()
+
+
+IN_CURRENT: Mapping = {"density": 1025.0, "surface_level": 100.0}
+IN_CURRENT |= {"current": {"profile": [[0.0, 0.1, 0.2], [100.0, 0.6, 0.4]]}}
+
+
+@pytest.fixture(scope="module")
+def still(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Without current, at rest."""
+    scene = hanging()
+    scene["stages"] = scene["stages"][:1]
+    return finished(scene, tmp_path_factory.mktemp("still") / "run")
+
+
+def test_functional_effects_of_a_run_without_current(still: Run, tmp_path: Path) -> None:
+    scene = hanging(DNV | {"functional_run": str(still.folder), "minimum_pressure": "contents"})
+    scene["water"] = IN_CURRENT
+    assert not [each for each in warnings_of(scene) if "current" in each]
+    done = finished(scene, tmp_path / "run")
+    moments, pulls = (
+        [np.stack([run[name][-1:] if run is still else run[name] for name in names]) for run in (still, done)]
+        for names in (("bending_moment_y", "bending_moment_z"), ("effective_tension",) * 2)
+    )
+    M_d = worst(moments[0], moments[1] - moments[0])
+    T_d = worst(pulls[0], pulls[1] - pulls[0]) / np.sqrt(2.0)
+    q = (done["internal_pressure"] + DESIGN - PRESSURE - done["external_pressure"]) / (
+        2.0 / np.sqrt(3.0) * 2.0 * T2 / (D - T2) * min(FY, FU / 1.15)
+    )
+    beta = (0.4 + 2.0 / np.sqrt(3.0) * q) * min((60.0 - D / T2) / 45.0, 1.0)
+    strength = FY * (1.0 - beta) + FU * beta
+    m, T = M_d / (strength * (D - T2) ** 2 * T2), T_d / (strength * np.pi * (D - T2) * T2)
+    expected = GAMMA * (m * np.sqrt(1.0 - q**2) + T**2) + q**2
+    assert done["combined_loading_utilisation"] == pytest.approx(expected, rel=1e-9)
+    by_stage = finished(scene | {"code_check": [DNV | {"minimum_pressure": "contents"}]}, tmp_path / "other")
+    assert by_stage["combined_loading_utilisation"][0].max() < 0.995 * expected[0].max()
+
+
+def test_a_current_that_counts_as_functional_is_a_warning() -> None:
+    scene = hanging(DNV)
+    scene["water"] = IN_CURRENT
+    found = warnings_of(scene)
+    line_with(found, "code_check.0", "a current acts in all stages", "factor of 1.1", "functional_run")
+
+
+def test_an_offset_that_counts_as_functional_is_a_warning() -> None:
+    scene = hanging(DNV)
+    assert not [each for each in warnings_of(scene) if "functional_run" in each]
+    moved = at_offset(scene_from_mapping(scene | {"vessel": {"offset": [4.0, 0.0]}}))
+    found = [*physical_warnings(build(moved, MPI.COMM_SELF))]
+    line_with(found, "code_check.0", "first stage, hang, moves an end", "offset", "factor of 1.1", "functional_run")
+
+
+@pytest.mark.parametrize(
+    ("change", "reported"),
+    [
+        ({"segments": [{"line_type": "pipe", "length": 150.0, "elements": 29}]}, "other nodes"),
+        ({}, ""),
+    ],
+)
+def test_a_functional_run_has_the_same_nodes(change: Mapping, reported: str, still: Run, tmp_path: Path) -> None:
+    scene = hanging(DNV | {"functional_run": str(still.folder)})
+    scene["riser"] |= change
+    scene["stages"] = scene["stages"][:1]
+    if not reported:
+        assert finished(scene, tmp_path / "run").summary["finished"]
+        return
+    with pytest.raises(SceneError, match=rf"code_check\.0\.functional_run.*{reported}"):
+        finished(scene, tmp_path / "run")
+    assert not (tmp_path / "run" / "results.nc").exists()
+
+
+def test_a_functional_run_has_moments(tmp_path: Path) -> None:
+    plain = hanging(pipe={key: value for key, value in STEEL.items() if key != "wall"})
+    plain["stages"] = plain["stages"][:1]
+    done = finished(plain, tmp_path / "plain")
+    with pytest.raises(SceneError, match=r"functional_run.*no bending_moment_y.*wall"):
+        finished(hanging(DNV | {"functional_run": str(done.folder)}), tmp_path / "run")
 
 
 def test_accidental_effects_have_a_factor_of_their_own(tmp_path: Path) -> None:
