@@ -44,7 +44,7 @@ class CodeTally:
             if each["exceeded"]:
                 yield (
                     f"{each['code']} is not met: {each['check']} of {each['line_type']} reaches "
-                    f"{each['utilisation']:.4g} times what is allowed at arc {each['arc']:.5g} m and "
+                    f"{each['utilisation']:.4g} times the limit at arc {each['arc']:.5g} m and "
                     f"{each['time']:.5g} {unit}"
                 )
 
