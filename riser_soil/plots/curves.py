@@ -34,6 +34,7 @@ ALONG_ARC: dict[str, tuple[str, float]] = {
     "tension_utilisation": ("effective tension over the allowable tension [-]", 1.0),
     "bending_moment": ("bending moment, magnitude [kN m]", 1e-3),
     "curvature": ("curvature, magnitude [1/m]", 1.0),
+    "code_utilisation": ("code checks, largest utilisation [-]", 1.0),
     "contact_force": ("contact force per length [kN/m], + pushes", 1e-3),
     "penetration": ("penetration into the ground as it is [mm]", 1e3),
     "embedment": ("greatest depth yet below the ground's first level [mm]", 1e3),

@@ -36,6 +36,7 @@ def tornado(words: str, unit: str, reference: float, bars: Sequence[Bar]) -> Fig
     axes.set_xlim(min(reach) - 0.3 * room, max(reach) + 0.3 * room)
     axes.set_xlabel(f"{words} [{unit}]" if unit not in ("", "-") else words)
     axes.grid(axis="y", alpha=0.0)
+    axes.ticklabel_format(axis="x", useOffset=False)
     return figure
 
 

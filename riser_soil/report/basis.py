@@ -14,7 +14,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import Curves
 from riser_soil.plots.environment import current_sheet, peaked_spectrum, rao_sheet, spectrum_sheet
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock
-from riser_soil.report.parameters import GROUND_WORDS, PROPERTIES, in_words, reference_of, seeds_of, words_of_path
+from riser_soil.report.inputs import input_rows
+from riser_soil.report.parameters import PROPERTIES, reference_of, seeds_of, words_of_path
 from riser_soil.report.sources import LoadCase, Sources, flattened, is_seed
 from riser_soil.report.tables import NOTHING, ReportTable, compact, given_value, number, without_paths
 from riser_soil.results import Run
@@ -302,13 +303,10 @@ def _ground(scene: Scene) -> Iterator[Block]:
     if scene.seabed is not None:
         kind = {"spring": "linear springs", "hysteretic": "hysteretic clay", "rigid": "rigid"}[scene.seabed.kind]
         rows.append(["seabed", kind, ""])
-        rows += _ground_rows(scene.seabed, ("seabed",), skip=("kind", "contact_at"))
+        rows += input_rows(scene.seabed, skip=("kind", "contact_at"))
     if scene.soil is not None:
         rows.append(["soil", "finite elements in a block" if scene.soil.model == "block" else "sections across", ""])
-        for key in ("law", "layers", "submerged_unit_weight", "K0"):
-            value = getattr(scene.soil, key)
-            if value not in (None, 0.0):
-                rows += _ground_rows({key: value}, ("soil",), model=type(scene.soil))
+        rows += input_rows(scene.soil, only=("law", "layers", "submerged_unit_weight", "K0"))
     if not rows:
         yield Paragraph("There is no ground.")
         return
@@ -319,43 +317,8 @@ def _ground(scene: Scene) -> Iterator[Block]:
 
 def _friction(scene: Scene) -> Iterator[Block]:
     assert scene.contact is not None
-    rows = _ground_rows(scene.contact, ("contact",), skip=("method", "stiffness", "smoothing"))
+    rows = input_rows(scene.contact, skip=("method", "stiffness", "smoothing"))
     yield TableBlock("Friction and suction", ReportTable(("quantity", "value", "unit"), rows))
-
-
-def _ground_rows(
-    given: Any, path: tuple[str | int, ...], skip: Sequence[str] = (), model: type[BaseModel] | None = None
-) -> list[list[str]]:
-    """A row of each value that is given, nested ones too, in words by its key or by the language's description."""
-    items = given.items() if isinstance(given, Mapping) else given
-    rows: list[list[str]] = []
-    for key, value in items:
-        place = (*path, *_tags(given), key)
-        if key in skip or value is None or value == () or value is False:
-            continue
-        if isinstance(value, BaseModel):
-            rows += _ground_rows(value, (*path, key))
-        elif isinstance(value, tuple) and value and isinstance(value[0], BaseModel):
-            for n, each in enumerate(value):
-                rows += [[f"layer {n + 1}: {words}", *rest] for words, *rest in _ground_rows(each, (*path, key, n))]
-        elif value != 0.0 or key in GROUND_WORDS:
-            rows.append(_ground_row(given, key, value, place))
-    return rows
-
-
-def _tags(given: Any) -> tuple[str, ...]:
-    return (f"<{type(given).__name__}>",) if isinstance(given, BaseModel) else ()
-
-
-def _ground_row(given: Any, key: str, value: Any, place: tuple[str | int, ...]) -> list[str]:
-    if key in GROUND_WORDS and isinstance(value, int | float):
-        words, unit, scale = GROUND_WORDS[key]
-        return [words, number(scale * value), unit]
-    model = type(given) if isinstance(given, BaseModel) else Scene
-    field = model.model_fields.get(key)
-    description = (field.description if field is not None else None) or key.replace("_", " ")
-    words, unit = in_words(description)
-    return [words, given_value(value), unit]
 
 
 def _load_cases(sources: Sources, scene: Scene) -> Iterator[Block]:

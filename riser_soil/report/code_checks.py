@@ -10,11 +10,14 @@ from riser_soil.plots.curves import Curves
 from riser_soil.plots.utilisations import utilisation_sheet
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock
 from riser_soil.report.governing import governing, is_check, uses
+from riser_soil.report.inputs import input_rows
+from riser_soil.report.parameters import reference_of
 from riser_soil.report.sources import LoadCase, Sources
 from riser_soil.report.tables import NOTHING, ReportTable, compact, number
 from riser_soil.results.stage_records import stage_records
 
 NO_CHECK = "No code check is made: no load case asks for one."
+_INPUT = ("quantity", "value", "unit")
 _BY_VALUE = "Utilisations of allowable values"
 
 
@@ -41,17 +44,19 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     checks = largest(sources)
     if checks:
         rows = [_row(case, stage, check) for case, stage, check in checks]
-        of_checks = ("line type", "code", "check", "clause", "limit state", "safety class", "utilisation", "load case",
-                "load step", "arc length [m]", "time [s]")  # fmt: skip
-        note = "A utilisation above 1 means that the limit is exceeded."
+        of_checks = ("line type", "code", "check", "limit state", "safety class", "utilisation", "load case",
+                     "load step", "arc length [m]", "time [s]")  # fmt: skip
+        clauses = dict.fromkeys(f"{check['check']}: {check['clause']}" for _, _, check in checks if check.get("clause"))
+        note = f"A utilisation above 1 means that the limit is exceeded. Clauses: {'; '.join(clauses)}."
         content = compact(ReportTable(of_checks, rows, note))
-        yield TableBlock("Code checks, the largest utilisation of each", content, 6, "checks")
-        beyond = [row for row in rows if float(row[6]) > 1.0]
+        yield TableBlock("Code checks, the largest utilisation of each", content, 5, "checks")
+        beyond = [row for row in rows if float(row[5]) > 1.0]
         if beyond:
-            names = "; ".join(f"{row[2]} of {row[0]} by {row[1]}, {row[6]} in {row[7]}" for row in beyond)
+            names = "; ".join(f"{row[2]} of {row[0]} by {row[1]}, {row[5]} in {row[6]}" for row in beyond)
             yield Paragraph(f"Exceeded: {names}.", "warning")
         else:
             yield Paragraph("All checks are fulfilled.")
+        yield from _input(sources)
     else:
         yield Paragraph(NO_CHECK)
     own = [each for each in uses(governing(sources.cases)) if not is_check(each.kind)]
@@ -64,6 +69,15 @@ def _blocks(sources: Sources) -> Iterator[Block]:
         note = "Allowable values are those of the line types; they stand for no code."
         yield TableBlock(_BY_VALUE, compact(ReportTable(head, rows, note)), key="allowable")
     yield from _pictures(sources)
+
+
+def _input(sources: Sources) -> Iterator[Block]:
+    """What the checks of the reference case are made with."""
+    scene = reference_of(sources).scene
+    for check in () if scene is None else scene.code_check:
+        names = f" of {', '.join(check.line_types)}" if check.line_types else ""
+        rows = input_rows(check, skip=("kind", "line_types"))
+        yield TableBlock(f"Input of the check {check.kind.upper()}{names}", ReportTable(_INPUT, rows))
 
 
 def _pictures(sources: Sources) -> Iterator[Block]:
@@ -85,8 +99,7 @@ def _pictures(sources: Sources) -> Iterator[Block]:
 
 
 def _row(case: LoadCase, stage: str, check: dict[str, Any]) -> list[str]:
-    words = [str(check.get(name) or NOTHING) for name in ("line_type", "code", "check", "clause", "limit_state",
-                                                           "safety_class")]  # fmt: skip
+    words = [str(check.get(name) or NOTHING) for name in ("line_type", "code", "check", "limit_state", "safety_class")]
     static = next(each["kind"] for each in case.stages if each["name"] == stage) == "static"
     time = NOTHING if static else number(check.get("time"), 4)
     return [*words, f"{check['utilisation']:.3f}", case.name, stage, number(check.get("arc")), time]

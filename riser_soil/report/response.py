@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import fmean, stdev
 from typing import Any
@@ -22,6 +23,7 @@ from riser_soil.report.tables import NOTHING, ReportTable, compact, number
 from riser_soil.results.stage_records import StageRecords, stage_records
 
 MOST_ROWS = 60  # load cases in the table side by side
+_SCATTERS = 1e-3  # of a result: cases or seeds that differ less are alike
 _COLUMNS = (  # key of a kind, head
     ("max upper.effective_tension", "max. tension at hang-off [kN]"),
     ("min min_effective_tension", "min. effective tension [kN]"),
@@ -32,6 +34,10 @@ _COLUMNS = (  # key of a kind, head
     ("min touchdown_arc", "min. TDP arc [m]"),
     ("max touchdown_arc", "max. TDP arc [m]"),
 )
+_OF_SEEDS = "Other results, and those that do not scatter, are in characteristic.csv of the cases' folder."
+_MAIN = ("top tension", "largest bending moment", "least effective tension", "touchdown arc", "stress utilisation",
+         "bend utilisation", "tension utilisation", "code utilisation", "combined loading utilisation",
+         "capacity curve utilisation")  # fmt: skip
 _DRAWN = ("effective_tension", "wall_tension", "bending_moment", "curvature", "wall_von_mises_stress", "contact_force",
           "soil_settlement")  # fmt: skip
 
@@ -45,12 +51,14 @@ def moving(case: LoadCase, stage: str | None) -> str | None:
 
 
 def governing_case(sources: Sources) -> LoadCase:
-    """The case with the largest utilisation along time; without one, that with the largest bending moment."""
+    """The case with the largest utilisation that differs among cases; without one, that with the largest moment."""
     timed = [case for case in sources.cases if moving(case, sources.given.stage)] or [*sources.cases]
     best = governing(timed)
-    most = uses(best)
-    if most:
-        return most[0].case
+    for most in uses(best):
+        each = [governing([case]).get(most.kind.key) for case in timed]
+        known = [result.value for result in each if result is not None]
+        if len(timed) == 1 or max(known) - min(known) > _SCATTERS * abs(max(known)):
+            return most.case
     moment = best.get("max max_bending_moment")
     return moment.case if moment is not None else timed[0]
 
@@ -102,20 +110,30 @@ def _characteristic_tables(rows: Sequence[Mapping[str, str]]) -> Iterator[Block]
     """Those of riser-soil cases: Gumbel's distribution over the maxima of seeds."""
     table = []
     for row in rows:
+        if not _counts(row):
+            continue
         unit, scale = unit_of(row["unit"])
         values = [_scaled(row.get(name, ""), scale) for name in ("mean", "of seeds", "characteristic", "low", "high")]
         quantity = row["quantity"].rpartition(": ")[2]
         table.append([row["group"], in_field_words(quantity), unit, row["seeds"], *values])
     known = next((row for row in rows if row.get("fractile")), None)
-    note = "The extreme of seeds is the largest or least one of them."
+    note = _OF_SEEDS
     if known is not None:
         note = (
             f"Gumbel's distribution is fitted to the extremes of the seeds; the characteristic value is its "
             f"{100.0 * float(known['fractile']):.3g} % fractile for {_hours(known['duration [s]'])}, the interval that "
-            f"of {100.0 * float(known['confidence']):.3g} % confidence. Without it there are fewer than three seeds."
+            f"of {100.0 * float(known['confidence']):.3g} % confidence. Without it there are fewer than three seeds. "
+            f"{_OF_SEEDS}"
         )
     head = ("case", "quantity", "unit", "seeds", "mean", "extreme of seeds", "characteristic", "from", "to")
     yield TableBlock("Characteristic extremes over seeds", compact(ReportTable(head, table, note)), 2, "characteristic")
+
+
+def _counts(row: Mapping[str, str]) -> bool:
+    """Whether a row is of a main result that scatters among seeds."""
+    scatter = abs(float(row["standard deviation"])) if row["standard deviation"] else math.inf
+    quantity = row["quantity"].rpartition(": ")[2]
+    return quantity.endswith(_MAIN) and scatter > _SCATTERS * abs(float(row["mean"] or 0.0))
 
 
 def _hours(seconds: str) -> str:

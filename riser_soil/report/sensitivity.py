@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from statistics import fmean
 
@@ -68,8 +69,9 @@ def _blocks(sources: Sources) -> Iterator[Block]:
         "error bar (of any case that has one), or less than 0.01 % where no error bar was asked for."
     )
     yield TableBlock("Sensitivity of the extremes", compact(ReportTable(head, rows, note)), words=2, key="sensitivity")
-    shown = next((own[key].kind for key in _FIRST if key in own), None)
-    if shown is not None and shown.key in bars:
+    first = (key for key in _FIRST if any(_differs(own[key], bar, shares) for bar in bars.get(key, ())))
+    shown = next((own[key].kind for key in first), None)
+    if shown is not None:
         at = own[shown.key]
         unit = "" if shown.unit == "-" else shown.unit
         words = f"Tornado: {shown.words}; the line is the reference, {at.text} {unit}".rstrip()
@@ -108,6 +110,12 @@ def _averaged(results: Sequence[Result]) -> Result:
     if len(results) == 1:
         return first
     return Result(first.kind, first.case, first.stage, first.static, fmean(each.value for each in results))
+
+
+def _differs(own: Result, bar: Bar, shares: Mapping[tuple[str, str], float]) -> bool:
+    """Whether a bar is longer than an error bar."""
+    values = (replace(own, value=value) for _, value in bar.values)
+    return any(difference(value, own, shares) is not None for value in values)
 
 
 def _changes(
