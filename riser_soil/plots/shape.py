@@ -84,7 +84,7 @@ def snapshots(stage: StageRecords) -> Figure:
 def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
     """Records of the stage's extremes with words for them, each record once; the last one of a stage at rest."""
     if not stage.moves:
-        return [(int(stage.records[-1]), f"{stage.run.time[stage.records[-1]]:.4g} s")]
+        return [(int(stage.records[-1]), "static")]
     end, found = stage["position"][:, -1], dict[int, list[str]]()
     ways = end @ along(stage.run["position"][0])
     asked: list[tuple[str, Any]] = [("least tension", stage["effective_tension"].min(axis=1).argmin())]

@@ -17,6 +17,12 @@ from riser_soil.report.tables import NOTHING, ReportTable, compact, number
 from riser_soil.results.stage_records import stage_records
 
 NO_CHECK = "No code check is made: no load case asks for one."
+_CODES = {
+    "dnv-st-f201": "DNV-ST-F201",
+    "api-std-2rd": "API STD 2RD",
+    "flexible-pipe": "limits of a flexible pipe",
+    "capacity-curve": "a capacity curve",
+}
 _INPUT = ("quantity", "value", "unit")
 _BY_VALUE = "Utilisations of allowable values"
 
@@ -77,7 +83,7 @@ def _input(sources: Sources) -> Iterator[Block]:
     for check in () if scene is None else scene.code_check:
         names = f" of {', '.join(check.line_types)}" if check.line_types else ""
         rows = input_rows(check, skip=("kind", "line_types"))
-        yield TableBlock(f"Input of the check {check.kind.upper()}{names}", ReportTable(_INPUT, rows))
+        yield TableBlock(f"Input of the check by {_CODES[check.kind]}{names}", ReportTable(_INPUT, rows))
 
 
 def _pictures(sources: Sources) -> Iterator[Block]:

@@ -155,6 +155,16 @@ def test_static_configurations_that_are_one_have_one_row(cases: Path) -> None:
     assert rows[0][0] == "all load cases"
 
 
+def test_a_warning_of_several_cases_is_one_point_in_words_of_the_field(run: Path, tmp_path: Path) -> None:
+    def warned(summary: dict[str, Any]) -> None:
+        summary["warnings"] = ["heave: off by 3 % (told above 2 %), see /home/x/scene.yaml"]
+
+    rows = {name: ({"seed": name}, warned if name != "3" else lambda _: None) for name in "123"}
+    write_cases(tmp_path / "cases", run, ("seed",), rows)
+    (points,) = (item for item in items_of(opened_at(tmp_path / "cases")) if isinstance(item, Points))
+    assert points.items == ["heave: off by 3 % (limit 2 %), see scene.yaml (1, 2)"]
+
+
 def test_failed_cases_are_named_with_their_reason(run: Path, tmp_path: Path) -> None:
     write_cases(tmp_path / "cases", run, ("seed",), {"a": ({"seed": "1"}, lambda _: None)})
     with (tmp_path / "cases" / "cases.csv").open("a", newline="", encoding="utf-8") as file:
