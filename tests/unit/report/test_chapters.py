@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 from riser_soil.report.document import Heading, Item, Paragraph, PictureBlock, Points, TableBlock, numbered
 from riser_soil.report.report import document_of
 from riser_soil.report.report_file import of_folders
-from riser_soil.report.reproduction import scene_text
+from riser_soil.report.reproduction import pruned, scene_text
 from riser_soil.report.sources import Sources, opened
 from riser_soil.report.tables import ReportTable
 from riser_soil.results import Run
@@ -268,6 +268,12 @@ def test_modes_have_periods_and_shapes(run: Path, tmp_path: Path) -> None:
     begins = "Shapes of the first 2"
     (shapes,) = (item for item in items if isinstance(item, PictureBlock) and item.caption.startswith(begins))
     assert shapes.drawing.content(".svg")
+
+
+def test_a_scene_in_the_appendix_has_nothing_absent_and_names_of_files_alone() -> None:
+    absent = {"none": None, "empty": {"a": None}, "list": []}
+    given = {"rao": "/home/x/rao.csv", "stages": [{"b": None, "c": [0.0]}]} | absent
+    assert pruned(given) == {"rao": "rao.csv", "stages": [{"c": [0.0]}]}
 
 
 def test_a_line_without_anything_along_time_is_reported(tmp_path: Path) -> None:
