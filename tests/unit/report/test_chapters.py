@@ -271,7 +271,7 @@ def test_modes_have_periods_and_shapes(run: Path, tmp_path: Path) -> None:
 
 
 def test_a_scene_in_the_appendix_has_nothing_absent_and_names_of_files_alone() -> None:
-    absent = {"none": None, "empty": {"a": None}, "list": []}
+    absent: dict[str, Any] = {"none": None, "empty": {"a": None}, "list": []}
     given = {"rao": "/home/x/rao.csv", "stages": [{"b": None, "c": [0.0]}]} | absent
     assert pruned(given) == {"rao": "rao.csv", "stages": [{"c": [0.0]}]}
 
