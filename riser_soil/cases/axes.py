@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from riser_soil.cases.case_file import Cases, Overrides
+from riser_soil.cases.case_file import PERCENT, Cases, Overrides
 from riser_soil.core.quantities import FLATTEST
 from riser_soil.errors import SceneError
 from riser_soil.scene.document import Document
@@ -137,16 +137,29 @@ class _Waves:
         return kind
 
 
-def _of_offsets(file: Path, given: float | Mapping[str, Sequence[float]], base: Document) -> CaseAxis:
+def _of_offsets(file: Path, given: float | str | Mapping[str, Sequence[float]], base: Document) -> CaseAxis:
     if isinstance(given, Mapping):
         places = {name: [*place] for name, place in given.items()}
     else:
+        distance = _of_depth(file, given, base) if isinstance(given, str) else given
         x, y = _away(file, base)
         places = {
-            name: [sign * given * x + 0.0, sign * given * y + 0.0, 0.0]
+            name: [sign * distance * x + 0.0, sign * distance * y + 0.0, 0.0]
             for name, sign in (("near", -1.0), ("mean", 0.0), ("far", 1.0))
         }
     return CaseAxis("offset", [Point(name, name, {"vessel.offset": place}) for name, place in places.items()])
+
+
+def _of_depth(file: Path, share: str, base: Document) -> float:
+    """A share of the water depth, as `5 %` [m]."""
+    surface, level = (_under(base.data, *path) for path in (("water", "surface_level"), ("seabed", "level")))
+    uneven = any(_under(base.data, "seabed", key) is not None for key in ("profile", "grid", "slope_deg"))
+    depth = surface - (level or 0.0) if _is_number(surface) and not uneven else _under(base.data, "water", "depth")
+    found = PERCENT.fullmatch(share)
+    if found is None or not _is_number(depth) or depth <= 0.0:
+        needs = f"{share} of the water depth needs water.depth, or water.surface_level above a level seabed"
+        raise SceneError(f"{file}: offsets: {needs}; give them, or a distance [m]")
+    return round(float(found[1]) * depth / 100.0, 9)
 
 
 def _away(file: Path, base: Document) -> tuple[float, float]:

@@ -32,6 +32,7 @@ MOST_LETTERS = 100
 MOST_SEEDS = 1000
 WAYS = ("sea_states", "directions", "offsets", "soil", "seeds", "table", "product")  # in which cases may differ
 _NAME = re.compile(rf"[A-Za-z0-9_+=][\w.+=-]{{,{MOST_LETTERS - 1}}}", re.ASCII)
+PERCENT = re.compile(r"(\d+(?:\.\d*)?) *%")
 _NEEDS = f"the case file is empty; it needs base, and one of {', '.join(WAYS)}"
 _ALLOWED = f"must be a name of at most {MOST_LETTERS} letters, digits and . _ + = -, that begins with no point or minus"
 
@@ -120,13 +121,24 @@ def _number_or(kinds: type | tuple[type, ...], word: str, value: Any) -> str | N
     return "<number>" if is_number else f"<{word}>" if isinstance(value, kinds) else None
 
 
+_OFFSETS = "must be a distance [m], a share of the water depth, as 5 %, or a mapping of names to offsets [dx, dy]"
+
+
+def _share_given(text: str) -> str:
+    found = PERCENT.fullmatch(text)
+    if found is None or not float(found[1]) > 0.0:
+        raise PydanticCustomError("choice", "{text}", {"text": _OFFSETS})
+    return text
+
+
 _Offsets = Annotated[
     Annotated[Length, Tag("<number>")]
+    | Annotated[str, AfterValidator(_share_given), Tag("<share>")]
     | Annotated[dict[CaseName, Offset], Field(min_length=1), Tag("<places>")],
     Discriminator(
-        lambda value: _number_or(dict, "places", value),
+        lambda value: "<share>" if isinstance(value, str) else _number_or(dict, "places", value),
         custom_error_type="choice",
-        custom_error_message="must be a distance, or a mapping of names to offsets [dx, dy]",
+        custom_error_message=_OFFSETS,
     ),
 ]
 _Seeds = Annotated[
@@ -180,7 +192,8 @@ class Cases(BaseModel):
     )
     offsets: _Offsets | None = Field(
         default=None,
-        description="of the vessel [m]: a distance for near, mean and far along the line's plane, or {name: [dx, dy]}",
+        description="of the vessel [m]: a distance, or a share of the water depth as 5 %, for near, mean and far along "
+        "the line's plane; or {name: [dx, dy]}",
     )
     soil: dict[CaseName, Overrides] = Field(
         default={},

@@ -82,6 +82,13 @@ def test_near_is_towards_the_other_end_and_mean_is_no_offset(tmp_path: Path) -> 
     assert found["far"] == pytest.approx([3.0, 4.0, 0.0])
 
 
+def test_offsets_are_a_share_of_the_water_depth(tmp_path: Path) -> None:
+    """Of 12 m, and of 15 m over a seabed 3 m deeper."""
+    for text, distance in (("offsets: 25 %", 3.0), ("set: {seabed.level: -3.0}\noffsets: 20%", 3.0)):
+        _, _, far = cases(tmp_path, text)
+        assert far.values["vessel.offset"] == pytest.approx([0.6 * distance, 0.8 * distance, 0.0])
+
+
 def test_near_is_towards_the_end_where_the_start_hangs_from_the_vessel(tmp_path: Path) -> None:
     file = case_file(tmp_path, "offsets: 5.0")
     scene = tmp_path / "sea.yaml"
@@ -141,7 +148,14 @@ MISTAKES = [
     ("soil: {lower: {seabed.stifness: 1.0}}", ": case lower: seabed.stifness=1.0: seabed.stifness: value 1.0: no such"),
     ("offsets: -3.0", ":2: offsets: value -3.0: must be "),
     ("offsets: {near: [1.0]}", ":2: offsets.near: value [1.0]: must be a list of 3 values"),
-    ("offsets: near", ':2: offsets: value "near": must be a distance, or a mapping of names to offsets [dx, dy]'),
+    ("offsets: near", ':2: offsets: value "near": must be a distance [m], a share of the water depth, as 5 %, or a'),
+    ("offsets: [5.0]", ":2: offsets: value [5.0]: must be a distance [m], a share of the water depth, as 5 %, or a"),
+    ("offsets: -5 %", ':2: offsets: value "-5 %": must be a distance [m], a share of the water depth'),
+    ("offsets: 0.0 %", ':2: offsets: value "0.0 %": must be a distance [m], a share of the water depth'),
+    (
+        "set: {seabed.slope_deg: 1.0}\noffsets: 5 %",
+        ": offsets: 5 % of the water depth needs water.depth, or water.surface_level above a level seabed",
+    ),
     ("offsets: 2.0\nproduct: {vessel.offset: [[1.0, 0.0]]}", ": vessel.offset: is set 2 times in one case"),
     ("extremes: {fractile: 1.0}\nseeds: 2", ":2: extremes.fractile: value 1.0: must be less than 1"),
     ("extremes: {fractil: 0.9}\nseeds: 2", ":2: extremes.fractil: value 0.9: no such key here"),
