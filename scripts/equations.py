@@ -13,6 +13,7 @@ MARKED = {
     "block": re.compile(r'<div class="arithmatex">\\\[(.*?)\\\]</div>', re.DOTALL),
     "inline": re.compile(r'<span class="arithmatex">\\\((.*?)\\\)</span>', re.DOTALL),
 }
+PRIMED = re.compile(r"<msup>(<mi[^>]*>[^<]*</mi>)<m[io]>(&#x0(?:2032|2033|2034|2057);)</m[io]></msup>")
 
 
 def on_page_content(html: str, **_: Any) -> str:
@@ -23,4 +24,9 @@ def on_page_content(html: str, **_: Any) -> str:
 
 
 def _mathml(display: str, found: re.Match[str]) -> str:
-    return str(convert(unescape(found[1]).strip(), display=display))
+    return PRIMED.sub(_beside, str(convert(unescape(found[1]).strip(), display=display)))
+
+
+def _beside(found: re.Match[str]) -> str:
+    """Primes as large as the font has them: they are raised already, and as an exponent they would be specks."""
+    return f'<mrow>{found[1]}<mo lspace="0em" rspace="0em">{found[2]}</mo></mrow>'

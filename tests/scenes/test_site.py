@@ -63,6 +63,13 @@ def test_equations_are_typeset(site: Path) -> None:
     assert text(site / "docs/theory/index.html").count("<math ") == len(known)
 
 
+def test_primes_are_no_exponents(site: Path) -> None:
+    """As such they are specks, whatever the font."""
+    shown = text(site / "docs/theory/index.html")
+    assert len(re.findall(r"<mo [^>]*>&#x0(?:2032|2033|2057);</mo>|<mo [^>]*>[′″⁗]</mo>", shown)) > 5
+    assert re.findall(r"<msup><mi>\w+</mi><m[io]>(?:&#x0(?:2032|2033|2057);|[′″⁗])", shown) == []
+
+
 def test_no_equation_is_left_raw(site: Path) -> None:
     """Neither dollars nor what marks an equation that was found; code may have them."""
     pages = [page for page in site.rglob("*.html") if "arithmatex" in text(page) or "$" in CODE.sub("", text(page))]
