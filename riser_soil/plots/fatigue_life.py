@@ -81,7 +81,8 @@ def _draw_life(axes: Axes, damage: Damage) -> None:
         words = f"required life times DFF, {damage.required:.4g} years"
         axes.axhline(damage.required, color="C3", linestyle="--", linewidth=1.0, label=words)
     top = max(min(float(life.max()), shortest * 10.0**DECADES), 10.0 * max(levels))
-    axes.set(xlabel=ARC, ylabel=_LIFE, ylim=(min(levels) / 3.0, top))
+    ends = float(damage.arc.min()), float(damage.arc.max())
+    axes.set(xlabel=ARC, ylabel=_LIFE, xlim=ends, ylim=(min(levels) / 3.0, top))
     axes.legend(loc="best")
 
 
