@@ -1,5 +1,6 @@
 """Scene language: code checks, each of one code on the line types that it names."""
 
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
@@ -229,6 +230,12 @@ class CapacityCurveCheck(Check):
 CHECKS: dict[str, type[Check]] = registry(DnvCheck, ApiCheck, FlexiblePipeCheck, CapacityCurveCheck)
 CHECK = OneOf(CHECKS)
 CodeChecks = tuple[Annotated[Any, CHECK], ...]
+
+
+def checks_steel(checks: CodeChecks, line_types: Iterable[str]) -> bool:
+    """Whether any of the line types is checked as steel pipe."""
+    steel = [check for check in checks if isinstance(check, SteelCheck)]
+    return any(check.applies_to(name) for check in steel for name in line_types)
 
 
 def checks_of(checks: CodeChecks, line_type: str) -> list[int]:

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import assert_never
 
 from riser_soil.core.quantities import Vector
+from riser_soil.scene.code_check import checks_steel
 from riser_soil.scene.code_check_conflicts import code_check_conflicts
 from riser_soil.scene.end_checks import end_conflicts, hang_off_conflicts
 from riser_soil.scene.ground_checks import feature_conflicts, ground_conflicts
@@ -89,6 +90,8 @@ def _diameter_needed(scene: Scene, line: LineType) -> str | None:
         return "the law of a hysteretic seabed counts in diameters"
     if scene.water and any(each.wall for each in scene.used_line_types.values()):
         return "the pressure outside acts on it, and the stress of a wall follows from it"
+    if scene.water and checks_steel(scene.code_check, scene.used_line_types):
+        return "the pressure outside acts on it, and the code check of a steel pipe asks for that"
     if scene.water and scene.gravity > 0.0 and line.submerged_weight is None:
         return "buoyancy follows from the outer diameter, unless submerged_weight is given"
     if line.rotary_inertia is True and any(stage.kind == "dynamic" for stage in scene.stages):

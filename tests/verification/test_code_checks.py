@@ -417,6 +417,32 @@ def test_what_is_doubtful_is_a_warning() -> None:
     line_with([first], "code_check.0", "no static stage comes before heave")
 
 
+def test_two_yield_stresses_of_one_pipe_are_a_warning() -> None:
+    found = warnings_of(hanging(DNV, pipe=STEEL | {"wall": {"yield_stress": 4.15e8}}))
+    line_with(found, "code_check.0", "4.48e+08 Pa", "line_types.pipe.wall", "4.15e+08 Pa")
+    assert len(warnings_of(hanging(DNV, pipe=STEEL | {"wall": {"yield_stress": SMYS}}))) == len(found) - 1
+
+
+def test_line_types_without_a_bore_may_stand_beside_checked_ones() -> None:
+    """A chain in the same line, of which no wall is known."""
+    scene = hanging(DNV | {"line_types": ["pipe"], "corrosion_allowance": 0.0})
+    scene["line_types"]["chain"] = {"EA": 1.0e8, "EI": 0.0, "GJ": 1.0, "mass": 50.0, "outer_diameter": 0.1}
+    half = {"length": 75.0, "elements": 15}
+    scene["riser"]["segments"] = [{"line_type": name} | half for name in ("chain", "pipe")]
+    line_with(warnings_of(scene), "no check is for chain")
+
+
+def test_the_pressure_outside_is_known_of_all_line_types() -> None:
+    """Without an outer diameter of each, no pressure would be known anywhere, and none would count."""
+    scene = hanging(DNV | {"line_types": ["pipe"]}, pipe={key: value for key, value in STEEL.items() if key != "wall"})
+    scene["line_types"]["chain"] = {"EA": 1.0e8, "EI": 0.0, "GJ": 1.0, "mass": 50.0, "submerged_weight": 400.0}
+    scene["seabed"] |= {"contact_at": "axis"}
+    half = {"length": 75.0, "elements": 15}
+    scene["riser"]["segments"] = [{"line_type": name} | half for name in ("chain", "pipe")]
+    with pytest.raises(SceneError, match=r"line_types\.chain\.outer_diameter.*code check"):
+        scene_from_mapping(scene)
+
+
 def test_a_line_type_checked_twice_is_refused() -> None:
     with pytest.raises(SceneError, match=r"code_check\.1\.line_types.*already checked"):
         scene_from_mapping(hanging(DNV, API))
