@@ -42,7 +42,8 @@ def _thick_walls(key: str, check: DnvCheck, checked: dict[str, LineType]) -> Ite
         if slender < LEAST_SLENDER:
             yield (
                 f"{key}: {name} has D/t = {slender:.4g} without its corrosion_allowance, and the formula of "
-                f"propagating buckling was fitted from {LEAST_SLENDER:g} to {MOST_SLENDER:g}: judge that utilisation by itself"
+                f"propagating buckling was fitted from {LEAST_SLENDER:g} to {MOST_SLENDER:g}: judge that "
+                "utilisation by itself"
             )
 
 
