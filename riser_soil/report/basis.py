@@ -40,13 +40,20 @@ def chapter(sources: Sources) -> ReportSection:
     return ReportSection(
         "Basis",
         [
-            ReportSection("Line", [*_line(scene, first.run)]),
+            *_lines(sources, first),
             ReportSection("Environment", [*_environment(sources, scene)]),
             ReportSection("Vessel", [*_vessel(scene, first)]),
             ReportSection("Ground", [*_ground(scene)]),
             ReportSection("Load cases", [*_load_cases(sources, scene)]),
         ],
     )
+
+
+def _lines(sources: Sources, first: LoadCase) -> Iterator[ReportSection]:
+    """The line, or each of several lines of the reference case's run."""
+    for case in sources.cases:
+        if case.folder == first.folder and case.scene is not None:
+            yield ReportSection(f"Line {case.line}".strip(), [*_line(case.scene, case.run)])
 
 
 def _line(scene: Scene, run: Run) -> Iterator[Block]:

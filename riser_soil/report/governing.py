@@ -189,10 +189,18 @@ def _of_stage(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, bars: 
     path = [outputs.upper_end(stage["final"]) if part == _UPPER else part for part in kind.figure.split(".")]
     if kind.turned and not _hangs(stage["final"], path[0]):
         return
+    if kind.figure == "contact_force" and not _touches(stage):
+        return
     for result in (_static if stage["kind"] == "static" else _moving)(case, stage, kind, path):
         which = _side(kind) if not result.static else kind.which
         bar = bars.get((".".join(path), which))
         yield result if bar is None else replace(result, bar=kind.scale * bar)
+
+
+def _touches(stage: Mapping[str, Any]) -> bool:
+    """Whether the ground bears anything."""
+    values = (found(stage["final"], ("contact_force",)), found(stage["extremes"], ("contact_force", "max")))
+    return any(values)
 
 
 def _hangs(final: Mapping[str, Any], end: str) -> bool:

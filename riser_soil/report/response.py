@@ -64,6 +64,9 @@ def governing_case(sources: Sources) -> LoadCase:
 
 
 def chapter(sources: Sources) -> ReportSection:
+    """Nothing of runs in which nothing goes along time: their results are those of the static configuration."""
+    if not any(moving(case, None) for case in sources.cases):
+        return ReportSection("Extremes", [ReportSection("Bodies, joints and clearance", [*_hung(sources)])])
     return ReportSection(
         "Extremes",
         [
@@ -218,6 +221,8 @@ def _governing(sources: Sources) -> Iterator[Block]:
     if soil:
         yield TableBlock("Soil", soil, key="soil")
     for each in pictures(records):
+        if each.name == "range_contact_force" and not records["contact_force"].any():
+            continue
         if each.group in ("shape", "histories", "soil") or each.name.removeprefix("range_") in _DRAWN:
             yield _picture(each, records)
     if case.run.has_soil:

@@ -12,7 +12,7 @@ from riser_soil.plots.sensitivity import Bar, tornado
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock
 from riser_soil.report.governing import Result, ResultKind, bar_shares, difference, results_of, signed
 from riser_soil.report.parameters import Parameter, parameters, reference_of, seeds_of
-from riser_soil.report.response import moving
+from riser_soil.report.response import governing_case, moving
 from riser_soil.report.sources import LoadCase, Sources
 from riser_soil.report.tables import NOTHING, ReportTable, compact
 
@@ -36,6 +36,8 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     names = parameters(sources.cases)
     if not names:
         return
+    line = governing_case(sources).line
+    sources = replace(sources, cases=[case for case in sources.cases if case.line == line])
     reference = reference_of(sources)
     base = {name.paths: name.of(reference) for name in names}
     alike = [case for case in sources.cases if all(name.of(case) == base[name.paths] for name in names)]

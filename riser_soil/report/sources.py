@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,7 @@ class LoadCase:
     """A run, or one line of a run of several, by the name that the report has for it.
 
     axes: in what it differs from its neighbours, by the names of a case file's axes: `offset`, `seed`. given: values of
-    the scene by their paths. folder: where it was found, as it was named.
+    the scene by their paths. folder: where it was found, as it was named. line: of several lines, the name of this one.
     """
 
     name: str
@@ -34,6 +34,7 @@ class LoadCase:
     folder: str
     axes: Mapping[str, str] = field(default_factory=dict)
     given: Mapping[str, str] = field(default_factory=dict)
+    line: str = ""
 
     @cached_property
     def scene(self) -> Scene | None:
@@ -51,6 +52,14 @@ class LoadCase:
         except ResultsError:
             return {}
 
+    @property
+    def whole(self) -> dict[str, Any]:
+        """The scene as plain data, of one of several lines that of all of them."""
+        try:
+            return Run(self.run.folder).scene
+        except ResultsError:
+            return {}
+
     def value(self, path: str) -> Any:
         """The scene's value at a dotted path; None where there is none. The vessel's offset is that of the run, whose
         scene has its ends in their places.
@@ -58,7 +67,7 @@ class LoadCase:
         if path == "vessel.offset":
             offset = (self.run.summary.get("vessel") or {}).get("offset")
             return None if offset is None else offset[: 3 if offset[2] else 2]
-        found: Any = self.data
+        found: Any = self.whole if self.line else self.data
         for key in path.split("."):
             if isinstance(found, list):
                 found = found[int(key)] if key.isdecimal() and int(key) < len(found) else None
@@ -98,12 +107,17 @@ class Sources:
     def first(self) -> LoadCase:
         return self.cases[0]
 
+    @property
+    def runs(self) -> int:
+        """Number of load cases: lines of one run are one."""
+        return len({case.folder for case in self.cases})
+
     @cached_property
     def groups(self) -> dict[str, list[LoadCase]]:
         """Cases that differ in their seed alone, by a name of all of them."""
         found: dict[object, list[LoadCase]] = {}
         for case in self.cases:
-            found.setdefault((Path(case.folder).parent, case.group or case.name), []).append(case)
+            found.setdefault((Path(case.folder).parent, case.line, case.group or case.name), []).append(case)
         named: dict[str, list[LoadCase]] = {}
         for each in found.values():
             name = _group_name(each)
@@ -153,7 +167,7 @@ def opened(given: ReportFile) -> Sources:
 
 def _of_run(name: str, run: Run, folder: str) -> Iterator[LoadCase]:
     for line, own in run.of_lines.items():
-        yield LoadCase(f"{name} {line}".strip(), own, folder)
+        yield LoadCase(f"{name} {line}".strip(), own, folder, line=line)
 
 
 def _of_cases(folder: Path, known: set[str]) -> tuple[list[LoadCase], dict[str, str]]:
@@ -173,16 +187,16 @@ def _of_cases(folder: Path, known: set[str]) -> tuple[list[LoadCase], dict[str, 
             continue
         place = folder / "cases" / row[_FIRST]
         found += [
-            LoadCase(f"{name} {line}".strip(), own, str(place), axes or given, given)
+            LoadCase(f"{name} {line}".strip(), own, str(place), axes or given, given, line)
             for line, own in Run(place).of_lines.items()
         ]
     return found, failed
 
 
 def _with_differences(cases: Sequence[LoadCase]) -> Iterator[LoadCase]:
-    """Cases of no case file with the values of their scenes in which they differ."""
+    """Cases of no case file with the values of their scenes in which they differ, of lines those of the whole."""
     alone = [case for case in cases if not case.axes]
-    flat = {case.name: dict(flattened(case.data, "")) for case in alone}
+    flat = {case.name: dict(flattened(case.whole, "")) for case in alone}
     paths = dict.fromkeys(path for each in flat.values() for path in each)
     differ = [path for path in paths if len({str(each.get(path)) for each in flat.values()}) > 1 and _counts(path)]
     for case in cases:
@@ -190,7 +204,7 @@ def _with_differences(cases: Sequence[LoadCase]) -> Iterator[LoadCase]:
             yield case
         else:
             given = {path: str(flat[case.name].get(path, "–")) for path in differ}
-            yield LoadCase(case.name, case.run, case.folder, given, given)
+            yield replace(case, axes=given, given=given)
 
 
 def _counts(path: str) -> bool:
@@ -215,6 +229,8 @@ def flattened(value: Any, path: str) -> Iterator[tuple[str, Any]]:
 def _group_name(cases: Sequence[LoadCase]) -> str:
     """The case's own name of one alone, else by what all of them share."""
     first = cases[0]
+    if first.line:
+        return first.name
     if len(cases) == 1 and not any(is_seed(name) for name in first.axes):
         return first.name
     named = {name: value for name, value in first.group if name != TABLE or len(first.group) == 1}

@@ -11,6 +11,7 @@ from riser_soil.plots.curves import Curves
 from riser_soil.plots.side_by_side import static_shapes, static_tensions
 from riser_soil.report.captions import in_caption
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock, ref
+from riser_soil.report.extremes import reactions_table
 from riser_soil.report.governing import Result, of_stage
 from riser_soil.report.sources import TABLE, LoadCase, Sources, is_seed
 from riser_soil.report.tables import NOTHING, ReportTable, compact, number
@@ -94,7 +95,6 @@ def _common(cases: Sequence[LoadCase], count: int) -> str:
 def _blocks(sources: Sources) -> Iterator[Block]:
     cases = different(sources)
     if not cases:
-        yield Paragraph("No static load step was computed.")
         return
     yield TableBlock("Static configuration", _table(cases), key="static")
     yield Paragraph(
@@ -105,6 +105,7 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     drawn = {name: stage for name, stage in stages.items() if stage is not None}
     if len(drawn) == 1:
         (stage,) = drawn.values()
+        yield TableBlock("Support reactions, static", reactions_table(stage.reported), key="static reactions")
         for each in pictures(stage):
             if each.group == "shape" or each.name in ("range_effective_tension", "range_bending_moment"):
                 yield PictureBlock(f"{in_caption(each)}, static", Curves(each.bare))

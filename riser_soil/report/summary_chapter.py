@@ -17,12 +17,15 @@ def chapter(sources: Sources) -> ReportSection:
 
 
 def _blocks(sources: Sources) -> Iterator[Block]:
-    count = len(sources.cases)
+    count, lines = sources.runs, len({case.line for case in sources.cases})
     cases = "one load case" if count == 1 else f"{count} load cases"
+    of_lines = f" of {lines} lines" if lines > 1 else ""
+    moves = any(stage["kind"] != "static" for case in sources.cases for stage in case.stages)
+    how = "static and dynamic analysis in time" if moves else "static analysis"
     yield Paragraph(
-        f"This report is on {sources.first.run.summary['title']}: {cases}, computed by static and dynamic analysis in "
-        f"time. {ref('summary')} has the governing value of each result with the load case and load step in which it "
-        "occurs. Lengths along the line count from end A."
+        f"This report is on {sources.first.run.summary['title']}: {cases}{of_lines}, computed by {how}. "
+        f"{ref('summary')} has the governing value of each result with the load case and load step in which it occurs. "
+        "Lengths along the line count from end A."
     )
     best = governing(sources.cases)
     rows = [_row(result, best) for result in best.values() if not result.kind.check]

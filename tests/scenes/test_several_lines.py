@@ -406,6 +406,9 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert {"east top tension", "north largest bending moment"} <= named
     page = write_report(of_folders([tmp_path], {}), tmp_path / "report.html").read_text()
     assert all(f"{tmp_path.name} {name}" in page for name in NAMES)
+    assert "one load case of 3 lines" in page
+    assert all(re.search(rf"<h3[^>]*>.*Line {name}</h3>", page) for name in NAMES)
+    assert "Sensitivity" not in page, "lines of one run are no parameter"
     assert page.count(">body buoy</td>") == page.count(">clearance east_north</td>") == 2
     rest, moved = (row for row in hung_table(found.summary).rows if row[1] == "clearance east_north")
     first, *distances = found["clearance/east_north/distance"]

@@ -286,9 +286,12 @@ def test_a_line_without_anything_along_time_is_reported(tmp_path: Path) -> None:
     sources = opened_at(tmp_path / "run")
     items = items_of(sources)
     assert [item.title for item in items if isinstance(item, Heading) and item.level == 1] == [
-        "Summary", "Basis", "Static configuration", "Extremes", "Code checks", "Numerical quality",
+        "Summary", "Basis", "Static configuration", "Code checks", "Numerical quality",
         "How to reproduce the results", "Scene",
     ]  # fmt: skip
+    line_with(said(items), "one load case, computed by static analysis")
+    assert table(items, "static reactions").rows
+    assert not [row for row in table(items, "summary").rows if "seabed" in row[0]], "there is none"
     written = YAML(typ="safe").load(scene_text(sources.first))
     assert scene_from_mapping(written) == Run(tmp_path / "run").read_scene()
     assert json.dumps(written).count("null") == 0
