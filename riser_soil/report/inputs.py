@@ -39,6 +39,8 @@ def input_rows(given: BaseModel, skip: Sequence[str] = (), only: Sequence[str] |
 
 
 def _row(given: BaseModel, key: str, value: Any) -> list[str]:
+    if key == "kind":
+        return ["law", given_value(value), ""]
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if key in GROUND_WORDS and is_number:
         words, unit, scale = GROUND_WORDS[key]

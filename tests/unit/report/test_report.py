@@ -25,11 +25,13 @@ from riser_soil.plots.curves import STYLE, Curves
 from riser_soil.report.document import Heading, Item, Paragraph, PictureBlock, Points, TableBlock, numbered
 from riser_soil.report.extremes import error_bars, key_results_table, reactions_table
 from riser_soil.report.health import energy_table, versions_table, warnings_of
+from riser_soil.report.inputs import input_rows
 from riser_soil.report.report import document_of, write_report
 from riser_soil.report.report_file import of_folders
 from riser_soil.report.sources import opened
 from riser_soil.report.tables import ReportTable, compact, number
 from riser_soil.results import Run
+from riser_soil.soil.kinematic_hardening import KinematicHardening
 from tests.support.browser import visit
 from tests.support.on_ranks import ROOT
 from tests.support.recorded_run import block, record
@@ -264,6 +266,15 @@ def test_the_basis_has_the_scene_in_units_of_the_field(items: list[Item]) -> Non
     }  # fmt: skip
     line_with("\n".join(texts(items)), "850 kg/m³")
     line_with("\n".join(texts(items)), "load step heave", "end B moves", "(0, 0, 1.5) m", "10 s")
+
+
+def test_the_input_of_a_law_is_in_units_of_the_field() -> None:
+    given = {"kind": "kinematic-hardening", "su": 2.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
+    rows = input_rows(KinematicHardening.model_validate(given))
+    assert rows[:3] == [
+        ["law", "kinematic-hardening", ""], ["undrained shear strength at the mudline", "2", "kPa"],
+        ["its gradient with depth", "1.5", "kPa/m"],
+    ]  # fmt: skip
 
 
 def test_without_a_code_check_that_is_said(run: Run, items: list[Item], tmp_path: Path) -> None:
