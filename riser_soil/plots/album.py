@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -160,10 +160,16 @@ class TouchdownView:
     run: Run
     endings: tuple[str, ...] = (".png",)
 
-    def content(self, ending: str) -> bytes:
-        """Bytes of a PNG file; ResultsError where it can't be drawn."""
+    @cached_property
+    def png(self) -> bytes:
+        """Bytes of the file; ResultsError where it can't be drawn, as on a machine without means to do so."""
         with tempfile.TemporaryDirectory() as place:
-            return picture(self.run.place, Path(place) / f"touchdown{ending}").read_bytes()
+            return picture(self.run.place, Path(place) / "touchdown.png").read_bytes()
+
+    def content(self, ending: str) -> bytes:
+        """The same, in its one format."""
+        assert ending in self.endings
+        return self.png
 
 
 def trough(stage: StageRecords) -> Figure:

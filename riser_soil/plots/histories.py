@@ -24,19 +24,25 @@ _SIZES = ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1.0, "J"))
 
 
 def ends(stage: StageRecords) -> Figure:
-    """Motion of both ends since the load step began, effective tension there, and what the supports exert."""
-    figure, (moved, tension, upright, level) = sheet(4, 1, width=PAGE, height=1.45)
+    """Motion of both ends since the load step began, effective tension there where it is recorded, and what the
+    supports exert.
+    """
+    tensions = stage.run.has("effective_tension")
+    figure, panels = sheet(3 + tensions, 1, width=PAGE, height=1.45)
+    moved, upright, level = panels[0], panels[-2], panels[-1]
     position, t = stage["position"], stage.time
     direction = along(stage.run["position"][0])
     _draw_motion(moved, t, position)
     for n, (name, at, label) in enumerate(_ENDS):
         force = stage[f"{name}_force"]
         toward = -1.0 if name == "start" else 1.0
-        tension.plot(t, 1e-3 * stage["effective_tension"][:, at], color=f"C{n}", label=label)
+        if tensions:
+            panels[1].plot(t, 1e-3 * stage["effective_tension"][:, at], color=f"C{n}", label=label)
         upright.plot(t, 1e-3 * force[:, 2], color=f"C{n}", label=label)
         level.plot(t, 1e-3 * toward * (force @ direction), color=f"C{n}", label=label)
     _name(moved, "displacement\nof the ends [m]")
-    _name(tension, "effective tension\n[kN], + pulls")
+    if tensions:
+        _name(panels[1], "effective tension\n[kN], + pulls")
     _name(upright, "support's vertical\nforce [kN], + up")
     _name(level, "support's horizontal\nforce [kN], + taut")
     return _in_time(figure)

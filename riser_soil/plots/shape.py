@@ -87,7 +87,7 @@ def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
         return [(int(stage.records[-1]), "static")]
     end, found = stage["position"][:, -1], dict[int, list[str]]()
     ways = end @ along(stage.run["position"][0])
-    asked: list[tuple[str, Any]] = [("least tension", stage["effective_tension"].min(axis=1).argmin())]
+    asked: list[tuple[str, Any]] = [("least tension", stage["min_effective_tension"].argmin())]
     if "bending_moment" in stage.run.variables:
         asked.insert(0, ("largest bending moment", _worst(stage)))
     for words, motion in (("end B {} end A", ways), ("end B {}", end[:, 2])):

@@ -41,7 +41,7 @@ def sheets(runs: Mapping[str, Run], stage: str | None) -> Iterator[Sheet]:
     first, *others = (names(each) for each in stages.values())
     for name in (name for name in first if all(name in other for other in others)):
         yield Sheet(name, f"{name.replace('_', ' ')} along the riser: {chosen}", partial(_along, stages, name))
-    if all(each.moves for each in stages.values()):
+    if all(each.moves and each.run.has("effective_tension") for each in stages.values()):
         yield Sheet("", f"top tension and TDP in time: {chosen}", partial(_in_time, stages))
 
 
@@ -126,9 +126,14 @@ def _view_of_zone(axes: Axes, stage: StageRecords, origin: Array, ahead: Array, 
     axes.set_title("touchdown zone, heights drawn larger")
 
 
+def recorded_by_all(stages: Mapping[str, StageRecords]) -> list[str]:
+    """Which of effective tension and bending moment all runs have recorded."""
+    return [name for name in ("effective_tension", "bending_moment") if all(s.run.has(name) for s in stages.values())]
+
+
 def static_tensions(stages: Mapping[str, StageRecords]) -> Figure:
     """Effective tension and bending moment along the line at the last record of each case."""
-    there = [name for name in ("effective_tension", "bending_moment") if all(s.run.has(name) for s in stages.values())]
+    there = recorded_by_all(stages)
     figure, panels = sheet(len(there), 1, width=PAGE, height=2.3)
     for axes, name in zip(panels, there, strict=True):
         words, factor = ALONG_ARC[name]

@@ -19,7 +19,7 @@ from riser_soil.report.extremes import hung_table, in_field_words, reactions_tab
 from riser_soil.report.governing import governing, of_stage, unit_of, uses
 from riser_soil.report.sources import LoadCase, Sources, is_seed
 from riser_soil.report.statics import MOST_CURVES, static_stage
-from riser_soil.report.tables import NOTHING, ReportTable, compact, number
+from riser_soil.report.tables import NOTHING, ReportTable, compact, number, without_paths
 from riser_soil.results.stage_records import StageRecords, stage_records
 
 MOST_ROWS = 60  # load cases in the table side by side
@@ -226,7 +226,12 @@ def _governing(sources: Sources) -> Iterator[Block]:
         if each.group in ("shape", "histories", "soil") or each.name.removeprefix("range_") in _DRAWN:
             yield _picture(each, records)
     if case.run.has_soil:
-        yield PictureBlock("Touchdown zone and whole line at the end of the run", TouchdownView(case.run))
+        view = TouchdownView(case.run)
+        try:
+            assert view.png
+            yield PictureBlock("Touchdown zone and whole line at the end of the run", view)
+        except ResultsError as err:
+            yield Paragraph(f"No picture of the touchdown zone: {without_paths(str(err))}")
 
 
 def _results(case: LoadCase, stage: str) -> ReportTable:

@@ -8,7 +8,7 @@ from functools import partial
 from riser_soil.errors import ResultsError
 from riser_soil.plots.album import pictures
 from riser_soil.plots.curves import Curves
-from riser_soil.plots.side_by_side import static_shapes, static_tensions
+from riser_soil.plots.side_by_side import recorded_by_all, static_shapes, static_tensions
 from riser_soil.report.captions import in_caption
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock, ref
 from riser_soil.report.extremes import reactions_table
@@ -112,7 +112,9 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     elif drawn:
         few = dict([*drawn.items()][:MOST_CURVES])
         yield PictureBlock("Static shapes; triangles mark the TDP", Curves(partial(static_shapes, few)))
-        yield PictureBlock("Effective tension and bending moment, static", Curves(partial(static_tensions, few)))
+        if there := recorded_by_all(few):
+            words = " and ".join(name.replace("_", " ") for name in there).capitalize()
+            yield PictureBlock(f"{words}, static", Curves(partial(static_tensions, few)))
 
 
 def _records(case: LoadCase) -> StageRecords | None:

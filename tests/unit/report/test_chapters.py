@@ -299,3 +299,18 @@ def test_a_line_without_anything_along_time_is_reported(tmp_path: Path) -> None:
         if isinstance(item, PictureBlock):
             assert item.drawing.content(".svg")
     assert not [item for item in items if isinstance(item, Points)]
+
+
+def test_what_is_not_recorded_along_the_line_has_no_picture(tmp_path: Path) -> None:
+    """Two runs of the first scene that record no field: all that is drawn can be drawn."""
+    for name, amplitude in (("a", 1.5), ("b", 1.0)):
+        scene = YAML(typ="safe").load(SCENE)
+        scene["output"]["fields"] = []
+        scene["stages"][1]["duration"] = 0.3
+        scene["stages"][1]["motion"]["end"]["harmonic"]["amplitude"] = [0.0, 0.0, amplitude]
+        run_scene(scene_from_mapping(scene), tmp_path / name)
+    pictures = [item for item in items_of(opened_at(tmp_path / "a", tmp_path / "b")) if isinstance(item, PictureBlock)]
+    assert [item for item in pictures if item.caption.startswith("Ends in time")]
+    assert [item for item in pictures if item.caption.startswith("Static shapes")] == [], "they hang alike"
+    for item in pictures:
+        assert item.drawing.content(".svg")
