@@ -40,6 +40,7 @@ demos: demo ## that demo and the others (demos/*/README.md), with their tables a
 	$(PYTHON) -m demos.pipe_segment.run
 	$(PYTHON) -m demos.trench.run
 	$(PYTHON) -m demos.lines.run
+	$(PYTHON) -m demos.client_report.run
 
 test: setup ## linters, types, and the quick tests, some of them on two ranks
 	@$(MAKE) --no-print-directory -j2 lint quick # types are checked beside the tests, which leave cores now and then
