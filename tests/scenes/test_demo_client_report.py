@@ -23,7 +23,7 @@ SHORT = {  # of each file what is replaced by what
         "seeds: 3": "seeds: [2]",
         "60.0}": "20.0}",
     },
-    "sea_states": {"duration: 1800.0": "duration: 60.0", "since: 60.0": "since: 20.0"},
+    "sea_states": {"since: 60.0": "since: 20.0"},
     "fatigue": {"skip: 60.0": "skip: 20.0"},
 }
 
