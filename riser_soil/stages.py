@@ -361,10 +361,13 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
 
 
 def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
-    """Newton's settings in a stage: in statics on a ground, steps are cut short where contact opens and closes."""
+    """Newton's settings in a stage: in statics on a ground, steps are cut short where contact opens and closes; there,
+    and in motion on soil, they start linearly.
+    """
     settings, lies = settings_of(assembly), bool(assembly.contacts) and isinstance(stage, StaticStage)
     at_rest = not assembly.is_first(stage) or (assembly.cushion is not None and assembly.is_laid_in(stage))
-    return replace(settings, line_search=settings.line_search or lies, linear_start=lies and at_rest)
+    moves = assembly.soil_bears and isinstance(stage, DynamicStage)
+    return replace(settings, line_search=settings.line_search or lies, linear_start=(lies and at_rest) or moves)
 
 
 def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:

@@ -3,8 +3,9 @@
 From one iteration of Newton's method on soil to the next only what yields and what touches changes, and a solve with
 factors costs a small share of a factorisation, the less the larger the system. The factors are LDLᵀ of the tangent's
 upper triangle: half the work of LU, and exact where the tangent is symmetric. They are kept as long as that lowers the
-mean cost of the solves since they were made, their making included. No clock decides, but the number of iterations and
-MUMPS' own counts of its work, so that a run can be repeated to the last bit.
+mean cost of the solves since they were made, their making included; a solve that by its first iterations would take
+more of them than a factorisation costs is not waited for. No clock decides, but the number of iterations and MUMPS' own
+counts of its work, so that a run can be repeated to the last bit.
 
 The iterations are generalised conjugate residuals (Eisenstat, Elman & Schultz, SIAM J. Numer. Anal. 20, 1983, from
 memory): those of GMRES, but in the norm that Newton's method judges by, with moments over the lever.
@@ -24,6 +25,8 @@ from riser_soil.core.saved_state import Saved
 from riser_soil.solve.linear_solver import LinearSystems, PythonContext, use_mumps
 
 FEWEST = 10  # iterations that a solve may take in any case, where new factors want some, too
+SEEN = 3  # iterations of a solve before their rate says how many it will take
+FASTER = 1.3  # how many times fewer they may be than by that rate, as conjugate residuals get faster
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
 SOLVED = PETSc.KSP.ConvergedReason.CONVERGED_RTOL
 TOO_LONG = PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT
@@ -168,11 +171,11 @@ class _Directions:
         x.set(0.0)
         rest, whole = b.copy(), b.duplicate()
         rest.pointwiseDivide(b, self._levers)
-        target = tolerance * rest.norm()
+        first = rest.norm()
         reason = SOLVED
-        while rest.norm() > target and reason == SOLVED:
+        while (norm := rest.norm()) > tolerance * first and reason == SOLVED:
             whole.pointwiseMult(rest, self._levers)
-            reason = self._add(whole) if self.count < most else TOO_LONG
+            reason = self._add(whole) if self._foretold(norm / first, tolerance) <= most else TOO_LONG
             if reason == SOLVED:
                 z, q = self._pairs[-1]
                 part = q.dot(rest)
@@ -181,6 +184,12 @@ class _Directions:
         rest.destroy()
         whole.destroy()
         return int(reason)
+
+    def _foretold(self, left: float, tolerance: float) -> float:
+        """Iterations that the solve takes at least, at the rate at which this share of its residual was left so far."""
+        if self.count < SEEN or left >= 1.0:
+            return self.count + 1.0
+        return max(self.count + 1.0, self.count * math.log(tolerance) / math.log(left) / FASTER)
 
     def _add(self, residual: PETSc.Vec) -> int:
         """The step that the factors give for a residual, without what the others have done."""

@@ -60,8 +60,8 @@ class NewtonSettings:
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away. Beside clay the compiled loop reuses the tangent of all else, see
     `newton_progress.StopLimits`. least_iterations: before a residual counts as small.
-    line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
-    step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
+    line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a step
+    with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
     factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,
     "auto" keeps factors in large systems. snes: let PETSc's SNES solve a riser alone, too. petsc_options: names without
     prefix and values, see `petsc_options`. has_soil: whether the scene has soil, be it in systems after this one.

@@ -19,7 +19,6 @@ from riser_soil.solve.chain import (
     CONVERGED,
     DIVERGED,
     ITERATING,
-    LOOSE,
     NOT_FINITE,
     OUTGROWN,
     TOO_MANY,
@@ -49,7 +48,7 @@ from riser_soil.solve.solver import (
 )
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
 
-TIGHT = 1e-10  # least share of the residual that a linear system solved by iterations may leave, LOOSE the largest
+TIGHT, LOOSEST = 1e-10, 1e-2  # shares of the residual that a linear system solved by iterations may leave
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Weights.of_statics()
@@ -86,7 +85,7 @@ class StepIteration:
     def solve(self, step: Step, at_equilibrium: bool) -> Solution:
         """Solve a step or raise NotConvergedError; at_equilibrium: see `Newton`. Collective."""
         self._begin(step, at_equilibrium)
-        if self.settings.linear_start and self._step.weights.inertia == 0.0 and not self._continues():
+        if self.settings.linear_start and (self._moves or not self._continues()):
             self._start_linearly()
         if failure := self._iterate():
             raise NotConvergedError(failure)
@@ -100,6 +99,11 @@ class StepIteration:
         assert self._trials is not None
         return self._trials
 
+    @property
+    def _moves(self) -> bool:
+        """Whether the step is one in time."""
+        return self._step.weights.inertia > 0.0
+
     def _continues(self) -> bool:
         """Whether a static step goes on as those before: its guess leaves less out of balance than its loads put there.
 
@@ -111,10 +115,11 @@ class StepIteration:
         return going_on < still
 
     def _start_linearly(self) -> None:
-        """First iteration of a static step, by the tangent where it starts: the linear response to its loads and
-        prescribed motion, or the guess with the response to what that lacks.
+        """First iteration by the tangent where the step starts: the linear response to its loads and prescribed motion,
+        or in statics the guess with the response to what that lacks.
 
-        An end that is moved alone stretches the element beside it by far, and its false tension spoils what follows.
+        An end that is moved alone stretches the element beside it by far, and its false tension spoils what follows. In
+        a time step on soil the motion continued presses the pipe far into it, or off it.
         """
         guess = self._step.step.guess
         still = np.zeros_like(guess)
@@ -126,7 +131,7 @@ class StepIteration:
             self._assemble(start)
         self._first = 1
         self._norms.append(self._respond_to(residual + (probed - residual) / PROBE, still))
-        if any_of(self.system.comm, bool(guess.any())):
+        if not self._moves and any_of(self.system.comm, bool(guess.any())):
             self._prefer_guess(self._step.with_prescribed(guess))
 
     def _prefer_guess(self, guess: Array) -> None:
@@ -192,7 +197,7 @@ class StepIteration:
         """Whether a static step nears its end, if slowly, as where stiff ground opens and closes point after point."""
         before, lately = self._norms[:-PATIENCE], self._norms[-PATIENCE:]
         limit = LONGEST * self.loop.max_iterations
-        return self._step.weights.inertia == 0.0 and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
+        return not self._moves and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
 
     @property
     def _taken(self) -> int:
@@ -235,7 +240,7 @@ class StepIteration:
         self._most = self.loop.max_iterations
         self._x = self.system.numbering.to_global(step.guess)
         guessed = any_of(self.system.comm, bool(self._x.any()))
-        near = self.system.smooth and self._step.weights.inertia > 0.0
+        near = self.system.smooth and self._moves
         answers = at_equilibrium or guessed  # one like round-off has an answer, too
         self._limits = limits_of(self.settings, near, False, answers)
 
@@ -341,9 +346,9 @@ class StepIteration:
         """
         norm, before = self._norms[-1], self._norms[-2] if self._taken > self._first else 0.0
         if not 0.0 < norm < before:
-            return LOOSE
+            return LOOSEST
         enough = self.settings.tolerance * self._norm.in_play(self._step.forces) / norm
-        return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSE)
+        return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSEST)
 
     def negligible(self) -> float:
         """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
