@@ -173,7 +173,8 @@ def _finer_soil(scene: Scene, factor: float) -> Scene:
     assert isinstance(soil.mesh, GeneratedMesh)  # resolved
     at = soil.mesh.size_at_riser
     if isinstance(at, CellSizes):
-        finer: CellSizes | float = CellSizes(along=at.along / factor, across=at.across / factor, strip=soil.mesh.strip)
+        divided = {"along": at.along / factor, "across": at.across / factor, "strip": soil.mesh.strip}
+        finer: CellSizes | float = at.model_copy(update=divided)
     else:
         finer = at / factor
     mesh = soil.mesh.model_copy(update={"size_at_riser": finer, "size_far": soil.mesh.size_far / factor})

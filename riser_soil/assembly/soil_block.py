@@ -47,6 +47,7 @@ def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> Block
         kind=soil.mesh.kind,
         riser=riser,
         along=soil.mesh.along,
+        touchdown=soil.mesh.touchdown if soil.model == "block" else None,
         strip=soil.mesh.strip,
         boundaries=boundaries(soil.layers or ()),
         feature=_feature_of(scene, soil.block),

@@ -33,6 +33,9 @@ ALONG, LONGEST = 0.55, 4.0
 DIAMETERS, WIDTHS = 8.0, 10.0
 BENDINGS, BEYOND = 4.0, 10.0
 DYNAMIC = 1.25
+# Bending lengths before the touchdown points, within which a block's cells don't grow along the riser: it touches down
+# one of them before its cable does, and presses hardest within another.
+BEFORE = 3.0
 
 
 def with_sizes(scene: Scene, soil: SoilScene) -> SoilScene:
@@ -88,8 +91,7 @@ class SoilSizes:
                 "soil.block: auto: no touchdown point can be foretold, as no catenary between two prescribed ends "
                 "comes down to the soil; give block: {x: [from, to], y: [from, to], depth: ...}"
             )
-        first = self.touchdown.points[0]
-        points = first + DYNAMIC * (self.touchdown.points - first)
+        points = _farther(self.touchdown)
         along = np.abs(np.asarray(vertical_plane(self.scene).direction)[:2])
         beyond = BENDINGS * self.bending_length + BEYOND * self.scales.diameter
         around = beyond * along + self.half_width * along[::-1]
@@ -107,8 +109,26 @@ class SoilSizes:
             )
         across = min(self.width / ACROSS, self.scales.diameter / ROUND)
         strip = max(STRIP * across, BESIDE * self.width)
-        sizes = CellSizes(along=_reported(max(self.along, across)), across=_reported(across), strip=_reported(strip))
+        sizes = CellSizes(
+            along=_reported(max(self.along, across)),
+            across=_reported(across),
+            strip=_reported(strip),
+            touchdown=self.touchdown_zone(block) if self.soil.model == "block" else None,
+        )
         return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=_reported(max(FAR * block.depth, across)))
+
+    def touchdown_zone(self, block: Block) -> tuple[float, float] | None:
+        """Range along the riser in which it may touch down, as far as the block has it [m]; None where that is not
+        foretold, and where all of the block is in it.
+        """
+        if self.touchdown is None:
+            return None
+        axis = int(np.argmax(np.abs(self.touchdown.ahead)))
+        points = _farther(self.touchdown)
+        reached = np.concatenate((points, points - BEFORE * self.bending_length * self.touchdown.ahead))[:, axis]
+        low, high = (block.x, block.y)[axis]
+        first, last = (_reported(each) for each in _rounded(np.clip([reached.min(), reached.max()], low, high)))
+        return (first, last) if low < last and first < high and (first, last) != (low, high) else None
 
     @property
     def along(self) -> float:
@@ -116,6 +136,12 @@ class SoilSizes:
         bends = bending_on_soil(self.elements, self.soil.top_law), self.bending_length
         shortest = min((length for length in bends if length > 0.0), default=np.inf)
         return min(ALONG * shortest, LONGEST * self.scales.diameter)
+
+
+def _farther(found: TouchdownForecast) -> Array:
+    """Touchdown points (n, 2) that the ends' motions lead to, somewhat farther than statics say."""
+    first = found.points[0]
+    return np.asarray(first + DYNAMIC * (found.points - first))
 
 
 def bending_on_soil(elements: Elements, law: SoilLaw) -> float:

@@ -28,11 +28,13 @@ DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]])  # (dis
 @dataclass(frozen=True, eq=False)
 class TouchdownForecast:
     """points (n, 2): touchdown points in plan [m], by statics without bending stiffness, the first that of the ends'
-    first places, the others where they come to be; H: horizontal tension at first [N].
+    first places, the others where they come to be; H: horizontal tension at first [N]; ahead (2,): unit vector in plan,
+    at first, from what lies to what hangs.
     """
 
     points: Array
     H: float
+    ahead: Array
 
 
 def forecast(scene: Scene, elements: Elements) -> TouchdownForecast | None:
@@ -43,7 +45,7 @@ def forecast(scene: Scene, elements: Elements) -> TouchdownForecast | None:
     found = [_touchdown(scene, elements, attachments, *ends) for ends in extreme_places(scene)]
     if not found or found[0] is None:
         return None
-    return TouchdownForecast(np.array([point for point, _ in filter(None, found)]), found[0][1])
+    return TouchdownForecast(np.array([point for point, *_ in filter(None, found)]), *found[0][1:])
 
 
 def extreme_places(scene: Scene) -> Iterator[tuple[Array, Array]]:
@@ -61,8 +63,8 @@ def extreme_places(scene: Scene) -> Iterator[tuple[Array, Array]]:
 
 def _touchdown(
     scene: Scene, elements: Elements, attachments: Sequence[PointAttachment], start: Array, end: Array
-) -> tuple[Array, float] | None:
-    """Touchdown point in plan (2,) and horizontal tension [N]."""
+) -> tuple[Array, float, Array] | None:
+    """Touchdown point in plan (2,), horizontal tension [N], unit vector ahead in plan (2,)."""
     try:
         found = catenary_between(scene, elements, attachments, start, end)
     except SceneError:
@@ -70,7 +72,7 @@ def _touchdown(
     return _in_plan(scene, elements, found)
 
 
-def _in_plan(scene: Scene, elements: Elements, found: Catenary) -> tuple[Array, float] | None:
+def _in_plan(scene: Scene, elements: Elements, found: Catenary) -> tuple[Array, float, Array] | None:
     position = found.curve.position
     height = position[:, 2] - resting_level(scene, elements, position[[0, -1]])
     diameter = float(elements.outer_diameter.max())
@@ -82,6 +84,6 @@ def _in_plan(scene: Scene, elements: Elements, found: Catenary) -> tuple[Array, 
     lies, up = (at, at + 1) if hangs[at + 1] else (at + 1, at)
     w = float(elements.weight[at])
     step = position[up, :2] - position[lies, :2]
-    length = float(np.linalg.norm(step)) or 1.0
+    ahead = step / (float(np.linalg.norm(step)) or 1.0)
     before = np.sqrt(2.0 * height[up] * found.H / w) if w > 0.0 else 0.0
-    return position[up, :2] - before * step / length, found.H
+    return position[up, :2] - before * ahead, found.H, ahead

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
-from riser_soil.assembly.touchdown_forecast import forecast
+from riser_soil.assembly.touchdown_forecast import TouchdownForecast, forecast
 from riser_soil.checks.settlement import Settled, foretold
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
@@ -162,11 +162,14 @@ def _oblique(assembly: Assembly) -> Iterator[str]:
 
 
 def _leaves_the_block(assembly: Assembly) -> Iterator[str]:
-    """A block from which the touchdown point moves, by catenaries between the ends as they move."""
+    """A block, or the range of its fine cells, from which the touchdown point moves, by catenaries between the ends as
+    they move.
+    """
     assert assembly.soil is not None
     found = forecast(assembly.scene, assembly.elements)
     if found is None:
         return
+    yield from _leaves_fine_cells(assembly, found)
     low, high = assembly.soil.grid.low[:2], assembly.soil.grid.high[:2]
     beyond = np.maximum(np.maximum(low - found.points, found.points - high), 0.0).max(axis=1)
     if beyond[0] == 0.0 and beyond.max() > 0.0:
@@ -175,4 +178,18 @@ def _leaves_the_block(assembly: Assembly) -> Iterator[str]:
             "the touchdown point leaves the soil's block as the ends move: by statics it comes to x = "
             f"{at[0]:.5g}, y = {at[1]:.5g} m, {beyond.max():.3g} m beyond x from {low[0]:.5g} to {high[0]:.5g} m and "
             f"y from {low[1]:.5g} to {high[1]:.5g} m: enlarge soil.block, or take block: auto"
+        )
+
+
+def _leaves_fine_cells(assembly: Assembly, found: TouchdownForecast) -> Iterator[str]:
+    mesh = _generated(assembly)
+    if mesh is None or mesh.touchdown is None:
+        return
+    (low, high), axis = mesh.touchdown, int(np.argmax(np.abs(found.ahead)))
+    at = found.points[:, axis]
+    if at.min() < low or at.max() > high:
+        yield (
+            f"soil.mesh.size_at_riser.touchdown is {'xy'[axis]} from {low:.5g} to {high:.5g} m, and by statics the "
+            f"touchdown point comes to {'xy'[axis]} from {at.min():.5g} to {at.max():.5g} m, where cells are longer than "
+            f"{mesh.along:.4g} m: widen it, or take mesh: auto"
         )

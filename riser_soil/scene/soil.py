@@ -70,6 +70,17 @@ class CellSizes(BaseModel):
         description="width across the riser, and half of it downwards, within which cells do not grow yet [m]; "
         "eight cells by default",
     )
+    touchdown: Interval | None = Field(
+        default=None,
+        description="range of x or y, along the riser, beyond which the cells of a block grow along it, too, at its ends "
+        "to size_far, or four times their length where that is more [m]; by default they do so nowhere",
+    )
+
+    @model_validator(mode="after")
+    def _touchdown_has_a_length(self) -> Self:
+        if self.touchdown is not None and self.touchdown[1] - self.touchdown[0] < SHORTEST:
+            raise wrong("touchdown", "the first bound must be smaller than the second", "write [from, to] in metres")
+        return self
 
 
 def _number_or_sizes(value: object) -> str:
@@ -102,6 +113,11 @@ class GeneratedMesh(BaseModel):
     def along(self) -> float:
         """Size of the cells along the riser [m]."""
         return self.size_at_riser.along if isinstance(self.size_at_riser, CellSizes) else self.size_at_riser
+
+    @property
+    def touchdown(self) -> tuple[float, float] | None:
+        """Range along the riser beyond which the cells grow along it, too [m]; None: nowhere."""
+        return self.size_at_riser.touchdown if isinstance(self.size_at_riser, CellSizes) else None
 
     @property
     def strip(self) -> float:

@@ -18,6 +18,7 @@ _PIECES = 16  # on either side of the riser, to count cells by
 _EQUAL = 1e-9  # difference of two sizes, over either, that is none
 _ROUNDED = 9  # decimals of a number of cells before it is rounded: halves stay halves in any unit of length
 _DIGITS = 13  # decimals of a block's lengths over its span: beyond them is round-off, by which tetrahedra differ
+LONGER = 4.0  # cells at the block's ends than at the touchdown point, at least, where they grow along the riser
 PARALLEL = 1e-6  # slope in plan of a riser that runs along an axis
 
 Point = tuple[float, float]
@@ -32,10 +33,11 @@ class BlockSpec:
     the riser's straight line in plan; a cell's middle, not its edge, lies under a line along x or y, so that
     the surface under the riser is smooth. None: fine in the whole plan.
     along: of hexahedra, length of the cells along a riser that runs along x or y, where it is another than their size
-    across it; strip: width across the riser, and half of it downwards, within which they do not grow yet. boundaries:
-    depths below the level at which layers of soil meet, increasing; cells end there. feature: of the top, along a riser
-    that runs along x or y. half: whether only the half beyond the riser's line is meshed, of a block that is symmetric
-    about it, with the cells that the line's plane cuts.
+    across it; touchdown: range along it beyond which they grow, too; None: nowhere. strip: width across the riser, and
+    half of it downwards, within which they do not grow yet. boundaries: depths below the level at which layers of soil
+    meet, increasing; cells end there. feature: of the top, along a riser that runs along x or y. half: whether only the
+    half beyond the riser's line is meshed, of a block that is symmetric about it, with the cells that the line's plane
+    cuts.
     """
 
     x: Point
@@ -47,6 +49,7 @@ class BlockSpec:
     kind: Literal["hex", "tet"] = "hex"
     riser: tuple[Point, Point] | None = None
     along: float | None = None
+    touchdown: Point | None = None
     strip: float = 0.0
     boundaries: tuple[float, ...] = ()
     feature: FeatureSpec | None = None
@@ -80,6 +83,9 @@ class BlockSpec:
             return low, high
         ends = sorted(point[axis] for point in self.riser)
         size = self.size(axis)
+        if self.touchdown is not None and self.lies_along(axis):
+            first, last = np.clip(self.touchdown, max(low, ends[0]), min(high, ends[1]))
+            return float(first), float(last)
         half = 0.5 * size if self.lies_along(axis) else 0.5 * size * _odd(self.strip / size)
         if isinstance(self.feature, GrooveSpec) and axis != self.axis:
             half = max(half, self.feature.half_width)
@@ -121,6 +127,8 @@ class BlockSpec:
         """Low and high end, fine range, size in it and size at the ends."""
         size = self.size(axis)
         far = max(size, self.size_far)
+        if self.touchdown is not None and axis < 2 and self.lies_along(axis):
+            far = max(far, LONGER * size)
         if axis < 2:
             return *(self.x, self.y)[axis], self.fine_range(axis), size, far
         fine = min(self.depth, size * _nearest(0.5 * self.strip / size))
