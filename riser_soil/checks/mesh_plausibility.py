@@ -190,6 +190,6 @@ def _leaves_fine_cells(assembly: Assembly, found: TouchdownForecast) -> Iterator
     if at.min() < low or at.max() > high:
         yield (
             f"soil.mesh.size_at_riser.touchdown is {'xy'[axis]} from {low:.5g} to {high:.5g} m, and by statics the "
-            f"touchdown point comes to {'xy'[axis]} from {at.min():.5g} to {at.max():.5g} m, where cells are longer than "
-            f"{mesh.along:.4g} m: widen it, or take mesh: auto"
+            f"touchdown point comes to {'xy'[axis]} from {at.min():.5g} to {at.max():.5g} m, where cells are longer "
+            f"than {mesh.along:.4g} m: widen it, or take mesh: auto"
         )

@@ -72,8 +72,8 @@ class CellSizes(BaseModel):
     )
     touchdown: Interval | None = Field(
         default=None,
-        description="range of x or y, along the riser, beyond which the cells of a block grow along it, too, at its ends "
-        "to size_far, or four times their length where that is more [m]; by default they do so nowhere",
+        description="range of x or y, along the riser, beyond which a block's cells grow along it, too, at its ends to "
+        "size_far, or four times their length where that is more [m]; by default they do so nowhere",
     )
 
     @model_validator(mode="after")
