@@ -1,0 +1,96 @@
+"""The riser of the touchdown demo on five grounds, from a rigid bed to a block of clay: figures, and what they cost.
+
+Usage, in the project's folder: python -m demos.grounds.run [FOLDER] [--page]
+FOLDER is by default `results` beside this file. --page writes the table into README.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+
+from demos.compute import compute, timed
+from demos.figures import Texts
+from demos.page import fill_pages, publish, table
+from demos.touchdown_clay.run import SCENE
+from riser_soil.results import Run
+
+HERE = Path(__file__).parent
+PAGE = HERE / "README.md"
+CLAY = "law: {kind: randolph-quiggin, su: 2.0e3, su_gradient: 1.5e3}"
+BED = "soil=null", "contact={}"
+GROUNDS = {
+    "rigid": (*BED, "seabed={kind: rigid}"),
+    "springs": BED,
+    "hysteretic": (*BED, f"seabed={{kind: hysteretic, {CLAY}}}"),
+    "sections": ("soil.model=sections",),
+    "block": (),
+}
+SHORT = "stages.1.duration=0.4"  # in which kernels are compiled, so that their seconds do not count
+Found = dict[str, tuple[Run, float]]
+
+
+def main(folder: Path, page: bool) -> None:
+    found = runs(folder)
+    publish({"grounds": figures(found)}, folder, PAGE if page else None)
+    if page:
+        fill_pages(told_of(found))
+
+
+def runs(folder: Path) -> Found:
+    """The runs by their grounds, and the processor time [s] of each."""
+    found = dict[str, tuple[Run, float]]()
+    for ground, overrides in GROUNDS.items():
+        compute(SCENE, folder / "short", *overrides, SHORT)
+        found[ground] = timed(SCENE, folder / ground, *overrides)
+    return found
+
+
+def figures(found: Found) -> str:
+    """A row a ground: how deep the pipe lies at most, largest moment and touchdown point as laid and in motion."""
+    rows = [row(ground, run, seconds) for ground, (run, seconds) in found.items()]
+    head = "ground", "sinks in, laid [mm]", "in motion", "largest moment, laid [kN m]", "in motion"
+    return table([*head, "touchdown arc, laid [m]", "in motion", "one core [s]"], rows)
+
+
+def row(ground: str, run: Run, seconds: float) -> list[str]:
+    """Figures of one run."""
+    laid, motion = run.summary["stages"]
+    ranges = motion["extremes"]
+    deep = [1e3 * depth for depth in (laid["final"]["max_embedment"]["value"], ranges["max_embedment"]["max"])]
+    moments = laid["final"]["max_bending_moment"]["value"], ranges["max_bending_moment"]["max"]
+    arcs = laid["final"]["touchdown_arc"], *(ranges["touchdown_arc"][end] for end in ("min", "max"))
+    return [
+        ground,
+        *(f"{each:.1f}" for each in deep),
+        *(f"{1e-3 * each:.3f}" for each in moments),
+        f"{arcs[0]:.2f}",
+        f"{arcs[1]:.2f} to {arcs[2]:.2f}",
+        f"{rounded(seconds):g}",
+    ]
+
+
+def told_of(found: Found) -> Texts:
+    """Figures that pages tell: what sections differ by from the block, and the seconds of each ground."""
+    texts = {f"grounds {ground} s": f"{rounded(seconds):g}" for ground, (_, seconds) in found.items()}
+    sections, block = (found[ground][0].summary["stages"] for ground in ("sections", "block"))
+    for name, stage in (("laid", 0), ("motion", 1)):
+        mine, its = (1e3 * stages[stage]["soil"]["max_settlement"]["value"] for stages in (sections, block))
+        texts[f"grounds settled {name}"] = f"{100.0 * (mine / its - 1.0):+.0f}".replace("-", "−")
+    moments = (stages[1]["extremes"]["max_bending_moment"]["max"] for stages in (sections, block))
+    mine, its = moments
+    return texts | {"grounds moment": f"{100.0 * (mine / its - 1.0):+.1f}".replace("-", "−")}
+
+
+def rounded(seconds: float) -> float:
+    """To two figures: what machines agree on, and no more."""
+    return round(seconds, 1 - math.floor(math.log10(seconds)))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, nargs="?", default=HERE / "results", help="folder for the results")
+    parser.add_argument("--page", action="store_true", help="write the table into the demo's page, too")
+    given = parser.parse_args()
+    main(given.folder, given.page)
