@@ -1,8 +1,8 @@
 """The touchdown demo with half its cells' sizes, direction by direction, and half its steps: what that changes.
 
 Usage, in the project's folder: python -m demos.touchdown_clay.convergence [FOLDER] [--page]
-FOLDER is by default `results/halved` beside this file; runs that it has are taken as they are. It takes about an hour of
-one core. --page writes the table into README.md.
+FOLDER is by default `results/halved` beside this file; runs that it has are taken as they are. All take about an hour
+of one core. --page writes the table into README.md.
 """
 
 from __future__ import annotations

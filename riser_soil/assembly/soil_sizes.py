@@ -33,8 +33,8 @@ ALONG, LONGEST = 0.55, 4.0
 DIAMETERS, WIDTHS = 8.0, 10.0
 BENDINGS, BEYOND = 4.0, 10.0
 DYNAMIC = 1.25
-# Bending lengths before the touchdown points, within which a block's cells don't grow along the riser: it touches down
-# one of them before its cable does, and presses hardest within another.
+# Bending lengths, of a cell's length at least, before the touchdown points, within which a block's cells don't grow
+# along the riser: it touches down one of them before its cable does, and presses hardest within another.
 BEFORE = 3.0
 
 
@@ -124,8 +124,9 @@ class SoilSizes:
         if self.touchdown is None:
             return None
         axis = int(np.argmax(np.abs(self.touchdown.ahead)))
-        points = _farther(self.touchdown)
-        reached = np.concatenate((points, points - BEFORE * self.bending_length * self.touchdown.ahead))[:, axis]
+        points, ahead = _farther(self.touchdown), self.touchdown.ahead
+        before = BEFORE * max(self.bending_length, self.along)
+        reached = np.concatenate((points - before * ahead, points + self.along * ahead))[:, axis]
         low, high = (block.x, block.y)[axis]
         first, last = (_reported(each) for each in _rounded(np.clip([reached.min(), reached.max()], low, high)))
         return (first, last) if low < last and first < high and (first, last) != (low, high) else None

@@ -33,11 +33,11 @@ class BlockSpec:
     the riser's straight line in plan; a cell's middle, not its edge, lies under a line along x or y, so that
     the surface under the riser is smooth. None: fine in the whole plan.
     along: of hexahedra, length of the cells along a riser that runs along x or y, where it is another than their size
-    across it; touchdown: range along it beyond which they grow, too; None: nowhere. strip: width across the riser, and
-    half of it downwards, within which they do not grow yet. boundaries: depths below the level at which layers of soil
-    meet, increasing; cells end there. feature: of the top, along a riser that runs along x or y. half: whether only the
-    half beyond the riser's line is meshed, of a block that is symmetric about it, with the cells that the line's plane
-    cuts.
+    across it; strip: width across the riser, and half of it downwards, within which they do not grow yet. boundaries:
+    depths below the level at which layers of soil meet, increasing; cells end there. feature: of the top, along a riser
+    that runs along x or y. half: whether only the half beyond the riser's line is meshed, of a block that is symmetric
+    about it, with the cells that the line's plane cuts. touchdown: of long hexahedra, range along the riser beyond
+    which they grow along it, too; None: nowhere.
     """
 
     x: Point
@@ -49,11 +49,11 @@ class BlockSpec:
     kind: Literal["hex", "tet"] = "hex"
     riser: tuple[Point, Point] | None = None
     along: float | None = None
-    touchdown: Point | None = None
     strip: float = 0.0
     boundaries: tuple[float, ...] = ()
     feature: FeatureSpec | None = None
     half: bool = False
+    touchdown: Point | None = None
 
     @property
     def axis(self) -> int:

@@ -130,6 +130,39 @@ def test_the_block_follows_the_reach_of_the_motion() -> None:
     assert np.subtract(block.x, still.x) == pytest.approx([1.25 * reach.min(), 1.25 * reach.max()], abs=0.1)
 
 
+def test_cells_of_a_block_grow_where_the_riser_does_not_touch_down() -> None:
+    """From three bending lengths before the touchdown points of the motion to a cell beyond; sections stay alike."""
+    scene = automatic(LAY, heave(3.0, amplitude=1.0))
+    found = forecast(scene, elements_of(scene))
+    assert found is not None
+    assert found.ahead == pytest.approx([1.0, 0.0])
+    first = found.points[0, 0]
+    reach = first + 1.25 * (found.points[:, 0] - first)
+    low, high = reach.min(), reach.max()
+    bending = np.sqrt(elements_of(scene).EI_y.max() / found.H)
+    block, _, sizes = chosen(scene)
+    assert sizes.touchdown == pytest.approx((low - 3.0 * bending, high + sizes.along), abs=0.06)
+    assert block.x[0] < sizes.touchdown[0] < sizes.touchdown[1] < block.x[1]
+    assert chosen(automatic(LAY, soil__model="sections"))[2].touchdown is None
+
+
+def test_a_riser_that_comes_down_the_other_way_has_its_cells_there() -> None:
+    there = automatic(LAY)
+    back = automatic(LAY, riser__end__position=[-22.5, 0.0, 15.0])
+    (low, high), (first, last) = (chosen(each)[2].touchdown for each in (there, back))
+    assert (first, last) == pytest.approx((-high, -low), abs=1e-6)
+
+
+def test_a_chain_has_fine_cells_for_its_touchdown_point_at_rest() -> None:
+    """Nothing bends and nothing moves: three cells before it, as far as there is a block, and one beyond."""
+    scene = automatic(LAY, line_types__flexible__EI=0.0)
+    found = forecast(scene, elements_of(scene))
+    assert found is not None
+    block, _, sizes = chosen(scene)
+    at = found.points[0, 0]
+    assert sizes.touchdown == pytest.approx((max(at - 3.0 * sizes.along, block.x[0]), at + sizes.along), abs=0.06)
+
+
 def test_a_riser_along_y_has_its_block_and_cells_along_y() -> None:
     along_x, along_y = automatic(LAY), automatic(LAY, riser__end__position=[0.0, 22.5, 15.0])
     one, other = chosen(along_x)[0], chosen(along_y)[0]

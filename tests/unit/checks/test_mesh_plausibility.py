@@ -89,6 +89,17 @@ def test_a_block_that_the_touchdown_point_will_leave_is_reported() -> None:
     assert not [reported for reported in warned(on_block(LAY, heave(3.0, amplitude=0.01))) if "leaves" in reported]
 
 
+def test_fine_cells_that_the_touchdown_point_will_leave_are_reported() -> None:
+    def told(low: float, high: float) -> list[str]:
+        mesh = {**sizes(0.5, 0.012)}
+        mesh["size_at_riser"] = {**mesh["size_at_riser"], "touchdown": [low, high]}
+        return [each for each in warned(on_block(LAY, heave(3.0, amplitude=0.3), mesh=mesh)) if "touchdown is" in each]
+
+    assert told(3.0, 15.0) == []
+    (reported,) = told(3.0, 7.0)
+    line_with(reported, "soil.mesh.size_at_riser.touchdown is x from 3 to 7 m", "comes to x from", "longer than 0.5 m")
+
+
 def test_what_cells_miss_grows_with_their_size() -> None:
     fine, half = Settled(0.01, 0.01, 1.0), Settled(0.005, 0.005, 1.0)
     assert missed(fine, fine) == pytest.approx(0.02)

@@ -81,6 +81,26 @@ def test_cells_are_long_along_the_riser_and_fine_across(axis: int) -> None:
     assert spec.layers() == tuple(len(spec.coordinates(k)) - 1 for k in range(3))
 
 
+@pytest.mark.parametrize("axis", [0, 1])
+def test_cells_grow_along_the_riser_beyond_the_touchdown_zone(axis: int) -> None:
+    """To the size far off or four of their lengths, whichever is more; in sections, and where the zone is all, none."""
+    spec = replace(LONG, x=(0.0, 20.0), size_far=1.0, touchdown=(6.0, 12.0))
+    if axis == 1:
+        spec = replace(spec, x=spec.y, y=spec.x, riser=((0.3, 0.0), (0.3, 80.0)))
+    places = spec.coordinates(axis)
+    lengths, middles = np.diff(places), 0.5 * (places[1:] + places[:-1])
+    within = (middles > 6.0) & (middles < 12.0)
+    np.testing.assert_allclose(lengths[within], 0.5)
+    assert (places[0], places[-1]) == (0.0, 20.0)
+    assert np.all(np.diff(lengths[middles < 6.0]) < 0.0)
+    assert np.all(np.diff(lengths[middles > 12.0]) > 0.0)
+    assert lengths[0] == pytest.approx(2.0, rel=0.3)
+    assert lengths[-1] == pytest.approx(2.0, rel=0.3)
+    assert {6.0, 12.0} <= {*places.tolist()}
+    np.testing.assert_allclose(np.diff(replace(spec, touchdown=(-5.0, 90.0)).coordinates(axis)), 0.5)
+    np.testing.assert_allclose(spec.coordinates(1 - axis), replace(spec, touchdown=None).coordinates(1 - axis))
+
+
 def test_under_a_riser_across_the_axes_cells_are_fine_both_ways() -> None:
     spec = replace(LONG, riser=((0.0, 0.0), (80.0, 8.0)))
     assert np.diff(spec.coordinates(0)) == pytest.approx(0.02)
