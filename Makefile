@@ -29,10 +29,11 @@ help: ## this list
 setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing when they are there
 	@scripts/setup.sh
 
-demo: setup ## a flexible riser comes down on soft clay: results and a picture in demos/touchdown_clay/results
+demo: setup ## a flexible riser comes down on a block of soft clay in 3D: results and a picture in demos/touchdown_clay/results
 	$(PYTHON) -m demos.touchdown_clay.run
 
 demos: demo ## that demo and the others (demos/*/README.md), with their tables and pictures
+	$(PYTHON) -m demos.grounds.run
 	$(PYTHON) -m demos.catenary.run
 	$(PYTHON) -m demos.tank.run
 	$(PYTHON) -m demos.waves.run
@@ -105,11 +106,12 @@ verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for 
 docs: setup ## a site of all pages, with search: build/site
 	@scripts/site.sh
 
-figures: setup ## the figures that README, tutorials and the demo's page tell, from runs of their scenes
+figures: setup ## the figures that README, tutorials and the pages of two demos tell, from runs of their scenes
 	rm -rf build/figures
 	$(PYTHON) -m demos.figures --page
 	$(PYTHON) -m demos.offsets.run --page
 	$(PYTHON) -m demos.touchdown_clay.run --page
+	$(PYTHON) -m demos.grounds.run --page
 
 dist: setup ## wheel and source distribution, checked: build/dist
 	$(PYTHON) scripts/dist.py

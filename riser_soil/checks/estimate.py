@@ -1,7 +1,7 @@
 """Estimate of a scene's size before anything is built: unknowns, steps, memory, disk space, run time.
 
-Memory and disk are those of `check`'s report within some tens of per cent, the time within a factor of three or so. The
-memory of scenes with soil is the largest that a run takes, within 30 %.
+Memory and disk are those of `check`'s report within some tens of per cent, the time within a factor of three or so, and
+of blocks of soil within 1.5. The memory of scenes with soil is the largest that a run takes, within 30 %.
 
 Fill of the soil's factor, foretold from the block's grid of nodes, before there is a matrix.
 
@@ -13,6 +13,7 @@ unknowns, on whose piece b unknowns of earlier planes border, has s²/2 + s b en
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -56,8 +57,13 @@ TENSOR = 9  # numbers, row by row
 COPIES = 2.0  # of each file while it grows
 
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
-# cell, of the soil's factor by unknowns squared; of a step on condensed soil, which has these two once.
+# cell in a section; of a step on condensed soil, and once of a cell and of the factor by unknowns squared.
 BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED, ON_CONDENSED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9, 2e-2
+# On a block: Newton iterations of a step, where soil yields and where it does not, and load steps in which a riser is
+# laid; seconds of an iteration, in it of a cell's law, of an unknown in solves and of an operation of the factor, whose
+# making some of the iterations go without; of a cell's new place after a step at large strain: benchmarks/forecasts.py.
+YIELDING, ELASTIC, LAID_IN = 7.3, 3.0, 8.0
+ITERATION, LAW, SOLVED, OPERATION, MOVED = 1.5e-2, 9e-6, 2.5e-6, 5e-11, 2.5e-5
 LONGEST_AUTO = 0.05  # of a stage: the longest automatic step
 SAME = 1e-6  # steps
 
@@ -180,10 +186,7 @@ def size_of(scene: Scene) -> ProblemSize:
     waves = scene.water.waves if scene.water else None
     components = waves.count if waves else 0
     of_riser = STEP + elements * (ELEMENT + WAVE * components)
-    apart = scene.soil is not None and scene.soil.model == "sections"
-    of_soil = cells * CELL + (0.0 if apart else FACTORED * unknowns**2)
-    condensed = scene.soil is not None and _condensed(scene, scene.soil)
-    seconds = BUILD * elements + steps * of_riser + (of_soil + ON_CONDENSED * steps if condensed else of_soil * steps)
+    of_soil = _soil_seconds(scene, scene.soil, cells, unknowns, steps) if scene.soil is not None else 0.0
     lines = len(by_line(scene))
     dofs = 3 if not scene.lines and resolved_dimension(scene) == 2 else 6
     auto = any(not isinstance(stage, StaticStage) and stage.time_step == "auto" for stage in scene.stages)
@@ -200,9 +203,21 @@ def size_of(scene: Scene) -> ProblemSize:
         stops=stops,
         records=records,
         pictures=pictures,
-        seconds=seconds,
+        seconds=BUILD * elements + steps * of_riser + of_soil,
         asked=TENSOR * len(scene.output.soil_fields),
     )
+
+
+def _soil_seconds(scene: Scene, soil: SoilScene, cells: float, unknowns: float, steps: float) -> float:
+    """Processor time [s] that the soil adds to all steps."""
+    if _condensed(scene, soil):
+        return cells * CELL + FACTORED * unknowns**2 + ON_CONDENSED * steps
+    if soil.model == "sections":
+        return cells * CELL * steps
+    x, y, z = _nodes(_sides(scene, soil), unknowns)
+    each = ITERATION + LAW * cells + SOLVED * unknowns + OPERATION * operations(x, y, z)
+    steps += LAID_IN - 1.0 if scene.initial is None else 0.0
+    return steps * (ELASTIC * each if soil.is_linear else YIELDING * each + MOVED * cells)
 
 
 def _stage(scene: Scene, stage: Stage) -> tuple[float, float, float, float]:
@@ -256,21 +271,40 @@ def factor_memory(sides: tuple[float, float, float], unknowns: float, symmetric:
     """Bytes of a factorisation, all ranks; sides: in proportion to the nodes along x, y and z."""
     if unknowns <= 0.0:
         return 0.0
+    return PER_ENTRY * AS_ORDERED * entries(*_nodes(sides, unknowns)) * (1.0 if symmetric else 2.0)
+
+
+def _nodes(sides: tuple[float, float, float], unknowns: float) -> tuple[float, float, float]:
+    """Nodes along sides in that proportion, with so many unknowns in all."""
     per_unit = (unknowns / (AT_A_NODE * math.prod(sides))) ** (1.0 / 3.0)
     x, y, z = (side * per_unit for side in sides)
-    return PER_ENTRY * AS_ORDERED * entries(x, y, z) * (1.0 if symmetric else 2.0)
+    return x, y, z
 
 
 def entries(x: float, y: float, z: float) -> float:
     """Entries of a symmetric factor on a grid of so many nodes along its sides, by nested dissection."""
-    sides, borders, pieces, found = [x, y, z], [0.0, 0.0, 0.0], 1.0, 0.0
+    return AT_A_NODE**2 * sum(n * s * (0.5 * s + b) for n, s, b in _eliminated(x, y, z))
+
+
+def operations(x: float, y: float, z: float) -> float:
+    """Multiplications and additions that make it, as many of each."""
+    return AT_A_NODE**3 * sum(n * s * (s**2 / 3.0 + s * b + b**2) for n, s, b in _eliminated(x, y, z))
+
+
+def _eliminated(x: float, y: float, z: float) -> Iterator[tuple[float, float, float]]:
+    """What nested dissection eliminates at once on a grid of so many nodes: how many of them, and the nodes of each and
+    on its border.
+    """
+    sides, borders, pieces = [x, y, z], [0.0, 0.0, 0.0], 1.0
     while (nodes := math.prod(sides)) > UNPARTED:
-        beside = sum(border * nodes / side for border, side in zip(borders, sides, strict=True))
         across = max(range(3), key=lambda axis: sides[axis])
-        plane = nodes / sides[across]
-        found += pieces * plane * (0.5 * plane + beside)
+        yield pieces, nodes / sides[across], _beside(sides, borders)
         sides[across] = 0.5 * (sides[across] - 1.0)
         borders[across] = 1.0 + 0.5 * borders[across]
         pieces *= 2.0
-    beside = sum(border * nodes / side for border, side in zip(borders, sides, strict=True))
-    return AT_A_NODE**2 * (found + pieces * nodes * (0.5 * nodes + beside))
+    yield pieces, nodes, _beside(sides, borders)
+
+
+def _beside(sides: list[float], borders: list[float]) -> float:
+    """Nodes on the border of a piece with these sides and so many borders across each."""
+    return sum(border * math.prod(sides) / side for border, side in zip(borders, sides, strict=True))
