@@ -72,15 +72,22 @@ def row(ground: str, run: Run, seconds: float) -> list[str]:
 
 
 def told_of(found: Found) -> Texts:
-    """Figures that pages tell: what sections differ by from the block, and the seconds of each ground."""
-    texts = {f"grounds {ground} s": f"{rounded(seconds):g}" for ground, (_, seconds) in found.items()}
-    sections, block = (found[ground][0].summary["stages"] for ground in ("sections", "block"))
-    for name, stage in (("laid", 0), ("motion", 1)):
-        mine, its = (1e3 * stages[stage]["soil"]["max_settlement"]["value"] for stages in (sections, block))
-        texts[f"grounds settled {name}"] = f"{100.0 * (mine / its - 1.0):+.0f}".replace("-", "−")
-    moments = (stages[1]["extremes"]["max_bending_moment"]["max"] for stages in (sections, block))
-    mine, its = moments
-    return texts | {"grounds moment": f"{100.0 * (mine / its - 1.0):+.1f}".replace("-", "−")}
+    """Figures that pages tell: what sections differ by from the block, and the seconds of both."""
+    (sections, cheap), (block, dear) = found["sections"], found["block"]
+    (laid, moved), (its_laid, its_moved) = (run.summary["stages"] for run in (sections, block))
+    settled, largest = "max_settlement", "max_bending_moment"
+    return {
+        "grounds settled laid": beside(laid["soil"][settled]["value"], its_laid["soil"][settled]["value"], 0),
+        "grounds settled motion": beside(moved["soil"][settled]["value"], its_moved["soil"][settled]["value"], 0),
+        "grounds moment": beside(moved["extremes"][largest]["max"], its_moved["extremes"][largest]["max"], 1),
+        "grounds sections s": f"{rounded(cheap):g}",
+        "grounds block s": f"{rounded(dear):g}",
+    }
+
+
+def beside(mine: float, its: float, digits: int) -> str:
+    """By how many per cent a value differs from the block's."""
+    return f"{100.0 * abs(mine / its - 1.0):.{digits}f}"
 
 
 def rounded(seconds: float) -> float:

@@ -24,7 +24,7 @@ VORTICES = ("water.current={profile: [[0.0, 0.8, 0.1]]}", SHAKEN)
 SLUG = "slugs: [{density: 800.0, length: 12.0, spacing: 40.0, front: 90.0}]"
 SLUGS = f"riser.contents={{density: 90.0, speed: 8.0, {SLUG}}}"
 STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
-SHORT_BLOCK = "soil.block.x=[25.5,29.5]"
+DEMO, SHORT_BLOCK, SECTIONS = "demos/touchdown_clay/scene.yaml", "soil.block.x=[25.5,29.5]", "soil.model=sections"
 COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.0", "stages.1.time_step=0.2")
 
 
@@ -95,7 +95,8 @@ SHORT = {
     "tank": (lambda: shortened("demos/tank/scene.yaml", 0.5), (6,)),
     "waves": (two_storms, (4, 7)),
     "touchdown on clay": (lambda: shortened("tests/scenes/touchdown_on_block.yaml", 1.0, *COARSE), (4,)),
-    "touchdown in sections": (lambda: shortened("demos/touchdown_clay/scene.yaml", 0.4, SHORT_BLOCK), (4,)),
+    "touchdown in sections": (lambda: shortened(DEMO, 0.4, SHORT_BLOCK, SECTIONS), (4,)),
+    "touchdown on half a block": (lambda: shortened(DEMO, 0.4, SHORT_BLOCK), (3,)),
     "plastic clay in space": (plastic_clay_in_space, (4,)),
     "surface contact on plastic clay": (surface_on_clay, (4, 10)),
     "kept factors": (kept_factors, (4, 10, 12)),
