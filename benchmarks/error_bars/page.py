@@ -59,6 +59,7 @@ after the run. This page calls them coarser runs.
 | 1 | steps two to four times as long, as long as the shortest period keeps 20 |
 | 2 | the same, twice the elements, on a rigid floor 16 times the penalty |
 | on soil | cells and elements {all_cells:g} times as long, steps {all_steps:.2g} times, a quarter of the penalty |
+| on a block, then | the run's own steps on those cells |
 | on soil of fewer than three slices: 1, 2 | cells {cells:.2g} times as large, each time |
 | 3, 4 | steps as above; twice the elements, four times the penalty |
 

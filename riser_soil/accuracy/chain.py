@@ -4,7 +4,8 @@ On a rigid floor the penalty goes with the elements: 16 times as stiff with elem
 the length in which a riser sinks in beside an end, (4 EI/k)^(1/4).
 
 On soil one run is coarser in all its settings, as each takes near half of the first one's time, however coarse it is;
-finer cells are those of a slice (`fine_slice`). Of a few slices the cells are coarsened twice, as contact grows cell by
+finer cells are those of a slice (`fine_slice`). On a block, where a coarser run costs little beside the run, the next
+one has the run's own steps again: longer steps and coarser cells may err in opposite directions. Of a few slices the cells are coarsened twice, as contact grows cell by
 cell and two runs agree by chance. Then elements are finer, as they cost little there, and the penalty with them.
 """
 
@@ -57,6 +58,7 @@ class Variation(NamedTuple):
 
 COARSER_SOIL = Variation("soil", {"soil_mesh": 0.6})
 ALL_COARSER = Variation("soil", {"soil_mesh": 0.5, "time_step": 2.0 / 3.0, "elements": 0.5, "penalty": 0.25})
+OWN_STEPS = Variation("time", {"time_step": 1.5})  # after all was coarser
 FINER_MESH = Variation("mesh", {"elements": 2.0, "penalty": 16.0})
 FINER_MESH_ON_SOIL = Variation("mesh", {"elements": 2.0, "penalty": 4.0})
 # Steps that a comparison run leaves to the shortest period, as the mesh tells little on longer ones; how many times as
@@ -105,7 +107,9 @@ def variations(scene: Scene) -> Sequence[Variation]:
     longer = Variation("time", {"time_step": 1.0 / _longer(scene)})
     if scene.soil is None:
         return longer, FINER_MESH
-    return (ALL_COARSER,) if has_many_slices(scene) else (COARSER_SOIL, COARSER_SOIL, longer, FINER_MESH_ON_SOIL)
+    if not has_many_slices(scene):
+        return COARSER_SOIL, COARSER_SOIL, longer, FINER_MESH_ON_SOIL
+    return (ALL_COARSER, OWN_STEPS) if scene.soil.model == "block" else (ALL_COARSER,)
 
 
 def _longer(scene: Scene) -> float:
