@@ -5,8 +5,9 @@ the length in which a riser sinks in beside an end, (4 EI/k)^(1/4).
 
 On soil one run is coarser in all its settings, as each takes near half of the first one's time, however coarse it is;
 finer cells are those of a slice (`fine_slice`). On a block, where a coarser run costs little beside the run, the next
-one has the run's own steps again: longer steps and coarser cells may err in opposite directions. Of a few slices the cells are coarsened twice, as contact grows cell by
-cell and two runs agree by chance. Then elements are finer, as they cost little there, and the penalty with them.
+one has the run's own steps again: longer steps and coarser cells may err in opposite directions. Of a few slices the
+cells are coarsened twice, as contact grows cell by cell and two runs agree by chance. Then elements are finer, as they
+cost little there, and the penalty with them.
 """
 
 from __future__ import annotations
