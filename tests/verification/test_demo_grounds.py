@@ -31,7 +31,7 @@ def test_what_the_riser_feels_is_alike_on_all_grounds() -> None:
     """The page says so of moments and touchdown points."""
     for cells in ROWS.values():
         _, _, laid, moved, *arcs, _ = numbers(cells)
-        assert [laid, moved] == pytest.approx(numbers(ROWS["block"])[2:4], rel=0.01)
+        assert [laid, moved] == pytest.approx(numbers(ROWS["block"])[2:4], rel=0.02)
         assert arcs == pytest.approx(numbers(ROWS["block"])[4:7], rel=0.02)
 
 
