@@ -18,8 +18,6 @@ from riser_soil.solve.newton_progress import NAMES
 # How a loop ends; OUTGROWN where the matrix lacks places.
 ITERATING, CONVERGED, NOT_FINITE, NOT_SOLVED, DIVERGED, TOO_MANY, OUTGROWN = NAMES
 
-LOOSE = 1e-5  # share of the residual that a linear system solved by iterations may leave
-
 
 class ChainFactors:
     """Factors of a chain's matrix, made anew where it has changed. rows: its first ones, which are the chain's; all by

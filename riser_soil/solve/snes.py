@@ -21,13 +21,14 @@ from riser_soil.core.banded import SingularError
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve import chain
-from riser_soil.solve.chain import LOOSE, NOT_SOLVED, Balance, Loop
+from riser_soil.solve.chain import NOT_SOLVED, Balance, Loop
 from riser_soil.solve.linear_solver import complaint, raised
 from riser_soil.solve.linear_systems import TangentSolver
 from riser_soil.solve.petsc_options import PREFIX, Given, as_text, defaults, refuse_unread, set_from_options
 from riser_soil.solve.solver import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
+ALONE = 1e-5  # share of the residual that the response of a tangent by itself may leave, beside Newton's iterations
 REASONS = {
     chain.ITERATING: REASON.ITERATING,
     chain.CONVERGED: REASON.CONVERGED_FNORM_RELATIVE,
@@ -110,7 +111,7 @@ class SnesLoop(Loop):
         self._f.array_w[:] = f
         solver = self._tangents.choose(self._f, self._balance)
         solver.setOperators(self._system.matrix.mat)
-        self._tangents.tighten(LOOSE)
+        self._tangents.tighten(ALONE)
         failure = self._failing(lambda: solver.solve(self._f, self._x), lambda: solver.reason < 0)
         return failure, np.array(self._x.array_r)
 
