@@ -362,11 +362,11 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
 
 def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
     """Newton's settings in a stage: in statics on a ground, steps are cut short where contact opens and closes; there,
-    and in motion on soil, they start linearly.
+    and in motion of a riser that was laid on soil, they start linearly. What falls onto soil continues its motion.
     """
     settings, lies = settings_of(assembly), bool(assembly.contacts) and isinstance(stage, StaticStage)
     at_rest = not assembly.is_first(stage) or (assembly.cushion is not None and assembly.is_laid_in(stage))
-    moves = assembly.soil_bears and isinstance(stage, DynamicStage)
+    moves = assembly.cushion is not None and isinstance(stage, DynamicStage)
     return replace(settings, line_search=settings.line_search or lies, linear_start=(lies and at_rest) or moves)
 
 

@@ -48,11 +48,11 @@ def test_pages_tell_what_a_run_gives(demo: WatchedRun, tmp_path: Path) -> None:
 
 @pytest.mark.verify
 def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
-    """7.3 a step in motion, one step of which was cut, and 6.5 a load step, were found."""
+    """7.5 a step in motion, none of which was cut, and 6.5 a load step, were found."""
     assert np.mean([step.iterations for step in demo.of_kind(static=True)]) <= 7.5
     steps = demo.of_kind(static=False)
     assert sum(step.cuts for step in steps) <= 2
-    assert np.mean([step.iterations for step in steps]) <= 8.0
+    assert np.mean([step.iterations for step in steps]) <= 8.5
 
 
 def test_half_the_steps_and_half_the_cells_change_no_figure_by_more_than_five_per_cent() -> None:

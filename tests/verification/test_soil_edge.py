@@ -97,7 +97,7 @@ def test_check_tells_the_step() -> None:
 
 def test_a_step_is_warned_of() -> None:
     soft = {"law": {**CLAY, "su": 150.0, "su_gradient": 600.0}}
-    fact, warning = reported(beside({"kind": "rigid"}, **soft))
+    warning, fact = reported(beside({"kind": "rigid"}, **soft))
     assert re.search(r"\d mm higher", warning)
     stiffness = float(warning.split("take seabed.stiffness ")[1].split()[0])
     assert f"({stiffness:.2g} N/m2)" in fact
@@ -108,7 +108,7 @@ def test_a_trench_that_ends_at_the_edge_is_reported() -> None:
     mesh = {"kind": "tet", "size_at_riser": 0.4, "size_far": 0.8}
     mapping = beside({"kind": "spring", "stiffness": 1.0e5}, mesh=mesh)
     mapping["soil"]["block"]["trench"] = {"depth": 0.25, "width": 0.6, "side_slope_deg": 60.0}
-    fact, warning = reported(mapping)
+    warning, fact = reported(mapping)
     line_with([fact], "250 mm deep", "edge")
     line_with([warning], "end within the block")
     mapping["soil"]["block"]["trench"] |= {"along": [4.0, 7.0], "run_out": 1.0}
