@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.assembly import LETTING_GO
+from riser_soil.assembly.assembly import LAID_IN, LETTING_GO
 from riser_soil.assembly.motions import corners
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.arrays import Array
@@ -34,7 +34,6 @@ from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.step_control import AutoSteps, PathSteps, StepControl, from_last_to_first
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
-LAID_IN = 8  # load steps on soil, at least
 MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step on soil moves an end; presses it in, on clay
 ROUND_OFF = 1e-9  # of a load step
 AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones

@@ -1,18 +1,17 @@
 """The riser of the touchdown demo on five grounds, from a rigid bed to a block of clay: figures, and what they cost.
 
-Usage, in the project's folder: python -m demos.grounds.run [FOLDER] [--page]
+Usage, in the project's folder: python -m demos.grounds.run [--results FOLDER] [--page]
 FOLDER is by default `results` beside this file. --page writes the table into README.md.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
 from pathlib import Path
 
 from demos.compute import compute, timed
 from demos.figures import Texts
-from demos.page import fill_pages, publish, table
+from demos.page import fill_pages, publish, script, table
 from demos.touchdown_clay.run import SCENE
 from riser_soil.results import Run
 
@@ -96,8 +95,4 @@ def rounded(seconds: float) -> float:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, nargs="?", default=HERE / "results", help="folder for the results")
-    parser.add_argument("--page", action="store_true", help="write the table into the demo's page, too")
-    given = parser.parse_args()
-    main(given.folder, given.page)
+    script(main, __doc__, HERE)

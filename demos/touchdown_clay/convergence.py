@@ -1,17 +1,16 @@
 """The touchdown demo with half its cells' sizes, direction by direction, and half its steps: what that changes.
 
-Usage, in the project's folder: python -m demos.touchdown_clay.convergence [FOLDER] [--page]
-FOLDER is by default `results/halved` beside this file; runs that it has are taken as they are. All take about an hour
-of one core. --page writes the table into README.md.
+Usage, in the project's folder: python -m demos.touchdown_clay.convergence [--results FOLDER] [--page]
+FOLDER is by default `results` beside this file; runs in its folder `halved` are taken as they are. All take about an
+hour of one core. --page writes the table into README.md.
 """
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from demos.compute import compute
-from demos.page import publish, table
+from demos.page import publish, script, table
 from demos.touchdown_clay.run import HERE, PAGE, SCENE
 from riser_soil.assembly.soil_sizes import with_sizes
 from riser_soil.results import Run
@@ -20,7 +19,8 @@ from riser_soil.scene.soil import CellSizes, GeneratedMesh
 
 
 def main(folder: Path, page: bool) -> None:
-    found = {name: run_in(folder / f"{n}", *overrides) for n, (name, overrides) in enumerate(halved().items())}
+    ways = halved()
+    found = {name: run_in(folder / "halved" / f"{n}", *ways[name]) for n, name in enumerate(ways)}
     publish({"halved": changes(found)}, folder, PAGE if page else None)
 
 
@@ -82,8 +82,4 @@ def figures(run: Run) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, nargs="?", default=HERE / "results/halved", help="folder for the results")
-    parser.add_argument("--page", action="store_true", help="write the table into the demo's page, too")
-    given = parser.parse_args()
-    main(given.folder, given.page)
+    script(main, __doc__, HERE)

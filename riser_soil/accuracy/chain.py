@@ -59,7 +59,7 @@ class Variation(NamedTuple):
 
 COARSER_SOIL = Variation("soil", {"soil_mesh": 0.6})
 ALL_COARSER = Variation("soil", {"soil_mesh": 0.5, "time_step": 2.0 / 3.0, "elements": 0.5, "penalty": 0.25})
-OWN_STEPS = Variation("time", {"time_step": 1.5})  # after all was coarser
+OWN_STEPS = Variation("time", {"time_step": 1.0 / ALL_COARSER.factors["time_step"]})  # after all was coarser
 FINER_MESH = Variation("mesh", {"elements": 2.0, "penalty": 16.0})
 FINER_MESH_ON_SOIL = Variation("mesh", {"elements": 2.0, "penalty": 4.0})
 # Steps that a comparison run leaves to the shortest period, as the mesh tells little on longer ones; how many times as

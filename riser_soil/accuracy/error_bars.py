@@ -18,11 +18,11 @@ Shares of different sources add up as squares do. With these factors the calibra
 true error inside at least 95 % of the bars.
 
 On soil one run is coarser in all its settings, and a slice across the riser has finer cells (`fine_slice`). Its share
-is the soil's. On a block a second one has the run's own steps on the coarser cells: its share is the time steps'. Of a
-settlement the soil's share is by the slice, and by a part of the coarser run's difference, as a slice knows nothing of
-what lies along the riser. Others are uncertain by that difference, or by more, in so far as the settlement changes by
-more on fine cells than on coarse ones. Soil of a few slices has no slice that is cheaper than the run: there cells are
-coarsened twice.
+is the soil's. On a block a second one has the run's own steps on the coarser cells. Its share is the time steps',
+that of the longer ones, as errors on soil that yields fall more slowly than by the order. Of a settlement the soil's
+share is by the slice, and by a part of the coarser run's difference, as a slice knows nothing of what lies along the
+riser. Others are uncertain by that difference, or by more, in so far as the settlement changes by more on fine cells
+than on coarse ones. Soil of a few slices has no slice that is cheaper than the run: there cells are coarsened twice.
 
 Extremes of key results over a stage and in windows of its time, and how far two runs are apart in them.
 

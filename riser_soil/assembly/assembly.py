@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
 
+LAID_IN = 8  # load steps in which a line is laid on soil, at least
 AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
 LAYING, LETTING_GO = "laying", "letting go"  # stages before those of the scene
 

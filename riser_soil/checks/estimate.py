@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from riser_soil.assembly import sized
+from riser_soil.assembly.assembly import LAID_IN
 from riser_soil.assembly.motions import corner_count
 from riser_soil.checks.inventory import built
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
@@ -59,10 +60,10 @@ COPIES = 2.0  # of each file while it grows
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
 # cell in a section; of a step on condensed soil, and once of a cell and of the factor by unknowns squared.
 BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED, ON_CONDENSED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9, 2e-2
-# On a block: Newton iterations of a step, where soil yields and where it does not, and load steps in which a riser is
-# laid; seconds of an iteration, in it of a cell's law, of an unknown in solves and of an operation of the factor, whose
-# making some of the iterations go without; of a cell's new place after a step at large strain: benchmarks/forecasts.py.
-YIELDING, ELASTIC, LAID_IN = 7.3, 2.3, 8.0
+# On a block: Newton iterations of a step, where soil yields and where it does not; seconds of an iteration, in it of a
+# cell's law, of an unknown in solves and of an operation of the factor, whose making some of the iterations go without;
+# of a cell's new place after a step at large strain: benchmarks/forecasts.py.
+YIELDING, ELASTIC = 7.3, 2.3
 ITERATION, LAW, SOLVED, OPERATION, MOVED = 1.5e-2, 9e-6, 2.5e-6, 5e-11, 2.5e-5
 LONGEST_AUTO = 0.05  # of a stage: the longest automatic step
 SAME = 1e-6  # steps
@@ -216,7 +217,7 @@ def _soil_seconds(scene: Scene, soil: SoilScene, cells: float, unknowns: float, 
         return cells * CELL * steps
     x, y, z = _nodes(_sides(scene, soil), unknowns)
     each = ITERATION + LAW * cells + SOLVED * unknowns + OPERATION * operations(x, y, z)
-    steps += LAID_IN - 1.0 if scene.initial is None else 0.0
+    steps += LAID_IN - 1 if scene.initial is None else 0
     return steps * (ELASTIC * each if soil.is_linear else YIELDING * each + MOVED * cells)
 
 

@@ -56,7 +56,7 @@ def _blocks(sources: Sources) -> Iterator[Block]:
         note = f"A utilisation above 1 means that the limit is exceeded. Clauses: {'; '.join(clauses)}."
         content = compact(ReportTable(of_checks, rows, note))
         yield TableBlock("Code checks, the largest utilisation of each", content, 5, "checks")
-        beyond = [row for row in rows if float(row[5]) > 1.0]
+        beyond = [row for row, (*_, check) in zip(rows, checks, strict=True) if check["exceeded"]]
         if beyond:
             names = "; ".join(f"{row[2]} of {row[0]} by {row[1]}, {row[5]} in {row[6]}" for row in beyond)
             yield Paragraph(f"Exceeded: {names}.", "warning")

@@ -5,6 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from textwrap import dedent
 
+import pytest
+
+from riser_soil.cases.expansion import read_cases
+from riser_soil.errors import SceneError
+
 SMALL = """\
 title: A small riser
 line_types: {pipe: {EA: 1.0e6, EI: 200.0, mass: 20.0, submerged_weight: 150.0, outer_diameter: 0.1}}
@@ -22,3 +27,12 @@ def case_file(folder: Path, text: str) -> Path:
     file = folder / "sweep.yaml"
     file.write_text(f"base: small.yaml\n{dedent(text)}", encoding="utf-8")
     return file
+
+
+def require_refusal(file: Path, says: str) -> None:
+    """That a case file is refused in one line, which begins with its name and says this."""
+    with pytest.raises(SceneError) as refused:
+        read_cases(file)
+    (line,) = str(refused.value).splitlines()
+    assert line.startswith(f"{file}:")
+    assert says in line

@@ -85,7 +85,8 @@ def apart(done: Run) -> tuple[np.ndarray, np.ndarray]:
     """Size of design moment and tension (nt, nn): what comes after the first record is environmental."""
     moments = np.stack([done["bending_moment_y"], done["bending_moment_z"]])
     pulls = np.stack([done["effective_tension"], 0.0 * done["effective_tension"]])
-    return tuple(worst(each[:, :1], each - each[:, :1]) for each in (moments, pulls))  # type: ignore[return-value]
+    moment, pull = (worst(each[:, :1], each - each[:, :1]) for each in (moments, pulls))
+    return moment, pull
 
 
 def collapse(t: float) -> float:

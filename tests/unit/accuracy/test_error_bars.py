@@ -336,6 +336,19 @@ def test_on_soil_one_run_is_coarser_in_everything(looked_at: list[Scene]) -> Non
         assert setting.fineness(coarser) == pytest.approx(ratio * setting.fineness(scene), rel=0.02)
 
 
+def test_on_a_block_the_runs_own_steps_come_after_what_is_coarser_in_everything(looked_at: list[Scene]) -> None:
+    """On the same coarser cells, elements and penalty."""
+    given = SOILS["heaved on sections 4"]
+    scene = resolved(scene_from_mapping(given | {"soil": given["soil"] | {"model": "block"}}))
+    found = chain.comparison_runs(scene, None)
+    assert [each.source for each in found] == ["soil", "time"]
+    assert found[1].finer == pytest.approx(1.5)
+    coarser, own = looked_at
+    for setting in SETTINGS:
+        like = scene if setting.name == "time_step" else coarser
+        assert setting.fineness(own) == pytest.approx(setting.fineness(like), rel=1e-9)
+
+
 def test_cells_of_a_few_slices_are_coarsened_twice(looked_at: list[Scene]) -> None:
     """Then elements are twice as many on a penalty four times as hard."""
     found = chain.comparison_runs(scene_from_mapping(SCENES["pipe pressed on clay"]), None)

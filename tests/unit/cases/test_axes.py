@@ -9,6 +9,7 @@ import pytest
 
 from riser_soil.cases.expansion import Case, read_cases
 from riser_soil.errors import SceneError
+from tests.support.case_files import require_refusal
 
 SEA = """\
 title: A riser in waves
@@ -164,12 +165,7 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("text", "says"), MISTAKES, ids=[text[:30] for text, _ in MISTAKES])
 def test_a_mistake_is_one_line(text: str, says: str, tmp_path: Path) -> None:
-    file = case_file(tmp_path, text)
-    with pytest.raises(SceneError) as refused:
-        read_cases(file)
-    (line,) = str(refused.value).splitlines()
-    assert line.startswith(f"{file}:")
-    assert says in line
+    require_refusal(case_file(tmp_path, text), says)
 
 
 def test_a_mistake_of_many_cases_is_one_line(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sparse
 from petsc4py import PETSc
 
-from riser_soil.checks.estimate import entries, factor_memory
+from riser_soil.checks.estimate import AS_ORDERED, entries, factor_memory, operations
 
 
 @pytest.mark.parametrize(
@@ -20,6 +20,18 @@ from riser_soil.checks.estimate import entries, factor_memory
 )
 def test_small_grids_are_counted_by_hand(sides: tuple[float, float, float], counted: float) -> None:
     assert entries(*sides) == pytest.approx(counted, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("sides", "counted"),
+    [
+        ((2.0, 2.0, 2.0), 24**3 / 3),
+        ((5.0, 2.0, 2.0), 12**3 / 3 + 2 * (24**3 / 3 + 24**2 * 12 + 24 * 12**2)),  # of each piece beside the plane
+    ],
+)
+def test_operations_on_small_grids_are_counted_by_hand(sides: tuple[float, float, float], counted: float) -> None:
+    """s unknowns with b beside them: s of them dense, and s columns of b rows that they change."""
+    assert operations(*sides) == pytest.approx(counted, rel=1e-12)
 
 
 def grid_matrix(sides: tuple[int, int, int]) -> PETSc.Mat:
@@ -42,5 +54,8 @@ def test_memory_is_that_of_mumps_within_a_quarter(sides: tuple[int, int, int], s
     taken = 1e6 * solver.getFactorMatrix().getMumpsInfog(22)
     x, y, z = sides
     assert factor_memory((float(x), float(y), float(z)), 3.0 * x * y * z, symmetric) == pytest.approx(taken, rel=0.25)
+    if symmetric:  # entries by MUMPS' ordering are more, and operations go with their power of 3/2: within 1.5 times
+        work = solver.getFactorMatrix().getMumpsRinfog(3)
+        assert 1.0 / 1.5 < work / (AS_ORDERED**1.5 * operations(x, y, z)) < 1.5
     solver.destroy()
     matrix.destroy()

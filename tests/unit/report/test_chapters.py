@@ -220,6 +220,10 @@ def test_code_checks_name_clause_case_and_place(run: Path, tmp_path: Path) -> No
     line_with(said(items), "All checks are fulfilled")
     write_cases(tmp_path / "beyond", run, ("seed",), {"a": ({"seed": "1"}, checked(1.03))})
     line_with(said(items_of(opened_at(tmp_path / "beyond"))), "Exceeded", "combined loading of flexible", "1.030 in a")
+    write_cases(tmp_path / "just", run, ("seed",), {"a": ({"seed": "1"}, checked(1.0003))})
+    just = said(items_of(opened_at(tmp_path / "just")))
+    line_with(just, "Exceeded", "combined loading of flexible", "1.000 in a")
+    assert "All checks are fulfilled" not in just
 
 
 def test_fatigue_has_life_hotspots_and_shares(run: Path, tmp_path: Path) -> None:
