@@ -91,7 +91,7 @@ def _walked(overrides: tuple[str, ...]) -> Walk:
 
 def _yielded(stage: TimedStage) -> float:
     soil = next(part for part in stage.system.model.parts if isinstance(part, Soil))
-    return float(np.mean(soil.state()["history"][:, soil.law.columns.index(PLASTIC_STRAIN)] > 0.0))
+    return float(np.mean(soil.state()["law/history"][:, soil.law.columns.index(PLASTIC_STRAIN)] > 0.0))
 
 
 def _factorisation_seconds(matrix: PETSc.Mat, repeats: int = 3) -> float:
