@@ -1,8 +1,10 @@
-"""A client's report on a steel catenary riser by one command: load cases, fatigue, modes, report.
+"""A client's report on a riser by one command: load cases, fatigue, modes, report.
 
 Usage, in the project's folder: python -m demos.client_report.run [--workers N] [--folder FOLDER] [--page]
-The folder has the input files, by default this one; its `results` get runs, tables and report.html, .pdf and .docx.
-After an interruption the same call goes on. --page begins anew, and writes the tables where README.md shows them.
+The folder has the input files, by default this one, of a steel catenary riser; its `results` get runs, tables and
+report.html, .pdf and .docx. Steps whose file is not in the folder are skipped: a riser without S-N data has no
+fatigue.yaml. After an interruption the same call goes on. --page begins anew, and writes the tables where the folder's
+README.md shows them.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +25,6 @@ from riser_soil.errors import RiserSoilError
 from riser_soil.results.read import Run
 
 HERE = Path(__file__).parent
-PAGE = HERE / "README.md"
 MATRICES = {
     "at_rest": "at rest on both soils",
     "storms": "storms: three offsets, two soils, three seeds",
@@ -32,6 +34,7 @@ BY_TIME = ("storms", "sea_states")
 FORMATS = ("html", "pdf", "docx")
 EXTREMES = {  # of the storms: row of extremes.csv, side, factor to the unit of the page, digits
     "largest utilisation by the code": ("waves: code utilisation", "largest", 1.0, 3),
+    "of it, bend radius": ("waves: bend radius utilisation", "largest", 1.0, 3),
     "largest bending moment [kN m]": ("waves: largest bending moment", "largest", 1e-3, 1),
     "top tension [kN]": ("waves: top tension", "largest", 1e-3, 0),
     "least effective tension [kN]": ("waves: least effective tension", "least", 1e-3, 0),
@@ -47,22 +50,23 @@ def main(folder: Path, workers: int, write_page: bool) -> None:
     rows = [(words(results, step), f"{each:.0f}") for step, each in seconds.items()]
     rows.append(("all", f"{sum(seconds.values()):.0f}"))
     times = table(("step", f"seconds, workers: {workers}"), rows)
-    publish({"found": found(results), "seconds": times}, results, PAGE if write_page else None)
+    publish({"found": found(results), "seconds": times}, results, folder / "README.md" if write_page else None)
     print(f"\nthe report is {results / 'report.html'}, also as .pdf and .docx")
 
 
 def commands(folder: Path, workers: int) -> dict[str, list[str]]:
-    """Arguments of `riser-soil` by the step's name, in their order."""
-    results = folder / "results"
-
-    def command(kind: str, file: str, output: str, *options: str) -> list[str]:
-        return [kind, str(folder / f"{file}.yaml"), "-o", str(results / output), *options]
-
+    """Arguments of `riser-soil` by the step's name, in their order, of the steps that have a file in the folder."""
+    results, jobs = folder / "results", ("--jobs", str(workers))
+    steps = {  # name: kind of command, file, output, options
+        **{name: ("cases", name, name, *jobs) for name in MATRICES},
+        "fatigue": ("fatigue", "fatigue", "damage", "--force"),
+        "modes": ("modes", "scene", "modes", "--force"),
+        **{f"report, {ending}": ("report", "report", f"report.{ending}") for ending in FORMATS},
+    }
     return {
-        **{name: command("cases", name, name, "--jobs", str(workers)) for name in MATRICES},
-        "fatigue": command("fatigue", "fatigue", "damage", "--force"),
-        "modes": command("modes", "scene", "modes", "--force"),
-        **{f"report, {ending}": command("report", "report", f"report.{ending}") for ending in FORMATS},
+        step: [kind, str(folder / f"{file}.yaml"), "-o", str(results / output), *options]
+        for step, (kind, file, output, *options) in steps.items()
+        if (folder / f"{file}.yaml").is_file()
     }
 
 
@@ -95,15 +99,24 @@ def found(results: Path) -> str:
     extremes = {row["quantity"]: row for row in _rows(results / "storms" / "extremes.csv")}
     rows = []
     for quantity, (name, side, factor, digits) in EXTREMES.items():
-        case = extremes[name][f"{side} in case"]
-        rows.append((f"{quantity}, {case}", f"{factor * float(extremes[name][side]):,.{digits}f}"))
-    fatigue = json.loads((results / "damage" / "fatigue.json").read_text(encoding="utf-8"))
-    worst, design = fatigue["largest"], fatigue["design"]
-    rows.append((f"least fatigue life [years], arc {worst['arc']:.0f} m", f"{worst['life_years']:,.0f}"))
-    required = design["life_years"] * design["fatigue_factor"]
-    rows.append(("required life and its factor [years]", f"{required:,.0f}"))
-    each = " and ".join(f"{name.replace('_', ' ')} of {simulated(results, name)[1]:,.0f} s" for name in BY_TIME)
+        if name in extremes:
+            case = extremes[name][f"{side} in case"]
+            rows.append((f"{quantity}, {case}", f"{factor * float(extremes[name][side]):,.{digits}f}"))
+    rows += _life(results / "damage" / "fatigue.json")
+    by_time = [name for name in BY_TIME if (results / name).is_dir()]
+    each = " and ".join(f"{name.replace('_', ' ')} of {simulated(results, name)[1]:,.0f} s" for name in by_time)
     return f"From {each}:\n\n{table(('what governs', 'value'), rows)}"
+
+
+def _life(file: Path) -> Iterator[tuple[str, str]]:
+    """Rows of the fatigue life; none without an assessment."""
+    if not file.is_file():
+        return
+    fatigue = json.loads(file.read_text(encoding="utf-8"))
+    worst, design = fatigue["largest"], fatigue["design"]
+    yield f"least fatigue life [years], arc {worst['arc']:.0f} m", f"{worst['life_years']:,.0f}"
+    required = design["life_years"] * design["fatigue_factor"]
+    yield "required life and its factor [years]", f"{required:,.0f}"
 
 
 def _rows(file: Path) -> list[dict[str, Any]]:

@@ -149,7 +149,7 @@ def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:
     """
     refinement = sorted(zip(sizes, values, strict=True), reverse=True)
     if len({h for h, _ in refinement}) < len(refinement):
-        raise ValueError("a refinement level stands twice")
+        raise ValueError("a refinement level is given twice")
     finest = refinement[-1][1]
     if len(refinement) < 3:
         return Limit(finest, abs(finest - refinement[0][1]) if len(refinement) == 2 else math.inf, None)

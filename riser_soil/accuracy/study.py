@@ -16,7 +16,7 @@ from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError
 from riser_soil.results.whole_file import refuse_file, unusable
 from riser_soil.scene.scene import Scene
 
-TRIES = 3  # settings foretold to reach a target that are run
+TRIES = 3  # settings expected to reach a target that are run
 FINER = 2  # levels at most by which a scene that fails is made finer
 HELPING = ("elements", "time_step")  # settings that may help it
 LEAST_LEVELS, MOST_LEVELS = 3, 9
@@ -111,5 +111,5 @@ def _try_settings(made: Study) -> None:
             point = next_setting(made.foretold(target))
             if point is None:
                 break
-            made.says(f"foretold to reach {target:.1%}:")
+            made.says(f"expected to reach {target:.1%}:")
             made.compute([point], 1)

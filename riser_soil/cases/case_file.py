@@ -158,7 +158,7 @@ class Statistics(BaseModel):
     model_config = FROZEN
 
     since: Instant = Field(
-        default=0.0, description="time of that stage from which on means and characteristic extremes are taken [s]"
+        default=0.0, description="time of that stage from which on means and characteristic extremes count [s]"
     )
 
 

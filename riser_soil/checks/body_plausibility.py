@@ -24,5 +24,5 @@ def body_warnings(hung: Hung) -> Iterator[str]:
         if sunk > SUNK * contact.length:
             yield (
                 f"bodies.{name}.contact: the seabed lets it sink in by {sunk:.4g} m under its weight less buoyancy of "
-                f"{net:.4g} N, and it is taken to be {contact.length:.4g} m wide; give its width, or its stiffness"
+                f"{net:.4g} N, and it is assumed to be {contact.length:.4g} m wide; give its width, or its stiffness"
             )

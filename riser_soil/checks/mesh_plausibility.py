@@ -136,7 +136,7 @@ def _sections_against_bending(assembly: Assembly) -> Iterator[str]:
     excess = excess_of_sections(bending, touching_width(assembly.scales, soil.top_law), depth)
     if excess > EXCESS:
         yield (
-            f"soil.model: sections leave out the soil's stress along the riser: where it bends, within {bending:.3g} m "
+            f"soil.model: sections neglect the soil's stress along the riser: where it bends, within {bending:.3g} m "
             f"on {depth:.3g} m of soil, it settles by about {excess:.0%} more than on a block; take model: block to "
             "judge it"
         )

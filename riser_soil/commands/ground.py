@@ -64,7 +64,7 @@ def calibrate(
         float, typer.Option("--step", metavar="PART", help="largest step of the pipe over its diameter")
     ] = 0.01,
     relative: Annotated[
-        bool, typer.Option("--relative", help="the errors of V grow with V; else they are taken to be of one size")
+        bool, typer.Option("--relative", help="the errors of V grow with V; by default they are of one size")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="overwrite a calibration, which is refused otherwise")] = False,
     overrides: Overrides = None,

@@ -160,7 +160,7 @@ def report(
         asked = {key: value for key, value in options.items() if value is not None}
         files = [each for each in sources if each.suffix in (".yaml", ".yml") and not each.is_dir()]
         if files and len(sources) > 1:
-            raise ResultsError(f"{files[0]}: a report file stands alone; name the folders in it")
+            raise ResultsError(f"{files[0]}: a report file is given alone; name the folders in it")
         given = read_report_file(files[0], asked) if files else of_folders(sources, asked)
         file = output or (files[0].with_suffix(".html") if files else Path("report.html"))
         with DrawingProgress() as progress:

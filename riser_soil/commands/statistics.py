@@ -38,7 +38,7 @@ def statistics(
     stage: StageName = None,
     since: Since = 0.0,
     duration: Annotated[
-        float, typer.Option("--duration", metavar="SECONDS", help="time that extremes are foretold for")
+        float, typer.Option("--duration", metavar="SECONDS", help="duration that the extremes are for")
     ] = 10800.0,
     block: Annotated[
         float | None,

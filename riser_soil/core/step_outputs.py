@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from riser_soil.core.snapshot import StepRecord
 
 _FROM_NOWHERE = "positive when energy appears from nowhere"
-TAKEN_OUT = "negative where it was taken out"
+REMOVED = "negative where it was removed"
 
 OF_STEP: tuple[OutputQuantity[StepRecord], ...] = (
     OutputQuantity(
@@ -42,10 +42,10 @@ OF_STEP: tuple[OutputQuantity[StepRecord], ...] = (
         lambda s: s.ledger.dissipated,
     ),
     OutputQuantity(
-        "dissipated_time_scheme", "", "J", "energy taken out by the time scheme since the stage began", "step",
-        lambda s: s.ledger.numerical, "negative where it put energy in",
+        "dissipated_time_scheme", "", "J", "energy removed by the time scheme since the stage began", "step",
+        lambda s: s.ledger.numerical, "negative where it added energy",
     ),
-    OutputQuantity("work", "", "J", "energy put in since the stage began", "step", lambda s: s.ledger.work, TAKEN_OUT),
+    OutputQuantity("work", "", "J", "energy added since the stage began", "step", lambda s: s.ledger.work, REMOVED),
     OutputQuantity(
         "step_cuts", "", "1", "failed attempts before the step was accepted", "step", lambda s: s.health.step_cuts,
         dtype="i4",

@@ -20,7 +20,7 @@ from riser_soil.riser.wall_stress import Wall
 
 FEW_RECORDS = 10.0  # in a mean period: a sine's turns are missed by up to 1 - cos(pi/10) = 5 % of its amplitude
 _WAVES = ("airy", "jonswap", "pierson_moskowitz", "regular")
-LARGE_SCATTER = 0.2  # standard error of a case's damage by that of its quarters
+LARGE_SCATTER = 0.2  # standard error of the year's damage, by those of the cases
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,19 +70,43 @@ class YearlyDamage:
             return None
         return float(self.given.design_fatigue_factor * self.given.design_life * self.per_year.max())
 
+    @property
+    def standard_error(self) -> float:
+        """Relative standard error of the largest damage: by those of the cases, each from its own waves."""
+        errors, whole = self._errors, float(self.per_year.max())
+        return float(np.linalg.norm(errors)) / whole if whole > 0.0 else 0.0
+
+    @property
+    def _errors(self) -> Array:
+        """(nc,) Standard errors of the cases' parts of the largest damage."""
+        return np.array([each.scatter * each.per_year[self.worst] for each in self.cases])
+
     def warnings(self) -> Iterator[str]:
         """With numbers and a remedy."""
         total = self.given.total_share
         if total < 1.0 - 1e-9:
-            yield f"the cases stand for {100.0 * total:.4g} % of the year; the rest counts as calm"
+            yield f"the cases cover {100.0 * total:.4g} % of the year; the rest counts as calm"
         for each in self.cases:
             yield from _doubts(each)
+        yield from self._uncertain()
         used = self.utilisation
         if used is not None and used > 1.0:
             yield (
                 f"the damage in {self.given.design_life:g} years times {self.given.design_fatigue_factor:g} is "
                 f"{used:.4g}, more than 1"
             )
+
+    def _uncertain(self) -> Iterator[str]:
+        """A year's damage that longer simulations would change; the scatter of sea states that hardly damage is none."""
+        if self.standard_error <= LARGE_SCATTER:
+            return
+        most = self.cases[int(self._errors.argmax())]
+        share = float(most.per_year[self.worst] / self.per_year.max())
+        yield (
+            f"the largest damage is uncertain by some {self.standard_error:.0%} (standard error, more than "
+            f"{LARGE_SCATTER:.0%}), most of it by {most.case.run}, {share:.0%} of the damage with a standard error of "
+            f"{most.scatter:.0%} by the quarters of its {most.seconds:.4g} s; simulate that longer, or with more seeds"
+        )
 
 
 def assess(file: Path, given: Fatigue) -> YearlyDamage:
@@ -167,10 +191,4 @@ def _doubts(each: CaseDamage) -> Iterator[str]:
             f"{name}: {each.records:.3g} records in the mean period of the stress, {each.period:.4g} s: turns between "
             f"records are missed by up to {1.0 - np.cos(np.pi / max(each.records, 2.0)):.0%}; let output.interval be "
             f"{each.period / FEW_RECORDS:.2g} s or less"
-        )
-    if each.scatter > LARGE_SCATTER:
-        yield (
-            f"{name}: the damage of its quarters, {0.25 * each.seconds:.4g} s each, differs so much that its own is "
-            f"uncertain by some {each.scatter:.0%} (standard error, more than {LARGE_SCATTER:.0%}); simulate longer "
-            "or skip more"
         )

@@ -99,6 +99,7 @@ def as_dict(found: YearlyDamage) -> dict[str, Any]:
             "angle_deg": float(np.degrees(how.angles[point])),
             "damage_per_year": largest,
             "life_years": life(largest),
+            "standard_error": found.standard_error,
         },
         "design": {
             "life_years": found.given.design_life,
@@ -121,6 +122,7 @@ def result_lines(found: YearlyDamage) -> list[str]:
         f"S-N curve {curve.name}: {curve.source}",
         f"stress ranges times {found.how.factor(float(found.wall.thickness[section])):.4g} (SCF and thickness there)",
         f"largest damage {largest:.4g} a year, life {life(largest):.4g} years, at {where}",
+        f"standard error of this damage: {found.standard_error:.0%}, by the quarters of each simulation",
     ]
     for each in found.cases:
         part = float(each.per_year[section, point])

@@ -40,7 +40,7 @@ def table(modes: Modes, asked: int) -> list[str]:
         lines.append(f"no more than {len(modes.frequency)} were found: the riser has so few unknowns with mass")
     if modes.asymmetry > 0.0:
         lines.append(
-            "the tangent's symmetric part is taken; the rest would change these frequencies by at most "
+            "the tangent's symmetric part is used; the rest would change these frequencies by at most "
             f"{modes.asymmetry:.1g} of them"
         )
     return lines

@@ -180,7 +180,7 @@ def _options(scene: Scene, level: float) -> dict[str, float]:
         axis = scene.seabed_level + (0.5 * diameter if bed.contact_at == "outer" else 0.0)
         found |= {"WtrDpth": level - axis, "kBot": bed.stiffness / diameter, "cBot": 0.0}
     elif scene.has_ground:
-        raise SceneError("seabed: only kind spring can stand in a deck; give its stiffness [N/m2]")
+        raise SceneError("seabed: a deck has no other ground than kind spring; give its stiffness [N/m2]")
     friction = scene.contact.friction if scene.contact else None
     if friction is not None and friction.axial is not None:
         across = friction.axial if friction.lateral is None else friction.lateral

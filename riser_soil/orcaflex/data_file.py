@@ -70,7 +70,7 @@ class DataFile:
         name = self.document.name
         refused = [f"{name}:{line}: {text}" for line, text in sorted(set(self.refused))]
         head = [f"{name}:{line}: not carried over: {text}" for line, text in remarks]
-        head.append(f"{name}: gives no scene, and none is written; entries that stand against it: {len(refused)}")
+        head.append(f"{name}: gives no scene, and none is written; entries that prevent it: {len(refused)}")
         raise SceneError("\n".join([*head, *refused]))
 
     def _found(self, section: str) -> tuple[str, Any]:

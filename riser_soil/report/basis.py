@@ -216,7 +216,7 @@ def _scatter(fatigue: Mapping[str, Any]) -> Iterator[Block]:
         sea = case.get("sea") or {}
         share = number(100.0 * case["share"], 4)
         values = [number(sea.get(key), 4) for key in ("height", "period", "direction_deg")]
-        rows.append([without_paths(case["run"]), *values, share, number(case["seconds"], 4)])
+        rows.append([case["run"], *values, share, number(case["seconds"], 4)])
     head = ("sea state", "Hs [m]", "Tp [s]", "towards [°]", "share of the year [%]", "simulated [s]")
     yield TableBlock("Scatter of sea states for fatigue", compact(ReportTable(head, rows)), key="scatter")
 

@@ -72,7 +72,7 @@ def _blocks(sources: Sources) -> Iterator[Block]:
             for each in own
         ]
         head = ("utilisation", "value [-]", "load case", "load step", "arc length [m]", "time [s]")
-        note = "Allowable values are those of the line types; they stand for no code."
+        note = "Allowable values are those of the line types; they are those of no code."
         yield TableBlock(_BY_VALUE, compact(ReportTable(head, rows, note)), key="allowable")
     yield from _pictures(sources)
 

@@ -111,15 +111,17 @@ def _verdict(found: FatigueResults) -> str:
     life = float(found.life[n])
     if not math.isfinite(life):
         return "There is no damage."
+    error = found.numbers["largest"].get("standard_error")
+    uncertain = "" if error is None else f" The damage's standard error is {100.0 * error:.0f} %, by those of the sea states."
     where = f"at arc length {number(found.damage.arc[n], 5)} m"
     if found.required_life is None:
-        return f"The shortest life is {years(life)} years, {where}. No required life is given."
+        return f"The shortest life is {years(life)} years, {where}. No required life is given.{uncertain}"
     needed = found.required_life * found.factor
     enough = "fulfilled" if life >= needed else "not fulfilled"
     return (
         f"The shortest life is {years(life)} years, {where}. Required are {number(found.required_life)} years with a "
         f"design fatigue factor (DFF) of {number(found.factor)}, that is {number(needed)} years: {enough}, utilisation "
-        f"{number(found.utilisation, 3)}."
+        f"{number(found.utilisation, 3)}.{uncertain}"
     )
 
 
@@ -167,7 +169,7 @@ def _shares(found: FatigueResults) -> ReportTable:
     for case in sorted(cases, key=lambda each: -each["damage_per_year"]):
         scatter = f"{100.0 * case['standard_error']:.0f}"
         damage, share = case["damage_per_year"], 100.0 * case["damage_per_year"] / whole
-        row = [without_paths(case["run"]), number(100.0 * case["share"], 4), number(damage, 3), number(share, 3)]
+        row = [case["run"], number(100.0 * case["share"], 4), number(damage, 3), number(share, 3)]
         rows.append([*row, scatter])
     head = ("sea state", "share of the year [%]", "damage in a year [1/year]", "share of the damage [%]",
             "standard error [%]")  # fmt: skip

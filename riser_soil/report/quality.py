@@ -86,7 +86,7 @@ def _warnings(sources: Sources) -> Iterator[Block]:
     by_text: dict[str, list[str]] = {}
     for case in sources.cases:
         for text in health.warnings_of(case.run.summary):
-            by_text.setdefault(without_paths(text.replace("(told above ", "(limit ")), []).append(case.name)
+            by_text.setdefault(without_paths(text), []).append(case.name)
     if not by_text:
         yield Paragraph("The program has no warnings on input or results.")
         return

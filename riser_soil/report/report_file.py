@@ -19,6 +19,7 @@ from riser_soil.scene.reader import error_of
 _NEEDS = "the report file is empty; it needs runs or cases, folders of results"
 KINDS = {"cases.csv": "cases", "fatigue.json": "fatigue", "modes.nc": "modes"}
 """Files by which the folders of results other than runs are known, with their keys of a report file."""
+OPTIONAL = ("fatigue", "modes")  # chapters of which a report says that it has none
 LOGOS = (".png", ".jpg", ".jpeg")
 
 
@@ -63,6 +64,9 @@ class ReportFile(BaseModel):
     fatigue: NamedFolder | None = Field(default=None, description="folder of riser-soil fatigue")
     statistics: Files = Field(default=(), description=".json files of riser-soil statistics: one, or a list of them")
     modes: NamedFolder | None = Field(default=None, description="folder of riser-soil modes")
+    not_assessed: dict[Text, Text] = Field(
+        default={}, description="why the report has no fatigue or modes, {fatigue: reason}"
+    )
     stage: Text | None = Field(default=None, description="load step that is drawn; by default the last in time")
     reference: Text | None = Field(
         default=None, description="case that sensitivities count from; by default the one that has most in common"
@@ -80,6 +84,11 @@ class ReportFile(BaseModel):
             raise wrong("runs", "neither runs nor cases are given", "name a folder of results")
         if self.logo is not None and self.logo.suffix.lower() not in LOGOS:
             raise wrong("logo", f"must be one of {', '.join(LOGOS)}", "convert the picture")
+        for name in self.not_assessed:
+            if name not in OPTIONAL:
+                raise wrong("not_assessed", f"has {name}, but can have {' and '.join(OPTIONAL)}", "correct the key")
+            if getattr(self, name) is not None:
+                raise wrong("not_assessed", f"names {name}, but results of it are given as {name}", "remove one of the two")
         return self
 
 

@@ -158,7 +158,7 @@ def opened(given: ReportFile) -> Sources:
         whole,
         failed,
         characteristic,
-        None if given.fatigue is None else _json(given.fatigue / _FATIGUE),
+        None if given.fatigue is None else _assessment(given.fatigue / _FATIGUE),
         {} if given.fatigue is None else _columns(given.fatigue / _DAMAGE),
         [row for file in given.statistics for row in _statistics(file)],
         None if given.modes is None else _modes(given.modes),
@@ -254,6 +254,32 @@ def _json(file: Path) -> Any:
         return json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as err:
         raise ResultsError(f"{file}: cannot be read: {err}; name the folder or file that riser-soil made") from err
+
+
+def _assessment(file: Path) -> Any:
+    """An assessment of fatigue whose sea states are called by short names, in its warnings, too."""
+    numbers = _json(file)
+    short = short_names([case["run"] for case in numbers["cases"]])
+    cases = [case | {"run": short[case["run"]]} for case in numbers["cases"]]
+    return numbers | {"cases": cases, "warnings": [_renamed(text, short) for text in numbers["warnings"]]}
+
+
+def short_names(folders: Sequence[str]) -> dict[str, str]:
+    """Each folder's last name, with as many names before it as tell it from the others, by the folder."""
+    parts = {folder: Path(folder).parts for folder in folders}
+    found = {}
+    for folder, own in parts.items():
+        others = [each for each in parts.values() if each != own]
+        count = next((n for n in range(1, len(own)) if all(each[-n:] != own[-n:] for each in others)), len(own))
+        found[folder] = "/".join(own[-count:])
+    return found
+
+
+def _renamed(text: str, names: Mapping[str, str]) -> str:
+    """The text with a name in place of each folder, the longest first: one may begin as another does."""
+    for folder in sorted(names, key=len, reverse=True):
+        text = text.replace(folder, names[folder])
+    return text
 
 
 def _columns(file: Path) -> dict[str, list[float]]:

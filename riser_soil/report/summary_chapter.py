@@ -11,6 +11,8 @@ from riser_soil.report.governing import Result, governing, is_check, used, uses
 from riser_soil.report.sources import Sources
 from riser_soil.report.tables import NOTHING, ReportTable, compact, number
 
+_NOT_ASSESSED = {"fatigue": "Fatigue is not assessed", "modes": "Natural periods are not computed"}  # by keys
+
 
 def chapter(sources: Sources) -> ReportSection:
     return ReportSection("Summary", [*_blocks(sources)])
@@ -74,3 +76,11 @@ def _verdict(sources: Sources, best: dict[str, Result]) -> Iterator[Block]:
         yield Paragraph(f"Exceeded: {'; '.join(beyond)}.", "warning")
     if not code_checks.largest(sources):
         yield Paragraph(code_checks.NO_CHECK)
+    missing = [key for key in _NOT_ASSESSED if getattr(sources.given, key) is None]
+    if missing:
+        yield Paragraph(" ".join(_not_assessed(key, sources.given.not_assessed.get(key)) for key in missing))
+
+
+def _not_assessed(key: str, reason: str | None) -> str:
+    """What the report has no chapter on, and why where the report file says so."""
+    return f"{_NOT_ASSESSED[key]}{'' if reason is None else f': {reason}'}.".replace("..", ".")

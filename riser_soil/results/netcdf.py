@@ -27,7 +27,7 @@ from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
-from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
+from riser_soil.core.step_outputs import OF_STEP, REMOVED
 from riser_soil.results.growing_file import GrowingFile, append_rows, appending, behind, cutting_back
 
 _CHUNK_BYTES = 65536
@@ -149,10 +149,10 @@ HEALTH: dict[str, Variable] = {
 def ledger_variables(dissipating: Collection[str], working: Collection[str]) -> dict[str, Variable]:
     """Of each step, beside HEALTH: what adds up to `dissipated` and to `work`, by part."""
     lost = "energy dissipated since the stage began by: "
-    put_in = "energy put in since the stage began by: "
+    added = "energy added since the stage began by: "
     return {
         **{f"dissipated_{name}": Variable(("step",), "J", lost + _spoken(name)) for name in dissipating},
-        **{f"work_{name}": Variable(("step",), "J", put_in + _spoken(name), TAKEN_OUT) for name in working},
+        **{f"work_{name}": Variable(("step",), "J", added + _spoken(name), REMOVED) for name in working},
     }
 
 

@@ -201,13 +201,13 @@ class Plausibility:
     def _strains(self) -> Iterator[str]:
         if self._axial.value > LARGE_STRAIN:
             yield (
-                f"the riser is strained along its axis by {self._at(self._axial)}; beams with a constant EA stand for "
+                f"the riser is strained along its axis by {self._at(self._axial)}; beams with a constant EA hold for "
                 f"strains of some per cent, at most {LARGE_STRAIN:.0%}: correct EA, the length or what pulls"
             )
         if self._bending.value > LARGE_STRAIN:
             yield (
                 f"the pipe's outside is strained by bending, curvature times D/2, by {self._at(self._bending)}; beams "
-                f"whose sections keep their shape and EI stand for at most {LARGE_STRAIN:.0%}: correct EI or what bends"
+                f"whose sections keep their shape and EI hold for at most {LARGE_STRAIN:.0%}: correct EI or what bends"
             )
 
     def _blurred(self) -> Iterator[str]:

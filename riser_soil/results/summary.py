@@ -80,7 +80,7 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
             f"{ledger.turned_over:.3g} J exchanged, and {ledger.residual:.3g} J at the end: take a smaller time_step"
         )
     if abs(ledger.made) > allowed:
-        done, own = ("took out" if ledger.made > 0.0 else "put in"), abs(ledger.made)
+        done, own = ("removed" if ledger.made > 0.0 else "added"), abs(ledger.made)
         yield (
             f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
             "exchanged: take a smaller time_step"

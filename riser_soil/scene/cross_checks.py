@@ -288,7 +288,7 @@ def contents_conflicts(scene: Scene) -> Iterator[Problem]:
 def _somewhere(given: Contents) -> Iterator[Problem]:
     for n, slug in enumerate(given.slugs):
         if given.speed == 0.0 and slug.front is None:
-            allowed = "slugs stand still without a speed, and nothing says where"
+            allowed = "slugs without a speed do not move, and their place is not given"
             yield Problem((*_CONTENTS, "slugs", n, "front"), allowed, "give front [m], or riser.contents.speed [m/s]")
 
 

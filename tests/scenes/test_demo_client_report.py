@@ -1,4 +1,4 @@
-"""The demo of a client's report: its files fit each other, and its one command writes a report with all chapters."""
+"""The demos of a client's report: their files fit each other, and one command writes a report with all chapters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from demos.client_report.run import EXTREMES, FORMATS, HERE, MATRICES, PAGE, commands, main
+from demos.client_report.run import EXTREMES, FORMATS, HERE, MATRICES, commands, main
 from demos.page import block
 from riser_soil.cases.expansion import Case, read_cases
 from riser_soil.fatigue.fatigue_file import read_fatigue_file
@@ -16,6 +16,7 @@ from riser_soil.report.report_file import read_report_file
 from tests.support.on_ranks import ROOT
 from tests.support.pages import text
 
+FLEXIBLE = HERE.parent / "flexible_report"
 SHORT = {  # of each file what is replaced by what
     "scene": {"duration: 3600.0": "duration: 40.0"},
     "storms": {
@@ -30,10 +31,14 @@ SHORT = {  # of each file what is replaced by what
 
 @pytest.fixture
 def place(tmp_path: Path) -> Path:
-    """The demo's input files, and beside them the vessel of the demo in waves."""
-    folder = tmp_path / HERE.name
+    return copied(HERE, tmp_path)
+
+
+def copied(demo: Path, tmp_path: Path) -> Path:
+    """A demo's input files, and beside them the vessel of the demo in waves."""
+    folder = tmp_path / demo.name
     folder.mkdir()
-    for file in HERE.glob("*.yaml"):
+    for file in demo.glob("*.yaml"):
         shutil.copy(file, folder)
     (tmp_path / "waves").mkdir()
     shutil.copy(HERE.parent / "waves" / "rao.csv", tmp_path / "waves")
@@ -87,14 +92,32 @@ def test_functional_load_effects_are_those_of_the_storm_s_soil(hung: Path) -> No
         assert grounds[functional.name].items() <= case.values.items()
 
 
-def test_the_page_has_the_tables_of_a_run() -> None:
-    page = PAGE.read_text(encoding="utf-8")
+def test_a_flexible_riser_has_no_fatigue_and_its_report_says_why(tmp_path: Path) -> None:
+    place = copied(FLEXIBLE, tmp_path)
+    reports = [f"report, {ending}" for ending in FORMATS]
+    assert [*commands(place, 2)] == ["storms", "modes", *reports]
+    storms = cases_of(place, "storms")
+    assert len({case.group_labels for case in storms}) == 6
+    assert len(storms) == 18
+    for case in storms:
+        (place / "results/storms/cases" / case.name).mkdir(parents=True)
+    (place / "results/modes").mkdir()
+    given = read_report_file(place / "report.yaml")
+    assert given.fatigue is None
+    assert [*given.not_assessed] == ["fatigue"]
+
+
+@pytest.mark.parametrize("demo", [HERE, FLEXIBLE])
+def test_the_page_has_the_tables_of_a_run(demo: Path) -> None:
+    page = (demo / "README.md").read_text(encoding="utf-8")
     rows = {
         name: [row.split("|")[1].strip() for row in block(page, name).splitlines()[2:] if "|" in row]
         for name in ("found", "seconds")
     }
-    assert [row.rpartition(", ")[0] for row in rows["found"] if "seed" in row] == [*EXTREMES]
-    steps = [step for step in commands(HERE, 2) if step not in MATRICES]
+    shown = [row.rpartition(", ")[0] for row in rows["found"] if "seed" in row]
+    assert shown == [quantity for quantity in EXTREMES if quantity in shown]
+    assert ("of it, bend radius" in shown) == (demo == FLEXIBLE)
+    steps = [step for step in commands(demo, 2) if step not in MATRICES]
     assert rows["seconds"][-len(steps) - 1 :] == [*steps, "all"]
 
 

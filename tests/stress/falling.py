@@ -14,7 +14,7 @@ from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import AVERAGE, dynamic, riser_scene
 
 W, G = 700.0, 9.81
-IMPACT = r"impact|time scheme (took out|put in)|time_step"
+IMPACT = r"impact|time scheme (removed|added)|time_step"
 
 
 def level_pipe(

@@ -59,9 +59,10 @@ def write_fatigue(folder: Path, arc: Sequence[float], damage: Sequence[float], *
     numbers = {
         "curve": {"name": "DNV D, air", "source": "DNVGL-RP-C203 (April 2016), Table 2-1"},
         "stress_concentration": 1.2, "factor_on_ranges": 1.25, "surface": "outer", "points": 2, "share": 0.9,
+        "largest": {"damage_per_year": worst, "standard_error": 0.079},
         "design": {"life_years": None, "fatigue_factor": 1.0, "utilisation": None} | design,
         "cases": [
-            {"run": "/home/someone/calm", "share": 0.7, "damage_per_year": 0.25 * worst} | each,
+            {"run": "../results/sea_states/calm", "share": 0.7, "damage_per_year": 0.25 * worst} | each,
             {"run": "/home/someone/storm", "share": 0.2, "damage_per_year": 0.75 * worst} | each,
         ],
         "warnings": [],

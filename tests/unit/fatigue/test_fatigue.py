@@ -201,4 +201,29 @@ def test_records_too_far_apart_and_few_waves_are_reported() -> None:
     sparse, few = YearlyDamage(given, how, history.arc, history.sections.wall, [case]).warnings()
     assert sparse.startswith("sea: 6.2")
     line_with([sparse], "missed", "up to 13%", "output.interval", "0.5 s")
-    assert f"uncertain by some {scatter:.0%}" in few
+    line_with([few], f"uncertain by some {scatter:.0%}", "sea, 100% of the damage", "simulate that longer")
+
+
+def test_sea_states_that_hardly_damage_may_scatter() -> None:
+    """The root of the sum of squares: of 100 with 10 %, 1 with 80 % the year's error is below 10 %."""
+    calm, storm = "calm", "storm"
+    given = Fatigue.model_validate(
+        {
+            "curve": {"log_a": [12.0], "m": [3.0]},
+            "cases": [{"run": calm, "share": 0.7}, {"run": storm, "share": 0.3}],
+            "points": 4,
+        }
+    )
+    history = of_one_pipe(np.arange(0.0, 8.0, 0.5), np.zeros(16), np.zeros(16))
+
+    def year(scatter: float) -> YearlyDamage:
+        parts = ((1.0, 0.8), (100.0, scatter))
+        seas = [
+            CaseDamage(case, np.full((2, 4), damage), 80.0, 5.0, 20.0, error, (np.nan, np.nan))
+            for case, (damage, error) in zip(given.cases, parts, strict=True)
+        ]
+        return YearlyDamage(given, StressRanges(STRAIGHT, points=4), history.arc, history.sections.wall, seas)
+
+    assert year(0.1).standard_error == pytest.approx(math.hypot(0.8, 10.0) / 101.0)
+    assert [*year(0.1).warnings()] == []
+    line_with([*year(0.3).warnings()], "uncertain by some 30%", "storm, 99% of the damage")

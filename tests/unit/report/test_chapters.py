@@ -16,7 +16,7 @@ from riser_soil.report.document import Heading, Item, Paragraph, PictureBlock, P
 from riser_soil.report.report import document_of
 from riser_soil.report.report_file import of_folders
 from riser_soil.report.reproduction import pruned, scene_text
-from riser_soil.report.sources import Sources, opened
+from riser_soil.report.sources import Sources, opened, short_names
 from riser_soil.report.tables import ReportTable
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
@@ -239,11 +239,38 @@ def test_fatigue_has_life_hotspots_and_shares(run: Path, tmp_path: Path) -> None
     assert [row[:5] for row in table(items, "scatter").rows] == [
         ["calm", "3", "9", "180", "70"], ["storm", "3", "9", "180", "20"],
     ]  # fmt: skip
-    line_with(said(items), "500 years", "arc length 32 m", "20 years", "(DFF) of 10", "200 years", "fulfilled")
+    line_with(said(items), "500 years", "arc length 32 m", "20 years", "(DFF) of 10", "200 years", "fulfilled", "8 %")
     summary = next(row for row in table(items, "summary").rows if row[0] == "shortest fatigue life")
     assert (summary[1], summary[-1]) == ("500", "0.400")
     asked = items_of(opened_at(run, tmp_path / "damage", required_life=60.0))
     line_with(said(asked), "Exceeded", "fatigue life, utilisation 1.2")
+
+
+def test_sea_states_have_their_folder_s_last_name_unless_two_are_the_same() -> None:
+    named = short_names(["../results/seas/cases/Hs1", "/home/someone/Hs2", "east/cases/Hs3", "west/cases/Hs3", "Hs4"])
+    assert [*named.values()] == ["Hs1", "Hs2", "east/cases/Hs3", "west/cases/Hs3", "Hs4"]
+    assert short_names(["deep/Hs1", "Hs1", "deep/Hs1"]) == {"deep/Hs1": "deep/Hs1", "Hs1": "Hs1"}
+
+
+def test_warnings_on_fatigue_call_sea_states_by_the_same_names(run: Path, tmp_path: Path) -> None:
+    write_fatigue(tmp_path / "damage", [0.0, 50.0, 100.0], [0.0, 1e-3, 0.0])
+    file = tmp_path / "damage/fatigue.json"
+    numbers = json.loads(file.read_text(encoding="utf-8"))
+    numbers["warnings"] = [f"{numbers['cases'][0]['run']}: few records"]
+    file.write_text(json.dumps(numbers), encoding="utf-8")
+    points = [text for item in items_of(opened_at(run, tmp_path / "damage")) if isinstance(item, Points)
+              for text in item.items]  # fmt: skip
+    assert "calm: few records" in points
+
+
+def test_the_summary_says_what_is_not_assessed_and_why(run: Path, tmp_path: Path) -> None:
+    line_with(said(items_of(opened_at(run))), "Fatigue is not assessed.", "Natural periods are not computed.")
+    reason = {"fatigue": "S-N data come from the maker"}
+    explained = items_of(opened_at(run, not_assessed=reason))
+    line_with(said(explained), "Fatigue is not assessed: S-N data come from the maker.")
+    assert not [item for item in explained if isinstance(item, Heading) and item.title == "Fatigue"]
+    write_fatigue(tmp_path / "damage", [0.0, 50.0], [0.0, 1e-3])
+    assert "Fatigue is not assessed" not in said(items_of(opened_at(run, tmp_path / "damage")))
 
 
 def test_life_without_end_and_damage_nowhere(run: Path, tmp_path: Path) -> None:

@@ -60,6 +60,8 @@ def test_options_take_the_place_of_keys(place: Path) -> None:
         ("runs: one\nlogo: report.yaml", ("report.yaml:2: logo", ".png")),
         ("runs: one\nrequired_life: -1", ("report.yaml:2: required_life", "greater than 0")),
         ("runs: one\nstatistics: lost.json", ("report.yaml:2: statistics", "no such file")),
+        ("runs: one\nmodes: one\nnot_assessed: {modes: none}", ("report.yaml:3: not_assessed", "results of it are given as modes")),
+        ("runs: one\nnot_assessed: {weather: none}", ("report.yaml:2: not_assessed", "has weather, but can have fatigue and modes")),
         ("", ("report file is empty",)),
         ("line_types: {}", ("is a scene, and a report file is wanted",)),
     ],
@@ -93,7 +95,7 @@ def test_what_cannot_be_opened_is_said(place: Path) -> None:
     ("arguments", "says"),
     [
         (["one", "-o", "report.txt"], ("report.txt:", ".html", ".pdf", ".docx")),
-        (["report.yaml", "one"], ("report.yaml:", "stands alone")),
+        (["report.yaml", "one"], ("report.yaml:", "is given alone")),
         (["one", "--required-life", "-3"], ("required_life",)),
         (["lost"], ("lost", "not the folder of a run")),
     ],

@@ -240,5 +240,5 @@ def test_energy_that_does_not_balance_is_a_warning() -> None:
     assert quiet.warnings == []
     greedy.balance([0.5], [Ledger(turned_over=99.0, numerical=-1.0)])
     (warning,) = greedy.warnings
-    line_with([warning], "time scheme", "put in 1 J", "1.01% of the 99 J", "smaller time_step")
+    line_with([warning], "time scheme", "added 1 J", "1.01% of the 99 J", "smaller time_step")
     assert StageTally("lay", "static", energy=Ledger(residual=math.nan)).warnings == []
