@@ -1,7 +1,8 @@
 """A steel catenary riser with its vessel near, mean and far: by its offset, by a stage that moves it, by hand.
 
 Usage, in the project's folder: python -m demos.offsets.run [--results FOLDER] [--page]
-Leaves runs and a table (offsets.md) in `results` beside this file; --page writes it where docs/cases.md shows it.
+Leaves runs and a table (offsets.md) in `results` beside this file; --page writes it where README.md and docs/cases.md
+show it.
 """
 
 from __future__ import annotations
@@ -11,14 +12,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from demos.offsets.by_hand import LaidCable, cable_of
-from demos.page import publish, script, table
+from demos.page import fill_pages, publish, script, table
 from riser_soil.accuracy.chosen_run import in_numbers, run_as_asked
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 
 HERE = Path(__file__).parent
-SCENE, PAGE = HERE / "scene.yaml", HERE.parents[1] / "docs" / "cases.md"
+SCENE = HERE / "scene.yaml"
 OFFSETS = {"near": -60.0, "mean": 0.0, "far": 60.0}  # m
 HEAD = ("vessel", "top tension kN", "by hand", "touchdown arc m", "by hand", "moment at rest kN m", "by hand",
         "by `move` kN m", "in waves kN m", "by `move` kN m")  # fmt: skip
@@ -43,7 +44,10 @@ def main(results: Path, write_page: bool) -> None:
         found = computed(read_scene(SCENE, [f"vessel.offset.0={offset}"]), results / name)
         moved = computed(by_move(hung, offset), results / f"{name}_by_move")
         rows.append(_row(name, found, moved, cable, cable.at_layback(mean + offset)))
-    publish({"offsets": table(HEAD, rows)}, results, PAGE if write_page else None)
+    found = {"offsets": table(HEAD, rows)}
+    publish(found, results)
+    if write_page:
+        fill_pages(found)
 
 
 def computed(scene: Scene, folder: Path) -> Found:

@@ -64,14 +64,14 @@ class SteelCheck(Check):
     tensile_derating: StressOrNone = Field(default=0.0, description="loss of tensile strength by temperature [Pa]")
     E: Stress = Field(default=2.07e11, description="Young's modulus of the wall [Pa]")
     nu: PoissonRatio = Field(default=0.3, description="Poisson's ratio of the wall [-]")
-    corrosion_allowance: LengthOrNone = Field(description="loss of wall thickness by corrosion and wear [m]")
+    corrosion_allowance: LengthOrNone = Field(description="corrosion allowance: loss of wall thickness by corrosion and wear [m]")
     design_pressure: Pressure | None = Field(
         default=None,
         description="design pressure inside at contents.pressure_level [Pa]; by default the pressure of the run",
     )
     minimum_pressure: OrContents = Field(
         default=0.0,
-        description="least pressure inside, against pressure outside [Pa]: 0 of an empty pipe, or contents: that of "
+        description="minimum pressure inside, against pressure outside [Pa]: 0 of an empty pipe, or contents: that of "
         "the run",
     )
 
@@ -107,7 +107,7 @@ class DnvCheck(SteelCheck):
         default=0.85, description="alpha_fab, on the yield strength in hoop compression: 1 of seamless pipe [-]"
     )
     fabrication_tolerance: LengthOrNone = Field(
-        description="how much thinner than nominal the wall may be made [m]"
+        description="fabrication tolerance: by how much the wall may be thinner than nominal [m]"
     )
     ovality: Annotated[float, Field(strict=True, ge=LEAST_OVALITY, le=0.03)] = Field(
         default=LEAST_OVALITY, description="initial (D_max - D_min)/D, 0.005 to 0.03 [-]"
@@ -122,8 +122,8 @@ class DnvCheck(SteelCheck):
     )
     functional_run: NamedFolder | None = Field(
         default=None,
-        description="result folder of a finished run of the same line without current and offset, at whose end load "
-        "effects are functional, in place of functional_stage; sought beside the scene file",
+        description="run with the functional load effects at its end; the result folder of the same line without current "
+        "and offset, in place of functional_stage; sought beside the scene file",
     )
     accidental_stage: Text | None = Field(
         default=None,

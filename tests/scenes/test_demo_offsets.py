@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from contextlib import redirect_stdout
 from io import StringIO
+from pathlib import Path
 
 import pytest
 
 from demos.offsets.by_hand import LaidCable, cable_of
-from demos.offsets.run import OFFSETS, PAGE, SCENE, Found, by_move, computed
+from demos.offsets.run import HERE, OFFSETS, SCENE, Found, by_move, computed
 from demos.page import block
 from riser_soil.accuracy.chosen_run import in_numbers
 from riser_soil.cases.expansion import read_cases
 from riser_soil.scene.reader import read_scene
+from tests.support.on_ranks import ROOT
 
 SHORT = "stages.1.duration=5.0"  # s: the ramp of the waves has begun
 
@@ -54,8 +56,9 @@ def test_near_bends_it_most(runs: dict[str, tuple[Found, Found]]) -> None:
     assert near.moment > 1.3 * mean.moment > 1.6 * far.moment
 
 
-def test_the_page_has_what_is_found(runs: dict[str, tuple[Found, Found]]) -> None:
-    rows = block(PAGE.read_text(encoding="utf-8"), "offsets").splitlines()[2:]
+@pytest.mark.parametrize("page", [HERE / "README.md", ROOT / "docs/cases.md"])
+def test_the_pages_have_what_is_found(runs: dict[str, tuple[Found, Found]], page: Path) -> None:
+    rows = block(page.read_text(encoding="utf-8"), "offsets").splitlines()[2:]
     for name, row in zip(OFFSETS, rows, strict=True):
         place, *cells = (cell.strip() for cell in row.strip("| ").split("|"))
         shown, found, (cable, H) = [float(cell) for cell in cells], runs[name][0], laid(name)
