@@ -21,6 +21,7 @@ from riser_soil.report.tables import NOTHING, ReportTable, compact, given_value,
 from riser_soil.results import Run
 from riser_soil.scene.motions import Vessel, VesselHistory
 from riser_soil.scene.rao import Rao
+from riser_soil.scene.riser import RotationSpring
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.scene.wave_kinds import Airy, DrawnSea, GivenSpectrum, Jonswap, PeakedSea, Record, Regular, WaveKind
@@ -35,7 +36,7 @@ def chapter(sources: Sources) -> ReportSection:
     first = reference_of(sources)
     scene = first.scene
     if scene is None:
-        lost = "The scene file cannot be read, so its input is not shown here."
+        lost = "The input file cannot be read, so its values are not shown here."
         return ReportSection("Basis", [Paragraph(lost, "warning")])
     return ReportSection(
         "Basis",
@@ -59,9 +60,11 @@ def _lines(sources: Sources, first: LoadCase) -> Iterator[ReportSection]:
 def _line(scene: Scene, run: Run) -> Iterator[Block]:
     low, high = (", ".join(number(float(x) + 0.0, 5) for x in run["position"][0, at]) for at in (0, -1))
     yield Paragraph(
-        f"The line is {number(float(run.arc[-1]))} m long. Arc lengths count from end A, the scene's start, at "
-        f"({low}) m, to end B, the scene's end, at ({high}) m (x, y, z; z is positive upwards). {_hang_off(run)}"
+        f"The line is {number(float(run.arc[-1]))} m long. Arc lengths count from end A at ({low}) m to end B at "
+        f"({high}) m (x, y, z; z is positive upwards). {_hang_off(run)}"
     )
+    if ends := " ".join([*ends_in_words(scene)]):
+        yield Paragraph(ends)
     rows, begin = [], 0.0
     for segment in scene.line.segments:
         end = begin + segment.length
@@ -116,10 +119,26 @@ def _hang_off(run: Run) -> str:
     return f"End {end} hangs off {asked} in the mean position, by a {reported['by']} of {number(reported['value'])} m."
 
 
+def ends_in_words(scene: Scene) -> Iterator[str]:
+    """Sentences on how the ends turn, and their bend stiffeners."""
+    for name, end in (("A", scene.line.start), ("B", scene.line.end)):
+        rotation, cone = getattr(end, "rotation", None), getattr(end, "bend_stiffener", None)
+        if rotation == "fixed":
+            yield f"End {name} cannot turn against its support."
+        elif isinstance(rotation, RotationSpring):
+            yield f"End {name} has a flex joint of {number(1e-3 * rotation.stiffness)} kN m/rad."
+        if cone is not None:
+            yield (
+                f"A bend stiffener at end {name} is {number(cone.length)} m long, with a diameter of "
+                f"{number(1e3 * cone.base_diameter)} mm at its base and {number(1e3 * cone.tip_diameter)} mm at its tip; "
+                f"its material has a Young's modulus of {number(1e-6 * cone.E)} MPa and {number(cone.density)} kg/m³."
+            )
+
+
 def _environment(sources: Sources, scene: Scene) -> Iterator[Block]:
     water = scene.water
     if water is None:
-        yield Paragraph("The line is in air: the scene has no water.")
+        yield Paragraph("The line is in air.")
         return
     surface = "" if water.surface_level is None else f" The mean surface is at z = {number(water.surface_level)} m."
     yield Paragraph(f"Density of the water: {number(water.density)} kg/m³.{surface}")

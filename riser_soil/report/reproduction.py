@@ -25,13 +25,13 @@ def chapter(sources: Sources) -> ReportSection:
 
 def appendix(sources: Sources) -> ReportSection:
     """The scene of the reference case, and in what the others differ from it."""
-    return ReportSection("Scene", [*_scene(sources)], appendix=True)
+    return ReportSection("Input file", [*_scene(sources)], appendix=True)
 
 
 def _blocks(sources: Sources) -> Iterator[Block]:
     first = reference_of(sources)
     yield Paragraph(
-        f"The scene in the appendix holds all input of the load case {first.name}; the files that it names lie beside "
+        f"The input file in the appendix holds all input of the load case {first.name}; the files that it names lie beside "
         "it. The same version of the program gives the same run:"
     )
     yield Code("riser-soil run scene.yaml -o again")
@@ -43,12 +43,12 @@ def _blocks(sources: Sources) -> Iterator[Block]:
 def _scene(sources: Sources) -> Iterator[Block]:
     first = reference_of(sources)
     if not first.data:
-        yield Paragraph("The scene file cannot be read.", "warning")
+        yield Paragraph("The input file cannot be read.", "warning")
         return
     yield Code(scene_text(first))
     rows = [*_differences(sources.cases, first)]
     if rows:
-        head = ("value of the scene", "load case", f"in place of that of {first.name}")
+        head = ("value", "load case", f"in place of that of {first.name}")
         more = "" if len(rows) < _MOST_ROWS else "More are in the tables of the cases' folder."
         yield TableBlock("Values in which the load cases differ", ReportTable(head, rows[:_MOST_ROWS], more), words=3)
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
+from riser_soil.report.basis import ends_in_words
 from riser_soil.report.document import Heading, Item, Paragraph, PictureBlock, Points, TableBlock, numbered
 from riser_soil.report.report import document_of
 from riser_soil.report.report_file import of_folders
@@ -19,7 +20,7 @@ from riser_soil.report.reproduction import pruned, scene_text
 from riser_soil.report.sources import Sources, opened, short_names
 from riser_soil.report.tables import ReportTable
 from riser_soil.results import Run
-from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.whole_run import run as run_scene
 from tests.support.on_ranks import ROOT
 from tests.support.recorded_run import record
@@ -157,7 +158,7 @@ def test_static_configurations_that_are_one_have_one_row(cases: Path) -> None:
 
 def test_a_warning_of_several_cases_is_one_point_in_words_of_the_field(run: Path, tmp_path: Path) -> None:
     def warned(summary: dict[str, Any]) -> None:
-        summary["warnings"] = ["heave: off by 3 % (told above 2 %), see /home/x/scene.yaml"]
+        summary["warnings"] = ["heave: off by 3 % (limit 2 %), see /home/x/scene.yaml"]
 
     rows = {name: ({"seed": name}, warned if name != "3" else lambda _: None) for name in "123"}
     write_cases(tmp_path / "cases", run, ("seed",), rows)
@@ -263,6 +264,15 @@ def test_warnings_on_fatigue_call_sea_states_by_the_same_names(run: Path, tmp_pa
     assert "calm: few records" in points
 
 
+def test_the_basis_has_bend_stiffener_and_flex_joint() -> None:
+    file = ROOT / "demos/flexible_report/scene.yaml"
+    stiffened = " ".join(ends_in_words(read_scene(file)))
+    line_with([stiffened], "End B cannot turn against its support.", "bend stiffener at end B is 3.5 m long", "800 mm at",
+              "340 mm at its tip", "70 MPa")  # fmt: skip
+    jointed = read_scene(file, ["riser.end.bend_stiffener=null", "riser.end.rotation={stiffness: 2.0e4}"])
+    assert [*ends_in_words(jointed)] == ["End B has a flex joint of 20 kN m/rad."]
+
+
 def test_the_summary_says_what_is_not_assessed_and_why(run: Path, tmp_path: Path) -> None:
     line_with(said(items_of(opened_at(run))), "Fatigue is not assessed.", "Natural periods are not computed.")
     reason = {"fatigue": "S-N data come from the maker"}
@@ -318,7 +328,7 @@ def test_a_line_without_anything_along_time_is_reported(tmp_path: Path) -> None:
     items = items_of(sources)
     assert [item.title for item in items if isinstance(item, Heading) and item.level == 1] == [
         "Summary", "Basis", "Static configuration", "Code checks", "Numerical quality",
-        "How to reproduce the results", "Scene",
+        "How to reproduce the results", "Input file",
     ]  # fmt: skip
     line_with(said(items), "one load case, computed by static analysis")
     assert table(items, "static reactions").rows

@@ -125,7 +125,7 @@ def test_the_page_needs_nothing_else(page: Path) -> None:
 def test_chapters_stand_in_the_order_of_a_design_report(items: list[Item]) -> None:
     assert [item.title for item in items if isinstance(item, Heading) and item.level == 1] == [
         "Summary", "Basis", "Static configuration", "Extremes", "Code checks", "Numerical quality",
-        "How to reproduce the results", "Scene",
+        "How to reproduce the results", "Input file",
     ]  # fmt: skip
 
 
