@@ -44,10 +44,10 @@ def main(results: Path, write_page: bool) -> None:
         found = computed(read_scene(SCENE, [f"vessel.offset.0={offset}"]), results / name)
         moved = computed(by_move(hung, offset), results / f"{name}_by_move")
         rows.append(_row(name, found, moved, cable, cable.at_layback(mean + offset)))
-    found = {"offsets": table(HEAD, rows)}
-    publish(found, results)
+    blocks = {"offsets": table(HEAD, rows)}
+    publish(blocks, results)
     if write_page:
-        fill_pages(found)
+        fill_pages(blocks)
 
 
 def computed(scene: Scene, folder: Path) -> Found:

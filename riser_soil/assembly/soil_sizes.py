@@ -88,7 +88,7 @@ class SoilSizes:
         """Around the touchdown points that the ends' motions lead to; SceneError where there are none."""
         if self.touchdown is None:
             raise SceneError(
-                "soil.block: auto: the touchdown point is not known beforehand, as no catenary between two prescribed ends "
+                "soil.block: auto: the touchdown point is not known, as no catenary between two prescribed ends "
                 "comes down to the soil; give block: {x: [from, to], y: [from, to], depth: ...}"
             )
         points = _farther(self.touchdown)

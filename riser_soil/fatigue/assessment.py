@@ -97,7 +97,7 @@ class YearlyDamage:
             )
 
     def _uncertain(self) -> Iterator[str]:
-        """A year's damage that longer simulations would change; the scatter of sea states that hardly damage is none."""
+        """A year's damage that longer simulations would change; sea states that hardly damage may scatter."""
         if self.standard_error <= LARGE_SCATTER:
             return
         most = self.cases[int(self._errors.argmax())]

@@ -128,10 +128,11 @@ def ends_in_words(scene: Scene) -> Iterator[str]:
         elif isinstance(rotation, RotationSpring):
             yield f"End {name} has a flex joint of {number(1e-3 * rotation.stiffness)} kN m/rad."
         if cone is not None:
+            base, tip = (number(1e3 * diameter) for diameter in (cone.base_diameter, cone.tip_diameter))
             yield (
-                f"A bend stiffener at end {name} is {number(cone.length)} m long, with a diameter of "
-                f"{number(1e3 * cone.base_diameter)} mm at its base and {number(1e3 * cone.tip_diameter)} mm at its tip; "
-                f"its material has a Young's modulus of {number(1e-6 * cone.E)} MPa and {number(cone.density)} kg/m³."
+                f"A bend stiffener at end {name} is {number(cone.length)} m long, with a diameter of {base} mm at its "
+                f"base and {tip} mm at its tip; its material has a Young's modulus of {number(1e-6 * cone.E)} MPa and "
+                f"{number(cone.density)} kg/m³."
             )
 
 

@@ -112,7 +112,8 @@ def _verdict(found: FatigueResults) -> str:
     if not math.isfinite(life):
         return "There is no damage."
     error = found.numbers["largest"].get("standard_error")
-    uncertain = "" if error is None else f" The damage's standard error is {100.0 * error:.0f} %, by those of the sea states."
+    by = "by those of the sea states"
+    uncertain = "" if error is None else f" The damage's standard error is {100.0 * error:.0f} %, {by}."
     where = f"at arc length {number(found.damage.arc[n], 5)} m"
     if found.required_life is None:
         return f"The shortest life is {years(life)} years, {where}. No required life is given.{uncertain}"

@@ -88,7 +88,7 @@ class ReportFile(BaseModel):
             if name not in OPTIONAL:
                 raise wrong("not_assessed", f"has {name}, but can have {' and '.join(OPTIONAL)}", "correct the key")
             if getattr(self, name) is not None:
-                raise wrong("not_assessed", f"names {name}, but results of it are given as {name}", "remove one of the two")
+                raise wrong("not_assessed", f"has {name}, but results are given as {name}", "remove one of the two")
         return self
 
 

@@ -31,8 +31,8 @@ def appendix(sources: Sources) -> ReportSection:
 def _blocks(sources: Sources) -> Iterator[Block]:
     first = reference_of(sources)
     yield Paragraph(
-        f"The input file in the appendix holds all input of the load case {first.name}; the files that it names lie beside "
-        "it. The same version of the program gives the same run:"
+        f"The input file in the appendix holds all input of the load case {first.name}; the files that it names lie "
+        "beside it. The same version of the program gives the same run:"
     )
     yield Code("riser-soil run scene.yaml -o again")
     if len(sources.cases) > 1:

@@ -64,7 +64,7 @@ class SteelCheck(Check):
     tensile_derating: StressOrNone = Field(default=0.0, description="loss of tensile strength by temperature [Pa]")
     E: Stress = Field(default=2.07e11, description="Young's modulus of the wall [Pa]")
     nu: PoissonRatio = Field(default=0.3, description="Poisson's ratio of the wall [-]")
-    corrosion_allowance: LengthOrNone = Field(description="corrosion allowance: loss of wall thickness by corrosion and wear [m]")
+    corrosion_allowance: LengthOrNone = Field(description="corrosion allowance: loss of wall thickness [m]")
     design_pressure: Pressure | None = Field(
         default=None,
         description="design pressure inside at contents.pressure_level [Pa]; by default the pressure of the run",
@@ -122,8 +122,8 @@ class DnvCheck(SteelCheck):
     )
     functional_run: NamedFolder | None = Field(
         default=None,
-        description="run with the functional load effects at its end; the result folder of the same line without current "
-        "and offset, in place of functional_stage; sought beside the scene file",
+        description="run with the functional load effects at its end; the result folder of the same line without "
+        "current and offset, in place of functional_stage; sought beside the scene file",
     )
     accidental_stage: Text | None = Field(
         default=None,

@@ -42,7 +42,7 @@ class SprungStiffness(BaseModel):
         default=None, description="force per distance of the points [N/m]; rigid by default"
     )
     rotation: RotationalStiffness | None = Field(
-        default=None, description="moment per angle from the angle of the two in the first shape [N.m/rad]; free by default"
+        default=None, description="moment per angle from that of the first shape [N.m/rad]; free by default"
     )
 
 

@@ -175,7 +175,7 @@ def test_a_riser_along_y_has_its_block_and_cells_along_y() -> None:
 @pytest.mark.parametrize(
     ("changes", "reported"),
     [
-        ({"riser__end": "free", "riser__initial": "straight"}, "soil.block: auto: the touchdown point is not known beforehand"),
+        ({"riser__end": "free", "riser__initial": "straight"}, "soil.block: auto: the touchdown point is not known"),
         ({"riser__end__position": [18.0, 13.5, 15.0]}, "soil.mesh: auto: cells are long along x or y"),
     ],
 )

@@ -33,7 +33,9 @@ def test_texts_of_the_package_have_words_of_the_field() -> None:
 
 
 def test_idioms_are_found_in_texts_and_not_in_docstrings() -> None:
-    code = 'def f(n):\n    """What is told."""\n    print(f"warning: {n} m (told above 2 m)")\n    return "stands upright here"\n'
+    code = (
+        'def f(n):\n    """What is told."""\n    print(f"{n} m (told above 2 m)")\n    return "stands upright here"\n'
+    )
     assert [*idioms(code)] == ["3:  m (told above 2 m)"]
 
 
