@@ -340,7 +340,7 @@ def test_a_run_whose_scene_is_gone_is_reported_without_it(run: Run, tmp_path: Pa
     (folder / "scene.yaml").unlink()
     found = numbered(document_of(opened(of_folders([folder], {}))))
     words = "\n".join(texts(found))
-    line_with(words, "scene file cannot be read", "input is not shown")
+    line_with(words, "input file cannot be read", "values are not shown")
     assert table(found, "summary").rows
     assert str(tmp_path) not in words
 
