@@ -2,9 +2,11 @@
 
 import math
 import re
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
+from pydantic.fields import FieldInfo
 
 from riser_soil.core.quantities import FROZEN, AutoOrTime, Count, Gravity, Ratio, SolverTolerance, Text, wrong
 from riser_soil.errors import SceneError
@@ -158,7 +160,9 @@ class Scene(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _fill_what_depends_on_other_parts(cls, data: Any) -> Any:
-        return with_placeholders(_with_initial(_with_contact(data))) if isinstance(data, dict) else data
+        if not isinstance(data, dict):
+            return data
+        return with_placeholders(_with_initial(_with_contact(_without_nulls(data, cls.model_fields))))
 
     @model_validator(mode="after")
     def _one_or_several(self) -> Self:
@@ -238,6 +242,12 @@ class Scene(BaseModel):
         """The line types that the riser is made of, by name."""
         names = [segment.line_type for segment in self.line.segments]
         return {name: self.line_types[name] for name in names if name in self.line_types}
+
+
+def _without_nulls(data: dict[str, Any], fields: Mapping[str, FieldInfo]) -> dict[str, Any]:
+    """A block that is null is an absent one: so a case takes off what its base scene has. A number or word is not."""
+    blocks = [key for key, field in fields.items() if isinstance(field.default, dict | tuple | BaseModel)]
+    return {key: value for key, value in data.items() if value is not None or key not in blocks}
 
 
 def _with_contact(data: dict[str, Any]) -> dict[str, Any]:
