@@ -14,8 +14,10 @@ import numpy as np
 from riser_soil.code_checks.collapse import Number
 from riser_soil.core.arrays import Array
 
-METHOD_1_FACTORS = MappingProxyType({"operating": 0.8, "extreme": 0.8, "survival": 1.0})
-"""Design factors of method 1 by case, 5.4.3.2."""
+DESIGN_FACTORS = MappingProxyType({"operating": 0.8, "extreme": 0.8, "survival": 1.0})
+"""Design factors of both methods by case, 5.4.3.2 and 5.4.3.3: those of SLS, ULS and ALS."""
+
+SURVIVAL_UNDER_EXTERNAL = 0.9  # that of survival beyond half of the collapse pressure
 
 WALL_VARIABILITY = 0.45  # k of pipe by API 5L and 5CT, 5.3.2
 ROUND_OFF = 1e-13
@@ -70,20 +72,29 @@ def plastic_moment(D: Number, t: Number, S: Number) -> Array:
     return 4.0 / np.pi * yield_moment(D, t, S)
 
 
-def overpressure(inside: Number, outside: Number, resistance: Number, factor: Number) -> Array:
-    """(inside - outside)/(F p), of bursting by p_b; of collapse with inside and outside exchanged, by p_c. 0 where the
+def overpressure(inside: Number, outside: Number, resistance: Number) -> Array:
+    """(inside - outside)/p, of bursting by p_b; of collapse with inside and outside exchanged, by p_c. 0 where the
     other pressure is larger.
 
     Source: 5.4.
     """
-    return np.asarray(np.maximum(inside - outside, 0.0) / (factor * resistance))
+    return np.asarray(np.maximum(inside - outside, 0.0) / resistance)
+
+
+def design_factor(case: str, overpressure: Number) -> Array:
+    """F of both methods, for a net external overpressure over p_c.
+
+    Source: 5.4.3.2, eq. 20, and 5.4.3.3, eq. 23.
+    """
+    beyond = (np.asarray(overpressure) > 0.5) & (case == "survival")
+    return np.where(beyond, SURVIVAL_UNDER_EXTERNAL, DESIGN_FACTORS[case])
 
 
 def method_1(tension: Number, moment: Number, pressure: Number, factor: Number) -> Array:
     """sqrt((T/T_y + M/M_y)^2 + q^2)/F: 1 where T/T_y + M/M_y = sqrt(F^2 - q^2).
 
     tension: |T|/T_y, moment: |M|/M_y; pressure: q, net internal overpressure over p_b or net external one over p_c.
-    Source: 5.4.3.2.
+    Source: 5.4.3.2, eq. 18 and 19.
     """
     return np.asarray(np.hypot(tension + moment, pressure) / factor)
 
@@ -93,7 +104,9 @@ def method_2(tension: Number, moment: Number, pressure: Number, factor: Number) 
 
     tension: |T|/T_y, moment: |M|/M_p; pressure: q as of method 1. Loads divided by u lie on the curve if with S = u s
     S cos(pi/2 tension/S) = moment, where u = sqrt(S^2 + q^2)/F. S is found by Newton's method: the left side grows with
-    S from 0 at S = tension and is concave, so that iterates climb to the root after the first. Source: 5.4.3.3.
+    S from 0 at S = tension and is concave, so that iterates climb to the root after the first.
+
+    Source: 5.4.3.3, eq. 21 and 22.
     """
     tension, moment = np.broadcast_arrays(np.asarray(tension, dtype=float), np.asarray(moment, dtype=float))
     S = tension + moment

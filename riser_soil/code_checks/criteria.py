@@ -13,18 +13,20 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from riser_soil.code_checks import api_std_2rd, capacity_curve, dnv_st_f201, flexible_pipe
+from riser_soil.code_checks import api_rp_2rd, api_std_2rd, capacity_curve, dnv_st_f201, flexible_pipe
 from riser_soil.code_checks.collapse import elastic_collapse_pressure
 from riser_soil.code_checks.load_effects import LoadEffects, design_effects
 from riser_soil.core.arrays import Array
 from riser_soil.scene.code_check import (
     ApiCheck,
+    ApiStressCheck,
     CapacityCurveCheck,
     Check,
     DnvCheck,
     FlexiblePipeCheck,
     SteelCheck,
 )
+from riser_soil.scene.line_types import LineType
 
 
 class Criterion(NamedTuple):
@@ -73,10 +75,12 @@ class Criteria(Protocol):
 
 
 class Steel(NamedTuple):
-    """Outer diameter and nominal thickness of a steel pipe's wall [m]."""
+    """Outer diameter and nominal thickness of a steel pipe's wall, and the areas on which pressures act [m, m2]."""
 
     diameter: float
     thickness: float
+    pressed_inside: float
+    pressed_outside: float
 
 
 def local_design_pressure(check: SteelCheck, loads: NodeLoads) -> tuple[Array, Array]:
@@ -95,7 +99,7 @@ def minimum_pressure(check: SteelCheck, loads: NodeLoads) -> Array | float:
     return loads.inside if check.minimum_pressure == "contents" else float(check.minimum_pressure)
 
 
-_DNV = "DNV-OS-F201 (2010) sec. 5 "
+_DNV = "DNV-OS-F201 (2010) sec. 5 D"
 
 
 @dataclass(frozen=True)
@@ -107,10 +111,10 @@ class DnvCriteria:
 
     code = "DNV-ST-F201"
     criteria = (
-        Criterion("bursting", "bursting", _DNV + "D200"),
-        Criterion("hoop_buckling", "hoop buckling", _DNV + "D400"),
-        Criterion("propagating_buckling", "propagating buckling", _DNV + "D500"),
-        Criterion("combined_loading", "combined loading", _DNV + "D600"),
+        Criterion("bursting", "bursting", _DNV),
+        Criterion("hoop_buckling", "hoop buckling", _DNV),
+        Criterion("propagating_buckling", "propagating buckling", _DNV),
+        Criterion("combined_loading", "combined loading", _DNV),
     )
 
     @property
@@ -232,22 +236,54 @@ class ApiCriteria:
         c, (p_b, p_c), p_e = self.check, self.resistances, loads.outside
         p_ld, _ = local_design_pressure(c, loads)
         p_min = minimum_pressure(c, loads)
-        pressure = np.maximum(np.maximum(p_ld - p_e, 0.0) / p_b, np.maximum(p_e - p_min, 0.0) / p_c)
+        inner, outer = api_std_2rd.overpressure(p_ld, p_e, p_b), api_std_2rd.overpressure(p_e, p_min, p_c)
+        combined = (self._combined(loads.effects, *each) for each in ((inner, 0.0), (0.0, outer)))
         return {
-            "bursting": api_std_2rd.overpressure(p_ld, p_e, p_b, c.burst_factor),
-            "hoop_buckling": api_std_2rd.overpressure(p_e, p_min, p_c, c.collapse_factor),
-            "combined_loading": self._combined(loads.effects, pressure),
+            "bursting": inner / c.burst_factor,
+            "hoop_buckling": outer / c.collapse_factor,
+            "combined_loading": np.maximum(*combined),
         }
 
-    def _combined(self, effects: LoadEffects, pressure: Array) -> Array:
+    def _combined(self, effects: LoadEffects, inner: Array | float, outer: Array | float) -> Array:
+        """inner, outer: net overpressures over p_b and p_c, one of them 0."""
         D, t, (S, _), c = self.pipe.diameter, self.pipe.thickness, self.strengths, self.check
         found = effects.all
         tension = np.abs(found.tension) / api_std_2rd.yield_tension(D, t, S)
         moment = np.hypot(found.moment_y, found.moment_z)
-        factor = api_std_2rd.METHOD_1_FACTORS[c.case] if c.design_factor is None else c.design_factor
+        factor = api_std_2rd.design_factor(c.case, outer) if c.design_factor is None else c.design_factor
         if c.method == 1:
-            return api_std_2rd.method_1(tension, moment / api_std_2rd.yield_moment(D, t, S), pressure, factor)
-        return api_std_2rd.method_2(tension, moment / api_std_2rd.plastic_moment(D, t, S), pressure, factor)
+            return api_std_2rd.method_1(tension, moment / api_std_2rd.yield_moment(D, t, S), inner + outer, factor)
+        return api_std_2rd.method_2(tension, moment / api_std_2rd.plastic_moment(D, t, S), inner + outer, factor)
+
+
+@dataclass(frozen=True)
+class ApiStressCriteria:
+    """API RP 2RD: von Mises' stress, the hoop stress in the thinnest wall and all else in the nominal one."""
+
+    check: ApiStressCheck
+    pipe: Steel
+
+    code = "API RP 2RD"
+    safety_class = ""
+    criteria = (Criterion("combined_loading", "von Mises stress", "API RP 2RD (1998) sec. 4.4 table 2, sec. 5 eq. 8"),)
+
+    @property
+    def limit_state(self) -> str:
+        return self.check.case
+
+    def utilisations(self, loads: NodeLoads) -> dict[str, Array]:
+        """The stress is a convex function of the pressure inside: it is largest under the largest or the least one."""
+        p_ld, _ = local_design_pressure(self.check, loads)
+        both = p_ld, minimum_pressure(self.check, loads)
+        return {"combined_loading": np.maximum(*(self._used(loads, inside) for inside in both))}
+
+    def _used(self, loads: NodeLoads, inside: Array | float) -> Array:
+        c, pipe, found = self.check, self.pipe, loads.effects.all
+        moment = np.hypot(found.moment_y, found.moment_z)
+        wall_tension = found.tension + inside * pipe.pressed_inside - loads.outside * pipe.pressed_outside
+        D, t = pipe.diameter, pipe.thickness
+        stress = api_rp_2rd.largest_stress(D, t, t - c.thinning, wall_tension, moment, inside, loads.outside)
+        return api_rp_2rd.utilisation(stress, c.yield_stress - c.yield_derating, c.case)
 
 
 @dataclass(frozen=True)
@@ -300,15 +336,18 @@ class CapacityCriteria:
         return {"capacity_curve": capacity_curve.utilisation(loads.effects.all.tension, loads.curvature, curve)}
 
 
-def criteria_of(check: Check, diameters: tuple[float, float]) -> Criteria:
-    """The criteria of a check on a line type, by the outer and inner diameter [m] of its wall."""
-    outer, inner = diameters
-    pipe = Steel(outer, 0.5 * (outer - inner))
+def criteria_of(check: Check, line_type: LineType) -> Criteria:
+    """The criteria of a check on a line type."""
+    outer, inner = line_type.steel_diameters
+    pressed = (0.25 * np.pi * d**2 for d in (line_type.inner_diameter, line_type.outer_diameter or 0.0))
+    pipe = Steel(outer, 0.5 * (outer - inner), *pressed)
     match check:
         case DnvCheck():
             return DnvCriteria(check, pipe)
         case ApiCheck():
             return ApiCriteria(check, pipe)
+        case ApiStressCheck():
+            return ApiStressCriteria(check, pipe)
         case FlexiblePipeCheck():
             return FlexibleCriteria(check)
         case CapacityCurveCheck():

@@ -140,7 +140,7 @@ def _parts(scene: Scene, line_types: Array, borne: Array) -> list[CheckedPart]:
             check, elements = scene.code_check[n], (line_types == name).astype(float)
             nodes = np.flatnonzero(larger_beside(elements) > 0.0)
             share = np.column_stack([larger_beside(elements * each) for each in borne.T])[nodes]
-            criteria = criteria_of(check, line_type.steel_diameters)
+            criteria = criteria_of(check, line_type)
             reference = n if isinstance(check, DnvCheck) else _NOT_FUNCTIONAL
             parts.append(CheckedPart(name, criteria, nodes, elements, share, reference))
     return parts

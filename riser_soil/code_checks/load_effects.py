@@ -2,7 +2,7 @@
 
 A load effect is what loads bring about in a section: effective tension, and the bending moments about its two axes.
 Functional ones are those at rest, environmental ones what motion, waves and current add, accidental ones what an
-accident adds. Factors weigh each before the effects are summed (DNV-OS-F201 (2010) sec. 5 B, table 5-2).
+accident adds. Factors weigh each before the effects are summed (DNV-OS-F201 (2010) table 5-2).
 """
 
 from __future__ import annotations

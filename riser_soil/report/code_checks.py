@@ -20,6 +20,7 @@ NO_CHECK = "No code check is made: no load case asks for one."
 _CODES = {
     "dnv-st-f201": "DNV-ST-F201",
     "api-std-2rd": "API STD 2RD",
+    "api-rp-2rd": "API RP 2RD",
     "flexible-pipe": "limits of a flexible pipe",
     "capacity-curve": "a capacity curve",
 }

@@ -28,7 +28,7 @@ from riser_soil.core.quantities import (
 )
 from riser_soil.scene.files import NamedFolder
 
-LEAST_OVALITY = 0.005  # DNV-OS-F201 (2010) sec. 5 D400
+LEAST_OVALITY = 0.005  # DNV-OS-F201 (2010) sec. 5
 LEAST_SLENDER, MOST_SLENDER = 15.0, 45.0  # D/t for which formulas of collapse and propagation were fitted
 _OF_ACCIDENTS = ("SLS", "ALS")
 
@@ -38,6 +38,9 @@ OrContents = Annotated[
         word_or_number, custom_error_type="choice", custom_error_message="must be contents or a number"
     ),
 ]
+
+
+DesignCase = Literal["operating", "extreme", "survival"]
 
 
 class Check(BaseModel):
@@ -59,11 +62,7 @@ class SteelCheck(Check):
     """A check of a steel pipe: its material, its wall and the pressures that it is designed for."""
 
     yield_stress: Stress = Field(description="specified minimum yield strength, SMYS [Pa]")
-    tensile_strength: Stress = Field(description="specified minimum tensile strength, SMTS [Pa]")
     yield_derating: StressOrNone = Field(default=0.0, description="loss of yield strength by temperature [Pa]")
-    tensile_derating: StressOrNone = Field(default=0.0, description="loss of tensile strength by temperature [Pa]")
-    E: Stress = Field(default=2.07e11, description="Young's modulus of the wall [Pa]")
-    nu: PoissonRatio = Field(default=0.3, description="Poisson's ratio of the wall [-]")
     corrosion_allowance: LengthOrNone = Field(description="corrosion allowance: loss of wall thickness [m]")
     design_pressure: Pressure | None = Field(
         default=None,
@@ -75,21 +74,40 @@ class SteelCheck(Check):
         "the run",
     )
 
+    @property
+    def thinning(self) -> float:
+        """By how much the wall may be thinner than nominal [m]."""
+        return self.corrosion_allowance
+
+    @model_validator(mode="after")
+    def _yields(self) -> Self:
+        _require_below("yield_derating", self.yield_derating, self.yield_stress)
+        return self
+
+
+def _require_below(key: str, loss: float, strength: float) -> None:
+    if loss >= strength:
+        raise wrong(key, f"must be below the strength ({strength:g} Pa)", "lower it")
+
+
+class ResistanceCheck(SteelCheck):
+    """A check of pressures and combined loads against resistances of the pipe, by bursting and collapse among them."""
+
+    tensile_strength: Stress = Field(description="specified minimum tensile strength, SMTS [Pa]")
+    tensile_derating: StressOrNone = Field(default=0.0, description="loss of tensile strength by temperature [Pa]")
+    E: Stress = Field(default=2.07e11, description="Young's modulus of the wall [Pa]")
+    nu: PoissonRatio = Field(default=0.3, description="Poisson's ratio of the wall [-]")
+
     @model_validator(mode="after")
     def _tensile_above_yield(self) -> Self:
         if self.tensile_strength < self.yield_stress:
             allowed = f"must not be below yield_stress ({self.yield_stress:g} Pa)"
             raise wrong("tensile_strength", allowed, "correct one of the two")
-        for key, loss, whole in (
-            ("yield_derating", self.yield_derating, self.yield_stress),
-            ("tensile_derating", self.tensile_derating, self.tensile_strength),
-        ):
-            if loss >= whole:
-                raise wrong(key, f"must be below the strength ({whole:g} Pa)", "lower it")
+        _require_below("tensile_derating", self.tensile_derating, self.tensile_strength)
         return self
 
 
-class DnvCheck(SteelCheck):
+class DnvCheck(ResistanceCheck):
     """DNV-ST-F201, load and resistance factor design."""
 
     kind: Literal["dnv-st-f201"] = Field(description="the code")
@@ -131,6 +149,10 @@ class DnvCheck(SteelCheck):
         "default",
     )
 
+    @property
+    def thinning(self) -> float:
+        return self.corrosion_allowance + self.fabrication_tolerance
+
     @model_validator(mode="after")
     def _factors_known(self) -> Self:
         if self.limit_state == "SLS" and self.material_factor is None:
@@ -146,25 +168,34 @@ class DnvCheck(SteelCheck):
         return self
 
 
-class ApiCheck(SteelCheck):
+class ApiCheck(ResistanceCheck):
     """API STD 2RD: burst, collapse, and combined loads by one of two methods."""
 
     kind: Literal["api-std-2rd"] = Field(description="the code")
-    case: Literal["operating", "extreme", "survival"] = Field(description="design case")
+    case: DesignCase = Field(description="design case")
     method: Literal[1, 2] = Field(default=1, description="method for combined loads")
     design_factor: Part | None = Field(
         default=None,
-        description="design factor of combined loads [-]; by method 1 by case: 0.8, 0.8 and 1; needed for method 2",
+        description="design factor of combined loads [-]; by case by default: 0.8, 0.8 and 1, and 0.9 in survival "
+        "under an external overpressure above half of the collapse pressure",
     )
     burst_factor: Part = Field(description="design factor of bursting, for the case [-]")
     collapse_factor: Part = Field(description="design factor of collapse, for the case [-]")
     wall_variability: Part = Field(default=0.45, description="k of the burst pressure: 0.45 of pipe by API 5L [-]")
 
-    @model_validator(mode="after")
-    def _factor_known(self) -> Self:
-        if self.method == 2 and self.design_factor is None:
-            raise wrong("design_factor", "is not built in for method 2", "give it, or take method 1")
-        return self
+
+class ApiStressCheck(SteelCheck):
+    """API RP 2RD: von Mises' stress of the wall against two thirds of the yield stress, times the case factor."""
+
+    kind: Literal["api-rp-2rd"] = Field(description="the code")
+    case: DesignCase = Field(description="design case, with a case factor of 1, 1.2 or 1.5")
+    fabrication_tolerance: LengthOrNone = Field(
+        description="fabrication tolerance: by how much the wall may be thinner than nominal, for the hoop stress [m]"
+    )
+
+    @property
+    def thinning(self) -> float:
+        return self.corrosion_allowance + self.fabrication_tolerance
 
 
 class FlexiblePipeCheck(Check):
@@ -227,7 +258,7 @@ class CapacityCurveCheck(Check):
         return self
 
 
-CHECKS: dict[str, type[Check]] = registry(DnvCheck, ApiCheck, FlexiblePipeCheck, CapacityCurveCheck)
+CHECKS: dict[str, type[Check]] = registry(DnvCheck, ApiCheck, ApiStressCheck, FlexiblePipeCheck, CapacityCurveCheck)
 CHECK = OneOf(CHECKS)
 CodeChecks = tuple[Annotated[Any, CHECK], ...]
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from riser_soil.scene.code_check import MOST_SLENDER, DnvCheck, SteelCheck, checks_of
+from riser_soil.scene.code_check import MOST_SLENDER, DnvCheck, ResistanceCheck, SteelCheck, checks_of
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.problem import Path, Problem, hint
 from riser_soil.scene.scene import Scene
@@ -60,13 +60,12 @@ def _wall(path: Path, check: SteelCheck, name: str, line: LineType) -> Iterator[
         yield Problem((*path, "kind"), allowed, f"give them in line_types.{name}, or name other line_types")
         return
     t = 0.5 * (outer - inner)
-    lost = check.corrosion_allowance + (check.fabrication_tolerance if isinstance(check, DnvCheck) else 0.0)
-    if lost >= t:
+    if check.thinning >= t:
         allowed = f"leaves nothing of the wall of {name}, which is {t:g} m thick"
         remedy = "lower it or fabrication_tolerance, or give a thicker wall"
         yield Problem((*path, "corrosion_allowance"), allowed, remedy)
         return
     slender = outer / (t - check.corrosion_allowance)
-    if slender > MOST_SLENDER:
+    if isinstance(check, ResistanceCheck) and slender > MOST_SLENDER:
         allowed = f"holds up to D/t = {MOST_SLENDER:g}, and {name} has {slender:.4g} without its corrosion_allowance"
         yield Problem((*path, "kind"), allowed, "take a thicker wall, or leave the check of this line type out")

@@ -40,6 +40,9 @@ GAMMA = 1.15 * 1.14
 FY, FU = 0.96 * (SMYS - LOST), 0.96 * SMTS
 API: Mapping = {"kind": "api-std-2rd", "case": "operating", "yield_stress": SMYS, "tensile_strength": SMTS}
 API |= {"corrosion_allowance": T_CORR, "burst_factor": 0.6, "collapse_factor": 0.7}
+LOW = 3.0e5  # Pa
+RP: Mapping = {"kind": "api-rp-2rd", "case": "extreme", "yield_stress": SMYS, "yield_derating": LOST}
+RP |= {"corrosion_allowance": T_CORR, "fabrication_tolerance": T_FAB, "design_pressure": LOW}
 
 
 def hanging(*checks: Mapping, pipe: Mapping = STEEL, water: float = 100.0, **pressure: float) -> Mapping:
@@ -298,6 +301,60 @@ def test_api_by_both_methods(method: int, tmp_path: Path) -> None:
     assert s * np.cos(0.5 * np.pi * T / s) == pytest.approx(m, rel=1e-6, abs=1e-12)
 
 
+def test_api_design_factors_by_case(tmp_path: Path) -> None:
+    """Of method 2 as of method 1: 0.8 in operation, 1 in survival."""
+    used = []
+    for case in ("operating", "survival"):
+        scene = hanging(API | {"method": 2, "case": case, "minimum_pressure": "contents"})
+        scene["stages"] = scene["stages"][:1]
+        used.append(finished(scene, tmp_path / case)["combined_loading_utilisation"])
+    assert used[0] == pytest.approx(used[1] / 0.8, rel=1e-12)
+
+
+def von_mises_of_wall(done: Run, inside: np.ndarray, area: float, I: float) -> np.ndarray:
+    """Largest of both sides of the bend [Pa], in the middle of the wall."""
+    outside, t = done["external_pressure"], 0.5 * (D - BORE)
+    tension = done["effective_tension"] + 0.25 * np.pi * (inside * BORE**2 - outside * COATED**2)
+    bent = np.hypot(done["bending_moment_y"], done["bending_moment_z"]) * 0.5 * (D - t) / I
+    hoop = (inside - outside) * D / (2.0 * T1) - inside
+    radial = -(outside * D + inside * BORE) / (D + BORE)
+    found = []
+    for axial in (tension / area + bent, tension / area - bent):
+        found.append(np.sqrt(0.5 * ((axial - hoop) ** 2 + (hoop - radial) ** 2 + (radial - axial) ** 2)))
+    return np.max(found, axis=0)
+
+
+COATED = 0.15  # m, diameter on which the water presses
+
+
+def test_von_mises_stress_by_api_rp_2rd(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of a coated pipe, the larger under the design pressure and empty; all recorded instants."""
+    coated = STEEL | {"outer_diameter": COATED, "wall": {"outer_diameter": D}}
+    done = finished(hanging(RP, pipe=coated, pressure=0.0), tmp_path / "run")
+    area, I = 0.25 * np.pi * (D**2 - BORE**2), np.pi / 64.0 * (D**4 - BORE**4)
+    design = done["internal_pressure"] + LOW
+    under = [von_mises_of_wall(done, inside, area, I) for inside in (design, 0.0 * design)]
+    expected = np.max(under, axis=0) / (1.2 * 2.0 / 3.0 * (SMYS - LOST))
+    assert done["combined_loading_utilisation"] == pytest.approx(expected, rel=1e-9)
+    assert done["code_utilisation"] == pytest.approx(expected, rel=1e-9)
+    assert (under[1] > under[0]).any()
+    assert (under[1] < under[0]).any()
+    (found,) = done.summary["stages"][-1]["code_check"]
+    facts = [found[key] for key in ("code", "check", "limit_state", "safety_class")]
+    assert facts == ["API RP 2RD", "von Mises stress", "extreme", ""]
+    assert "table 2" in found["clause"]
+    assert "code: combined loading" in capsys.readouterr().out
+
+
+def test_a_pipe_without_strength_in_tension_is_checked_by_stress() -> None:
+    """The code asks for the yield stress alone, and for any slenderness: it knows no collapse."""
+    slim = RP | {"corrosion_allowance": 0.0, "fabrication_tolerance": 0.0}
+    assert scene_from_mapping(hanging(slim, pipe=SLIM)).code_check
+    for key in ("tensile_strength", "E", "method"):
+        with pytest.raises(SceneError, match=rf"code_check\.0\.{key}.*no such key"):
+            scene_from_mapping(hanging(RP | {key: 5.0e8}))
+
+
 def test_each_line_type_by_its_own_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Lower half flexible, its bend radius by the kind of stage; upper half by a capacity curve."""
     flexible = STEEL | {"EI": 1.0e5}
@@ -464,7 +521,10 @@ def test_pressure_outside_is_needed() -> None:
         ({"kind": "capacity-curve", "curve": [[1.0, 0.1], [2.0, 0.0]]}, "tension 0 or less"),
         ({"kind": "capacity-curve", "curve": [[0.0, 0.1], [0.0, 0.0]]}, "must increase"),
         ({"kind": "capacity-curve", "curve": [[0.0, 0.1], [1.0, 0.0], [2.0, 0.1]]}, "each ray"),
-        (API | {"method": 2}, "design_factor.*method 2"),
+        ({key: value for key, value in RP.items() if key != "case"}, r"code_check\.0\.case"),
+        (RP | {"corrosion_allowance": 0.016}, "leaves nothing of the wall of pipe"),
+        (RP | {"yield_derating": 4.5e8}, r"yield_derating.*below the strength \(4.48e\+08 Pa\)"),
+        (API | {"case": "storm"}, "case.*operating, extreme, survival"),
     ],
 )
 def test_incomplete_checks_are_refused(check: Any, reported: str) -> None:

@@ -3,13 +3,14 @@
 Sources: a comparison of LRFD and WSD by DNV-OS-F201 (pipe of 20 inch and X65, high safety class), the oracle of
 test_dnv_os_f201_lrfd_wsd.py in vamseeachanta/digitalmodel on GitHub, in kips, inches and ksi; notebooks of
 qwilka/PDover2t on GitHub by DNVGL-ST-F101 (2017), whose collapse and propagation formulas DNV-OS-F201 shares, in SI
-units; the workflow pipe-capacity of vamseeachanta/digitalmodel by API STD 2RD (2013), in inches and psi.
+units; the workflow pipe-capacity of vamseeachanta/digitalmodel by API STD 2RD (2013), in inches and psi; a stress joint
+of that repository by API RP 2RD (1998), of which input and formulas are published and the result follows from these.
 """
 
 import numpy as np
 import pytest
 
-from riser_soil.code_checks import api_std_2rd, dnv_st_f201
+from riser_soil.code_checks import api_rp_2rd, api_std_2rd, dnv_st_f201
 from riser_soil.code_checks.collapse import elastic_collapse_pressure
 from riser_soil.code_checks.load_effects import LoadEffects, SectionEffects, design_effects
 
@@ -91,3 +92,13 @@ def test_burst_pressure_of_a_12_inch_pipe() -> None:
     assert allowed == pytest.approx(3149.178164, rel=SHOWN)
     thin = 0.375 - 0.125  # of the example's corrosion allowance
     assert api_std_2rd.burst_pressure(12.75, thin, 65300.0, 77500.0, 0.45) * 0.60 > 1440.0
+
+
+def test_stresses_of_a_9_inch_stress_joint() -> None:
+    """The wall is as thick as it is nominally; the tension is effective, 556.227 kN."""
+    outer, t, inside = 0.288925, 0.0508, 1.03e8
+    wall_tension = 556227.0 + inside * 0.25 * np.pi * (outer - 2.0 * t) ** 2
+    assert api_rp_2rd.radial_stress(outer, t, inside, 0.0) == pytest.approx(-40513333.3, rel=SHOWN)
+    assert api_rp_2rd.hoop_stress(outer, t, inside, 0.0) == pytest.approx(189906250.0, rel=SHOWN)
+    stress = api_rp_2rd.largest_stress(outer, t, t, wall_tension, 7679.624316, inside, 0.0)
+    assert stress == pytest.approx(200348930.9, rel=SHOWN)

@@ -48,7 +48,8 @@ def test_numbers_words_and_what_is_needed_are_not_null(key: str) -> None:
 
 def test_a_case_takes_the_code_check_off(tmp_path: Path) -> None:
     (tmp_path / "checked.yaml").write_text(CHECKED, encoding="utf-8")
-    text = "base: checked.yaml\ntable:\n  - {name: with, set: {title: a}}\n  - {name: without, set: {code_check: null}}\n"
+    rows = "[{name: with, set: {title: a}}, {name: without, set: {code_check: null}}]"
+    text = f"base: checked.yaml\ntable: {rows}\n"
     (tmp_path / "cases.yaml").write_text(text, encoding="utf-8")
     scenes = []
     for case in read_cases(tmp_path / "cases.yaml", ())[1]:
