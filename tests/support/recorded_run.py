@@ -33,7 +33,7 @@ from riser_soil.results.schedule import DueOutputs, Schedule
 
 EI, WEIGHT, RADIUS = 5.0e4, 650.0, 0.15  # N.m2, N/m, m
 CHECK = CodeCheckFacts(
-    "flexible", "DNV-ST-F201", "combined loading", "D600", "combined_loading_utilisation", "ULS", "high"
+    "flexible", "DNV-ST-F201", "combined loading", "sec. 5 D", "combined_loading_utilisation", "ULS", "high"
 )
 FACTS = RunFacts(
     title="Touchdown on soft clay",
