@@ -22,7 +22,7 @@ PIPE, FLOATS = "pipe", "buoyant"
 BELOW, ABOVE = 0.1, 10.0  # the hang-off lies this part of the depth below the surface, at most so many metres
 OVERPULL = 1.4  # top tension over the submerged weight, of a riser that stands
 SHALLOW = 10.0  # diameters of water that a line needs to hang in
-ELEMENTS, BENDS = 60, 5.0  # of a whole line, at least; of the length a = H/w over which a catenary bends
+ELEMENTS, BENDS = 60, 8.0  # of a whole line, at least; of the length a = H/w over which a catenary bends
 STIFF = 2.0  # times sqrt(a sqrt(EI/H)), beyond which elements miss the bend's moment
 FINE, ZONE = 0.25, 3.0  # element and half of the touchdown zone, over the boundary layer sqrt(EI/H)
 GROWTH = 0.2  # of elements from one to the next

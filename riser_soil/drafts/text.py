@@ -13,7 +13,7 @@ from riser_soil.drafts.wishes import CLAY, SeaState, Wishes, doubts_of, kind_of,
 from riser_soil.errors import SceneError
 
 RESPONSE = 0.25  # amplitude of the floater over Hs, where its RAOs are not known
-WAVES, STEPS = 10, 40  # periods that the dynamic stage lasts, steps in one
+WAVES, STEPS = 10, 60  # periods that the dynamic stage lasts, steps in one
 COMMENT = 40  # column at which comments begin
 BEDS = {
     "spring": ("seabed: {kind: spring, stiffness: 1.0e5}", "N/m2: force per length and penetration"),

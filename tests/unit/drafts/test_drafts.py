@@ -44,6 +44,24 @@ def test_a_draft_is_checked_and_runs_as_it_is(kind: str, tmp_path: Path, monkeyp
     assert "warning" not in done.output
 
 
+@pytest.mark.parametrize(
+    ("wishes", "seconds"),
+    [
+        ("steel-catenary --depth 900 --diameter 0.219 --wall 0.0222 --angle 14 --hs 7 --tp 12", 60.0),
+        ("lazy-wave --depth 250 --diameter 0.25 --hs 9", 1.0),
+    ],
+)
+def test_steps_and_elements_of_a_draft_are_fine_enough_for_its_motion(
+    wishes: str, seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A thin pipe moves by some of its diameters in a step, and a short bend has few elements."""
+    monkeypatch.chdir(tmp_path)
+    assert called("new", *wishes.split(), "-o", "mine.yaml").exit_code == 0
+    done = called("run", "mine.yaml", "--set", f"stages.1.duration={seconds}")
+    assert done.exit_code == 0, done.output
+    assert "warning" not in done.output
+
+
 def scene(kind: str, wishes: Wishes) -> Scene:
     return checked(parse(draft(kind, wishes, "test"), "test"), Path())
 

@@ -320,7 +320,7 @@ def test_a_scene_in_the_appendix_has_nothing_absent_and_names_of_files_alone() -
 def test_a_line_without_anything_along_time_is_reported(tmp_path: Path) -> None:
     """A riser that hangs, without seabed, water and motion; its scene reads back from the appendix as it was."""
     pipe = {"EA": 1.0e8, "EI": 1.0e3, "mass": 20.0, "submerged_weight": 100.0, "outer_diameter": 0.2}
-    ends = {"start": prescribed(0.0, 0.0, 10.0), "end": prescribed(30.0, 0.0, 20.0)}
+    ends = {"start": prescribed(0.0, 0.0, 10.0), "end": prescribed(30.0, 0.0, 20.0, rotation={"stiffness": 10.0})}
     more = ends | {"riser": {"initial": "catenary"}, "gravity": 9.81}
     scene = scene_from_mapping(riser_scene(static(), pipe=pipe, length=40.0, elements=8, **more))
     run_scene(scene, tmp_path / "run")
@@ -331,6 +331,7 @@ def test_a_line_without_anything_along_time_is_reported(tmp_path: Path) -> None:
         "How to reproduce the results", "Input file",
     ]  # fmt: skip
     line_with(said(items), "one load case, computed by static analysis")
+    assert "End B has a flex joint of 0.01 kN m/rad." in said(items)
     assert table(items, "static reactions").rows
     assert not [row for row in table(items, "summary").rows if "seabed" in row[0]], "there is none"
     written = YAML(typ="safe").load(scene_text(sources.first))
