@@ -165,7 +165,7 @@ class System:
 
     def magnitudes(self, state: State, weights: Weights) -> Array:
         """Sizes (size,) of the terms that this rank's residual is made of, to be summed by the numbering [N]: those of
-        the tangent at held rates, which takes the matrix' place, times those of the coordinates. See `newton_progress`.
+        the tangent at held rates, which takes the matrix' place, times those of the coordinates. See `residual_norm`.
         """
         self.assemble(state, replace(weights, shift_v=0.0, shift_a=0.0))
         return self.matrix.magnitudes(np.concatenate([f.magnitudes(state) for f in self.model.fields]))

@@ -33,7 +33,7 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.riser.section_forces import BoundSections, nodal_residual, viscous_residual
 from riser_soil.riser.sections import Elements
-from riser_soil.solve import riser_loop as loop
+from riser_soil.solve import step_kernels as kernels
 from riser_soil.solve.packed_line import KernelData, PackedLine
 from riser_soil.solve.riser_mass import mass_of
 
@@ -68,7 +68,7 @@ class AcceptedLine:
         self._find_matrices = in_turn(
             *(bound(find_water, data, here) for data in inertial if type(data) in find_water.kernels),
             bound(write_maps, at, maps),
-            Bound(loop.set_zero, K),
+            Bound(kernels.set_zero, K),
             *(bound(add_tangent, data, here, maps, weights, K) for data in inertial),
         )
 

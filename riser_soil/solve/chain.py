@@ -1,8 +1,6 @@
-"""Newton's loop for a riser alone on one rank, whose matrix is a band: a chain. It needs no PETSc."""
+"""Newton's method for a riser alone on one rank, whose matrix is a band: a chain. It needs no PETSc."""
 
 from __future__ import annotations
-
-from typing import Protocol
 
 import numpy as np
 
@@ -11,12 +9,9 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.banded import SingularError
 from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix
-from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.newton_progress import NAMES
-
-# How a loop ends; OUTGROWN where the matrix lacks places.
-ITERATING, CONVERGED, NOT_FINITE, NOT_SOLVED, DIVERGED, TOO_MANY, OUTGROWN = NAMES
+from riser_soil.solve.convergence import ITERATING, NOT_SOLVED
+from riser_soil.solve.newton_loop import Balance, Loop, iterate
 
 
 class ChainFactors:
@@ -75,69 +70,6 @@ def _spread(indptr: IntArray, indices: IntArray, values: Array, band: Array, b: 
                 band[i, indices[k] - i + b] = values[k]
 
 
-class OutgrownError(Exception):
-    """The matrix lacks places for the tangent: the iteration ends, to begin anew with a wider one; on all ranks."""
-
-
-class Balance(Protocol):
-    """The balance that a loop is to find, and the rules by which; its arrays are over this rank's rows, see
-    `StepIteration`. All methods are collective.
-    """
-
-    def residual(self, x: Array) -> Array: ...
-
-    def tangent(self, x: Array) -> None:
-        """Assemble the tangent at unknowns that are judged, unless the one before serves once more."""
-        ...
-
-    def judge(self, x: Array, f: Array, small: bool | None = None) -> str: ...
-
-    def shortened(self, x: Array, y: Array) -> Array: ...
-
-    def took(self, part: float) -> None:
-        """Take note of the part of the last step that another line search has found."""
-        ...
-
-    def linear_tolerance(self) -> float: ...
-
-    def negligible(self) -> float:
-        """What of the residual [N] needs no answer of the next linear system; collective."""
-        ...
-
-
-class Loop:
-    """Base of the loops of Newton's method. max_iterations: those after which a step is looked at. factorises: whether
-    pivots may be counted, too. again: whether what failed last may be tried once more.
-    """
-
-    max_iterations: int
-    factorises, again = True, False
-
-    def iterate(self, x: Array, most: int) -> str:
-        """Iterate from x, at most so often: how it ends; what was judged last is what was found; collective."""
-        raise NotImplementedError
-
-    def respond(self, f: Array) -> tuple[str, Array]:
-        """What the present tangent answers to a residual; "", or why it has no answer; collective."""
-        raise NotImplementedError
-
-    def release(self) -> None:
-        """Let go of the matrix, in whose place another is to come."""
-
-    def renew(self) -> None:
-        """Take the matrix that the system has now."""
-
-    def state(self) -> Saved:
-        """What is kept of linear systems."""
-        return {}
-
-    def restore(self, saved: Saved) -> None:
-        """Go on with what was kept."""
-
-    def destroy(self) -> None:
-        """Give back what the ranks hold together; collective."""
-
-
 class ChainLoop(Loop):
     """Newton's iteration with banded factors."""
 
@@ -145,21 +77,21 @@ class ChainLoop(Loop):
         self._system, self.max_iterations, self._balance = system, max_iterations, balance
         self.renew()
 
-    def iterate(self, x: Array, most: int) -> str:
-        """Newton's method in its plainest form."""
-        f = self._balance.residual(x)
-        for left in range(most, -1, -1):
-            if (ending := self._balance.judge(x, f)) != ITERATING:
-                return ending
-            if not left:
-                break
-            self._balance.tangent(x)
-            failure, y = self.respond(f)
-            if failure:
-                return failure
-            x = x - self._balance.shortened(x, y)
-            f = self._balance.residual(x)
-        return TOO_MANY
+    def iterate(self, x: Array) -> str:
+        self._x = x
+        return iterate(self)
+
+    def judge(self) -> str:
+        self._f = self._balance.residual(self._x)
+        return self._balance.judge(self._x, self._f)
+
+    def improve(self) -> str:
+        self._balance.tangent(self._x)
+        failure, response = self.respond(self._f)
+        if failure:
+            return failure
+        self._x = self._x - self._balance.shortened(self._x, response)
+        return ITERATING
 
     def respond(self, f: Array) -> tuple[str, Array]:
         try:

@@ -1,4 +1,4 @@
-"""Newton's method for time steps of lines and bodies, compiled: `riser_loop` over packed lines.
+"""Newton's method for time steps of lines and bodies, compiled: by kernels over packed lines.
 
 A step that it can't solve where something stands beside the lines, as where contact with soil opens so that steps want
 shortening, is left to Newton's method over the parts.
@@ -26,8 +26,9 @@ from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.accepted_lines import CompiledMass, LineResults
-from riser_soil.solve.newton_progress import CONVERGED, NAMES, OUTGROWN, StopLimits, largest_at
+from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
 from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
+from riser_soil.solve.residual_norm import largest_at
 from riser_soil.solve.solver import Accepted, NewtonSettings, Solution, Step, limits_of, reported
 
 if TYPE_CHECKING:
@@ -37,9 +38,9 @@ if TYPE_CHECKING:
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is given up
 
 
-def compiled_loop(system: System, most: int) -> CompiledLoop | None:
+def compiled_loop(system: System) -> CompiledLoop | None:
     """The compiled loop over lines and bodies, joined or not, one of them on condensed soil or none; None where one of
-    their parts has no kernels. most: iterations of a step.
+    their parts has no kernels.
     """
     fields = [field for field in system.model.lines if isinstance(field, MovingNodes)]
     parts = [_with_kernels(acting_on(field, system.model.parts)) for field in fields]
@@ -52,7 +53,7 @@ def compiled_loop(system: System, most: int) -> CompiledLoop | None:
         PackedLine(field, own, system.prescribed[field.part], system.levers[field.part], weights)
         for field, own in zip(fields, parts, strict=True)
     ]
-    return CompiledLoop(system, PackedSystem(lines, make(lines), weights, most))
+    return CompiledLoop(system, PackedSystem(lines, make(lines), weights))
 
 
 def _with_kernels(parts: Sequence[LinePart]) -> KernelParts:
@@ -151,17 +152,16 @@ class CompiledLoop(Accepted):
             for each in self._beside:
                 each.begin(step.before, begun.t, begun.u)
             self.packed.begin(begun, past, scheme.weights(step.dt), limits)
-            outcome, taken = self.packed.solve()
-            self.iterations += taken
-            norms: list[float] = as_list(self.packed.progress.norms[: taken + 1])
-            if outcome == CONVERGED:
+            ending, convergence = self.packed.solve(), self.packed.convergence
+            self.iterations += convergence.iterations
+            if ending == CONVERGED:
                 holds = self.packed.all_beside(attrgetter("holds"))
-                return self._tangle(step, begun) or ("" if holds else NAMES[OUTGROWN]), norms
-            if outcome != OUTGROWN:
+                return self._tangle(step, begun) or ("" if holds else OUTGROWN), convergence.norms
+            if ending != OUTGROWN:
                 break
             for each in self._beside:
                 each.widen()
-        return self._reason(outcome, norms), norms
+        return self._reason(ending, convergence.norms), convergence.norms
 
     def _limits(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
@@ -273,8 +273,8 @@ class CompiledLoop(Accepted):
         for each in self._beside:
             each.restore(saved)
 
-    def _reason(self, outcome: int, norms: list[float]) -> str:
-        return reported(NAMES[outcome], norms, self._place())
+    def _reason(self, ending: str, norms: list[float]) -> str:
+        return reported(ending, norms, self._place())
 
     def _place(self) -> str:
         """The largest residual, in words."""

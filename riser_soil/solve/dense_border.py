@@ -21,9 +21,8 @@ from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.dense import PIVOT
 from riser_soil.riser.part_kernels import Border
-from riser_soil.solve.newton_progress import GOING_ON, SINGULAR, NewtonProgress
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace
+from riser_soil.solve.step_kernels import NONE, SINGULAR, Dofs, MatrixWorkspace
 
 
 class Factors(NamedTuple):
@@ -47,10 +46,10 @@ def begin_schur(border: Border, factors: Factors) -> None:
 
 @njit
 def eliminate(
-    workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, progress: NewtonProgress
+    workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, failure: IntArray
 ) -> None:
     """Take off what a line does as it follows the border, with its band factorised."""
-    if progress.ending[0] != GOING_ON:
+    if failure[0] != NONE:
         return
     fixed, count, ndof = dofs.fixed, 0, dofs.fixed.shape[1]
     for n in range(fixed.shape[0]):
@@ -86,10 +85,10 @@ def _coupled_columns(border: Border, rows: IntArray) -> IntArray:
 
 
 @njit
-def factorise_schur(factors: Factors, progress: NewtonProgress) -> None:
+def factorise_schur(factors: Factors, failure: IntArray) -> None:
     """Factorise what is left of the border."""
-    if progress.ending[0] == GOING_ON and not dense.factorise(factors.schur, factors.pivots):
-        progress.ending[0] = SINGULAR
+    if failure[0] == NONE and not dense.factorise(factors.schur, factors.pivots):
+        failure[0] = SINGULAR
 
 
 @njit
@@ -153,12 +152,12 @@ class DenseBorder(LoopBorder):
             made.append((Border(*own, *coupling), Factors(*factors, np.zeros(n, np.int64), np.zeros(1, np.int64))))
         return made
 
-    def factorise(self, progress: Packed) -> list[Bound]:
+    def factorise(self, failure: Packed) -> list[Bound]:
         first, *_ = zip(self.of.values(), self._factors.values(), strict=True)
         return [
             Bound(begin_schur, *first),
-            *(Bound(eliminate, line.packed_workspace, *self._given(line), progress) for line in self.of),
-            Bound(factorise_schur, first[1], progress),
+            *(Bound(eliminate, line.packed_workspace, *self._given(line), failure) for line in self.of),
+            Bound(factorise_schur, first[1], failure),
         ]
 
     def couple(self) -> list[Bound]:

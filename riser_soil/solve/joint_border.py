@@ -25,7 +25,7 @@ from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.part_kernels import Border, LineForces, LineWeights
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace
+from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace
 
 MOST_JOINTS = 32  # from which on a sparse matrix of all is cheaper
 
@@ -194,7 +194,7 @@ class JointBorder(LoopBorder):
         data = self._packed
         return [Bound(add_to_band, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self.lines]
 
-    def factorise(self, progress: Packed) -> list[Bound]:
+    def factorise(self, failure: Packed) -> list[Bound]:
         return [Bound(write_copies, self._packed, sides, self._dense.of[line]) for line, sides in self.lines]
 
     def account(self, energy: Packed) -> list[Bound]:

@@ -109,7 +109,7 @@ def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton
     if system.comm.size == 1 and not settings.snes and dynamic and system.whole_soil is None:
         from riser_soil.solve.compiled_loop import compiled_loop
 
-        compiled = compiled_loop(system, settings.max_iterations)
+        compiled = compiled_loop(system)
     return Newton(system, settings, compiled)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, as_list
-from riser_soil.core.bound import Bound, Packed, bound, calls, in_turn
+from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import Energy, Forces, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.configuration import (
@@ -38,9 +38,10 @@ from riser_soil.riser.part_kernels import (
     weigh,
 )
 from riser_soil.riser.placed_line import PlacedLine
-from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.newton_progress import NewtonProgress, StopLimits
-from riser_soil.solve.riser_loop import Dofs, StepData, matrix_workspace
+from riser_soil.solve import step_kernels as kernels
+from riser_soil.solve.convergence import ITERATING, NOT_SOLVED, OUTGROWN, Convergence, StopLimits
+from riser_soil.solve.newton_loop import iterate
+from riser_soil.solve.step_kernels import Dofs, StepData, matrix_workspace
 
 KernelData = tuple[Any, ...]
 
@@ -55,9 +56,9 @@ class KernelParts:
         self.parts: list[LinePart] = [part for part, _ in with_data]
         self.kernel_data = [held for _, held in with_data]
         self._renewed = [part for part in self.parts if overrides(part, "renew_kernel_data")]
-        kernels = [(part, type(held) in add_work.kernels) for part, held in with_data]
+        turning = [(part, type(held) in add_work.kernels) for part, held in with_data]
         self.committed = [part for part, held in with_data if type(held) not in keep.kernels]
-        self._turning = [(part, kernel) for part, kernel in kernels if kernel or _by_method(part)]
+        self._turning = [(part, kernel) for part, kernel in turning if kernel or _by_method(part)]
         self._trials = {part.line.once(LineTrials) for part in self.parts}
 
     def update(self, start: float, end: float) -> None:
@@ -122,7 +123,7 @@ class PackedLine:
         """Kernels that place the trial and find the forces there."""
         now, step, forces = self.packed_at, self.packed_step, self.packed_forces
         return [
-            Bound(loop.follow, step, self._maps, self.packed_dofs),
+            Bound(kernels.follow, step, self._maps, self.packed_dofs),
             bound(place, self.at, self.placed.base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
             Bound(clear, forces),
             *(bound(add_forces, each, now, forces) for each in self.parts.kernel_data),
@@ -133,8 +134,8 @@ class PackedLine:
         forces, dofs = self.packed_forces, self.packed_dofs
         return [
             Bound(collect, self.packed_at, forces),
-            Bound(loop.combine, forces, self.packed_step, self.weights, dofs),
-            Bound(loop.add_norms, forces, dofs, sums),
+            Bound(kernels.combine, forces, self.packed_step, self.weights, dofs),
+            Bound(kernels.add_norms, forces, dofs, sums),
         ]
 
     def tangents(self, contact: bool) -> tuple[list[Bound], list[Bound], list[Bound], list[Bound]]:
@@ -144,7 +145,7 @@ class PackedLine:
         others = [each for each in self.parts.kernel_data if all(each is not one for one in self._touching)]
         touched = contact or len(self._touching) > 0
         bulk, held = Packed(np.empty_like(self.workspace.K)) if touched else self.K, Packed(self._maps.value)
-        begun = [Bound(loop.begin_with, bulk, self.K)] if touched else []
+        begun = [Bound(kernels.begin_with, bulk, self.K)] if touched else []
 
         def contacts(maps: Packed) -> list[Bound]:
             given = self.packed_at, maps, self.weights, self.K
@@ -158,7 +159,7 @@ class PackedLine:
         conjugate, turning = Packed(self.workspace.conjugate), Packed(self.workspace.turning)
         return [
             bound(write_maps, self.at, maps),
-            Bound(loop.set_zero, K),
+            Bound(kernels.set_zero, K),
             *(bound(add_tangent, each, now, maps, weights, K) for each in parts),
             Bound(weigh, forces, weights, conjugate),
             bound(write_turning, self.at, conjugate, turning),
@@ -169,20 +170,20 @@ class PackedLine:
         """Kernels that add a share of the tangent to the terms of the residual, and leave this share alone in K.
         tangent: those that add it to K.
         """
-        own = Bound(loop.add_terms, self.packed_workspace, self.packed_dofs)
-        return [Bound(loop.set_zero, self.K), *tangent, own]
+        own = Bound(kernels.add_terms, self.packed_workspace, self.packed_dofs)
+        return [Bound(kernels.set_zero, self.K), *tangent, own]
 
     def fill(self) -> Bound:
         """The kernel that writes the band."""
-        return Bound(loop.fill, self.packed_workspace, self.packed_dofs)
+        return Bound(kernels.fill, self.packed_workspace, self.packed_dofs)
 
-    def factorise(self, progress: Packed) -> Bound:
+    def factorise(self, failure: Packed) -> Bound:
         """The kernel that factorises the band."""
-        return Bound(loop.factorise, self.packed_workspace, progress)
+        return Bound(kernels.factorise, self.packed_workspace, failure)
 
     def improve(self) -> Bound:
         """The kernel that takes the band's answer off the increments."""
-        return Bound(loop.improve, self.packed_workspace, self.packed_step, self.packed_dofs)
+        return Bound(kernels.improve, self.packed_workspace, self.packed_step, self.packed_dofs)
 
     def account(self, energy: Packed) -> list[Bound]:
         """Kernels of energy (3,), which they add to, and of the rows `work` of the parts that turn some over."""
@@ -191,7 +192,7 @@ class PackedLine:
         self.work = np.zeros((len(turning), 4))
         then, now = Packed(self.placed.at), self.packed_at
         return [
-            Bound(loop.set_zero, Packed(self.work)),
+            Bound(kernels.set_zero, Packed(self.work)),
             *(bound(add_energy, each, now, energy) for each in data),
             *(bound(add_work, each, then, now, Packed(row)) for each, row in zip(turning, self.work, strict=True)),
         ]
@@ -250,7 +251,7 @@ class LoopBorder:
         """Kernels that add the border's residual to the norms."""
         return []
 
-    def outgrown(self, progress: Packed) -> list[Bound]:
+    def outgrown(self, failure: Packed) -> list[Bound]:
         """Kernels that tell where more is wanted of what stands beside the lines."""
         return []
 
@@ -264,7 +265,7 @@ class LoopBorder:
 
     def terms(self) -> list[Bound]:
         """Kernels that add to the terms that the lines' residuals are made of, and write the border's, see
-        `riser_loop.write_terms`. The tangents of contact need not outlive them.
+        `step_kernels.write_terms`. The tangents of contact need not outlive them.
         """
         return []
 
@@ -276,7 +277,7 @@ class LoopBorder:
         """Kernels that add to the lines' bands."""
         return []
 
-    def factorise(self, progress: Packed) -> list[Bound]:
+    def factorise(self, failure: Packed) -> list[Bound]:
         """Kernels that factorise what couples the lines, whose bands are factorised."""
         return []
 
@@ -309,19 +310,21 @@ class LoopBorder:
 
 
 class PackedSystem:
-    """Lines and bodies with what stands beside them, for the compiled loop. weights: as the lines have them; most:
-    iterations of a step. evaluate, write_tangent, renew_contact, improve: pieces of the loop, to be looked at alone.
+    """Residual, tangent and solution of lines and bodies with what stands beside them, by kernels, for Newton's loop.
+
+    weights: as the lines have them; convergence: of the step. evaluate, write_tangent, renew_contact, correct: pieces
+    of the loop, which are looked at alone, too.
     """
 
-    def __init__(self, lines: Sequence[PackedLine], beside: Sequence[LoopBorder], weights: Packed, most: int) -> None:
+    def __init__(self, lines: Sequence[PackedLine], beside: Sequence[LoopBorder], weights: Packed) -> None:
         self.lines, self.beside, self._weights = lines, beside, weights
-        self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(most + 1), np.zeros(2, dtype=np.int64))
-        self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
+        self._sums, self._above = np.zeros(5), np.zeros(1, dtype=np.bool_)
+        self._failure = np.zeros(1, dtype=np.int64)
         self._bind()
         self.energy = np.zeros(3)
         energy = Packed(self.energy)
         each = [kernel for line in lines for kernel in line.account(energy)]
-        self._account = in_turn(Bound(loop.set_zero, energy), *each, *self._kernels(lambda it: it.account(energy)))
+        self._account = in_turn(Bound(kernels.set_zero, energy), *each, *self._kernels(lambda it: it.account(energy)))
 
     def _kernels(self, of: Callable[[LoopBorder], list[Bound]]) -> list[Bound]:
         """Of all that stands beside the lines."""
@@ -333,17 +336,16 @@ class PackedSystem:
 
     def _bind(self) -> None:
         """Bind the kernels of the loop to where they read and write."""
-        lines, beside, progress, limits = self.lines, self._kernels, Packed(self.progress), self._limits
-        smooth = self.all_beside(attrgetter("smooth"))
-        sums, above = Packed(np.zeros(5)), Packed(np.zeros(1, dtype=np.bool_))
+        lines, beside, smooth = self.lines, self._kernels, self.all_beside(attrgetter("smooth"))
+        sums, above, failure = map(Packed, (self._sums, self._above, self._failure))
         evaluate = [
             *(kernel for line in lines for kernel in line.evaluate()),
             *beside(lambda it: it.forces()),
-            Bound(loop.set_zero, sums),
+            Bound(kernels.set_zero, sums),
             *(kernel for line in lines for kernel in line.balance(sums)),
             *beside(lambda it: it.norms(sums)),
-            Bound(loop.judge, sums, limits, progress),
-            *beside(lambda it: it.outgrown(progress)),
+            Bound(kernels.set_zero, failure),
+            *beside(lambda it: it.outgrown(failure)),
         ]
         bulk, contact, held_bulk, held_contact = (
             [kernel for line in each for kernel in line]
@@ -352,25 +354,22 @@ class PackedSystem:
         joined = beside(lambda it: it.bulk_tangent())
         contact += beside(lambda it: it.tangent())
         fill = [*(line.fill() for line in lines), *beside(lambda it: it.fill())]
-        factors = [*fill, *(line.factorise(progress) for line in lines), *beside(lambda it: it.factorise(progress))]
+        factors = [*fill, *(line.factorise(failure) for line in lines), *beside(lambda it: it.factorise(failure))]
         sizes = [line.write_sizes for line in lines]
-        terms = [Bound(loop.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
-        looked = [Bound(loop.find_above, line.packed_dofs, above) for line in lines]
+        terms = [Bound(kernels.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
+        looked = [Bound(kernels.find_above, line.packed_dofs, above) for line in lines]
         probe = [
             *held_bulk, *joined, *held_contact, *sizes, *terms, *beside(lambda it: it.terms()),
-            Bound(loop.set_zero, above), *looked, *beside(lambda it: it.above(above)),
-            Bound(loop.judge_round_off, above, progress),
+            Bound(kernels.set_zero, above), *looked, *beside(lambda it: it.above(above)),
         ]  # fmt: skip
         renew = [*bulk, *joined, *contact, *factors]
         touch = [*contact, *factors] if contact else []
         improve = [*beside(lambda it: it.couple()), *(line.improve() for line in lines)]
-        each = evaluate, probe, renew, touch, improve
-        tables = (Packed(calls(*kernels)) for kernels in each)
-        tangles = (kernel for line in lines for kernel in line.look_for_tangles)
-        self._solve = in_turn(Bound(loop.solve_step, *tables, limits, progress), *tangles)
-        self.evaluate, self.renew_contact = in_turn(*evaluate), in_turn(*touch)
+        self._look_for_tangles = in_turn(*(kernel for line in lines for kernel in line.look_for_tangles))
+        self.evaluate, self._probe = in_turn(*evaluate), in_turn(*probe)
+        self._renew, self.renew_contact, self._improve = in_turn(*renew), in_turn(*touch), in_turn(*improve)
         self.write_tangent = in_turn(*bulk, *joined, *contact, *fill, *sizes)
-        self.improve = in_turn(*factors, *improve)
+        self.correct = in_turn(*factors, *improve)
 
     def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:
         """Begin a step.
@@ -385,14 +384,42 @@ class PackedSystem:
         given = LineWeights(weights.inertia, weights.force)
         if given != self._weights.value:
             self._weights.renew(given)
-        if limits != self._limits.value:
-            self._limits.renew(limits)
+        self.convergence = Convergence(limits)
 
-    def solve(self) -> tuple[int, int]:
-        """Solve the step: the outcome, see `newton_progress`, and the number of iterations."""
-        self._solve()
-        outcome, taken = as_list(self.progress.ending)
-        return outcome, taken
+    def solve(self) -> str:
+        """Solve the step: how Newton's method ends."""
+        ending = iterate(self)
+        self._look_for_tangles()
+        return ending
+
+    def judge(self) -> str:
+        """Find the residual of the trial: how the method ends there, OUTGROWN where more touches the lines than there
+        is room for.
+        """
+        self.evaluate()
+        own, apart, *in_play = as_list(self._sums)
+        self.convergence.add(math.sqrt(own), math.sqrt(apart))
+        if self._failure[0] != kernels.NONE:
+            return OUTGROWN
+        return self.convergence.ending(math.sqrt(max(in_play)), self._at_round_off)
+
+    def _at_round_off(self) -> bool:
+        """Whether nothing in the residual can be told from its round-off; the tangent's workspace is lost."""
+        self._probe()
+        return not self._above[0]
+
+    def improve(self) -> str:
+        """Take the tangent's answer off the increments. A kept tangent is still in its workspace: a residual that may
+        have been probed there has fallen by less than one that leaves it.
+        """
+        if self.convergence.keeps_tangent:
+            self.renew_contact()
+        else:
+            self._renew()
+        if self._failure[0] != kernels.NONE:
+            return NOT_SOLVED
+        self._improve()
+        return ITERATING
 
     def account(self, before: State) -> None:
         """Find the energy at the end of the step solved last, and the work in it."""

@@ -19,8 +19,8 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.riser_loop import Dofs, MatrixWorkspace, NewtonProgress, StepData, matrix_workspace
+from riser_soil.solve import step_kernels as kernels
+from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace, StepData, matrix_workspace
 
 MASSLESS = 1e-12  # of a node's largest mass
 EXACT = 1e-13  # of a force: what its acceleration may lack, in the norm of the inverse diagonal
@@ -49,15 +49,14 @@ class LineMass:
         self._step = StepData(*(np.zeros(shape) for _ in range(6)))
         self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
         moving, whole = np.zeros((*shape, shape[1])), np.zeros(nodes, dtype=bool)
-        self._mass, none = MassData(1.0 / levers.reshape(shape), moving, whole), np.zeros(1)
+        self._mass = MassData(1.0 / levers.reshape(shape), moving, whole)
         written, dofs, mass = map(Packed, (workspace, self._dofs, self._mass))
-        progress = Packed(NewtonProgress(none, none, np.zeros(2, dtype=np.int64)))
         self._weigh = Bound(weigh, written, mass)
         self._solve = in_turn(
             Bound(project, written, dofs, mass),
-            Bound(loop.fill, written, dofs),
-            Bound(loop.factorise, written, progress),
-            Bound(loop.improve, written, Packed(self._step), dofs),
+            Bound(kernels.fill, written, dofs),
+            Bound(kernels.factorise, written, Packed(np.zeros(1, dtype=np.int64))),
+            Bound(kernels.improve, written, Packed(self._step), dofs),
         )
 
     def accelerations(self, force: Array) -> Array:

@@ -20,21 +20,22 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.banded import SingularError
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve import chain
-from riser_soil.solve.chain import NOT_SOLVED, Balance, Loop
+from riser_soil.solve.convergence import CONVERGED, DIVERGED, ITERATING, NOT_FINITE, NOT_SOLVED, TOO_MANY
 from riser_soil.solve.linear_solver import complaint, raised
 from riser_soil.solve.linear_systems import TangentSolver
+from riser_soil.solve.newton_loop import Balance, Loop
 from riser_soil.solve.petsc_options import PREFIX, Given, as_text, defaults, refuse_unread, set_from_options
 from riser_soil.solve.solver import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
+UNLIMITED = 10**6  # iterations: the balance says when there are too many
 ALONE = 1e-5  # share of the residual that the response of a tangent by itself may leave, beside Newton's iterations
 REASONS = {
-    chain.ITERATING: REASON.ITERATING,
-    chain.CONVERGED: REASON.CONVERGED_FNORM_RELATIVE,
-    chain.DIVERGED: REASON.DIVERGED_DTOL,
-    chain.TOO_MANY: REASON.DIVERGED_MAX_IT,
-    chain.NOT_FINITE: REASON.DIVERGED_FNORM_NAN,
+    ITERATING: REASON.ITERATING,
+    CONVERGED: REASON.CONVERGED_FNORM_RELATIVE,
+    DIVERGED: REASON.DIVERGED_DTOL,
+    TOO_MANY: REASON.DIVERGED_MAX_IT,
+    NOT_FINITE: REASON.DIVERGED_FNORM_NAN,
 }
 
 
@@ -96,9 +97,9 @@ class SnesLoop(Loop):
         y.array_w[:] = shortened = self._balance.shortened(np.array(x.array_r), step)
         return shortened is not step
 
-    def iterate(self, x: Array, most: int) -> str:
+    def iterate(self, x: Array) -> str:
         self._x.array_w[:] = x
-        self._snes.setTolerances(max_it=most)
+        self._snes.setTolerances(max_it=UNLIMITED)
         unsolved = REASON.DIVERGED_LINEAR_SOLVE
         failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == unsolved)
         if not failure and self._tangents.used and not self._all_read:
@@ -161,7 +162,7 @@ class SnesLoop(Loop):
 
 
 def _ending(reason: int) -> str:
-    """How SNES has ended, in the words of `chain`; failures by PETSc's name."""
+    """How SNES has ended, in the words of `convergence`; failures by PETSc's name."""
     known = {number: name for name, number in REASONS.items()}
     names = (name for name, value in vars(REASON).items() if value == reason and name.startswith("DIV"))
     return known.get(reason) or next(names, str(reason)).lower()

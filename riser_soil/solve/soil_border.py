@@ -22,15 +22,16 @@ from riser_soil.core.system import System
 from riser_soil.riser.part_kernels import BEYOND, FULL, HELD, LEFT, Border, TopMotion
 from riser_soil.soil.condensed import CondensedSoil, Reached
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
-from riser_soil.solve.newton_progress import OUTGROWN, NewtonProgress, above_round_off
 from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.residual_norm import above_round_off
+from riser_soil.solve.step_kernels import TOO_NARROW
 
 FRICTION = "soil friction"
 
 
 class SoilData(NamedTuple):
     """Of condensed soil: stiffness (nb, nb) [N/m] of its reached dofs; how far these were moved as accepted (nb,) [m],
-    and the forces (nb,) [N] that hold them there. terms (nb,): see `riser_loop.write_terms`.
+    and the forces (nb,) [N] that hold them there. terms (nb,): see `step_kernels.write_terms`.
     """
 
     stiffness: Array
@@ -58,16 +59,16 @@ def begin_border(soil: SoilData, border: Border) -> None:
 
 @njit
 def add_norm_of_soil(soil: SoilData, border: Border, sums: Array) -> None:
-    """Add the soil's residual to the norms, see `riser_loop.add_norms`."""
+    """Add the soil's residual to the norms, see `step_kernels.add_norms`."""
     for i in range(soil.holding.size):
         sums[0] += border.residual[i] * border.residual[i]
 
 
 @njit
-def find_outgrown(found: IntArray, met: BoolArray, progress: NewtonProgress) -> None:
+def find_outgrown(found: IntArray, met: BoolArray, failure: IntArray) -> None:
     """Whether something touches what is not watched or not reached."""
     if found[LEFT] or found[FULL] or met.any():
-        progress.ending[0] = OUTGROWN
+        failure[0] = TOO_NARROW
 
 
 @njit
@@ -105,7 +106,7 @@ def add_terms(soil: SoilData, border: Border, sizes: Array, terms: Array) -> Non
 
 @njit
 def find_above(soil: SoilData, border: Border, above: BoolArray) -> None:
-    """The same as `riser_loop.find_above` of the soil's residual."""
+    """Whether something in the soil's residual can be told from its round-off, or could before, above (1,)."""
     above[0] |= above_round_off(border.residual[: soil.holding.size], soil.terms)
 
 
@@ -159,8 +160,8 @@ class SoilBorder(LoopBorder):
     def norms(self, sums: Packed) -> list[Bound]:
         return [Bound(add_norm_of_soil, self._held, self._border, sums)]
 
-    def outgrown(self, progress: Packed) -> list[Bound]:
-        return [Bound(find_outgrown, Packed(self._touching.found), Packed(self._touching.met), progress)]
+    def outgrown(self, failure: Packed) -> list[Bound]:
+        return [Bound(find_outgrown, Packed(self._touching.found), Packed(self._touching.met), failure)]
 
     def tangent(self) -> list[Bound]:
         """Kernels that write the border's tangent, and add contact's."""

@@ -18,9 +18,9 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, nodal_residual, section_vector, viscous_residual
 from riser_soil.riser.sections import Elements
-from riser_soil.solve.newton_progress import StopLimits
-from riser_soil.solve.riser_loop import write_balance, write_rates
+from riser_soil.solve.convergence import StopLimits
 from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.step_kernels import write_balance, write_rates
 from riser_soil.solve.time_scheme import InverseMass, Scheme, Static
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class NewtonSettings:
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away. Beside clay the compiled loop reuses the tangent of all else, see
-    `newton_progress.StopLimits`. least_iterations: before a residual counts as small.
+    `convergence.StopLimits`. least_iterations: before a residual counts as small.
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a step
     with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
     factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,

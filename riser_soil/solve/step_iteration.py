@@ -15,28 +15,12 @@ from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import Adaptive, Limited, Yielding, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
-from riser_soil.solve.chain import (
-    CONVERGED,
-    DIVERGED,
-    ITERATING,
-    NOT_FINITE,
-    OUTGROWN,
-    TOO_MANY,
-    ChainLoop,
-    Loop,
-    OutgrownError,
-)
-from riser_soil.solve.newton_progress import (
-    NAMES,
-    ElasticShare,
-    ResidualNorm,
-    above_round_off,
-    diverges,
-    leaves_tangent,
-    stalled,
-    step_length,
-    verdict,
-)
+from riser_soil.solve.chain import ChainLoop
+from riser_soil.solve.convergence import CONVERGED, ITERATING, OUTGROWN, TOO_MANY, Convergence
+from riser_soil.solve.elastic_share import ElasticShare
+from riser_soil.solve.line_search import step_length
+from riser_soil.solve.newton_loop import Loop, OutgrownError
+from riser_soil.solve.residual_norm import ResidualNorm, above_round_off
 from riser_soil.solve.solver import (
     NewtonSettings,
     NotConvergedError,
@@ -91,7 +75,7 @@ class StepIteration:
             raise NotConvergedError(failure)
         state = self._step.of(self._x)
         self._step.require_admissible(self._limited)
-        return Solution(state, self._step.forces, self._norms)
+        return Solution(state, self._step.forces, self._convergence.norms)
 
     @property
     def _step(self) -> StepTrials:
@@ -129,8 +113,8 @@ class StepIteration:
         while self._outgrown():
             self._renew(start)
             self._assemble(start)
-        self._first = 1
-        self._norms.append(self._respond_to(residual + (probed - residual) / PROBE, still))
+        self._convergence.first = 1
+        self._convergence.add(self._respond_to(residual + (probed - residual) / PROBE, still))
         if not self._moves and any_of(self.system.comm, bool(guess.any())):
             self._prefer_guess(self._step.with_prescribed(guess))
 
@@ -142,7 +126,7 @@ class StepIteration:
         left = self._norm_of(self.residual(linear))
         norm = self._respond_to(self._step.residual_of(guess)[1], guess)
         if self._norm_of(self.residual(self._x)) < left:
-            self._norms[-1] = norm
+            self._convergence.norms[-1] = norm
         else:
             self._x = linear
 
@@ -176,18 +160,18 @@ class StepIteration:
             if ending == OUTGROWN:
                 self._renew(self._step.balanced)
             elif ending == TOO_MANY and not self._elastic.in_vain and self._still_falls():
-                self._most += self.loop.max_iterations
+                self._convergence.most += self.loop.max_iterations
             elif not self.loop.again:
-                self.iterations += self._taken
+                self.iterations += self._convergence.iterations
                 self._elastic.reset()
                 return "" if ending == CONVERGED else self._reason(ending)
-            self._norms.pop()
+            self._convergence.norms.pop()
 
     def _run(self) -> str:
         """Iterate until that converges, the pattern is outgrown or it fails: how it ends."""
         began, counted = time.perf_counter(), self.system.clock.total
         try:
-            ending = self.loop.iterate(self._x, self._most - self._taken)
+            ending = self.loop.iterate(self._x)
         except OutgrownError:
             ending = OUTGROWN
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
@@ -195,14 +179,9 @@ class StepIteration:
 
     def _still_falls(self) -> bool:
         """Whether a static step nears its end, if slowly, as where stiff ground opens and closes point after point."""
-        before, lately = self._norms[:-PATIENCE], self._norms[-PATIENCE:]
-        limit = LONGEST * self.loop.max_iterations
-        return not self._moves and self._most < limit and min(lately) < 0.5 * min(before, default=0.0)
-
-    @property
-    def _taken(self) -> int:
-        """Iterations of the step so far; a residual that is not finite at its start is none."""
-        return max(len(self._norms) - 1, 0)
+        norms, limit = self._convergence.norms, LONGEST * self.loop.max_iterations
+        before, lately = norms[:-PATIENCE], norms[-PATIENCE:]
+        return not self._moves and self._convergence.most < limit and min(lately) < 0.5 * min(before, default=0.0)
 
     def unstable_modes(self, state: State, forces: Forces | None = None, doubtful: bool = False) -> int:
         """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Without factors
@@ -236,13 +215,13 @@ class StepIteration:
         self.loop.renew()
 
     def _begin(self, step: Step, at_equilibrium: bool) -> None:
-        self._trials, self._norms, self._first = StepTrials(self.system, step), list[float](), 0
-        self._most = self.loop.max_iterations
+        self._trials = StepTrials(self.system, step)
         self._x = self.system.numbering.to_global(step.guess)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._moves
         answers = at_equilibrium or guessed  # one like round-off has an answer, too
-        self._limits = limits_of(self.settings, near, False, answers)
+        self._convergence = Convergence(limits_of(self.settings, near, False, answers))
+        self._convergence.most = self.loop.max_iterations
 
     def residual(self, x: Array) -> Array:
         """Residual of the unknowns, both (owned,); collective."""
@@ -274,18 +253,11 @@ class StepIteration:
             return False
         return any_of(self.system.comm, any(part.outgrown for part in self._adaptive))
 
-    def _reusable(self) -> bool:
-        """Whether the tangent of the previous iteration can be reused."""
-        if len(self._norms) < 2:
-            return False
-        before, norm = self._norms[-2:]
-        return bool(leaves_tangent(norm, before, norm, self._limits.reuse))
-
     def tangent(self, x: Array) -> None:
         """Assemble the tangent of the next iteration, unless that of the previous one can be reused; OutgrownError
         where it lacks places.
         """
-        if self._reusable():
+        if self._convergence.keeps_tangent:
             return
         self._step.of(x)
         self._assemble(self._step.balanced)
@@ -298,37 +270,19 @@ class StepIteration:
         tolerances beside the settings'; None where these decide. Collective.
         """
         self._x, self._f = x, f
-        self._norms.append(self._norm.of(f))
-        ending = self._judged(self._norms[-1], small)
+        self._convergence.add(self._norm.of(f))
+        ending = self._convergence.ending(self._norm.in_play(self._step.forces), self._at_round_off, small)
         if ending == CONVERGED and self._outgrown():
             raise OutgrownError
-        return ending
-
-    def _judged(self, norm: float, small: bool | None) -> str:
-        ending, limits = self._verdict(norm, small), self._limits
-        if ending != ITERATING:
-            return ending
-        if self._taken >= limits.least and stalled(np.array(self._norms)) and self._at_round_off():
-            return CONVERGED
-        if diverges(norm, self._norms[self._first], self._taken, limits):
-            return DIVERGED
-        return self._yields()
-
-    def _verdict(self, norm: float, small: bool | None) -> str:
-        if small is None:
-            return NAMES[verdict(norm, self._norm.in_play(self._step.forces), self._taken, self._limits)]
-        if not np.isfinite(norm):
-            return NOT_FINITE
-        return CONVERGED if small and self._taken >= self._limits.least else ITERATING
+        return self._yields() if ending == ITERATING else ending
 
     def _yields(self) -> str:
         """Adapt the share of the elastic tangent in the next one, where that is to be new; TOO_MANY where it is all of
         it in vain.
         """
-        if self._taken >= self._most or self._reusable():
-            return ITERATING
-        if self._taken > max(self._first, 1):
-            self._elastic.adapt(*self._norms[:-3:-1])
+        convergence = self._convergence
+        if not convergence.keeps_tangent and convergence.iterations > max(convergence.first, 1):
+            self._elastic.adapt(*convergence.norms[:-3:-1])
         return TOO_MANY if self._elastic.in_vain else ITERATING
 
     def _at_round_off(self) -> bool:
@@ -344,7 +298,9 @@ class StepIteration:
         A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2,
         from memory); what is left stays below that, or below Newton's tolerance.
         """
-        norm, before = self._norms[-1], self._norms[-2] if self._taken > self._first else 0.0
+        convergence = self._convergence
+        norm = convergence.norms[-1]
+        before = convergence.norms[-2] if convergence.iterations > convergence.first else 0.0
         if not 0.0 < norm < before:
             return LOOSEST
         enough = self.settings.tolerance * self._norm.in_play(self._step.forces) / norm
@@ -356,7 +312,7 @@ class StepIteration:
 
     def _reason(self, why: str) -> str:
         """Why the step did not converge, with where it is out of balance."""
-        return reported(why, self._norms, self._norm.largest(self._f))
+        return reported(why, self._convergence.norms, self._norm.largest(self._f))
 
     def state(self) -> Saved:
         """What is kept of linear systems."""

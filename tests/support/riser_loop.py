@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpi4py import MPI
+from riser_soil.solve.convergence import CONVERGED, StopLimits
 
 from benchmarks.stage import TimedStage, last_stage
 from riser_soil.contact.contact import ContactResults
@@ -23,7 +24,6 @@ from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.compiled_loop import compiled_loop
-from riser_soil.solve.newton_progress import CONVERGED, StopLimits
 from riser_soil.solve.packed_line import KernelParts, PackedLine, PackedSystem
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.solver import Accepted
@@ -61,7 +61,7 @@ class Compiled:
         numbers, free = KernelParts([(part, part.kernel_data()) for part in parts]), np.zeros(line.size, dtype=bool)
         weights = Packed(LineWeights(0.0, 0.0))
         self.line = PackedLine(line, numbers, free, np.ones(line.size), weights)
-        self.riser = PackedSystem([self.line], [], weights, most=1)
+        self.riser = PackedSystem([self.line], [], weights)
         for part in parts:
             part.renew_kernel_data(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
@@ -138,7 +138,7 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
 def require_mass(at: Sample, parts: list[Any]) -> None:
     """Inverse of the mass, kinetic energy and bulk forces at an accepted state are those of the parts' methods."""
     system, accepted = System(MPI.COMM_SELF, Model([at.line], parts), Timer.new()), at.state(3, size=0.0)
-    loop = compiled_loop(system, most=20)
+    loop = compiled_loop(system)
     assert loop is not None
     found, expected = loop.mass, RiserMass(system)
     force = at.state(4).v
@@ -170,7 +170,7 @@ def require_tangles(dimension: int) -> None:
         line.nodal(state.u)[node, -1] = turn
         compiled = Compiled(at, parts, state, state)
         compiled.riser.begin(state, None, WEIGHTS, anything)
-        assert compiled.riser.solve()[0] == CONVERGED
+        assert compiled.riser.solve() == CONVERGED
         reported.append(line.folding(*compiled.line.folding))
         assert reported[-1] == line.inadmissible(state, at.state(1, size=0.0))
     assert reported[0] == reported[1] == ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from riser_soil.solve.newton_progress import ElasticShare
+from riser_soil.solve.elastic_share import ElasticShare
 
 FIRST = 1e-4
 

@@ -242,7 +242,7 @@ def left_over(packed: PackedSystem) -> float:
     x, _ = shaken_increments(packed)
     load = residual(packed, x)
     whole = matrix(packed)
-    packed.improve()
+    packed.correct()
     return float(np.linalg.norm(load - whole @ (x - increments(packed))) / np.linalg.norm(load))
 
 

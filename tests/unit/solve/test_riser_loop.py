@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from riser_soil.solve.convergence import Convergence, StopLimits
 from scipy.linalg import solve_banded
 
 from riser_soil.contact.law import Penalty
@@ -18,9 +19,7 @@ from riser_soil.core import banded
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SolveError
 from riser_soil.seabed.grounds import Plane
-from riser_soil.solve.newton_progress import GOING_ON, StopLimits
 from riser_soil.solve.packed_line import PackedLine
-from riser_soil.solve.riser_loop import NewtonProgress, keeps
 from riser_soil.solve.solver import NotConvergedError
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
@@ -156,8 +155,10 @@ def test_a_step_that_fails_says_why_as_snes_does() -> None:
 def test_the_tangent_beside_contact_is_kept_while_little_is_left_there(
     norms: list[float], apart: list[float], kept: bool
 ) -> None:
-    progress = NewtonProgress(np.array(norms), np.array(apart), np.array([GOING_ON, len(norms) - 1]))
-    assert keeps(progress, StopLimits(0.0, 0.0, 0.03, 20, 0, True)) == kept
+    convergence = Convergence(StopLimits(0.0, 0.0, 0.03, 20, 0, True))
+    for norm, beside in zip(norms, apart, strict=True):
+        convergence.add(norm, beside)
+    assert convergence.keeps_tangent == kept
 
 
 def test_contact_alone_is_found_anew_beside_a_kept_tangent() -> None:

@@ -1,44 +1,28 @@
-"""Newton's method for a time step of lines and bodies, as one compiled loop.
+"""Kernels of Newton's method for a time step of lines and bodies: rates, residual, norms, band, its answer.
 
-The same equations, weights and tests as in `step_iteration`, which solves whatever has parts without kernels. What it
-calls are kernels bound to their arguments (`core.bound`): those here, which every riser has, and those of its parts,
-see `part_kernels`. So it is compiled once for all risers.
+These are what every riser has; those of its parts are in `part_kernels`. `packed_line` binds both to their arguments,
+so that each is compiled once for all risers.
 """
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.bound import Calls, call_each
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.csr_matrix import add_magnitudes
 from riser_soil.core.rows import add_multiple
 from riser_soil.riser.configuration import Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights
-from riser_soil.solve.newton_progress import (
-    CONVERGED,
-    DIVERGED,
-    GOING_ON,
-    SINGULAR,
-    TOO_MANY,
-    NewtonProgress,
-    StopLimits,
-    above_round_off,
-    diverges,
-    leaves_tangent,
-    square_of,
-    squares_in_play,
-    stalled,
-    verdict,
-)
+from riser_soil.solve.residual_norm import above_round_off, square_of, squares_in_play
 
 ONE = fixed(1)
+NONE, SINGULAR, TOO_NARROW = range(3)
+"""Failures (1,) of an iteration, which kernels write: of the tangent, or of the room for what touches the lines."""
 
 
 class StepData(NamedTuple):
@@ -81,54 +65,6 @@ class MatrixWorkspace(NamedTuple):
 
 
 @njit
-def solve_step(
-    evaluate: Calls,
-    probe: Calls,
-    renew: Calls,
-    touch: Calls,
-    improve: Calls,
-    limits: StopLimits,
-    progress: NewtonProgress,
-) -> None:
-    """Solve a step. Kernels to call at each trial, where the residual's norm stays as it is, for a new tangent, for one
-    in which contact's share alone is new, and for its answer to the residual.
-    """
-    norms, _, ending = progress
-    ending[0], ending[1] = GOING_ON, 0
-    while True:
-        call_each(evaluate)
-        taken = ending[1]
-        if ending[0] == GOING_ON and taken >= limits.least and stalled(norms[: taken + 1]):
-            call_each(probe)
-        if ending[0] == GOING_ON:
-            ending[0] = _given_up(norms, taken, limits)
-        if ending[0] == GOING_ON:
-            call_each(touch if keeps(progress, limits) else renew)
-        if ending[0] != GOING_ON:
-            return
-        call_each(improve)
-        ending[1] += 1
-
-
-@njit
-def keeps(progress: NewtonProgress, limits: StopLimits) -> bool:
-    """Whether the last iteration leaves its tangent to the next, see `leaves_tangent`. The tangent's workspace still
-    holds it: a residual that may have been probed there has not even fallen to STALLED.
-    """
-    norms, apart, ending = progress
-    taken = ending[1]
-    return taken > 0 and leaves_tangent(norms[taken], norms[taken - 1], apart[taken], limits.reuse)
-
-
-@njit
-def _given_up(norms: Array, taken: int, limits: StopLimits) -> int:
-    """Whether a step that goes on does so in vain."""
-    if diverges(norms[taken], norms[0], taken, limits):
-        return DIVERGED
-    return TOO_MANY if taken >= limits.most else GOING_ON
-
-
-@njit
 def follow(step: StepData, maps: Maps, dofs: Dofs) -> None:
     """Write the rates that follow the increments."""
     n = step.u.size
@@ -163,15 +99,6 @@ def write_balance(
     """Write the residual (n,) of forces by group, see `Forces`, two of them weighted, with the share of the past."""
     for k in range(out.size):
         out[k] = inertia * groups[0][k] + force * groups[1][k] + groups[2][k] + past[k]
-
-
-@njit
-def judge(sums: Array, limits: StopLimits, progress: NewtonProgress) -> None:
-    """Whether the residual is small enough or none, by its norms, see `add_norms`."""
-    taken = progress.ending[1]
-    norm = math.sqrt(sums[0])
-    progress.norms[taken], progress.apart[taken] = norm, math.sqrt(sums[1])
-    progress.ending[0] = verdict(norm, math.sqrt(max(sums[2], sums[3], sums[4])), taken, limits)
 
 
 @njit
@@ -211,7 +138,7 @@ def begin_with(bulk: Array, K: Array) -> None:
 
 @njit
 def write_terms(workspace: MatrixWorkspace, dofs: Dofs) -> None:
-    """Write the terms that the residual is made of, see `newton_progress`; K: at held rates."""
+    """Write the terms that the residual is made of, see `residual_norm`; K: at held rates."""
     terms = dofs.terms.reshape(dofs.terms.size)
     terms[:] = 0.0
     add_terms(workspace, dofs)
@@ -232,13 +159,6 @@ def find_above(dofs: Dofs, above: BoolArray) -> None:
 
 
 @njit
-def judge_round_off(above: BoolArray, progress: NewtonProgress) -> None:
-    """Whether nothing can."""
-    if not above[0]:
-        progress.ending[0] = CONVERGED
-
-
-@njit
 def fill(workspace: MatrixWorkspace, dofs: Dofs) -> None:
     """Sum element matrices into the banded one, with ones on the diagonal for what is fixed."""
     K, ab, fixed = workspace.K, workspace.ab, dofs.fixed
@@ -256,10 +176,10 @@ def fill(workspace: MatrixWorkspace, dofs: Dofs) -> None:
 
 
 @njit
-def factorise(workspace: MatrixWorkspace, progress: NewtonProgress) -> None:
+def factorise(workspace: MatrixWorkspace, failure: IntArray) -> None:
     """Factorise the matrix."""
     if not banded.factorise(workspace.ab, workspace.pivots, workspace.band):
-        progress.ending[0] = SINGULAR
+        failure[0] = SINGULAR
 
 
 @njit

@@ -1,0 +1,100 @@
+"""How Newton's method ends: the tests of an iteration, by the norms of the residual so far."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+ITERATING, CONVERGED = "iterating", "converged"
+# Failures by PETSc's names; OUTGROWN where the matrix lacks places for the tangent.
+NOT_FINITE, NOT_SOLVED, DIVERGED, TOO_MANY, OUTGROWN = (
+    "diverged_fnorm_nan",
+    "diverged_linear_solve",
+    "diverged_dtol",
+    "diverged_max_it",
+    "outgrown",
+)
+DIVERGES = 1e6  # times the first norm
+STALLED = 0.5  # the norm of a residual that falls by less in each of two iterations stays as it is
+
+
+class StopLimits(NamedTuple):
+    """When to stop, see `NewtonSettings`.
+
+    reuse: an iteration that leaves less than this share of the residual leaves its tangent to the next, but contact's
+    share, which is found anew, as contact has corners. most, least: iterations; answers_load: whether a residual below
+    the floor counts as small before the first one.
+    """
+
+    tolerance: float
+    floor: float
+    reuse: float
+    most: int
+    least: int
+    answers_load: bool
+
+
+class Convergence:
+    """Convergence of a step: the norms [N] of its residuals so far, and what they say by the limits.
+
+    apart: the last norm of the residual's share at nodes that nothing touches [N]; most: iterations, which may be
+    raised; first: the iteration from which the method is Newton's own.
+    """
+
+    def __init__(self, limits: StopLimits) -> None:
+        self.limits, self.most, self.first = limits, limits.most, 0
+        self.norms: list[float] = []
+        self.apart = math.nan
+
+    def add(self, norm: float, apart: float | None = None) -> None:
+        """Add the norm [N] of a residual, and of its share at nodes that nothing touches: all of it by default."""
+        self.norms.append(norm)
+        self.apart = norm if apart is None else apart
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of the step so far; a residual that is not finite at its start is none."""
+        return max(len(self.norms) - 1, 0)
+
+    def ending(self, in_play: float, at_round_off: Callable[[], bool], small: bool | None = None) -> str:
+        """How the method ends with the last residual, else ITERATING.
+
+        in_play: norm [N] of the forces in play; at_round_off: whether nothing in the residual can be told from its
+        round-off; small: whether the residual is small by a user's own tolerances, None where the limits decide.
+        """
+        norm, limits = self.norms[-1], self.limits
+        if not math.isfinite(norm):
+            return NOT_FINITE
+        if self.iterations >= limits.least:
+            if self._is_small(in_play) if small is None else small:
+                return CONVERGED
+            if stalled(self.norms) and at_round_off():
+                return CONVERGED
+            if self.iterations >= max(4, limits.least) and norm > DIVERGES * self.norms[self.first]:
+                return DIVERGED
+        return ITERATING if self.iterations < self.most else TOO_MANY
+
+    def _is_small(self, in_play: float) -> bool:
+        norm, limits = self.norms[-1], self.limits
+        below_floor = norm <= limits.floor and (self.iterations > 0 or limits.answers_load)
+        return below_floor or norm <= limits.tolerance * in_play
+
+    @property
+    def keeps_tangent(self) -> bool:
+        """Whether the last iteration leaves its tangent, but contact's share, to the next: it has left little of the
+        residual's norm before, or little of it where nothing touches.
+        """
+        if len(self.norms) < 2:
+            return False
+        before, norm = self.norms[-2:]
+        reuse = self.limits.reuse
+        return norm < STALLED * before and (norm < reuse * before or self.apart < reuse * norm)
+
+
+def stalled(norms: list[float]) -> bool:
+    """Whether the last two iterations have left the residual's norm as it is, of all its norms so far."""
+    if len(norms) < 3:
+        return False
+    earlier, before, norm = norms[-3:]
+    return norm > STALLED * before and before > STALLED * earlier
