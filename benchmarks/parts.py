@@ -23,7 +23,7 @@ from demos.page import filled, table
 
 SCENE = Path(__file__).parent.parent / "demos" / "first_scene.yaml"
 STEPS = 100  # of 0.1 s, in heave
-SHARED, LOOP = ("matrix", "linear_solve"), "compiled loop"
+SHARED, LOOP = ("matrix", "linear_solve"), "line solver"
 PAGE = Path(__file__).parent.parent / "docs" / "parts.md"
 Scene = dict[str, Any]
 
@@ -186,7 +186,7 @@ def row(name: str, found: Cost) -> list[str]:
 
 HEAD = (
     *("scene", "modules", "unknowns", "nonzeros", "MB", "start s"),
-    *("µs an iteration: compiled loop", "by part", "matrix and solve"),
+    *("µs an iteration: line solver", "by part", "matrix and solve"),
 )
 
 

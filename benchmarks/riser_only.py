@@ -1,4 +1,4 @@
-"""Lines and bodies in motion: steps of the compiled loop against those of SNES, and against the Newton steps in them.
+"""Lines and bodies in motion: steps of the line solver against those of SNES, and against the Newton steps in them.
 
 Everything is measured in turn, step by step, in processor time, so that a machine that is busy or whose speed drifts
 changes all figures alike.
@@ -62,7 +62,7 @@ def row(case: str, us: Mapping[str, float]) -> list[str]:
 
 
 def measure(scene: Path, *overrides: str) -> dict[str, float]:
-    """Medians in us of a step that is solved, accounted for and committed, by the compiled loop ("step") and by SNES;
+    """Medians in us of a step that is solved, accounted for and committed, by the line solver ("step") and by SNES;
     told to the results, too ("recorded"); of its Newton steps alone ("bare"). Mean number of iterations; time step [s].
     """
     compiled, snes = (surging(scene, *overrides, f"solver.newton={kind}") for kind in ("compiled", "snes"))

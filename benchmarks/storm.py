@@ -19,7 +19,7 @@ SHORT = 1.0  # s of a run before, in which kernels are compiled, or read
 
 class Cost(NamedTuple):
     """Of a storm: its steps and Newton iterations a step; processor seconds of all of it; shares of the time by the
-    clock that go to the compiled loop, and to results.
+    clock that go to the line solver, and to results.
     """
 
     steps: int
@@ -31,7 +31,7 @@ class Cost(NamedTuple):
 
 HEAD = (
     *("storm [s]", "steps", "Newton iterations a step", "processor time [s]", "times as fast as real time"),
-    *("in the compiled loop", "for results"),
+    *("in the line solver", "for results"),
 )
 
 
@@ -50,7 +50,7 @@ def measure(duration: float) -> Cost:
         timed(SCENE, Path(folder) / "short", f"stages.1.duration={SHORT}")
         done, seconds = timed(SCENE, Path(folder) / "storm", f"stages.1.duration={duration}")
         stage, by_part = done.summary["stages"][-1], done.summary["seconds"]
-        shares = (by_part[name] / sum(by_part.values()) for name in ("compiled loop", "output"))
+        shares = (by_part[name] / sum(by_part.values()) for name in ("line solver", "output"))
         return Cost(stage["steps"], stage["newton_iterations"] / stage["steps"], seconds, *shares)
 
 

@@ -358,7 +358,7 @@ def write_node_touch_work(
 
 
 class NodesInLoop(LoopContact):
-    """`NodeContact` in the compiled loop. cover: with the workspace for the top's points; around: range beside a node
+    """`NodeContact` in the line solver. cover: with the workspace for the top's points; around: range beside a node
     in which facets are candidates [m].
     """
 

@@ -130,7 +130,7 @@ class SoilContact(RiserContact):
 
     @abstractmethod
     def in_loop(self, friction: Any) -> LoopContact:
-        """For the compiled loop; friction: its kernels, see `surface_loop.LoopFriction`, None where there is none."""
+        """For the line solver; friction: its kernels, see `surface_loop.LoopFriction`, None where there is none."""
 
     @property
     def covering(self) -> Covering:
@@ -196,7 +196,7 @@ def _by_surface(cover: Cover, x: Vec, known: int) -> int:
 
 
 class LoopContact(ABC):
-    """Contact with condensed soil in the compiled loop, see `solve.soil_border`: kernels, bound to where they read and
+    """Contact with condensed soil in the line solver, see `solve.soil_border`: kernels, bound to where they read and
     write.
 
     parts: whose forces these are. deformed (np, 3): where the loop writes the top's points [m]. found (3,): see POINTS.

@@ -130,7 +130,7 @@ class SoilFriction(LinePart):
         return self._at_start
 
     def in_loop(self) -> FrictionInLoop:
-        """For the compiled loop, on soil that does not yield."""
+        """For the line solver, on soil that does not yield."""
         assert self._adhesion is None
         q = np.zeros((self.line.length.size, 4, 3))
         return FrictionInLoop(self, SoilFrictionData(self._resistance, self._memory.kept, q))
@@ -330,7 +330,7 @@ def _write_factors(
 
 
 class SoilFrictionData(NamedTuple):
-    """For the compiled loop: what resists; what is kept of the points, and q (ne, 4, 3) of the axis, where the step
+    """For the line solver: what resists; what is kept of the points, and q (ne, 4, 3) of the axis, where the step
     starts.
     """
 

@@ -128,7 +128,7 @@ class SurfaceContact(SoilContact):
         return SurfaceInLoop(self, friction)
 
     def touch_data(self) -> TouchData:
-        """For the compiled loop, with workspace for axis and surface."""
+        """For the line solver, with workspace for axis and surface."""
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
         surface, law = self.surface(self._soil.settled), self.law.kernel_data
         return self.at_start(TouchData(axis, surface, self._basis, self.line.origin, law, self._memory.kept, 0.0))
@@ -366,7 +366,7 @@ class SurfaceContact(SoilContact):
 
 
 class SurfaceInLoop(LoopContact):
-    """`SurfaceContact` in the compiled loop, with its friction, if any."""
+    """`SurfaceContact` in the line solver, with its friction, if any."""
 
     contact: SurfaceContact
 

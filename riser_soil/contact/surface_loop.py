@@ -1,4 +1,4 @@
-"""Contact of the pipe's cylinder with the surface of condensed soil in the compiled loop, see `solve.soil_border`.
+"""Contact of the pipe's cylinder with the surface of condensed soil in the line solver, see `solve.soil_border`.
 
 The formulas are those of `pressed_points`. The soil's reached dofs are the loop's border: what it adds there are the
 facets' shares.
@@ -166,7 +166,7 @@ def write_touch_work(
 
 
 class LoopFriction(ABC):
-    """Friction with condensed soil in the compiled loop: kernels, bound to what they read and write. part: its own."""
+    """Friction with condensed soil in the line solver: kernels, bound to what they read and write. part: its own."""
 
     part: Part
 

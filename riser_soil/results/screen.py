@@ -41,7 +41,7 @@ SHOWN_SHARE = 0.1  # of the computing time, from which on a part's is shown; sum
 _PARTS = {  # of the program, in an engineer's words
     "build": "setting up",
     "linear_solve": "linear systems",
-    "compiled loop": "time steps",
+    "line solver": "time steps",
     "output": "writing results",
 }
 

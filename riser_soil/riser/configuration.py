@@ -1,4 +1,4 @@
-"""Configuration of a whole line in arrays, for the compiled loop over a riser alone.
+"""Configuration of a whole line in arrays, for the line solver.
 
 A line's accepted configuration (`PlanarBase`, `SpatialBase`) and the increments and rates of its dofs give a trial
 configuration, written into arrays that are allocated once: all that the parts' kernels need to know of the line.

@@ -52,7 +52,7 @@ class LinePart:
         return {self.line.name: self.line.element_block()}
 
     def kernel_data(self) -> tuple[Any, ...] | None:
-        """The part's kernel data, for the compiled loop over a riser alone, see `part_kernels`; None without.
+        """The part's kernel data, for the line solver, see `part_kernels`; None without.
 
         Asked for once a stage, so that what changes is an array that is written to, see `renew_kernel_data`.
         """

@@ -1,6 +1,6 @@
 """What parts of a line say in compiled code, see `by_type`: forces, tangent, energy, work, history.
 
-A part has its `kernel_data`: a NamedTuple of arrays, and kernels for that type. The compiled loop over a riser alone
+A part has its `kernel_data`: a NamedTuple of arrays, and kernels for that type. The line solver (`solve.line_solver`)
 calls them, and so does `CompiledPart`, by which a part has a system's methods.
 """
 

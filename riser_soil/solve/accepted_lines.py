@@ -1,4 +1,4 @@
-"""What the compiled loop tells of lines and bodies where they are accepted.
+"""What the line solver tells of lines and bodies where they are accepted.
 
 Mass, kinetic energy and bulk forces are asked for once a step with contact, see `riser_mass` and `time_scheme`. What
 acts within a line's elements is found for all parts at once, where `riser.section_forces` asks one by one.

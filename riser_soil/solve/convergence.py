@@ -15,7 +15,7 @@ NOT_FINITE, NOT_SOLVED, DIVERGED, TOO_MANY, OUTGROWN = (
     "diverged_max_it",
     "outgrown",
 )
-DIVERGES = 1e6  # times the first norm
+DIVERGES, DIVERGES_AFTER = 1e6, 4  # times the first norm, after so many iterations at least
 STALLED = 0.5  # the norm of a residual that falls by less in each of two iterations stays as it is
 
 
@@ -63,22 +63,18 @@ class Convergence:
         in_play: norm [N] of the forces in play; at_round_off: whether nothing in the residual can be told from its
         round-off; small: whether the residual is small by a user's own tolerances, None where the limits decide.
         """
-        norm, limits = self.norms[-1], self.limits
+        norm, taken, limits = self.norms[-1], len(self.norms) - 1, self.limits
         if not math.isfinite(norm):
             return NOT_FINITE
-        if self.iterations >= limits.least:
-            if self._is_small(in_play) if small is None else small:
+        if taken >= limits.least:
+            if small is None:
+                below_floor = norm <= limits.floor and (taken > 0 or limits.answers_load)
+                small = below_floor or norm <= limits.tolerance * in_play
+            if small or (stalled(self.norms) and at_round_off()):
                 return CONVERGED
-            if stalled(self.norms) and at_round_off():
-                return CONVERGED
-            if self.iterations >= max(4, limits.least) and norm > DIVERGES * self.norms[self.first]:
+            if taken >= max(DIVERGES_AFTER, limits.least) and norm > DIVERGES * self.norms[self.first]:
                 return DIVERGED
-        return ITERATING if self.iterations < self.most else TOO_MANY
-
-    def _is_small(self, in_play: float) -> bool:
-        norm, limits = self.norms[-1], self.limits
-        below_floor = norm <= limits.floor and (self.iterations > 0 or limits.answers_load)
-        return below_floor or norm <= limits.tolerance * in_play
+        return ITERATING if taken < self.most else TOO_MANY
 
     @property
     def keeps_tangent(self) -> bool:

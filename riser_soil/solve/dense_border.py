@@ -1,4 +1,4 @@
-"""What couples lines and bodies beside their bands in the compiled loop: a dense border of further unknowns.
+"""What couples lines and bodies beside their bands in the line solver: a dense border of further unknowns.
 
     [B  U] [x]   [f]
     [V  D] [y] = [g]
@@ -21,7 +21,8 @@ from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.dense import PIVOT
 from riser_soil.riser.part_kernels import Border
-from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.line_system import Coupling
+from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step_kernels import NONE, SINGULAR, Dofs, MatrixWorkspace
 
 
@@ -121,7 +122,7 @@ def take_from_line(dofs: Dofs, border: Border, factors: Factors) -> None:
         residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
 
 
-class DenseBorder(LoopBorder):
+class DenseBorder(Coupling):
     """The border of lines and bodies, and its elimination. It stands behind those who write to it.
 
     of: the `Border` of each line, packed.
@@ -172,4 +173,4 @@ class DenseBorder(LoopBorder):
         return line.packed_dofs, self.of[line], self._factors[line]
 
 
-MakeBorder = Callable[[DenseBorder, Sequence[PackedLine]], LoopBorder]
+MakeBorder = Callable[[DenseBorder, Sequence[PackedLine]], Coupling]

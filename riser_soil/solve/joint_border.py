@@ -1,4 +1,4 @@
-"""Joints between lines and bodies in the compiled loop: what couples their bands.
+"""Joints between lines and bodies in the line solver: what couples their bands.
 
 A joint's matrix has a block of each node, which lies in that field's band, and blocks K between them. With copies z of
 the dofs of both nodes of all joints as further unknowns,
@@ -24,7 +24,8 @@ from riser_soil.core.part import Forces, Part, State
 from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.part_kernels import Border, LineForces, LineWeights
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
-from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.line_system import Coupling
+from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace
 
 MOST_JOINTS = 32  # from which on a sparse matrix of all is cheaper
@@ -153,7 +154,7 @@ def joint_border(beside: Sequence[Part]) -> MakeBorder | None:
     return partial(JointBorder, beside[0])
 
 
-class JointBorder(LoopBorder):
+class JointBorder(Coupling):
     """All joints of a scene, between the lines and bodies that are packed.
 
     lines: that have joints, each with its sides of them; data: what the loop writes to.

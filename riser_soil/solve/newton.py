@@ -1,4 +1,4 @@
-"""Newton's method for the steps of a stage, by a compiled loop or over the parts; soil's balance under lines held."""
+"""Newton's method for the steps of a stage, by kernels of lines or over the parts; soil's balance under lines held."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from riser_soil.solve.solver import Accepted, NewtonSettings, NotConvergedError,
 from riser_soil.solve.step_iteration import StepIteration
 
 if TYPE_CHECKING:
-    from riser_soil.solve.compiled_loop import CompiledLoop
+    from riser_soil.solve.line_solver import LineSolver
 
 BALANCED = 1e-4  # of the forces in play, that a balance under held lines may lack
 
@@ -23,39 +23,39 @@ BALANCED = 1e-4  # of the forces in play, that a balance under held lines may la
 class Newton:
     """Solver of a system's steps by Newton's method. Create once a stage.
 
-    Steps are the compiled loop's where it is given, for what has kernels; what it leaves, and all others, are solved
-    over the parts (`by_parts`). iterations: of all steps, those that failed included. at_equilibrium: whether the next
-    step starts from that of its own loads, so that a residual within round-off needs no iteration. accepted: what is
-    told of solutions and accepted states.
+    Time steps of lines and bodies are the line solver's (`lines`) where it is given; what it leaves, and all other
+    steps, are solved over the parts (`by_parts`). iterations: of all steps, those that failed included. at_equilibrium:
+    whether the next step starts from that of its own loads, so that a residual within round-off needs no iteration.
+    accepted: results of solutions and accepted states.
     """
 
-    def __init__(self, system: System, settings: NewtonSettings, compiled: CompiledLoop | None = None) -> None:
-        self.system, self.settings, self.compiled = system, settings, compiled
+    def __init__(self, system: System, settings: NewtonSettings, lines: LineSolver | None = None) -> None:
+        self.system, self.settings, self.lines = system, settings, lines
         self.at_equilibrium = False
-        self.accepted: Accepted = Accepted(system) if compiled is None else compiled
-        self._by_parts = StepIteration(system, settings) if compiled is None else None
+        self.accepted: Accepted = Accepted(system) if lines is None else lines
+        self._by_parts = StepIteration(system, settings) if lines is None else None
 
     @property
     def by_parts(self) -> StepIteration:
-        """Made with the first step that the compiled loop leaves."""
+        """Made with the first step that the line solver leaves."""
         if self._by_parts is None:
             self._by_parts = StepIteration(self.system, self.settings)
         return self._by_parts
 
     @property
     def iterations(self) -> int:
-        solvers = self.compiled, self._by_parts
+        solvers = self.lines, self._by_parts
         return sum(solver.iterations for solver in solvers if solver is not None)
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError; collective."""
         near, self.at_equilibrium = self.at_equilibrium, False
-        if self.compiled is None:
+        if self.lines is None:
             return self.by_parts.solve(step, near)
-        found = self.compiled.solve(step, self.settings, near)
+        found = self.lines.solve(step, self.settings, near)
         if isinstance(found, Solution):
             return found
-        if not self.compiled.leaves(step.before):
+        if not self.lines.leaves(step.before):
             raise NotConvergedError(found)
         self.by_parts.renew()
         return self.by_parts.solve(step, near)
@@ -91,9 +91,9 @@ class Newton:
         self._solver.restore(saved)
 
     @property
-    def _solver(self) -> CompiledLoop | StepIteration:
+    def _solver(self) -> LineSolver | StepIteration:
         """Of all steps that it can solve."""
-        return self.by_parts if self.compiled is None else self.compiled
+        return self.by_parts if self.lines is None else self.lines
 
     def destroy(self) -> None:
         """Give back what the ranks hold together; collective."""
@@ -102,15 +102,15 @@ class Newton:
 
 
 def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton:
-    """`Newton`, with the compiled loop where it can be and SNES is not asked for: on one rank for lines and bodies, or
+    """`Newton`, with the line solver where it can be and SNES is not asked for: on one rank for lines and bodies, or
     for a line on condensed soil, in time steps.
     """
-    compiled = None
+    lines = None
     if system.comm.size == 1 and not settings.snes and dynamic and system.whole_soil is None:
-        from riser_soil.solve.compiled_loop import compiled_loop
+        from riser_soil.solve.line_solver import line_solver
 
-        compiled = compiled_loop(system)
-    return Newton(system, settings, compiled)
+        lines = line_solver(system)
+    return Newton(system, settings, lines)
 
 
 def balance_held(

@@ -1,18 +1,16 @@
-"""Lines and bodies as kernel data, packed for the compiled loop: parts bound to kernels, and workspace."""
+"""A line or a body as kernel data: its parts bound to kernels, and the workspace of a step."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from operator import attrgetter
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, as_list
 from riser_soil.core.bound import Bound, Packed, bound, in_turn
-from riser_soil.core.part import Energy, Forces, State, Weights, Work
-from riser_soil.core.saved_state import Saved
+from riser_soil.core.part import State, Weights, Work
 from riser_soil.riser.configuration import (
     maps_for,
     place,
@@ -25,7 +23,6 @@ from riser_soil.riser.configuration import (
 from riser_soil.riser.line_part import CompiledPart, LinePart, LineTrials, overrides
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import (
-    LineWeights,
     add_energy,
     add_forces,
     add_tangent,
@@ -39,8 +36,6 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.riser.placed_line import PlacedLine
 from riser_soil.solve import step_kernels as kernels
-from riser_soil.solve.convergence import ITERATING, NOT_SOLVED, OUTGROWN, Convergence, StopLimits
-from riser_soil.solve.newton_loop import iterate
 from riser_soil.solve.step_kernels import Dofs, StepData, matrix_workspace
 
 KernelData = tuple[Any, ...]
@@ -198,7 +193,7 @@ class PackedLine:
         ]
 
     def begin(self, state: State, past: Array | None, weights: Weights) -> None:
-        """Begin a step. state, past: as of `PackedSystem`, of this line's dofs."""
+        """Begin a step. state, past: as of `LineSystem`, of this line's dofs."""
         self.placed.update()
         u, v, a, earlier = self._start
         u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, 0.0 if past is None else past
@@ -215,214 +210,3 @@ class PackedLine:
 
 def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
     return [np.zeros(shape) for _ in range(n)]
-
-
-class LoopBorder:
-    """What stands beside the lines, couples them or has unknowns of its own: here nothing; kernels are bound to what
-    they take.
-
-    smooth: whether nothing touches the lines; gradual: whether a tangent may be kept beside contact, see `System`;
-    parts: whose forces are evaluated here.
-    """
-
-    smooth = gradual = True
-    parts: Sequence[Any] = ()
-
-    def begin(self, before: State, step_to: float, guess: Array) -> None:
-        """Begin a step from an accepted state to a time [s], with a first guess (size,) of all local increments."""
-
-    def leave_to_newton(self, before: State) -> bool:
-        """Whether a step from an accepted state that can't be solved here may be `Newton`'s, for which all is ready."""
-        return False
-
-    def widen(self) -> None:
-        """Take in what the last trial has outgrown."""
-
-    @property
-    def holds(self) -> bool:
-        """Whether the last trial is one of what was taken in."""
-        return True
-
-    def forces(self) -> list[Bound]:
-        """Kernels that add to the lines' residuals, and write that of the border."""
-        return []
-
-    def norms(self, sums: Packed) -> list[Bound]:
-        """Kernels that add the border's residual to the norms."""
-        return []
-
-    def outgrown(self, failure: Packed) -> list[Bound]:
-        """Kernels that tell where more is wanted of what stands beside the lines."""
-        return []
-
-    def bulk_tangent(self) -> list[Bound]:
-        """Kernels that write the border's share of the tangent but for contact's."""
-        return []
-
-    def tangent(self) -> list[Bound]:
-        """Kernels that add contact's share to the lines' tangents, and write that of the border."""
-        return []
-
-    def terms(self) -> list[Bound]:
-        """Kernels that add to the terms that the lines' residuals are made of, and write the border's, see
-        `step_kernels.write_terms`. The tangents of contact need not outlive them.
-        """
-        return []
-
-    def above(self, above: Packed) -> list[Bound]:
-        """Kernels that tell where something in the border's residual can be told from its round-off, above (1,)."""
-        return []
-
-    def fill(self) -> list[Bound]:
-        """Kernels that add to the lines' bands."""
-        return []
-
-    def factorise(self, failure: Packed) -> list[Bound]:
-        """Kernels that factorise what couples the lines, whose bands are factorised."""
-        return []
-
-    def couple(self) -> list[Bound]:
-        """Kernels that take what the border answers off the lines' residuals."""
-        return []
-
-    def account(self, energy: Packed) -> list[Bound]:
-        """Kernels that account for a step, and add to the energy (3,)."""
-        return []
-
-    def put_increments(self, weights: Weights, u: Array, v: Array, a: Array) -> None:
-        """Write the increments of dofs beside the lines, and add what rates follow from them, all local."""
-
-    def add_bulk_forces(self, state: State, forces: Forces) -> None:
-        """Add the border's forces of groups I and F at an accepted state."""
-
-    def add_account(self, before: State, state: State, work: dict[str, Work]) -> Energy:
-        """Add what the border's parts have turned over in the step solved last; the energy stored beside the lines."""
-        return Energy()
-
-    def forget_account(self) -> None:
-        """A step was solved elsewhere."""
-
-    def state(self) -> Saved:
-        return {}
-
-    def restore(self, saved: Saved) -> None:
-        """Nothing is kept."""
-
-
-class PackedSystem:
-    """Residual, tangent and solution of lines and bodies with what stands beside them, by kernels, for Newton's loop.
-
-    weights: as the lines have them; convergence: of the step. evaluate, write_tangent, renew_contact, correct: pieces
-    of the loop, which are looked at alone, too.
-    """
-
-    def __init__(self, lines: Sequence[PackedLine], beside: Sequence[LoopBorder], weights: Packed) -> None:
-        self.lines, self.beside, self._weights = lines, beside, weights
-        self._sums, self._above = np.zeros(5), np.zeros(1, dtype=np.bool_)
-        self._failure = np.zeros(1, dtype=np.int64)
-        self._bind()
-        self.energy = np.zeros(3)
-        energy = Packed(self.energy)
-        each = [kernel for line in lines for kernel in line.account(energy)]
-        self._account = in_turn(Bound(kernels.set_zero, energy), *each, *self._kernels(lambda it: it.account(energy)))
-
-    def _kernels(self, of: Callable[[LoopBorder], list[Bound]]) -> list[Bound]:
-        """Of all that stands beside the lines."""
-        return [kernel for each in self.beside for kernel in of(each)]
-
-    def all_beside(self, holds: Callable[[LoopBorder], bool]) -> bool:
-        """Whether something holds of all that stands beside the lines."""
-        return all(map(holds, self.beside))
-
-    def _bind(self) -> None:
-        """Bind the kernels of the loop to where they read and write."""
-        lines, beside, smooth = self.lines, self._kernels, self.all_beside(attrgetter("smooth"))
-        sums, above, failure = map(Packed, (self._sums, self._above, self._failure))
-        evaluate = [
-            *(kernel for line in lines for kernel in line.evaluate()),
-            *beside(lambda it: it.forces()),
-            Bound(kernels.set_zero, sums),
-            *(kernel for line in lines for kernel in line.balance(sums)),
-            *beside(lambda it: it.norms(sums)),
-            Bound(kernels.set_zero, failure),
-            *beside(lambda it: it.outgrown(failure)),
-        ]
-        bulk, contact, held_bulk, held_contact = (
-            [kernel for line in each for kernel in line]
-            for each in zip(*(line.tangents(not smooth) for line in lines), strict=True)
-        )
-        joined = beside(lambda it: it.bulk_tangent())
-        contact += beside(lambda it: it.tangent())
-        fill = [*(line.fill() for line in lines), *beside(lambda it: it.fill())]
-        factors = [*fill, *(line.factorise(failure) for line in lines), *beside(lambda it: it.factorise(failure))]
-        sizes = [line.write_sizes for line in lines]
-        terms = [Bound(kernels.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
-        looked = [Bound(kernels.find_above, line.packed_dofs, above) for line in lines]
-        probe = [
-            *held_bulk, *joined, *held_contact, *sizes, *terms, *beside(lambda it: it.terms()),
-            Bound(kernels.set_zero, above), *looked, *beside(lambda it: it.above(above)),
-        ]  # fmt: skip
-        renew = [*bulk, *joined, *contact, *factors]
-        touch = [*contact, *factors] if contact else []
-        improve = [*beside(lambda it: it.couple()), *(line.improve() for line in lines)]
-        self._look_for_tangles = in_turn(*(kernel for line in lines for kernel in line.look_for_tangles))
-        self.evaluate, self._probe = in_turn(*evaluate), in_turn(*probe)
-        self._renew, self.renew_contact, self._improve = in_turn(*renew), in_turn(*touch), in_turn(*improve)
-        self.write_tangent = in_turn(*bulk, *joined, *contact, *fill, *sizes)
-        self.correct = in_turn(*factors, *improve)
-
-    def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:
-        """Begin a step.
-
-        state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`;
-        both of all local dofs.
-        """
-        for line in self.lines:
-            at = line.line.part
-            own = State(state.t, state.u[at], state.v[at], state.a[at])
-            line.begin(own, None if past is None else past[at], weights)
-        given = LineWeights(weights.inertia, weights.force)
-        if given != self._weights.value:
-            self._weights.renew(given)
-        self.convergence = Convergence(limits)
-
-    def solve(self) -> str:
-        """Solve the step: how Newton's method ends."""
-        ending = iterate(self)
-        self._look_for_tangles()
-        return ending
-
-    def judge(self) -> str:
-        """Find the residual of the trial: how the method ends there, OUTGROWN where more touches the lines than there
-        is room for.
-        """
-        self.evaluate()
-        own, apart, *in_play = as_list(self._sums)
-        self.convergence.add(math.sqrt(own), math.sqrt(apart))
-        if self._failure[0] != kernels.NONE:
-            return OUTGROWN
-        return self.convergence.ending(math.sqrt(max(in_play)), self._at_round_off)
-
-    def _at_round_off(self) -> bool:
-        """Whether nothing in the residual can be told from its round-off; the tangent's workspace is lost."""
-        self._probe()
-        return not self._above[0]
-
-    def improve(self) -> str:
-        """Take the tangent's answer off the increments. A kept tangent is still in its workspace: a residual that may
-        have been probed there has fallen by less than one that leaves it.
-        """
-        if self.convergence.keeps_tangent:
-            self.renew_contact()
-        else:
-            self._renew()
-        if self._failure[0] != kernels.NONE:
-            return NOT_SOLVED
-        self._improve()
-        return ITERATING
-
-    def account(self, before: State) -> None:
-        """Find the energy at the end of the step solved last, and the work in it."""
-        for line in self.lines:
-            line.placed.move(before)
-        self._account()

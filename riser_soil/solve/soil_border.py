@@ -1,4 +1,4 @@
-"""Condensed soil beside lines in the compiled loop: its reached dofs are in the border, and contact couples both.
+"""Condensed soil beside lines in the line solver: its reached dofs are in the border, and contact couples both.
 
 Which pairs of an element and a facet may touch is found for boxes around the elements, and holds as long as these stay
 within; which dofs are reached, see `soil.condensed`. Where either doesn't do, the loop says so, and begins anew.
@@ -22,7 +22,8 @@ from riser_soil.core.system import System
 from riser_soil.riser.part_kernels import BEYOND, FULL, HELD, LEFT, Border, TopMotion
 from riser_soil.soil.condensed import CondensedSoil, Reached
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
-from riser_soil.solve.packed_line import LoopBorder, PackedLine
+from riser_soil.solve.line_system import Coupling
+from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import above_round_off
 from riser_soil.solve.step_kernels import TOO_NARROW
 
@@ -120,7 +121,7 @@ def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     return partial(SoilBorder, system, contact.in_loop(others[0].in_loop() if others else None), soil)
 
 
-class SoilBorder(LoopBorder):
+class SoilBorder(Coupling):
     """The soil's reached dofs with what touches it; their kernels, bound to where they read and write."""
 
     smooth = gradual = False
@@ -202,7 +203,7 @@ class SoilBorder(LoopBorder):
             self._system.renew_prescribed()
             self._prescribed = self._top.reached
 
-    def leave_to_newton(self, before: State) -> bool:
+    def leave_to_parts(self, before: State) -> bool:
         """Newton's method needs a matrix for what is reached and may touch now."""
         self._touching.contact.rebuild(State.at_rest(before.t, self._system.numbering.size))
         return True

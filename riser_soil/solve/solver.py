@@ -58,7 +58,7 @@ class NewtonSettings:
     reuse: an iteration that leaves less than this share of the residual leaves its factorised tangent to the next of
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
-    corners, and an equilibrium may be far away. Beside clay the compiled loop reuses the tangent of all else, see
+    corners, and an equilibrium may be far away. Beside clay the line solver reuses the tangent of all else, see
     `convergence.StopLimits`. least_iterations: before a residual counts as small.
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a step
     with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps

@@ -120,7 +120,7 @@ def test_lines_and_a_body_that_are_joined_keep_momentum_to_round_off(body: Mappi
     assert flight.energy_range < 1e-3
 
 
-def test_snes_finds_the_flight_of_a_rigid_body_that_the_compiled_loop_finds() -> None:
+def test_snes_finds_the_flight_of_a_rigid_body_that_the_line_solver_finds() -> None:
     scene = dict(hinged(0.05, 0.5, RIGID))
     compiled, snes = (
         Flight(3, 0.05, scene=scene | {"solver": {"tolerance": 1e-11, "newton": newton}})

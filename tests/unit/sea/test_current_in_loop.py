@@ -1,4 +1,4 @@
-"""Current under a surface, without waves, in the compiled loop and by SNES: the same motion."""
+"""Current under a surface, without waves, in the line solver and by SNES: the same motion."""
 
 from __future__ import annotations
 

@@ -9,11 +9,11 @@ from functools import partial
 import numpy as np
 import pytest
 from mpi4py import MPI
-from riser_soil.solve.line_search import step_length
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import GROUPS, Forces, Model, State, Weights
 from riser_soil.core.system import System, Timer
+from riser_soil.solve.line_search import step_length
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static

@@ -14,9 +14,9 @@ from petsc4py import PETSc
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SceneError
-from riser_soil.solve.newton_loop import OutgrownError
 from riser_soil.solve.linear_solver import raised
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton_loop import OutgrownError
 from riser_soil.solve.petsc_options import PREFIX, given
 from riser_soil.solve.snes import SnesLoop
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mpi4py import MPI
-from riser_soil.solve.convergence import stalled
 
 from benchmarks.error_bars.scenes import CLAY, pressed
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, State, Weights
 from riser_soil.core.system import System, Timer
+from riser_soil.solve.convergence import stalled
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step
 from riser_soil.solve.time_scheme import Static

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 from mpi4py import MPI
-from riser_soil.solve.residual_norm import ResidualNorm
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Forces, MatrixBlock, Model, State, Traits, Weights
 from riser_soil.core.roles import Adaptive
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.residual_norm import ResidualNorm
 from riser_soil.solve.solver import NewtonSettings, Solution, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor, Springs

@@ -1,4 +1,4 @@
-"""The compiled loop over a riser in space and on a floor: kernels are those of the parts, steps are those of SNES."""
+"""The line solver of a riser in space and on a floor: kernels are those of the parts, steps are those of SNES."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take
-from tests.support.riser_loop import (
+from tests.support.line_solver import (
     CASES,
     IN_WATER,
     all_parts,

@@ -1,7 +1,7 @@
-"""Newton's method for time steps of lines and bodies, compiled: by kernels over packed lines.
+"""Solver of time steps of lines and bodies on one rank: Newton's method over kernels, see `packed_line`.
 
-A step that it can't solve where something stands beside the lines, as where contact with soil opens so that steps want
-shortening, is left to Newton's method over the parts.
+A step that it can't solve on condensed soil, as where contact opens so that steps want shortening, is solved over the
+parts of the system instead (`step_iteration`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.accepted_lines import CompiledMass, LineResults
 from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
-from riser_soil.solve.packed_line import KernelParts, LoopBorder, PackedLine, PackedSystem
+from riser_soil.solve.line_system import Coupling, LineSystem
+from riser_soil.solve.packed_line import KernelParts, PackedLine
 from riser_soil.solve.residual_norm import largest_at
 from riser_soil.solve.solver import Accepted, NewtonSettings, Solution, Step, limits_of, reported
 
@@ -38,14 +39,14 @@ if TYPE_CHECKING:
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is given up
 
 
-def compiled_loop(system: System) -> CompiledLoop | None:
-    """The compiled loop over lines and bodies, joined or not, one of them on condensed soil or none; None where one of
+def line_solver(system: System) -> LineSolver | None:
+    """The solver of lines and bodies, joined or not, one of them on condensed soil or none; None where one of
     their parts has no kernels.
     """
     fields = [field for field in system.model.lines if isinstance(field, MovingNodes)]
     parts = [_with_kernels(acting_on(field, system.model.parts)) for field in fields]
     known: list[Any] = [part for each in parts for part in each.parts]
-    make = _beside(system, [part for part in system.model.parts if part not in known])
+    make = _couplings_of(system, [part for part in system.model.parts if part not in known])
     if make is None or len(fields) < len(system.model.lines):
         return None
     weights = Packed(LineWeights(0.0, 0.0))
@@ -53,7 +54,7 @@ def compiled_loop(system: System) -> CompiledLoop | None:
         PackedLine(field, own, system.prescribed[field.part], system.levers[field.part], weights)
         for field, own in zip(fields, parts, strict=True)
     ]
-    return CompiledLoop(system, PackedSystem(lines, make(lines), weights))
+    return LineSolver(system, LineSystem(lines, make(lines), weights))
 
 
 def _with_kernels(parts: Sequence[LinePart]) -> KernelParts:
@@ -62,7 +63,7 @@ def _with_kernels(parts: Sequence[LinePart]) -> KernelParts:
     return KernelParts([(part, data) for part, data in asked if data is not None])
 
 
-def _beside(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedLine]], list[LoopBorder]] | None:
+def _couplings_of(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedLine]], list[Coupling]] | None:
     """What makes all that stands beside the lines, by the parts that are none of theirs alone; None where these have no
     kernels.
     """
@@ -85,28 +86,28 @@ def _beside(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedL
         return None
     from riser_soil.solve.dense_border import DenseBorder
 
-    def make(lines: Sequence[PackedLine]) -> list[LoopBorder]:
+    def make(lines: Sequence[PackedLine]) -> list[Coupling]:
         border = DenseBorder(lines)
         return [*(each(border, lines) for each in known), border]
 
     return make
 
 
-class CompiledLoop(Accepted):
-    """Solver of time steps of lines and bodies, which tells of them, too. Create once a stage, by `compiled_loop`.
+class LineSolver(Accepted):
+    """Solver of time steps of lines and bodies, and what is known of them then. Create once a stage, by `line_solver`.
 
     iterations: of all its steps, those that failed included.
     """
 
-    def __init__(self, system: System, packed: PackedSystem) -> None:
+    def __init__(self, system: System, packed: LineSystem) -> None:
         super().__init__(system)
         self.iterations = 0
-        self.packed, self._lines, self._beside = packed, packed.lines, packed.beside
-        self._solved: State | None = None  # by the compiled loop
+        self.packed, self._lines, self._couplings = packed, packed.lines, packed.couplings
+        self._solved: State | None = None  # by this solver
         self._nothing = np.zeros(system.numbering.size)
         self._no_work = {part.name: Work() for part in system.model.parts}
         self._results: dict[Line, LineResults] = {}
-        if packed.all_beside(attrgetter("smooth")):
+        if packed.all_couplings(attrgetter("smooth")):
             found = [(packed, packed.line) for packed in self._lines]
             self._results = {
                 line: LineResults(packed, line, system.smooth) for packed, line in found if isinstance(line, Line)
@@ -122,17 +123,17 @@ class CompiledLoop(Accepted):
             results.forget()
         failure, norms = self._iterate(step, begun, self._limits(step, settings, at_equilibrium))
         solution = None if failure else Solution(self._state(step, begun), self._forces(), norms)
-        # What the loop leaves behind is the step's end, but of a scheme that balances forces elsewhere.
+        # The last trial is the step's end, but of a scheme that balances forces elsewhere.
         self._solved = solution.state if solution is not None and step.scheme.moves == 1.0 else None
         if self._solved is not None:
             for results in self._results.values():
                 results.solved(self._solved)
-        self.system.clock.add("compiled loop", since)
+        self.system.clock.add("line solver", since)
         return failure if solution is None else solution
 
     def leaves(self, before: State) -> bool:
         """Whether a step from an accepted state that could not be solved may be solved over the parts."""
-        left = [each.leave_to_newton(before) for each in self._beside]
+        left = [each.leave_to_parts(before) for each in self._couplings]
         return any(left)
 
     def _begun(self, step: Step) -> State:
@@ -146,26 +147,26 @@ class CompiledLoop(Accepted):
         return replace(scheme.balanced_at(step.before, alone, step.dt), u=begun.u / scheme.moves)
 
     def _iterate(self, step: Step, begun: State, limits: StopLimits) -> tuple[str, list[float]]:
-        """Why the loop does not get to balance, "" where it does; norms of the residual on the way."""
+        """Why the step is not solved, "" where it is; norms of the residual on the way."""
         scheme, past = step.scheme, step.scheme.past(step.start)
         for _ in range(MOST_STARTS):
-            for each in self._beside:
+            for each in self._couplings:
                 each.begin(step.before, begun.t, begun.u)
             self.packed.begin(begun, past, scheme.weights(step.dt), limits)
             ending, convergence = self.packed.solve(), self.packed.convergence
             self.iterations += convergence.iterations
             if ending == CONVERGED:
-                holds = self.packed.all_beside(attrgetter("holds"))
+                holds = self.packed.all_couplings(attrgetter("holds"))
                 return self._tangle(step, begun) or ("" if holds else OUTGROWN), convergence.norms
             if ending != OUTGROWN:
                 break
-            for each in self._beside:
+            for each in self._couplings:
                 each.widen()
         return self._reason(ending, convergence.norms), convergence.norms
 
     def _limits(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
-        smooth, gradual = self.system.smooth, self.system.gradual and self.packed.all_beside(attrgetter("gradual"))
+        smooth, gradual = self.system.smooth, self.system.gradual and self.packed.all_couplings(attrgetter("gradual"))
         answers = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
         limits, moves = limits_of(settings, smooth, gradual, answers), step.scheme.moves
         if moves == 1.0:
@@ -174,7 +175,7 @@ class CompiledLoop(Accepted):
         return limits._replace(tolerance=limits.tolerance / moves, floor=limits.floor / moves)
 
     def _tangle(self, step: Step, begun: State) -> str:
-        """Why what the loop has found is none of a line's states; "" where it is one."""
+        """Why the solution is not an admissible state of a line; "" where it is."""
         end = None if step.scheme.moves == 1.0 else self._state(step, begun)
         for packed in self._lines:
             if isinstance(line := packed.line, Line):
@@ -193,7 +194,7 @@ class CompiledLoop(Accepted):
             end = step.scheme.trial(step.before, step.t, step.dt, step.scheme.moves * u)
             self.system.prescribe(end)
             return end
-        for each in self._beside:
+        for each in self._couplings:
             each.put_increments(step.scheme.weights(step.dt), u, v, a)
         return State(step.t, u, v, a, dt=step.dt)
 
@@ -215,10 +216,10 @@ class CompiledLoop(Accepted):
         for packed in self._lines:
             packed.keep()
         kept = [part for packed in self._lines for part in packed.parts.committed]
-        self.system.commit(state, [*kept, *(part for each in self._beside for part in each.parts)])
+        self.system.commit(state, [*kept, *(part for each in self._couplings for part in each.parts)])
         for results in self._results.values():
             results.commit()
-        self.system.clock.add("compiled loop", since)
+        self.system.clock.add("line solver", since)
 
     @cached_property
     def mass(self) -> CompiledMass:
@@ -228,7 +229,7 @@ class CompiledLoop(Accepted):
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E zero."""
         found = self.mass.bulk_forces(state)
-        for each in self._beside:
+        for each in self._couplings:
             each.add_bulk_forces(state, found)
         return found
 
@@ -251,7 +252,7 @@ class CompiledLoop(Accepted):
     def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         if solution.state is not self._solved:
-            for each in self._beside:
+            for each in self._couplings:
                 each.forget_account()
             return super().energy_exchanged(before, solution)
         since = time.perf_counter()
@@ -260,17 +261,17 @@ class CompiledLoop(Accepted):
         for packed in self._lines:
             packed.parts.add_work(before, solution.state, as_list(packed.work), work)
         energy = Energy(*as_list(self.packed.energy))
-        for each in self._beside:
+        for each in self._couplings:
             energy += each.add_account(before, solution.state, work)
-        self.system.clock.add("compiled loop", since)
+        self.system.clock.add("line solver", since)
         return energy, work
 
     def state(self) -> Saved:
         """What would be the same but to round-off if it were found anew."""
-        return {name: value for each in self._beside for name, value in each.state().items()}
+        return {name: value for each in self._couplings for name, value in each.state().items()}
 
     def restore(self, saved: Saved) -> None:
-        for each in self._beside:
+        for each in self._couplings:
             each.restore(saved)
 
     def _reason(self, ending: str, norms: list[float]) -> str:

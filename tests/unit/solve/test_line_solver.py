@@ -1,6 +1,6 @@
-"""The compiled loop over a riser alone: its kernels are those of the parts, and its steps are those of SNES.
+"""The line solver of a riser alone: its kernels are those of the parts, and its steps are those of SNES.
 
-`tests/verification/test_riser_loop.py` has the same in space, on a floor and in moving water, which takes longer.
+`tests/verification/test_line_solver.py` has the same in space, on a floor and in moving water, which takes longer.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from riser_soil.solve.convergence import Convergence, StopLimits
 from scipy.linalg import solve_banded
 
 from riser_soil.contact.law import Penalty
@@ -19,11 +18,12 @@ from riser_soil.core import banded
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SolveError
 from riser_soil.seabed.grounds import Plane
+from riser_soil.solve.convergence import Convergence, StopLimits
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.solver import NotConvergedError
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
-from tests.support.riser_loop import (
+from tests.support.line_solver import (
     Compiled,
     all_parts,
     require_kernels_of_parts,
@@ -131,9 +131,9 @@ def test_a_step_that_fails_says_why_as_snes_does() -> None:
     reported = []
     for newton in ("compiled", "snes"):
         stage = walked("surge in a plane", newton, 1)
-        asked = stage.newton if stage.newton.compiled is not None else stage.newton.by_parts
+        asked = stage.newton if stage.newton.lines is not None else stage.newton.by_parts
         asked.settings = replace(asked.settings, tolerance=1e-12, max_iterations=1)
-        if stage.newton.compiled is None:
+        if stage.newton.lines is None:
             stage.newton.by_parts.loop.max_iterations = 1
         with pytest.raises(SolveError, match="no convergence") as failure:
             stage.walk(200)

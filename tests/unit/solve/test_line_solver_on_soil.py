@@ -1,4 +1,4 @@
-"""Time steps of a riser on condensed soil in the compiled loop, beside those of Newton's method over its parts."""
+"""Time steps of a riser on condensed soil in the line solver, beside those of Newton's method over its parts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from riser_soil.solve.convergence import StopLimits
 
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.near_points import PairsByFacet, boxes
@@ -14,9 +13,10 @@ from riser_soil.contact.surface_loop import Watched, _leaves
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.compiled_loop import CompiledLoop, compiled_loop
+from riser_soil.solve.convergence import StopLimits
+from riser_soil.solve.line_solver import LineSolver, line_solver
+from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.newton import solver_of
-from riser_soil.solve.packed_line import PackedSystem
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solver import NewtonSettings, Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha
@@ -94,10 +94,10 @@ def assert_same(found: list[dict[str, Array]], wanted: list[dict[str, Array]]) -
 
 
 def forbid(patch: pytest.MonkeyPatch) -> None:
-    def refuse(loop: CompiledLoop, before: State) -> bool:
+    def refuse(loop: LineSolver, before: State) -> bool:
         raise AssertionError("a step was left to Newton's method over the parts")
 
-    patch.setattr(CompiledLoop, "leaves", refuse)
+    patch.setattr(LineSolver, "leaves", refuse)
 
 
 @pytest.mark.parametrize("case", MARKED)
@@ -108,13 +108,13 @@ def test_the_loop_finds_what_newton_finds(case: str, monkeypatch: pytest.MonkeyP
 
 def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each second one, so that both go on from what the other has left."""
-    usual, asked = CompiledLoop._iterate, []
+    usual, asked = LineSolver._iterate, []
 
-    def iterate(loop: CompiledLoop, step: Step, still: State, limits: StopLimits) -> tuple[str, list[float]]:
+    def iterate(loop: LineSolver, step: Step, still: State, limits: StopLimits) -> tuple[str, list[float]]:
         asked.append(step.t)
         return usual(loop, step, still, limits) if len(asked) % 2 else ("left to Newton", [])
 
-    monkeypatch.setattr(CompiledLoop, "_iterate", iterate)
+    monkeypatch.setattr(LineSolver, "_iterate", iterate)
     assert_same(taken("in a plane", "compiled"), by_snes("in a plane"))
     assert len(asked) == 8
 
@@ -139,37 +139,37 @@ def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
-    left, usual = list[float](), CompiledLoop.leaves
+    left, usual = list[float](), LineSolver.leaves
 
-    def count(loop: CompiledLoop, before: State) -> bool:
+    def count(loop: LineSolver, before: State) -> bool:
         left.append(before.t)
         return usual(loop, before)
 
-    monkeypatch.setattr(CompiledLoop, "leaves", count)
+    monkeypatch.setattr(LineSolver, "leaves", count)
     monkeypatch.setattr("riser_soil.contact.soil_contact.SHARE", 1e-4)
     found = taken("in a plane", "compiled")
     assert len(left) > 0
     assert_same(found, by_snes("in a plane"))
 
 
-def at_first_step(case: str) -> tuple[PackedSystem, System]:
+def at_first_step(case: str) -> tuple[LineSystem, System]:
     """The loop where the dynamic stage begins, in balance under the present soil."""
     assembly = built(scene(case, "compiled"))
     lay, move = assembly.scene.stages
     before = run_stage(assembly, lay, State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     system = System(assembly.comm, assembly.begin(move), Timer.new())
     found = solver_of(system, SCHEME.dynamic, SETTINGS)
-    assert found.compiled is not None
+    assert found.lines is not None
     guess = np.zeros(assembly.size)
     found.solve(Step(SCHEME, before, 0.01, 0.01, None, guess))
-    return found.compiled.packed, system
+    return found.lines.packed, system
 
 
 @pytest.mark.parametrize("case", MARKED)
 def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     """Of riser and border, and it is another one without contact's share."""
     riser, system = at_first_step(case)
-    (line,), (beside, _) = riser.lines, riser.beside
+    (line,), (beside, _) = riser.lines, riser.couplings
     assert isinstance(beside, SoilBorder)
     border = beside._border.value
     step, dofs, n = line.step, line.dofs, line.line.size
@@ -208,7 +208,7 @@ def test_elastic_soil_adheres_without_a_limit() -> None:
     mapping["seabed"] = {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 2.0e3}}
     assembly = built(mapping)
     system = System(assembly.comm, assembly.begin(assembly.scene.stages[1]), Timer.new())
-    assert compiled_loop(system) is not None
+    assert line_solver(system) is not None
     system.destroy()
 
 

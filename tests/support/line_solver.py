@@ -1,4 +1,4 @@
-"""The compiled loop over a riser alone beside the methods of its parts, and beside SNES."""
+"""The line solver of a riser alone beside the methods of its parts, and beside SNES."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from mpi4py import MPI
-from riser_soil.solve.convergence import CONVERGED, StopLimits
 
 from benchmarks.stage import TimedStage, last_stage
 from riser_soil.contact.contact import ContactResults
@@ -23,8 +22,10 @@ from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
-from riser_soil.solve.compiled_loop import compiled_loop
-from riser_soil.solve.packed_line import KernelParts, PackedLine, PackedSystem
+from riser_soil.solve.convergence import CONVERGED, StopLimits
+from riser_soil.solve.line_solver import line_solver
+from riser_soil.solve.line_system import LineSystem
+from riser_soil.solve.packed_line import KernelParts, PackedLine
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.solver import Accepted
 from tests.support import sample_water
@@ -61,7 +62,7 @@ class Compiled:
         numbers, free = KernelParts([(part, part.kernel_data()) for part in parts]), np.zeros(line.size, dtype=bool)
         weights = Packed(LineWeights(0.0, 0.0))
         self.line = PackedLine(line, numbers, free, np.ones(line.size), weights)
-        self.riser = PackedSystem([self.line], [], weights)
+        self.riser = LineSystem([self.line], [], weights)
         for part in parts:
             part.renew_kernel_data(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
@@ -138,7 +139,7 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
 def require_mass(at: Sample, parts: list[Any]) -> None:
     """Inverse of the mass, kinetic energy and bulk forces at an accepted state are those of the parts' methods."""
     system, accepted = System(MPI.COMM_SELF, Model([at.line], parts), Timer.new()), at.state(3, size=0.0)
-    loop = compiled_loop(system)
+    loop = line_solver(system)
     assert loop is not None
     found, expected = loop.mass, RiserMass(system)
     force = at.state(4).v
@@ -186,7 +187,7 @@ def require_element_residual(told: Accepted, line: Line, parts: list[Any], accep
 
 def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     """Section forces at the state solved for last are those by the parts' methods, at that state and by SNES."""
-    line, elements, told = compiled.assembly.line, compiled.assembly.elements, compiled.newton.compiled
+    line, elements, told = compiled.assembly.line, compiled.assembly.elements, compiled.newton.lines
     assert told is not None
     state, other = compiled.stepper.now, snes.stepper.now
     reported = SectionForces.within(told.section_forces(line, elements, state), line.nodes)
@@ -225,8 +226,8 @@ def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
 def require_steps_of_snes(case: str) -> None:
     """Iterations, states and energy exchanged of a scene's steps by the loop are those by SNES."""
     compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
-    assert compiled.newton.compiled is not None
-    assert snes.newton.compiled is None
+    assert compiled.newton.lines is not None
+    assert snes.newton.lines is None
     require_iterations(compiled, snes)
     place, expected_place = (stage.assembly.line.positions3(stage.stepper.before) for stage in (compiled, snes))
     np.testing.assert_allclose(place, expected_place, rtol=0.0, atol=1e-9)

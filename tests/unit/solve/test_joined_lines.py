@@ -1,4 +1,4 @@
-"""Time steps of joined lines and bodies in the compiled loop, beside those by SNES over their parts."""
+"""Time steps of joined lines and bodies in the line solver, beside those by SNES over their parts."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from riser_soil.core.part import Energy, State
 from riser_soil.core.system import Timer
 from riser_soil.riser.part_kernels import Border
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve.compiled_loop import CompiledLoop
 from riser_soil.solve.joint_border import JointBorder
-from riser_soil.solve.packed_line import PackedSystem
+from riser_soil.solve.line_solver import LineSolver
+from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.stages import LayingCounter, lay, run_stage
 from tests.support.line_scenes import CHAIN, DEPTH, IN_WATER, RIGID, hung_over_clay, mooring, shaken
@@ -97,13 +97,13 @@ def last_stage(case: str, newton: str) -> TimedStage:
 
 @pytest.mark.parametrize("case", SCENES)
 def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(loop: CompiledLoop, before: State) -> bool:
+    def refuse(loop: LineSolver, before: State) -> bool:
         raise AssertionError("a step was left to Newton's method over the parts")
 
-    monkeypatch.setattr(CompiledLoop, "leaves", refuse)
+    monkeypatch.setattr(LineSolver, "leaves", refuse)
     compiled, snes = (last_stage(case, newton) for newton in ("compiled", "snes"))
-    assert compiled.newton.compiled is not None
-    assert snes.newton.compiled is None
+    assert compiled.newton.lines is not None
+    assert snes.newton.lines is None
     for stage in (compiled, snes):
         stage.walk(STEPS)
     # Stiff joints leave round-off near the tolerance: either may take an iteration more in a step.
@@ -129,25 +129,25 @@ def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> 
         stage.destroy()
 
 
-def at_first_step(case: str) -> PackedSystem:
+def at_first_step(case: str) -> LineSystem:
     """The loop where it has solved the first step."""
     stage = last_stage(case, "compiled")
-    assert stage.newton.compiled is not None
+    assert stage.newton.lines is not None
     stage.walk(1)
-    return stage.newton.compiled.packed
+    return stage.newton.lines.packed
 
 
-def soil_in(packed: PackedSystem, of: Callable[[Border], Array]) -> Array:
+def soil_in(packed: LineSystem, of: Callable[[Border], Array]) -> Array:
     """What a border has of soil's reached dofs; none without soil."""
-    soil = next((each for each in packed.beside if isinstance(each, SoilBorder)), None)
+    soil = next((each for each in packed.couplings if isinstance(each, SoilBorder)), None)
     return np.empty(0) if soil is None else of(soil._border.value)[: len(soil._held.value.holding)]
 
 
-def increments(packed: PackedSystem) -> Array:
+def increments(packed: LineSystem) -> Array:
     return np.concatenate([*(line.step.u.ravel() for line in packed.lines), soil_in(packed, lambda border: border.u)])
 
 
-def put(packed: PackedSystem, x: Array) -> None:
+def put(packed: LineSystem, x: Array) -> None:
     first = 0
     for line in packed.lines:
         line.step.u.ravel()[:] = x[first : first + line.line.size]
@@ -155,17 +155,17 @@ def put(packed: PackedSystem, x: Array) -> None:
     soil_in(packed, lambda border: border.u)[:] = x[first:]
 
 
-def residual(packed: PackedSystem, x: Array) -> Array:
+def residual(packed: LineSystem, x: Array) -> Array:
     put(packed, x)
     packed.evaluate()
     of_lines = (line.dofs.residual.ravel() for line in packed.lines)
     return np.concatenate([*of_lines, soil_in(packed, lambda border: border.residual)])
 
 
-def matrix(packed: PackedSystem) -> Array:
+def matrix(packed: LineSystem) -> Array:
     """The whole tangent (n, n): the lines' bands, the joints' blocks between lines, and soil with what couples it."""
     packed.write_tangent()
-    border = next(each for each in packed.beside if isinstance(each, JointBorder))
+    border = next(each for each in packed.couplings if isinstance(each, JointBorder))
     ns = len(soil_in(packed, lambda border: border.u))
     first = np.cumsum([0, *(line.line.size for line in packed.lines)])
     out = np.zeros((first[-1] + ns, first[-1] + ns))
@@ -194,7 +194,7 @@ def matrix(packed: PackedSystem) -> Array:
     return out
 
 
-def shaken_increments(packed: PackedSystem) -> tuple[Array, BoolArray]:
+def shaken_increments(packed: LineSystem) -> tuple[Array, BoolArray]:
     """Increments near those of the step, and which of them are free."""
     x = increments(packed)
     free = np.concatenate([~line.dofs.fixed.ravel() for line in packed.lines])
@@ -222,7 +222,7 @@ def test_terms_of_what_soil_and_line_do_to_each_other() -> None:
     packed = at_first_step("on elastic soil")
     residual(packed, shaken_increments(packed)[0])
     K = np.abs(matrix(packed))
-    soil = next(each for each in packed.beside if isinstance(each, SoilBorder))
+    soil = next(each for each in packed.couplings if isinstance(each, SoilBorder))
     moved = np.abs(soil._held.value.accepted + soil_in(packed, lambda border: border.u))
     sizes = np.concatenate([*(line.dofs.sizes.ravel() for line in packed.lines), moved])
     touched, n = soil._packed, len(sizes) - len(moved)
@@ -237,7 +237,7 @@ def test_terms_of_what_soil_and_line_do_to_each_other() -> None:
     np.testing.assert_allclose(touched.dofs.terms.ravel(), by_itself + K[at, n:] @ moved, rtol=1e-12)
 
 
-def left_over(packed: PackedSystem) -> float:
+def left_over(packed: LineSystem) -> float:
     """What the factors' answer to a residual leaves of it by the whole matrix, relative."""
     x, _ = shaken_increments(packed)
     load = residual(packed, x)
@@ -254,13 +254,13 @@ def test_the_factors_answer_as_the_whole_matrix_does(case: str) -> None:
 def test_many_joints_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whose sparse factors cost less than dense ones."""
     monkeypatch.setattr("riser_soil.solve.joint_border.MOST_JOINTS", len(bundle()["joints"]) - 1)
-    assert last_stage("a bundle", "compiled").newton.compiled is None
+    assert last_stage("a bundle", "compiled").newton.lines is None
 
 
 def test_joints_store_what_they_stretch() -> None:
     """The loop's energy of joints is that of the part."""
     stage = last_stage("a bundle", "compiled")
-    assert stage.newton.compiled is not None
+    assert stage.newton.lines is not None
     stage.walk(1)
     hung = stage.assembly.hung
     assert hung is not None
