@@ -16,7 +16,8 @@ from riser_soil.scene.dump import yaml_text
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
-_MOST_ROWS = 120
+_MOST_ROWS, _COLUMNS = 120, 6
+_BREAK = "\u200b"  # without width: where a long name may be broken
 
 
 def chapter(sources: Sources) -> ReportSection:
@@ -46,18 +47,21 @@ def _scene(sources: Sources) -> Iterator[Block]:
         yield Paragraph("The input file cannot be read.", "warning")
         return
     yield Code(scene_text(first))
-    rows = [*_differences(sources.cases, first)]
-    if rows:
-        head = ("value", "load case", f"in place of that of {first.name}")
-        more = "" if len(rows) < _MOST_ROWS else "More are in the tables of the cases' folder."
-        yield TableBlock("Values in which the load cases differ", ReportTable(head, rows[:_MOST_ROWS], more), words=3)
+    yield from _differences(sources.cases, first)
 
 
-def _differences(cases: Sequence[LoadCase], first: LoadCase) -> Iterator[list[str]]:
-    for case in cases:
-        for path in case.given:
-            if given_value(case.value(path)) != given_value(first.value(path)):
-                yield [path, case.name, given_value(case.value(path))]
+def _differences(cases: Sequence[LoadCase], first: LoadCase) -> Iterator[TableBlock]:
+    """The values in which cases differ, a row a case and a column a value, so many columns a table as a page has."""
+    paths = [
+        path
+        for path in dict.fromkeys(path for case in cases for path in case.given)
+        if len({given_value(case.value(path)) for case in (first, *cases)}) > 1
+    ]
+    more = "" if len(cases) <= _MOST_ROWS else "More are in the tables of the cases' folder."
+    for shown in (paths[n : n + _COLUMNS] for n in range(0, len(paths), _COLUMNS)):
+        rows = [[case.name, *(given_value(case.value(path)) for path in shown)] for case in cases[:_MOST_ROWS]]
+        head = ("load case", *(path.replace(".", f".{_BREAK}") for path in shown))
+        yield TableBlock("Values in which the load cases differ", ReportTable(head, rows, more), key="differences")
 
 
 def scene_text(case: LoadCase) -> str:

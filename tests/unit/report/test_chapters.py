@@ -150,6 +150,18 @@ def test_an_error_bar_decides_what_a_difference_is(run: Path, tmp_path: Path) ->
         del rows[name]
 
 
+def test_the_appendix_has_a_row_a_case_of_what_differs(run: Path, tmp_path: Path) -> None:
+    """A value that all cases share is in the input file alone."""
+    axes = ("vessel.offset", "water.density")
+    places = {"near": 0.0, "far": 1.0}
+    given = {name: {"vessel.offset": f"[{place}, 0]", "water.density": "1025.0"} for name, place in places.items()}
+    rows = {name: (values, moved(places[name], lambda _: None)) for name, values in given.items()}
+    write_cases(tmp_path, run, axes, rows)
+    content = table(items_of(opened_at(tmp_path, reference="near")), "differences")
+    assert [head.replace("\u200b", "") for head in content.head] == ["load case", "vessel.offset"]
+    assert [list(row) for row in content.rows] == [["near", "0, 0"], ["far", "1, 0"]]
+
+
 def test_static_configurations_that_are_one_have_one_row(cases: Path) -> None:
     rows = table(items_of(opened_at(cases)), "static").rows
     assert len(rows) == 1, "offsets and seeds of the recorded run hang alike"
