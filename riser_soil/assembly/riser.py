@@ -100,6 +100,7 @@ def _line_type(given: LineType) -> sections.SectionProperties:
         "wall_outer_diameter": outer,
         "wall_inner_diameter": inner,
         "allowable_stress": given.wall.allowable_stress if given.wall else 0.0,
+        "bare_diameter": given.pipe_diameter or 0.0,
     }
     names = [each.name for each in fields(sections.SectionProperties) if each.name not in formed]
     same = {name: getattr(given, name) for name in names}
@@ -212,7 +213,7 @@ def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | No
         return None
     from riser_soil.riser.wall_stress import Pressures
 
-    return Pressures(_inside(scene, line), _outside(scene), elements.inner_diameter, elements.pipe_diameter)
+    return Pressures(_inside(scene, line), _outside(scene), elements.pipe_bore, elements.pipe_diameter)
 
 
 def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:

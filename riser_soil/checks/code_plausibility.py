@@ -37,7 +37,7 @@ def _two_strengths(key: str, check: SteelCheck, checked: dict[str, LineType]) ->
 
 def _thick_walls(key: str, check: DnvCheck, checked: dict[str, LineType]) -> Iterator[str]:
     for name, line in checked.items():
-        outer, inner = line.steel_diameters
+        outer, inner = line.pipe_diameters
         slender = outer / (0.5 * (outer - inner) - check.corrosion_allowance)
         if slender < LEAST_SLENDER:
             yield (

@@ -75,12 +75,10 @@ class Criteria(Protocol):
 
 
 class Steel(NamedTuple):
-    """Outer diameter and nominal thickness of a steel pipe's wall, and the areas on which pressures act [m, m2]."""
+    """Outer diameter and nominal thickness of a steel pipe's wall [m], on which the pressures act."""
 
     diameter: float
     thickness: float
-    pressed_inside: float
-    pressed_outside: float
 
 
 def local_design_pressure(check: SteelCheck, loads: NodeLoads) -> tuple[Array, Array]:
@@ -280,8 +278,8 @@ class ApiStressCriteria:
     def _used(self, loads: NodeLoads, inside: Array | float) -> Array:
         c, pipe, found = self.check, self.pipe, loads.effects.all
         moment = np.hypot(found.moment_y, found.moment_z)
-        wall_tension = found.tension + inside * pipe.pressed_inside - loads.outside * pipe.pressed_outside
         D, t = pipe.diameter, pipe.thickness
+        wall_tension = found.tension + 0.25 * np.pi * (inside * (D - 2.0 * t) ** 2 - loads.outside * D**2)
         stress = api_rp_2rd.largest_stress(D, t, t - c.thinning, wall_tension, moment, inside, loads.outside)
         return api_rp_2rd.utilisation(stress, c.yield_stress - c.yield_derating, c.case)
 
@@ -338,9 +336,8 @@ class CapacityCriteria:
 
 def criteria_of(check: Check, line_type: LineType) -> Criteria:
     """The criteria of a check on a line type."""
-    outer, inner = line_type.steel_diameters
-    pressed = (0.25 * np.pi * d**2 for d in (line_type.inner_diameter, line_type.outer_diameter or 0.0))
-    pipe = Steel(outer, 0.5 * (outer - inner), *pressed)
+    outer, inner = line_type.pipe_diameters
+    pipe = Steel(outer, 0.5 * (outer - inner))
     match check:
         case DnvCheck():
             return DnvCriteria(check, pipe)

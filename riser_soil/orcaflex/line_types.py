@@ -117,6 +117,8 @@ def line_type(pipe: PipeOfType) -> dict[str, Any]:
     """A scene's line type."""
     item = pipe.item
     found = {"outer_diameter": pipe.outermost, "inner_diameter": pipe.innermost} | _section(pipe)
+    if pipe.outer < pipe.outermost:
+        found["pipe_diameter"] = pipe.outer
     _tell(pipe)
     for ours, theirs, size in (("max_tension", "AllowableTension", FORCE), ("min_bend_radius", "MinRadius", 1.0)):
         if (value := item.numbers(theirs, 1, math.inf)[0]) not in (0.0, math.inf):

@@ -32,7 +32,8 @@ class SectionProperties:
     the pipe's own axis follows, see `polar_inertia`.
     damping: s, ratio of viscous to elastic stiffness. min_bend_radius: m, the least that is allowed; 0 for any.
     max_tension: N, the largest that is allowed; 0 for any. wall_outer_diameter, wall_inner_diameter: m, of the wall
-    that bears the stress, 0 where there is none; allowable_stress: Pa, 0 for any.
+    that bears the stress, 0 where there is none; allowable_stress: Pa, 0 for any. bare_diameter: m, of the pipe inside
+    a coat or buoyancy modules, 0 where outer_diameter is the pipe's own.
     """
 
     EA: float
@@ -54,10 +55,15 @@ class SectionProperties:
     wall_outer_diameter: float = 0.0
     wall_inner_diameter: float = 0.0
     allowable_stress: float = 0.0
+    bare_diameter: float = 0.0
 
     @property
     def pipe_diameter(self) -> float:
-        return self.outer_diameter
+        return self.wall_outer_diameter or self.bare_diameter or self.outer_diameter
+
+    @property
+    def pipe_bore(self) -> float:
+        return self.wall_inner_diameter or self.inner_diameter
 
     @property
     def pipe_EI_y(self) -> float:
@@ -98,7 +104,8 @@ class Elements:
     about its own; damping: s, of viscous over elastic stiffness.
     min_bend_radius: m, the least that is allowed, max_tension: N and allowable_stress: Pa, the largest; 0 for any.
     wall_outer_diameter, wall_inner_diameter: m, of the wall that bears the stress, 0 where there is none.
-    pipe_diameter: m, pipe_EI_y and pipe_EI_z: N m2, of the pipe without a bend stiffener around it.
+    pipe_diameter and pipe_bore: m, on which the pressures act for the wall tension: those of the wall, if any, else of
+    the pipe without coat, modules, stiffener or growth around it; pipe_EI_y, pipe_EI_z: N m2, without a stiffener.
     """
 
     length: Array
@@ -123,6 +130,7 @@ class Elements:
     wall_inner_diameter: Array
     allowable_stress: Array
     pipe_diameter: Array
+    pipe_bore: Array
     pipe_EI_y: Array
     pipe_EI_z: Array
 

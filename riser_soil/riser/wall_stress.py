@@ -13,12 +13,15 @@ Sparks, see `wall_tension`; von Mises' stress as in API STD 2RD (2013) and DNV-S
 
 Sections of the riser's wall: one at each node, two where unlike walls meet.
 
-At a joint both walls bear the same effective tension, moments and pressures on diameters of their own. In a bend
+At a joint both walls bear the same effective tension, moments and pressures, on diameters of their own. In a bend
 stiffener the pipe bears the share of the moments that it has of the stiffness.
 
 Wall tension of the pipe from effective tension, internal and external pressure.
 
     T_w = T + p_i A_i - p_o A_o,    p_i = p + rho_i g (z_p - z),    p_o = rho_o g (z_s - z), at least 0.
+
+A_i and A_o are areas of the pipe itself: a coat, buoyancy modules and a lining bear an axial force that is the pressure
+around them times their own area, and nothing else.
 
 The effective tension T is what carries, bends and stretches the line here: its elements strain by T/EA, to which
 neither the pressures' action on closed ends nor Poisson's ratio add. Gauge pressures of fluids at rest: what waves and
@@ -133,13 +136,12 @@ def largest_von_mises(loads: Loads, wall: Wall) -> Array:
 class WallSections:
     """Sections (ns,) with their node, in the order of the nodes; nodes without a wall beside them have none.
 
-    pressed: diameters [m] on which the pressures act. allowable: stress [Pa], 0 where none is given.
+    allowable: stress [Pa], 0 where none is given.
     borne: shares (ns, 2) of the bending moments about y and z that the pipe bears itself.
     """
 
     node: IntArray
     wall: Wall
-    pressed: Wall
     allowable: Array
     borne: Array
 
@@ -150,7 +152,7 @@ class WallSections:
         T, My, Mz, Mx, p_i, p_o = (
             values[..., self.node] for values in (effective, moment_y, moment_z, torque, inside, outside)
         )
-        bore, outer = (0.25 * np.pi * d**2 for d in (self.pressed.inner_diameter, self.pressed.outer_diameter))
+        bore, outer = (0.25 * np.pi * d**2 for d in (self.wall.inner_diameter, self.wall.outer_diameter))
         borne_y, borne_z = self.borne.T
         return Loads(T + p_i * bore - p_o * outer, borne_y * My, borne_z * Mz, Mx, p_i, p_o)
 
@@ -174,13 +176,12 @@ class WallSections:
 def walls_of(elements: Elements) -> WallSections:
     """Sections of the elements' walls."""
     wall = Wall(elements.wall_outer_diameter, elements.wall_inner_diameter)
-    pressed = Wall(elements.pipe_diameter, elements.inner_diameter)
-    return wall_sections(wall, pressed, elements.allowable_stress, elements.borne_by_pipe)
+    return wall_sections(wall, elements.allowable_stress, elements.borne_by_pipe)
 
 
-def wall_sections(wall: Wall, pressed: Wall, allowable: Array, borne: Array) -> WallSections:
+def wall_sections(wall: Wall, allowable: Array, borne: Array) -> WallSections:
     """Sections from what the elements have (ne,), borne (ne, 2); an outer diameter of 0 is no wall."""
-    numbers = np.column_stack([*wall, *pressed, allowable, borne])
+    numbers = np.column_stack([*wall, allowable, borne])
     nodes = len(numbers) + 1
     before, after = np.insert(numbers, 0, 0.0, axis=0), np.append(numbers, np.zeros((1, numbers.shape[1])), axis=0)
     unlike = (before != after).any(axis=1)
@@ -188,8 +189,8 @@ def wall_sections(wall: Wall, pressed: Wall, allowable: Array, borne: Array) -> 
     rows = np.concatenate([before[unlike], after])
     walled = rows[:, 0] > 0.0
     order = np.argsort(node[walled], kind="stable")
-    D, d, outside, bore, limit, *shares = rows[walled][order].T
-    return WallSections(node[walled][order], Wall(D, d), Wall(outside, bore), limit, np.column_stack(shares))
+    D, d, limit, *shares = rows[walled][order].T
+    return WallSections(node[walled][order], Wall(D, d), limit, np.column_stack(shares))
 
 
 @dataclass(frozen=True)
@@ -209,8 +210,8 @@ class HydrostaticPressure:
 class Pressures:
     """Fluids inside and outside a pipe, None where there is none.
 
-    inner_diameter, outer_diameter: (ne,) m, of the pipe without a bend stiffener. At a joint the areas are the means of
-    both sides, as section forces are.
+    inner_diameter, outer_diameter: (ne,) m, of the pipe itself, see `Elements.pipe_diameter`. At a joint the areas are
+    the means of both sides, as section forces are.
     """
 
     inside: HydrostaticPressure | None

@@ -54,7 +54,7 @@ def _checked_once(scene: Scene) -> Iterator[Problem]:
 
 
 def _wall(path: Path, check: SteelCheck, name: str, line: LineType) -> Iterator[Problem]:
-    outer, inner = line.steel_diameters
+    outer, inner = line.pipe_diameters
     if not 0.0 < inner < outer:
         allowed = f"needs the wall of {name}, which has no outer_diameter and inner_diameter"
         yield Problem((*path, "kind"), allowed, f"give them in line_types.{name}, or name other line_types")

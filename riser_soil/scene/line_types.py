@@ -160,7 +160,8 @@ class MetalWall(BaseModel):
     model_config = FROZEN
 
     outer_diameter: Length | None = Field(
-        default=None, description="of the wall that bears the stress [m]; by default the line type's outer_diameter"
+        default=None,
+        description="of the wall that bears the stress [m]; by default the line type's pipe_diameter or outer_diameter",
     )
     inner_diameter: Length | None = Field(
         default=None, description="the same [m]; by default the line type's inner_diameter"
@@ -198,6 +199,11 @@ class LineType(BaseModel):
         default=None, description="outer diameter [m]; needed for buoyancy, drag, added mass and contact"
     )
     inner_diameter: LengthOrNone = Field(default=0.0, description="inner diameter, filled by the contents [m]")
+    pipe_diameter: Length | None = Field(
+        default=None,
+        description="outer diameter of the pipe inside a coat or buoyancy modules [m]: the pressure outside acts on it "
+        "for the wall tension; by default wall.outer_diameter, or outer_diameter",
+    )
     mass: MassPerLength | None = Field(
         default=None, description="mass per length in air without contents [kg/m]; needed for dynamics"
     )
@@ -267,6 +273,18 @@ class LineType(BaseModel):
         return self
 
     @model_validator(mode="after")
+    def _pipe_inside_what_is_around_it(self) -> Self:
+        if self.pipe_diameter is None:
+            return self
+        if self.wall is not None and self.wall.outer_diameter is not None:
+            raise wrong("pipe_diameter", "is given twice, as wall.outer_diameter, too", "leave out one of the two")
+        if self.outer_diameter is None or not self.inner_diameter < self.pipe_diameter <= self.outer_diameter:
+            allowed = f"inner_diameter ({self.inner_diameter:g} m) < pipe_diameter <= outer_diameter"
+            around = "not given" if self.outer_diameter is None else f"{self.outer_diameter:g} m"
+            raise wrong("pipe_diameter", f"must be {allowed} ({around})", "correct one of the diameters")
+        return self
+
+    @model_validator(mode="after")
     def _bending_stiffness_given_once(self) -> Self:
         pair = (self.EI_y, self.EI_z)
         if self.EI is None and None in pair:
@@ -330,17 +348,17 @@ class LineType(BaseModel):
         return self.vortices[0] > 0.0 or self.in_line_vortices[0] > 0.0
 
     @property
-    def wall_diameters(self) -> tuple[float, float]:
-        """Outer and inner diameter of the wall that bears the stress [m]; 0 where there is none."""
-        if self.wall is None:
-            return 0.0, 0.0
-        outer, inner = self.wall.outer_diameter, self.wall.inner_diameter
-        return outer or self.outer_diameter or 0.0, inner or self.inner_diameter
+    def pipe_diameters(self) -> tuple[float, float]:
+        """Outer and inner diameter [m] of the pipe itself, inside its coat, modules and around its lining; 0 where not
+        given. The pressures act on it for the wall tension, and codes check it.
+        """
+        outer, inner = (None, None) if self.wall is None else (self.wall.outer_diameter, self.wall.inner_diameter)
+        return outer or self.pipe_diameter or self.outer_diameter or 0.0, inner or self.inner_diameter
 
     @property
-    def steel_diameters(self) -> tuple[float, float]:
-        """Outer and inner diameter [m] of the wall that a code checks: its wall's, else its own; 0 where not given."""
-        return self.wall_diameters if self.wall is not None else (self.outer_diameter or 0.0, self.inner_diameter)
+    def wall_diameters(self) -> tuple[float, float]:
+        """Outer and inner diameter of the wall that bears the stress [m]; 0 where there is none."""
+        return (0.0, 0.0) if self.wall is None else self.pipe_diameters
 
     @property
     def bending_stiffness(self) -> tuple[float, float]:

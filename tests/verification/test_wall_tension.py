@@ -65,6 +65,17 @@ def test_the_foot_of_a_submerged_pipe_is_pressed_by_the_water() -> None:
     assert reported.wall_tension[0] == pytest.approx(MASS * G * L - RHO * G * (10.0 + L) * A_OUT, rel=1e-9)
 
 
+@pytest.mark.parametrize("given", [{"pipe_diameter": 0.2}, {"wall": {"outer_diameter": 0.2}}])
+def test_a_coat_bears_the_water_on_itself(given: Mapping) -> None:
+    """At the foot the pipe inside has the water's pressure on its own area, the coat on the rest."""
+    scene = hanging(-10.0, water={"density": RHO, "surface_level": 0.0})
+    scene["line_types"]["pipe"] = PIPE | given
+    reported = settled(scene)
+    pressure = -RHO * G * reported.position[:, 2]
+    pressed = reported.effective_tension - reported.wall_tension
+    assert pressed == pytest.approx(pressure * 0.25 * np.pi * 0.2**2, rel=1e-9)
+
+
 def test_the_level_of_the_contents_can_be_given() -> None:
     default, given = (
         settled(hanging(5.0, {"density": OIL} | more)).wall_tension for more in ({}, {"pressure_level": 8.0})

@@ -164,7 +164,7 @@ def test_narrow_band_stress_has_rayleigh_s_damage(m: float) -> None:
 def of_one_pipe(time: Array, moment_y: Array, moment_z: Array) -> StressHistory:
     """Moments (nt,) on both nodes of an element [N m]."""
     wall = Wall(np.array([0.3]), np.array([0.2]))
-    sections = wall_sections(wall, wall, np.zeros(1), np.ones((1, 2)))
+    sections = wall_sections(wall, np.zeros(1), np.ones((1, 2)))
     still = np.zeros((time.size, 2))
     y, z = (np.stack([moment, moment], axis=1) for moment in (moment_y, moment_z))
     return StressHistory(time, np.array([0.0, 5.0]), sections, sections.loads(still, y, z, still, still, still))

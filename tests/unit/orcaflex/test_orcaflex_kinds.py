@@ -194,6 +194,7 @@ def test_coats_and_linings(tmp_path: Path) -> None:
     coat = f"{PIPE}\n    CoatingThickness: Coat\n    LiningThickness: 0.005\n    LiningMaterialDensity: 1.1"
     (pipe,) = the_types(data_of(tmp_path, layers, ("Category: General", coat)))
     assert (pipe["outer_diameter"], pipe["inner_diameter"]) == (pytest.approx(0.40), pytest.approx(0.19))
+    assert pipe["pipe_diameter"] == pytest.approx(0.30)
     ring = [7.85 * (0.30**2 - 0.20**2), 0.9 * (0.32**2 - 0.30**2), 0.6 * (0.40**2 - 0.32**2), 1.1 * (0.20**2 - 0.19**2)]
     assert pipe["mass"] == pytest.approx(1000.0 * math.pi / 4.0 * sum(ring))
     assert pipe["EI"] == pytest.approx(2e11 * math.pi / 64.0 * (0.30**4 - 0.20**4))
