@@ -314,7 +314,7 @@ def test_api_design_factors_by_case(tmp_path: Path) -> None:
 def von_mises_of_wall(done: Run, inside: np.ndarray, area: float, I: float) -> np.ndarray:
     """Largest of both sides of the bend [Pa], in the middle of the wall."""
     outside, t = done["external_pressure"], 0.5 * (D - BORE)
-    tension = done["effective_tension"] + 0.25 * np.pi * (inside * BORE**2 - outside * COATED**2)
+    tension = done["effective_tension"] + 0.25 * np.pi * (inside * BORE**2 - outside * D**2)
     bent = np.hypot(done["bending_moment_y"], done["bending_moment_z"]) * 0.5 * (D - t) / I
     hoop = (inside - outside) * D / (2.0 * T1) - inside
     radial = -(outside * D + inside * BORE) / (D + BORE)
@@ -324,7 +324,7 @@ def von_mises_of_wall(done: Run, inside: np.ndarray, area: float, I: float) -> n
     return np.max(found, axis=0)
 
 
-COATED = 0.15  # m, diameter on which the water presses
+COATED = 0.15  # m, of the coat, which bears the water on itself
 
 
 def test_von_mises_stress_by_api_rp_2rd(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -65,7 +65,7 @@ def test_the_foot_of_a_submerged_pipe_is_pressed_by_the_water() -> None:
     assert reported.wall_tension[0] == pytest.approx(MASS * G * L - RHO * G * (10.0 + L) * A_OUT, rel=1e-9)
 
 
-@pytest.mark.parametrize("given", [{"pipe_diameter": 0.2}, {"wall": {"outer_diameter": 0.2}}])
+@pytest.mark.parametrize("given", [{"pipe_diameter": 0.25}, {"wall": {"outer_diameter": 0.25}}])
 def test_a_coat_bears_the_water_on_itself(given: Mapping) -> None:
     """At the foot the pipe inside has the water's pressure on its own area, the coat on the rest."""
     scene = hanging(-10.0, water={"density": RHO, "surface_level": 0.0})
@@ -73,7 +73,7 @@ def test_a_coat_bears_the_water_on_itself(given: Mapping) -> None:
     reported = settled(scene)
     pressure = -RHO * G * reported.position[:, 2]
     pressed = reported.effective_tension - reported.wall_tension
-    assert pressed == pytest.approx(pressure * 0.25 * np.pi * 0.2**2, rel=1e-9)
+    assert pressed == pytest.approx(pressure * 0.25 * np.pi * 0.25**2, rel=1e-9)
 
 
 def test_the_level_of_the_contents_can_be_given() -> None:
