@@ -147,7 +147,7 @@ def _compiled(kernel: Any, kinds: Any) -> Any:
     given = {"_kernel": kernel, "_kinds": kinds, "_arguments": _arguments, "__name__": kernel.py_func.__module__}
     calling = FunctionType(code, given, name)
     calling.__qualname__ = name
-    return entry(calling)
+    return entry(calling, kinds)
 
 
 _kernel: Any = None

@@ -19,6 +19,7 @@ from typing import Any
 from numba.extending import overload
 
 from riser_soil.core.compiled import njit
+from riser_soil.core.kernel_cache import KERNELS_FOR
 
 Kernel = Callable[..., Any]
 
@@ -39,6 +40,7 @@ def by_type(stub: Any, apart: bool = True) -> Any:
     def of(data: type) -> Callable[[Kernel], Kernel]:
         def keep(kernel: Kernel) -> Kernel:
             kernels[data] = njit(kernel, apart=apart)
+            KERNELS_FOR.setdefault(data, set()).add(kernel.__module__)
             return kernel
 
         return keep

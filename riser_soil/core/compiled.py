@@ -1,28 +1,24 @@
 """Compiled kernels: numba's `njit`, with a cache on disk between runs.
 
-numba's own cache doesn't notice an edit in another file whose functions it has inlined, and runs stale code. So each
-version of the kernels has a cache folder of its own, under NUMBA_CACHE_DIR, XDG_CACHE_HOME or ~/.cache, or a private
-temporary folder where that can't be written or is full, with a message. Division by zero gives inf or nan, as in numpy.
-Multiply-adds may be fused and divisions by constants become products, which changes the last digit only. Kernels are
-inlined where others call them: tuples then stay in registers, which halves the time of the elements in space.
+The cache is a folder for each version of numba and Python and each kind of processor, under NUMBA_CACHE_DIR,
+XDG_CACHE_HOME or ~/.cache, or a private temporary folder where that can't be written or is full, with a message. All
+that is in it has its place by the sources it depends on, see `kernel_sources`. Division by zero gives inf or nan, as in
+numpy. Multiply-adds may be fused and divisions by constants become products, which changes the last digit only. Kernels
+are inlined where others call them: tuples then stay in registers, which halves the time of the elements in space.
 """
 
 from __future__ import annotations
 
 import errno
 import hashlib
-import math
 import os
 import platform
-import re
-import shutil
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
-from glob import glob
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -33,11 +29,18 @@ import numba
 from llvmlite import binding as llvm
 from numba.core import event
 
-from riser_soil.core.kernel_cache import PACKAGE, CacheByTypes, caching_in, first_alone
+from riser_soil.core.kernel_cache import (
+    CacheByTypes,
+    caching_in,
+    dependencies,
+    first_alone,
+    mark_used,
+    remove_old,
+    version_folder,
+)
+from riser_soil.core.kernel_sources import PACKAGE, SOURCES
 
 NAME = PACKAGE.name
-KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
-IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
 ROOM = 1 << 26  # bytes that all kernels need, and some more
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
 ANNOUNCEMENT = "compiling kernels (once, about a minute)"
@@ -56,8 +59,7 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
 
 
 def _cached(made: Any, function: Callable[..., object], folder: Path) -> Any:
-    with caching_in(str(folder)):
-        made._cache = CacheByTypes(function)
+    made._cache = CacheByTypes(function, folder)
     return made
 
 
@@ -77,48 +79,30 @@ def _callable_from_python(usual: Any) -> Any:
     return type(usual.__name__, (usual,), {"__call__": call})
 
 
-def entry(function: Callable[[int], None]) -> Any:
-    """Compile a function of one address, to be called by its own; its machine code stays on disk."""
-    since, counted = time.process_time(), _announcer.seconds
-    with caching_in(str(FOLDER)), first_alone(FOLDER, f"{function.__module__}.{function.__qualname__}"):
+def entry(function: Callable[[int], None], kinds: Iterable[Any]) -> Any:
+    """Compile a function of one address, to be called by its own; its machine code stays on disk.
+
+    kinds: numba's types of what it finds there, on which it depends as on its module and on that of its caller.
+    """
+    since, counted, name = time.process_time(), _announcer.seconds, f"{function.__module__}.{function.__qualname__}"
+    word = dependencies(function.__module__, kinds, f"{NAME}.core.bound")
+    folder = version_folder(FOLDER / name, word)
+    with caching_in(str(folder)), first_alone(FOLDER, f"{name} {word}"):
         made = numba.cfunc(numba.types.void(numba.types.intp), cache=True, **OPTIONS)(function)
     if _announcer.seconds > counted:  # it wasn't there
         _announcer.seconds = counted + time.process_time() - since
     return made
 
 
+def version() -> str:
+    """Fingerprint of what all compiled code depends on: versions, and the processor."""
+    machine = f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
+    return hashlib.sha256(f"{numba.__version__} {platform.python_version()} {machine}".encode()).hexdigest()[:16]
+
+
 def fixed(n: int) -> tuple[int, ...]:
     """A tuple of length n, which compiled code knows beforehand: it unrolls loops over range(len(...))."""
     return (0,) * n
-
-
-def fingerprint(package: Path) -> str:
-    """Fingerprint of all that compiled code depends on: sources of modules with kernels and of what they import,
-    versions, and the processor.
-    """
-    machine = f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
-    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()} {machine}".encode())
-    for name, text in sorted(_sources(package).items()):
-        digest.update(f"{name}\n{text}".encode())
-    return digest.hexdigest()[:16]
-
-
-def _sources(package: Path) -> dict[str, str]:
-    """Text by file name, within the package: names as strings, which are found ten times as fast as paths."""
-    names = glob("**/*.py", root_dir=package, recursive=True)
-    texts = {name: (package / name).read_text(encoding="utf-8") for name in names}
-    needed, todo = set[str](), {name for name, text in texts.items() if f"{NAME}.core.compiled import" in text}
-    while todo:
-        needed |= todo
-        todo = {name for known in todo for name in _imports(texts[known]) if name in texts} - needed
-    return {name: texts[name] for name in needed}
-
-
-def _imports(text: str) -> Iterable[str]:
-    """Modules of the package that a source names in its import statements."""
-    for module, names in re.findall(rf"from {NAME}\.?([\w.]*) import (\([^)]*\)|.*)", text):
-        for dotted in (module, *(f"{module}.{name}".strip(".") for name in re.findall(r"\w+", names))):
-            yield f"{dotted.replace('.', '/')}.py"
 
 
 def choose_folder(version: str) -> Path:
@@ -146,11 +130,11 @@ def _temporary(version: str) -> Path:
         return Path(tempfile.mkdtemp(prefix=f"{NAME}-"))
 
 
-def _make(root: Path, version: str) -> Path:
-    folder = root / version
+def _make(root: Path, name: str) -> Path:
+    folder = root / name
     new = not folder.exists()
     require_room(folder, ROOM)
-    _mark_used(folder)
+    mark_used(folder)
     if new:
         remove_old(root, keep=folder)
     return folder
@@ -184,33 +168,8 @@ def _on_first_rank() -> bool:
     return os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0")) == "0"
 
 
-def _mark_used(folder: Path) -> None:
-    """A folder that another user has made is used all the same."""
-    try:
-        os.utime(folder)
-    except PermissionError:
-        return
-
-
-def remove_old(root: Path, keep: Path) -> None:
-    """Remove cache folders of other versions, except the latest and those that may be in use."""
-    others = [path for path in root.iterdir() if re.fullmatch("[0-9a-f]{16}", path.name) and path != keep]
-    used = sorted(((_last_use(path), path) for path in others), reverse=True)
-    for last, path in used[KEPT:]:
-        if time.time() - last > IN_USE:
-            shutil.rmtree(path, ignore_errors=True)
-
-
-def _last_use(folder: Path) -> float:
-    """Another process may have removed the folder meanwhile."""
-    try:
-        return folder.stat().st_mtime
-    except OSError:
-        return math.inf
-
-
 class _Announcer(event.Listener):
-    """Tells on the first rank that kernels are being compiled, once for a cache folder, and counts the time.
+    """Tells on the first rank that kernels are being compiled, once for all sources as they are, and counts the time.
 
     seconds: processor time that compiling has taken in this process.
     """
@@ -220,7 +179,7 @@ class _Announcer(event.Listener):
         self._within, self._since = 0, 0.0  # kernels are compiled within the compilation of those that call them
 
     def on_start(self, event: Any) -> None:
-        if _on_first_rank() and _first(FOLDER / "announced"):
+        if self._within == 0 and _on_first_rank() and _first(FOLDER / "announced" / _all_sources()):
             tell(ANNOUNCEMENT)
         if self._within == 0:
             self._since = time.process_time()
@@ -232,15 +191,23 @@ class _Announcer(event.Listener):
             self.seconds += time.process_time() - self._since
 
 
+@cache
+def _all_sources() -> str:
+    """A word for all modules of the package."""
+    names = (str(path.relative_to(PACKAGE.parent).with_suffix("")) for path in PACKAGE.rglob("*.py"))
+    return SOURCES.word(name.replace(os.sep, ".") for name in names)
+
+
 def _first(marker: Path) -> bool:
     try:
+        marker.parent.mkdir(exist_ok=True)
         marker.touch(exist_ok=False)
     except OSError:
         return False
     return True
 
 
-FOLDER = choose_folder(fingerprint(PACKAGE))
+FOLDER = choose_folder(version())
 _announcer = _Announcer()
 for _kind in ("numba:compile", "numba:run_pass"):
     event.register(_kind, _announcer)

@@ -1,4 +1,4 @@
-"""numba's cache on disk, a folder for each signature.
+"""numba's cache on disk, a folder for each signature and for the sources that the code depends on.
 
 numba keeps one index for a function, with all types that it was ever called with, and imports the modules of the
 NamedTuples among them to read it. A kernel that is called with the data of any law or part would import all of them;
@@ -14,8 +14,10 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
+import math
 import os
-import sys
+import re
+import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -26,15 +28,18 @@ from typing import Any
 from numba import config
 from numba.core.caching import FunctionCache
 
-PACKAGE = Path(__file__).parents[1]
+from riser_soil.core.kernel_sources import SOURCES
+
+KEPT = 4  # folders of other versions, the latest ones, for those who go back and forth
+IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
 PATIENCE = 120.0  # s for which a kernel of another process is waited for: that may have been stopped
 
 
 class CacheByTypes:
     """Cache of one function, in the place of numba's own. Looks for nothing on disk before the function is called."""
 
-    def __init__(self, function: Callable[..., object]) -> None:
-        self._function, self._folder = function, config.CACHE_DIR
+    def __init__(self, function: Callable[..., object], folder: Path) -> None:
+        self._function, self._folder = function, folder
         self._known: dict[str, FunctionCache] = {}  # by the word for the types
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -52,13 +57,14 @@ class CacheByTypes:
         self._turn(sig).leave()
 
     def _turn(self, sig: Any) -> Turn:
-        function = self._function
-        return Turn(self._folder, f"{function.__module__}.{function.__qualname__} {mark(sig)}")
+        return Turn(str(self._folder), f"{self._function.__module__}.{self._function.__qualname__} {mark(sig)}")
 
     def _of(self, sig: Any) -> FunctionCache:
         word = mark(sig)
         if word not in self._known:
-            with caching_in(str(Path(self._folder, word))):
+            module = self._function.__module__
+            folder = version_folder(self._folder / module / word, dependencies(module, sig))
+            with caching_in(str(folder)):
                 self._known[word] = FunctionCache(self._function)
         return self._known[word]
 
@@ -127,14 +133,21 @@ def caching_in(folder: str) -> Iterator[None]:
 
 
 def mark(kinds: Iterable[Any]) -> str:
-    """A word for types of numba; another one where a source outside the package is edited."""
-    return hashlib.sha256(" ".join([*map(str, kinds), _word(kinds)]).encode()).hexdigest()[:12]
+    """A word for types of numba."""
+    return hashlib.sha256(" ".join(map(str, kinds)).encode()).hexdigest()[:12]
 
 
-def _word(kinds: Iterable[Any]) -> str:
-    """A word for the NamedTuples among types, "" without any; another one where their source is edited."""
-    found = sorted(f"{each.__module__}.{each.__qualname__} {_source(each)}" for each in set(_named(kinds)))
-    return hashlib.sha256("\n".join(found).encode()).hexdigest()[:12] if found else ""
+def dependencies(module: str, kinds: Iterable[Any], *more: str) -> str:
+    """A word for the sources that a module's function for arguments of these types depends on: those of the module, of
+    the NamedTuples among the types, and of kernels that are chosen by them. more: further modules.
+    """
+    named = set(_named(kinds))
+    chosen = (each for kind in named for each in KERNELS_FOR.get(kind, ()))
+    return SOURCES.word({module, *more, *(kind.__module__ for kind in named), *chosen})
+
+
+KERNELS_FOR: dict[type, set[str]] = {}
+"""Modules with kernels that are chosen by a type, see `by_type`."""
 
 
 def _named(types: Iterable[Any]) -> Iterator[type]:
@@ -146,9 +159,37 @@ def _named(types: Iterable[Any]) -> Iterator[type]:
         yield from _named(getattr(given, "field_dict", {}).values())
 
 
-def _source(named: type) -> str:
-    """Of a class outside the package, as those within have cache folders by their sources."""
-    path = getattr(sys.modules[named.__module__], "__file__", None)
-    if path is None or PACKAGE in Path(path).parents:
-        return ""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+def version_folder(root: Path, word: str) -> Path:
+    """The folder of a version in its root, made where it isn't there yet, in the place of those of old versions."""
+    folder = root / word
+    new = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    mark_used(folder)
+    if new:
+        remove_old(root, keep=folder)
+    return folder
+
+
+def mark_used(folder: Path) -> None:
+    """A folder that another user has made is used all the same."""
+    try:
+        os.utime(folder)
+    except PermissionError:
+        return
+
+
+def remove_old(root: Path, keep: Path) -> None:
+    """Remove cache folders of other versions, except the latest and those that may be in use."""
+    others = [path for path in root.iterdir() if re.fullmatch("[0-9a-f]{16}", path.name) and path != keep]
+    used = sorted(((_last_use(path), path) for path in others), reverse=True)
+    for last, path in used[KEPT:]:
+        if time.time() - last > IN_USE:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _last_use(folder: Path) -> float:
+    """Another process may have removed the folder meanwhile."""
+    try:
+        return folder.stat().st_mtime
+    except OSError:
+        return math.inf
