@@ -101,8 +101,10 @@ def called(package: Path) -> tuple[list[float], set[str]]:
     """Results of the kernels, and what was compiled for them."""
     path = os.pathsep.join([str(package.parent), *sys.path])
     given = environment() | {"NUMBA_CACHE_DIR": str(package.parent / "cache"), "PYTHONPATH": path}
-    run = {"cwd": package.parent, "capture_output": True, "text": True, "timeout": HANGS, "check": False}
-    done = subprocess.run([sys.executable, "-c", CALL], env=given, **run)
+    call = [sys.executable, "-c", CALL]
+    done = subprocess.run(
+        call, env=given, cwd=package.parent, capture_output=True, text=True, timeout=HANGS, check=False
+    )
     assert done.returncode == 0, done.stderr
     drag, buoyancy, pressed, *names = done.stdout.split()
     return [float(drag), float(buoyancy), float(pressed)], set(names)
