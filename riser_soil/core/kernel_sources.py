@@ -15,8 +15,8 @@ from functools import cache
 from pathlib import Path
 
 
-class Sources:
-    """Sources of a package's modules, as they are when they are asked for first."""
+class PackageSources:
+    """PackageSources of a package's modules, as they are when they are asked for first."""
 
     def __init__(self, package: Path) -> None:
         self._package = package
@@ -72,4 +72,4 @@ class Sources:
 
 
 PACKAGE = Path(__file__).parents[1]
-SOURCES = Sources(PACKAGE)
+SOURCES = PackageSources(PACKAGE)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from riser_soil.core.kernel_sources import PACKAGE, SOURCES, Sources
+from riser_soil.core.kernel_sources import PACKAGE, SOURCES, PackageSources
 from tests.support.on_ranks import HANGS, environment
 
 SPEED = """
@@ -147,10 +147,10 @@ def test_sources_are_those_of_a_module_and_of_all_it_imports(tmp_path: Path, nam
     (folder / "riser").mkdir(parents=True)
     for each, text in texts.items():
         (folder / each).write_text(text, encoding="utf-8")
-    before = Sources(folder).word(["riser_soil.riser.kernel"])
+    before = PackageSources(folder).word(["riser_soil.riser.kernel"])
     with (folder / name).open("a", encoding="utf-8") as file:
         file.write("# edited\n")
-    assert (Sources(folder).word(["riser_soil.riser.kernel"]) != before) == matters
+    assert (PackageSources(folder).word(["riser_soil.riser.kernel"]) != before) == matters
 
 
 def test_kernels_of_a_line_do_not_depend_on_those_who_call_them() -> None:
