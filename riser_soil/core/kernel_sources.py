@@ -16,7 +16,7 @@ from pathlib import Path
 
 
 class PackageSources:
-    """PackageSources of a package's modules, as they are when they are asked for first."""
+    """Sources of a package's modules, as they are when they are asked for first."""
 
     def __init__(self, package: Path) -> None:
         self._package = package
