@@ -30,8 +30,8 @@ from riser_soil.solve.solver import NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper
-from tests.support.coupled_scenes import Mapping
-from tests.support.falling_pipe import DROP, LENGTH, WEIGHT, Energies, flat, tilted
+from tests.support.scenes import DROP, FALLING_LENGTH, FALLING_WEIGHT, Mapping, flat, tilted
+from tests.support.stage_histories import Energies
 
 Fall = Callable[[float, float, float], Mapping]
 STIFFNESSES = tuple(10.0**p for p in range(4, 10))  # N/m2
@@ -84,7 +84,7 @@ def outcome(method: Method, fall: Fall, k: float, dt: float, duration: float = D
     except SolveError:
         finished = False
     with np.errstate(over="ignore", invalid="ignore"):
-        share = energies.gain / (HEIGHT[fall] * WEIGHT * LENGTH) if energies.steps else np.zeros(1)
+        share = energies.gain / (HEIGHT[fall] * FALLING_WEIGHT * FALLING_LENGTH) if energies.steps else np.zeros(1)
     return Outcome(max(0.0, float(share.max())), 1.0 + float(share[-1]), energies.steps, energies.cuts, finished)
 
 

@@ -15,8 +15,7 @@ from typing import Any
 
 from riser_soil.scene.document import parse
 from tests.support.bad_scenes import GOOD
-from tests.support.coupled_scenes import LAY, heave, touchdown
-from tests.support.riser_scenes import IN_WAVES, dynamic, in_waves, prescribed, riser_scene, static
+from tests.support.scenes import IN_WAVES, LAY, dynamic, heave, in_waves, prescribed, riser_scene, static, touchdown
 
 ROOT = Path(__file__).parents[2]
 WRITTEN = (

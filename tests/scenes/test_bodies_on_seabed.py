@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,15 +21,63 @@ from riser_soil.errors import SceneError
 from riser_soil.results.read import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
+from tests.support.catenaries import pulls
 from tests.support.left_run import leave_after
-from tests.support.line_scenes import mooring, pulls
+from tests.support.line_scenes import lines_scene, mooring, pin
 from tests.support.run_on_ranks import ran as ran_on
 from tests.support.said import line_with
-from tests.support.seabed_bodies import BED, CHAIN, DEPTH, LIES, NET, WET, G, between_chains, let_go
+from tests.support.scenes import dynamic, line
+
+DEPTH, G = 30.0, 9.81
+WET = 600.0  # N/m, of the chain
+CHAIN: dict[str, Any] = {
+    "EA": 2.0e8, "EI": 0.0, "GJ": 1.0e3, "mass": 70.0, "outer_diameter": 0.08, "submerged_weight": WET,
+}  # fmt: skip
+CLUMP: dict[str, Any] = {"kind": "point", "mass": 4000.0, "volume": 0.5}
+RHO = 1025.0
+NET = G * (CLUMP["mass"] - RHO * CLUMP["volume"])  # N
+BED = 5.0e5  # N/m2
+LIES = {"radius": 0.04, "stiffness": NET / (WET / BED)}  # of a clump that sinks in as its chains do beside it
 
 LONG = 59.5  # of chains that lift the clump in part, m
 HEAVY = 200.0  # kg
 BALL: dict[str, Any] = {"kind": "point", "mass": HEAVY, "volume": 0.1}
+
+
+def between_chains(
+    *stages: Mapping[str, Any], span: float, length: float, elements: int = 30, contact: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """A clump on the bed amid two chains of a length, whose tops are at z = 0 and that far to its sides."""
+    tops = [{"position": [x, 0.0, 0.0]} for x in (-span, span)]
+    touch = {} if contact is None else {"contact": dict(contact)}
+    return lines_scene(
+        *stages,
+        line_types={"chain": CHAIN},
+        lines={
+            "left": line("chain", length, elements, tops[0], "free"),
+            "right": line("chain", length, elements, "free", tops[1]),
+        },
+        bodies={"clump": {"position": [0.0, 0.0, 0.5 - DEPTH], **CLUMP, **touch}},
+        joints={"left_end": pin("left", "end", "clump"), "right_end": pin("right", "start", "clump")},
+        water={"density": RHO},
+        seabed={"kind": "spring", "level": -DEPTH, "stiffness": BED},
+        contact={},
+    )
+
+
+def let_go(
+    bodies: Mapping[str, Mapping[str, Any]], duration: float, time_step: float, **more: Any
+) -> dict[str, Any]:
+    """Bodies without lines, from their places at rest on, in air; a short rope hangs high above. more: of the scene."""
+    ends = ({"position": [x, 0.0, 50.0]} for x in (0.0, 1.9))
+    sections = {
+        "line_types": {"rope": {"EA": 1.0e6, "EI": 10.0, "GJ": 10.0, "mass": 1.0, "outer_diameter": 0.02}},
+        "bodies": {name: dict(body) for name, body in bodies.items()},
+        "seabed": {"kind": "rigid", "level": 0.0},
+        "contact": {},
+        "stages": [dynamic(duration, time_step, "fall")],
+    }
+    return lines_scene(lines={"rope": line("rope", 2.0, 2, *ends)}, **sections | more)
 
 
 def ran(scene: dict[str, Any], folder: Path) -> Run:
@@ -58,8 +107,8 @@ def test_a_clump_between_two_chains_that_lie_on_the_bed(tmp_path: Path) -> None:
     span, length, height = 50.0, 66.0, DEPTH - 0.5 * CHAIN["outer_diameter"]
     found = ran(between_chains(span=span, length=length, contact=LIES, elements=60), tmp_path)
     H = lying(span, length, height)
-    for line, top in (("left", 0), ("right", -1)):
-        tension = found.of_line(line)["effective_tension"][-1]
+    for name, top in (("left", 0), ("right", -1)):
+        tension = found.of_line(name)["effective_tension"][-1]
         assert tension[top] == pytest.approx(H + WET * height, rel=1e-3)
         assert tension[top] - tension[-1 - top] == pytest.approx(WET * height, rel=1e-3)
     assert force_under(found, "clump") == pytest.approx([0.0, 0.0, NET], rel=1e-3, abs=1.0)

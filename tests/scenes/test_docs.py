@@ -16,7 +16,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.on_ranks import ROOT
 from tests.support.pages import DEMOS, DOCS, README, blocks, text
-from tests.support.small_scene import BASE, joined
+from tests.support.scenes import ON_SEABED, overlaid
 
 PAGES = [README, *DOCS]
 LIST = ROOT / "docs" / "README.md"
@@ -43,7 +43,7 @@ def test_pieces_of_scenes_are_valid(page: Path, n: int, tmp_path: Path) -> None:
     """With the tables that the page shows, each named in its first line."""
     for table in blocks(page, "csv"):
         (tmp_path / table.splitlines()[0].removeprefix("# ")).write_text(table, encoding="utf-8")
-    scene_from_mapping(joined(BASE, list(pieces(page))[n]), tmp_path)
+    scene_from_mapping(overlaid(ON_SEABED, list(pieces(page))[n]), tmp_path)
 
 
 def test_the_tutorial_shows_lines_of_its_scene() -> None:

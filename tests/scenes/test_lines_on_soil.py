@@ -19,10 +19,10 @@ from riser_soil.results.read import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.stages import lay
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.line_scenes import RHO, G, as_line, hung_over_clay, mooring, shaken
 from tests.support.run_on_ranks import COMPARED
 from tests.support.run_on_ranks import ran as ran_on
+from tests.support.scenes import LAY, heave, touchdown
 
 SECTIONS = {"model": "sections"}
 SLOPE = {"kind": "spring", "stiffness": 1e5, "slope_deg": -3.0}

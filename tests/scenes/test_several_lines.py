@@ -39,6 +39,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.statistics.records import records_of
 from riser_soil.whole_run import run
+from tests.support.catenaries import spans
 from tests.support.left_run import leave_after
 from tests.support.line_scenes import (
     CHAIN,
@@ -57,11 +58,10 @@ from tests.support.line_scenes import (
     lazy_s_by_catenaries,
     mooring,
     shaken,
-    spans,
     with_line_named,
 )
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with, lines_with, telling
+from tests.support.scenes import dynamic, prescribed, riser_scene, static
 from tests.support.vtk_reading import read_by_vtk
 
 ELEMENTS, TIME_STEP = (setting for setting in SETTINGS if setting.name in ("elements", "time_step"))

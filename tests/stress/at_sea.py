@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.results import Run
 from riser_soil.stress.bounds import Answer, near
 from tests.stress.case import Trial, one, stress_case
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.scenes import dynamic, prescribed, riser_scene, static
 
 RHO, G = 1025.0, 9.81
 

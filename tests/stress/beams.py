@@ -12,10 +12,8 @@ from scipy.special import ellipe, ellipk
 from riser_soil.results import Run
 from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
-from tests.support.buckling_scenes import EULER, blade, column, frame
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.rod_reference import Rod, first_buckling
+from tests.support.scenes import EULER, Mapping, blade, column, frame, prescribed, riser_scene, static
 
 NAMED_LOAD = r"load factor|of the load|buckl"
 

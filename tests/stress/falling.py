@@ -10,8 +10,7 @@ import numpy as np
 from riser_soil.results import Run
 from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Trial, one, stress_case
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, dynamic, riser_scene
+from tests.support.scenes import AVERAGE, Mapping, dynamic, riser_scene
 
 W, G = 700.0, 9.81
 IMPACT = r"impact|time scheme (removed|added)|time_step"

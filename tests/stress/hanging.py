@@ -10,8 +10,7 @@ from riser_soil.results import Run
 from riser_soil.stress.bounds import Answer, near
 from tests.stress.case import Trial, one, stress_case
 from tests.stress.closed_forms import hanging
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 W = 500.0  # N/m
 

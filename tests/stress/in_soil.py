@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from riser_soil.results import Run
 from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
-from tests.support.coupled_scenes import Mapping, lying_pipe
 from tests.support.pushed_pipe import INDENTATION, D, E, slice_of_soil
+from tests.support.scenes import Mapping, lying_pipe
 
 CELLS = 16  # across the diameter
 

@@ -14,10 +14,18 @@ from scipy.special import j1, jn_zeros
 from riser_soil.results import Run
 from riser_soil.stress.bounds import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
-from tests.support.coupled_scenes import Mapping
-from tests.support.end_around_circle import LARGEST, end_led_around, way_around
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, static
-from tests.support.turned_bar import turned_bar
+from tests.support.scenes import (
+    AVERAGE,
+    LARGEST_AROUND,
+    Mapping,
+    dynamic,
+    end_led_around,
+    prescribed,
+    riser_scene,
+    static,
+    turned_bar,
+    way_around,
+)
 
 FIRST_SCENE = Path(__file__).parents[2] / "demos" / "first_scene.yaml"
 TOO_LONG = r"time steps? of .*(tenth|long)|longer than a tenth|time_step"
@@ -310,7 +318,7 @@ def around(way: int) -> Callable[[], Trial]:
 
     def answers(runs: Runs) -> Iterator[Answer]:
         right, left = (largest(runs[side], 1, "start", "effective_tension") for side in ("right", "left"))
-        yield near("largest tension at the start [N]", right, LARGEST[way], rel=0.01)
+        yield near("largest tension at the start [N]", right, LARGEST_AROUND[way], rel=0.01)
         yield near("that of the mirror image [N]", left, right, rel=1e-6)
 
     def make() -> Trial:

@@ -28,9 +28,8 @@ from riser_soil.soil.von_mises import PerfectlyPlastic
 from riser_soil.solve.linear_solver import RiserAboveSoil
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import Watcher
-from tests.support.falling_on_soil import CLAY, falling
+from tests.support.scenes import CLAY, LAY, Mapping, falling_on_soil, heave, touchdown
 
 FACTORISING = ("MatLUFactorNum", "MatCholFctrNum")  # PETSc's names of numeric factorisations
 
@@ -48,7 +47,7 @@ def bouncing(linear: str = "auto") -> Mapping:
 
     At small strain: nodes that move leave a balance behind that the next step finds with the soil.
     """
-    given = falling(1e7, 0.02, CLAY | {"su": 2e4}, duration=0.7)
+    given = falling_on_soil(1e7, 0.02, CLAY | {"su": 2e4}, duration=0.7)
     given["soil"]["strain"] = "small"
     return given | {"solver": given["solver"] | {"linear": linear}}
 

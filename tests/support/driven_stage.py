@@ -27,7 +27,7 @@ from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
+from tests.support.scenes import Mapping
 
 Watch = Callable[[System, AcceptedStep], None]
 

@@ -16,10 +16,10 @@ from riser_soil.core.system import Timer
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher
+from tests.support.scenes import LAY, Mapping, block, cells, static, touchdown
 
-PUSH: Mapping = {"name": "push", "kind": "static", "loads": [{"at": 7.0, "force": [0.0, 0.0, -900.0]}]}
+PUSH = static("push", loads=[{"at": 7.0, "force": [0.0, 0.0, -900.0]}])
 CLAY: Mapping = {
     "kind": "kinematic-hardening",
     **{"su": 600.0, "su_gradient": 500.0, "E_over_su": 200.0, "nu": 0.49, "elastic_share": 0.1},
@@ -29,14 +29,8 @@ CLAY: Mapping = {
 def pressed(symmetry: str, width: float = 1.6, **more: Any) -> Mapping:
     """The riser is laid and pressed down, with friction, on soft clay of a width [m]; more: keys of the soil."""
     scene = touchdown(LAY, PUSH)
-    sizes = {"along": 1.0, "across": 0.04, "strip": 0.2}
-    scene["soil"] |= {
-        "block": {"x": [5.0, 9.0], "y": [-0.5 * width, 0.5 * width], "depth": 0.5},
-        "mesh": {"kind": "hex", "size_at_riser": sizes, "size_far": 0.3},
-        "law": CLAY,
-        "symmetry": symmetry,
-        **more,
-    }
+    mesh = cells({"along": 1.0, "across": 0.04, "strip": 0.2}, 0.3)
+    scene["soil"] |= block(CLAY, (5.0, 9.0), 0.5 * width, 0.5, mesh, symmetry=symmetry, **more)
     scene["contact"] = {"method": "surface", "friction": {"axial": 0.4, "lateral": 0.7}}
     scene["solver"] = {"tolerance": 1e-11, "load_steps": 5}
     return scene

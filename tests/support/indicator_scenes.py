@@ -16,8 +16,7 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
 FIRST_SCENE = Path(__file__).parents[2] / "demos" / "first_scene.yaml"
 GENERALISED: Mapping = {"generalized_alpha": {"rho_inf": 0.8}}

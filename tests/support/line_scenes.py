@@ -1,4 +1,4 @@
-"""Scenes of several lines: a mooring of three lines on a buoy, and elastic catenaries by themselves."""
+"""Scenes of several lines and bodies: moorings of a buoy, a riser on clay hung on a buoy, a lazy S, bodies alone."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares, root
+from scipy.optimize import least_squares
 
 from riser_soil.core.arrays import Array
-from tests.support.coupled_scenes import LAY, touchdown
+from tests.support.catenaries import pulls
+from tests.support.scenes import LAY, block, cells, dynamic, line, static, touchdown
 
 RADIUS, DEPTH, LENGTH = 100.0, 100.0, 130.0
 RHO, G = 1025.0, 9.81
@@ -27,30 +28,30 @@ IN_WATER = {"drag": {"normal": 1.2, "tangential": 0.05}, "added_mass": {"normal"
 NAMES = ("east", "north", "south")
 
 
+def lines_scene(*stages: Mapping[str, Any], lines: Mapping[str, Any], **more: Any) -> dict[str, Any]:
+    """Lines at rest and in the stages; more: sections of the scene, line types, bodies and joints among them."""
+    return {"title": "Several lines", "lines": dict(lines), "stages": [static("rest"), *stages], **more}
+
+
+def pin(name: str, at: str, body: str, **more: Any) -> dict[str, Any]:
+    """A joint between an end of a line and a body; more: of its place on the body."""
+    return {"kind": "pinned", "between": [{"line": name, "at": at}, {"body": body, **more}]}
+
+
 def mooring(
     *stages: Mapping[str, Any], body: Mapping[str, Any] = POINT, elements: int = 20, **more: Any
 ) -> dict[str, Any]:
     """Three lines from anchors on a circle to a buoy amid them, on a rigid one at arms of 1 m; more: of the scene."""
     arm = 1.0 if body["kind"] == "rigid" else 0.0
-    scene: dict[str, Any] = {
-        "title": "A buoy on three lines",
-        "water": {"density": RHO, "surface_level": 0.0},
-        "line_types": {"chain": CHAIN | (IN_WATER if len(stages) > 1 else {})},
-        "bodies": {"buoy": {"position": [0.0, 0.0, -20.0], **body}},
-        "lines": {},
-        "joints": {},
-        "stages": [{"name": "rest", "kind": "static"}, *stages],
-    }
+    types = {"chain": CHAIN | (IN_WATER if len(stages) > 1 else {})}
+    bodies = {"buoy": {"position": [0.0, 0.0, -20.0], **body}}
+    water = {"density": RHO, "surface_level": 0.0}
+    lines, joints = {}, {}
     for n, name in enumerate(NAMES):
         c, s = math.cos(2.0 * math.pi * n / 3.0), math.sin(2.0 * math.pi * n / 3.0)
-        scene["lines"][name] = {
-            "segments": [{"line_type": "chain", "length": LENGTH, "elements": elements}],
-            "start": {"position": [RADIUS * c, RADIUS * s, -DEPTH]},
-            "end": "free",
-        }
-        at_body = {"body": "buoy", "offset": [arm * c, arm * s, -arm]}
-        scene["joints"][f"{name}_top"] = {"kind": "pinned", "between": [{"line": name, "at": "end"}, at_body]}
-    return scene | more
+        lines[name] = line("chain", LENGTH, elements, {"position": [RADIUS * c, RADIUS * s, -DEPTH]}, "free")
+        joints[f"{name}_top"] = pin(name, "end", "buoy", offset=[arm * c, arm * s, -arm])
+    return lines_scene(*stages, line_types=types, lines=lines, bodies=bodies, joints=joints, **{"water": water} | more)
 
 
 def with_line_named(name: str) -> dict[str, Any]:
@@ -62,8 +63,7 @@ def with_line_named(name: str) -> dict[str, Any]:
 def shaken(duration: float = 1.0, time_step: float = 0.05) -> dict[str, Any]:
     """A dynamic stage in which an anchor moves."""
     heave = {"amplitude": [1.0, 0.3, 0.5], "period": 3.0, "ramp": 1.0}
-    lines = {"east": {"motion": {"start": {"harmonic": heave}}}}
-    return {"name": "shaken", "kind": "dynamic", "duration": duration, "time_step": time_step, "lines": lines}
+    return dynamic(duration, time_step, "shaken", lines={"east": {"motion": {"start": {"harmonic": heave}}}})
 
 
 def as_line(scene: Mapping[str, Any]) -> dict[str, Any]:
@@ -81,54 +81,15 @@ def hung_over_clay(*stages: Mapping[str, Any], model: str = "block") -> dict[str
     """The riser of `touchdown`, whose upper end hangs on a buoy, which a second line holds on to a support above."""
     scene = as_line(touchdown(LAY, *map(dict, stages), su=3.0e3))
     riser, types = scene["lines"]["only"], scene["line_types"]
-    upper = {"segments": [{"line_type": "flexible", "length": 10.0, "elements": 10}]}
-    top, place = [31.0, 0.0, 17.0], riser["end"]["position"]
-    scene["lines"] = {"lower": riser | {"end": "free"}, "upper": upper | {"start": "free", "end": {"position": top}}}
-    hung = {name: {"line": name, "at": at} for name, at in (("lower", "end"), ("upper", "start"))}
+    upper, place = line("flexible", 10.0, 10, "free", {"position": [31.0, 0.0, 17.0]}), riser["end"]["position"]
+    scene["lines"] = {"lower": riser | {"end": "free"}, "upper": upper}
     types["flexible"] |= IN_WATER
     # On cells that do not resolve what touches, a pipe without friction lies as on a seesaw, and slides to either side.
-    sizes = {"along": 0.75, "across": 0.015, "strip": 0.12}
-    mesh = {"kind": "hex", "size_at_riser": sizes, "size_far": 0.3}
-    block = {"x": [5.0, 9.5], "y": [-0.6, 0.6], "depth": 0.6}
-    scene["soil"] |= {"line": "lower", "model": model, "mesh": mesh, "block": block}
+    mesh = cells({"along": 0.75, "across": 0.015, "strip": 0.12}, 0.3)
+    scene["soil"] |= block(scene["soil"]["law"], (5.0, 9.5), 0.6, 0.6, mesh, line="lower", model=model)
     buoy = {"kind": "point", "position": place, "mass": 300.0, "volume": 1.8, "drag_area": 1.0, "added_mass": 0.5}
-    joints = {f"{name}_hung": {"kind": "pinned", "between": [at, {"body": "buoy"}]} for name, at in hung.items()}
+    joints = {"lower_hung": pin("lower", "end", "buoy"), "upper_hung": pin("upper", "start", "buoy")}
     return scene | {"bodies": {"buoy": buoy}, "joints": joints}
-
-
-def spans(H: float, V: float, w: float, EA: float, L: float) -> tuple[float, float]:
-    """Horizontal and vertical distance [m] from the lower to the upper end of an elastic catenary that hangs on H, V.
-
-    Irvine, Cable Structures, 1981, equations 2.24 and 2.25.
-    """
-    low = V - w * L
-    x = H * L / EA + H / w * (math.asinh(V / H) - math.asinh(low / H))
-    z = w * L / EA * (V / w - 0.5 * L) + H / w * (math.hypot(1.0, V / H) - math.hypot(1.0, low / H))
-    return x, z
-
-
-def pulls(a: Array, b: Array, w: float, EA: float, L: float) -> tuple[Array, Array]:
-    """Forces (2,) [N] of an elastic catenary from a up to b, (2,) [m] along x and z, on what holds it at a and at b."""
-    dx, dz = b - a
-
-    chord = float(np.hypot(dx, dz))
-    weight, taut = abs(w) * L, EA * max(chord / L - 1.0, 0.0)
-    scale, steep = weight + taut, (max(abs(dx), 1e-3 * chord) / chord, dz / chord)
-
-    def force(u: Array) -> tuple[float, float]:
-        return scale * math.exp(u[0]), scale * u[1]
-
-    def off(u: Array) -> Array:
-        x, z = spans(*force(u), w, EA, L)
-        return np.array([x - abs(dx), z - dz])
-
-    slack = np.array([math.log(0.5), 0.7])
-    start = np.array([math.log(taut * steep[0] / scale), (taut * steep[1] + 0.5 * weight) / scale]) if taut else slack
-    found = root(off, start, tol=1e-13).x  # as near as round-off lets it, of which it complains
-    assert np.abs(off(found)).max() < 1e-9, "m"
-    H, V = force(found)
-    ahead = float(np.sign(dx)) * H
-    return np.array([ahead, V - w * L]), np.array([-ahead, -V])
 
 
 # A riser in two parts over a buoyant arch that a tether holds, all in the plane y = 0, above the seabed.
@@ -150,22 +111,14 @@ LAZY_S = {
 
 def lazy_s(*stages: Mapping[str, Any], **more: Any) -> dict[str, Any]:
     """The riser over its arch."""
-    scene: dict[str, Any] = {
-        "title": "A lazy S",
-        "water": {"density": RHO},
-        "line_types": {"pipe": PIPE, "rope": ROPE},
-        "bodies": {"arch": ARCH},
-        "lines": {},
-        "joints": {},
-        "stages": [{"name": "rest", "kind": "static"}, *stages],
-    }
+    lines, joints = {}, {}
     for name, (kind, length, elements, place, arm, ends_up) in LAZY_S.items():
-        segments = [{"line_type": "pipe" if kind is PIPE else "rope", "length": length, "elements": elements}]
-        held, free = ("start", "end") if ends_up else ("end", "start")
-        scene["lines"][name] = {"segments": segments, held: {"position": list(place)}, free: "free"}
-        between = [{"line": name, "at": free}, {"body": "arch", "offset": list(arm)}]
-        scene["joints"][f"{name}_hung"] = {"kind": "pinned", "between": between}
-    return scene | more
+        held = {"position": list(place)}
+        start, end = (held, "free") if ends_up else ("free", held)
+        lines[name] = line("pipe" if kind is PIPE else "rope", length, elements, start, end)
+        joints[f"{name}_hung"] = pin(name, "end" if ends_up else "start", "arch", offset=list(arm))
+    sections = {"water": {"density": RHO}, "line_types": {"pipe": PIPE, "rope": ROPE}, "bodies": {"arch": ARCH}}
+    return lines_scene(*stages, lines=lines, joints=joints, **sections | more)
 
 
 def lazy_s_by_catenaries() -> tuple[Array, dict[str, tuple[float, float]]]:

@@ -23,8 +23,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 from riser_soil.soil.seabed_feature import GrooveSpec
 from riser_soil.solve.time_stepper import AcceptedStep
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take
+from tests.support.scenes import Mapping, block, cells, level_pipe, pushed_to
 
 D, SU, STEPS = 0.3, 5.0e3, 9
 TYPICAL = 5.0e11  # EA over length [N/m]: contact goes by a millionth of it where there is no weight
@@ -74,30 +74,23 @@ def pipe_in_place(w: float, strips: int, rough: bool, *, E_over_su: float = 0.0,
     roughness = {"friction": {"adhesion": 1.0, "mobilisation": SLIDES * gap * D}} if rough else {}
     size = 1.0001 * half_angle(w) * D / strips
     assert GrooveSpec(w * D, 0.5 * D).strips(size) == strips
-    z = (0.5 - w) * D
-    ends = {end: {"position": [x, 0.0, z], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", size))}
-    move = {"start": [0.0, 0.0, z - down * D], "end": [size, 0.0, z - down * D]}
-    pipe = {"outer_diameter": (1.0 + 2.0 * gap) * D, "EA": TYPICAL * size, "EI": 1e8, "submerged_weight": 0.0}
-    return {
-        "gravity": 0.0,
-        "dimension": 2,
-        "line_types": {"pipe": pipe},
-        "riser": {"segments": [{"line_type": "pipe", "length": size, "elements": 1}], **ends, "initial": "unstressed"},
-        "soil": {
-            "strain": "small",
-            "block": {
-                "x": [0.0, size],
-                "y": [-2.5 * chord(w) * D, 2.5 * chord(w) * D],
-                "depth": (w + 1.7 * chord(w)) * D,
-                "groove": {"embedment": w, "diameter": D},
-            },
-            "mesh": {"kind": "tet", "size_at_riser": size, "size_far": 4.0 * size},
-            "law": {"kind": "von-mises", "su": SU, "E_over_su": E_over_su, "nu": 0.49},
-        },
-        "contact": contact | roughness,
-        "solver": {"load_steps": STEPS, "max_iterations": 60},
-        "stages": [{"name": "push", "kind": "static", "move": move}],
-    }
+    z, across = (0.5 - w) * D, 2.5 * chord(w) * D
+    law = {"kind": "von-mises", "su": SU, "E_over_su": E_over_su, "nu": 0.49}
+    mesh = cells(size, 4.0 * size, "tet")
+    soil = block(law, (0.0, size), across, (w + 1.7 * chord(w)) * D, mesh, strain="small")
+    soil["block"]["groove"] = {"embedment": w, "diameter": D}
+    return level_pipe(
+        pushed_to(size, z - down * D),
+        pipe={"outer_diameter": (1.0 + 2.0 * gap) * D, "EA": TYPICAL * size, "EI": 1e8, "submerged_weight": 0.0},
+        length=size,
+        elements=1,
+        height=z,
+        initial="unstressed",
+        gravity=0.0,
+        soil=soil,
+        contact=contact | roughness,
+        solver={"load_steps": STEPS, "max_iterations": 60},
+    )
 
 
 def touching(E: float) -> float:

@@ -4,34 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take
+from tests.support.scenes import ELASTIC, Mapping, block, cells, level_pipe, pushed_to
 
-D, E, NU = 0.5, 1.2e6, 0.49
+D, E, NU = 0.5, ELASTIC["E"], ELASTIC["nu"]
 INDENTATION = 0.01  # m
 
 
-def slice_of_soil(cells: int, method: str = "surface") -> Mapping:
+def slice_of_soil(across: int, method: str = "surface") -> Mapping:
     """A stiff pipe over a slice of elastic soil, 8 m wide and 4 m deep, with so many cells across the diameter."""
-    size = D / cells
-    ends = {end: {"position": [x, 0.0, 0.5 * D], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", 1.0))}
-    pipe = {"outer_diameter": D, "submerged_weight": 700.0, "mass": 70.0, "EA": 1e10, "EI": 1e9}
-    block = {"x": [0.5 - 0.5 * size, 0.5 + 0.5 * size], "y": [-4.0, 4.0], "depth": 4.0}
-    down = {end: [*ends[end]["position"][:2], 0.5 * D - INDENTATION] for end in ends}
-    return {
-        "title": "Slice of soil under a pipe",
-        "gravity": 9.81,
-        "dimension": 2,
-        "line_types": {"pipe": pipe},
-        "riser": {"segments": [{"line_type": "pipe", "length": 1.0, "elements": 8}], **ends, "initial": "straight"},
-        "soil": {
-            "block": block,
-            "mesh": {"kind": "hex", "size_at_riser": size, "size_far": max(size, 0.5)},
-            "law": {"kind": "linear-elastic", "E": E, "nu": NU},
-        },
-        "contact": {"method": method},
-        "stages": [{"name": "push", "kind": "static", "move": down}],
-    }
+    size = D / across
+    return level_pipe(
+        pushed_to(1.0, 0.5 * D - INDENTATION),
+        pipe={"outer_diameter": D, "submerged_weight": 700.0, "mass": 70.0, "EA": 1e10, "EI": 1e9},
+        length=1.0,
+        elements=8,
+        height=0.5 * D,
+        soil=block(ELASTIC, (0.5 - 0.5 * size, 0.5 + 0.5 * size), 4.0, 4.0, cells(size, max(size, 0.5))),
+        contact={"method": method},
+    )
 
 
 class Pushed:

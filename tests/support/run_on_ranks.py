@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 from riser_soil.results import Run
-from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
+from tests.support.scenes import Mapping
 
 COMPARED = ("position", "effective_tension", "bending_moment", "contact_force", "end_force")
 

@@ -37,8 +37,8 @@ def main(folder: Path) -> None:
     from riser_soil.scene.dump import schema_text
     from riser_soil.scene.reader import scene_from_mapping
     from riser_soil.whole_run import run
-    from tests.support.coupled_scenes import LAY, touchdown
     from tests.support.recorded_run import block, record
+    from tests.support.scenes import LAY, touchdown
 
     scene = touchdown(LAY, su=1000.0) | {"output": {"fields": ["height"]}}
     del scene["soil"]

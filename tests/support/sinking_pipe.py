@@ -13,49 +13,38 @@ from riser_soil.core.system import Timer
 from riser_soil.soil.condensed import SoilSurface
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
+from tests.support.scenes import Mapping, block, cells, level_pipe, pushed_to
 
 D, SU, STIFF = 0.3, 5.0e3, 400.0  # m, Pa, E over su
 CLAY: Mapping = {"kind": "von-mises", "su": SU, "E_over_su": STIFF}
 
 
-def sinking(cells: int, depth: float, steps: int, law: Mapping = CLAY, **more: Any) -> Mapping:
+def sinking(across: int, depth: float, steps: int, law: Mapping = CLAY, **more: Any) -> Mapping:
     """To an embedment of `depth` diameters in so many steps, on so many cells across the pipe; one cell is plane
     strain. more: keys of the soil; contact: of contact.
     """
-    size, contact = D / cells, more.pop("contact", {})
-    ends = {name: {"position": [x, 0.0, 0.5 * D], "rotation": "fixed"} for name, x in (("start", 0.0), ("end", D))}
-    down = {name: [*end["position"][:2], 0.5 * D - depth * D] for name, end in ends.items()}
-    pipe = {"outer_diameter": D, "submerged_weight": 500.0, "mass": 120.0, "EA": 1e10, "EI": 1e9}
-    around = {"x": [0.5 * (D - size), 0.5 * (D + size)], "y": [-5.0 * D, 5.0 * D], "depth": 5.0 * D}
-    cell_sizes = {"along": size, "across": size, "strip": (1.5 + depth) * D}
-    return {
-        "title": "Pipe that sinks into clay",
-        "gravity": 9.81,
-        "dimension": 2,
-        "line_types": {"pipe": pipe},
-        "riser": {"segments": [{"line_type": "pipe", "length": D, "elements": 1}], **ends, "initial": "straight"},
-        "soil": {
-            "block": around,
-            "mesh": {"kind": "hex", "size_at_riser": cell_sizes, "size_far": D},
-            "law": dict(law),
-            "strain": "large",
-            **more,
-        },
-        "contact": {"method": "surface", **contact},
-        "solver": {"load_steps": steps},
-        "stages": [{"name": "push", "kind": "static", "move": down}],
-    }
+    size, contact = D / across, more.pop("contact", {})
+    mesh = cells({"along": size, "across": size, "strip": (1.5 + depth) * D}, D)
+    around = (0.5 * (D - size), 0.5 * (D + size))
+    return level_pipe(
+        pushed_to(D, 0.5 * D - depth * D),
+        pipe={"outer_diameter": D, "submerged_weight": 500.0, "mass": 120.0, "EA": 1e10, "EI": 1e9},
+        length=D,
+        elements=1,
+        height=0.5 * D,
+        soil=block(law, around, 5.0 * D, 5.0 * D, mesh, **{"strain": "large"} | more),
+        contact={"method": "surface"} | contact,
+        solver={"load_steps": steps},
+    )
 
 
-def sinking_into_tetrahedra(cells: int, depth: float, steps: int, **more: Any) -> Mapping:
-    """The same on tetrahedra, so many across the pipe, in a slice of two."""
-    scene = sinking(cells, depth, steps, **more)
-    size = D / cells
-    block = scene["soil"]["block"] | {"x": [0.5 * D - size, 0.5 * D + size]}
-    mesh = {"kind": "tet", "size_at_riser": size, "size_far": D}
-    return scene | {"soil": scene["soil"] | {"block": block, "mesh": mesh}}
+def sinking_into_tetrahedra(across: int, depth: float, steps: int, **more: Any) -> Mapping:
+    """The scene of `sinking` on tetrahedra, so many across the pipe, in a slice of two."""
+    scene, size = sinking(across, depth, steps, **more), D / across
+    scene["soil"]["block"]["x"] = [0.5 * D - size, 0.5 * D + size]
+    scene["soil"]["mesh"] = cells(size, D, "tet")
+    return scene
 
 
 @dataclass(frozen=True, eq=False)

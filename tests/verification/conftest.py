@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.coupled_scenes import ON_BLOCK
 from tests.support.on_ranks import HANGS
+from tests.support.scenes import ON_BLOCK
 
 if TYPE_CHECKING:
     from tests.support.watched_run import WatchedRun

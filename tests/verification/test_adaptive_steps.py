@@ -12,8 +12,9 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories
 from tests.support.said import telling
+from tests.support.scenes import AVERAGE, dynamic, prescribed, riser_scene
+from tests.support.stage_histories import stage_histories
 
 CATENARY = Path(__file__).parents[1] / "scenes/catenary.yaml"
 AUTO = ("stages.1.time_step=auto", "riser.segments.0.elements=30")

@@ -23,11 +23,11 @@ from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, section_forces
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
-from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories, static
 from tests.support.sample_line import sample
+from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 G, RHO = 9.81, 1025.0
 PIPE = {"EA": 1.0e9, "EI": 1.0e3, "GJ": 1.0e3, "mass": 20.0, "submerged_weight": 100.0}

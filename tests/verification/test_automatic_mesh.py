@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -16,13 +16,10 @@ from riser_soil.checks.settlement import settlement
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.automatic_cells import scaled
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import take
-from tests.support.lifted_pipe import ELASTIC, lifted_pipe
 from tests.support.pages import Tell, signed_percent
 from tests.support.pushed_pipe import D, Pushed, slice_of_soil
-
-EVEN_CLAY: Mapping = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.49}
+from tests.support.scenes import CLAY, ELASTIC, PIPE, Mapping, block, level_pipe, static
 
 
 class FineSlice(NamedTuple):
@@ -58,13 +55,33 @@ def slice_scene(law: Mapping, weight: float, indentation: float, method: str = "
 def sinking(steps: int = 10) -> Mapping:
     """A pipe as heavy as the clay bears on its chord where it has sunk in by D/4, pushed there step by step."""
     chord = 2.0 * np.sqrt(0.25 * 0.75) * D
-    scene = slice_scene(EVEN_CLAY, (2.0 + np.pi) * EVEN_CLAY["su"] * chord, D / 4.0)
+    scene = slice_scene(CLAY, (2.0 + np.pi) * CLAY["su"] * chord, D / 4.0)
     push, depths = scene["stages"][0], np.linspace(0.0, D / 4.0, steps + 1)[1:]
     scene["stages"] = [
         push | {"name": f"to {w:g}", "move": {end: [*at[:2], 0.5 * D - float(w)] for end, at in push["move"].items()}}
         for w in depths
     ]
     return scene
+
+
+def lifted_pipe(law: Mapping, weight: float = 717.0, height: float = 0.05, elements: int = 16, **soil: Any) -> Mapping:
+    """A pipe rests on a block of soil, then its end is lifted by `height` [m]: a touchdown zone without a riser above.
+
+    weight: submerged [N/m]. soil: its keys beside the law.
+    """
+    z = 0.15 - 2e-3  # so far in the soil that Newton's method finds the pipe's rest
+    return level_pipe(
+        static("rest"),
+        static("lift", move={"end": [8.0, 0.0, z + height]}),
+        pipe=PIPE | {"submerged_weight": weight},
+        length=8.0,
+        elements=elements,
+        height=z,
+        rotation="free",
+        seabed={"kind": "spring", "level": 0.0, "stiffness": 1.0e5},
+        soil=block(law, (-1.0, 9.0), 2.4, 2.4, "auto", **soil),
+        contact={"method": "surface"},
+    )
 
 
 def pushed(scene: Scene) -> Found:
@@ -105,8 +122,8 @@ def test_a_light_pipe_settles_the_same_on_cells_half_as_large(tell: Tell) -> Non
     ("name", "law", "weight", "indentation"),
     [
         ("elastic D/50", ELASTIC, 5000.0, D / 50.0),
-        ("clay D/200", EVEN_CLAY, 830.0, D / 200.0),
-        ("clay D/100", EVEN_CLAY, 1350.0, D / 100.0),
+        ("clay D/200", CLAY, 830.0, D / 200.0),
+        ("clay D/100", CLAY, 1350.0, D / 100.0),
     ],
 )
 def test_halving_all_cells_changes_little(
@@ -122,7 +139,7 @@ def test_halving_all_cells_changes_little(
 @pytest.mark.verify
 def test_a_pipe_that_has_sunk_in_meets_what_is_published_on_automatic_cells(tell: Tell) -> None:
     """Of Merifield, White & Randolph, smooth, at D/4; half of all cells change it a little."""
-    published = 5.3 * 0.25**0.25 * EVEN_CLAY["su"] * D
+    published = 5.3 * 0.25**0.25 * CLAY["su"] * D
     auto, half = halved(sinking())
     tell({"halved clay D/4": shown(auto, half)})
     assert -0.03 < half.force / auto.force - 1.0 < 0.0

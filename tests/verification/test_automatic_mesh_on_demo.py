@@ -18,8 +18,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from tests.support.automatic_cells import scaled
-from tests.support.coupled_scenes import ON_BLOCK
 from tests.support.driven_stage import take
+from tests.support.scenes import ON_BLOCK
 
 BLOCK = ("soil.block.x=[24.5,28.5]",)
 

@@ -23,10 +23,9 @@ from riser_soil.solve.solver import NewtonSettings
 from riser_soil.solve.stability import _largest
 from riser_soil.solve.time_scheme import Static
 from riser_soil.whole_run import run
-from tests.support.buckling_scenes import ALONG, SLANTING, blade, column, frame
-from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
 from tests.support.rod_reference import Rod, first_buckling
+from tests.support.scenes import ALONG, SLANTING, Mapping, blade, column, frame
 
 
 def tip(scene: Mapping, folder: Path) -> tuple[Array, int]:
@@ -99,7 +98,7 @@ def test_two_ranks_count_as_one() -> None:
     """By MUMPS, where one rank has PETSc's own factorisation."""
     script = (
         "from tests.verification.test_buckled_branches import unstable_modes\n"
-        "from tests.support.buckling_scenes import column\n"
+        "from tests.support.scenes import column\n"
         "from mpi4py import MPI\n"
         "found = [unstable_modes(column(1000, r, 1e7, 3, (0.6, 0.0, 0.8))) for r in (0.98, 1.02)]\n"
         "print(found if MPI.COMM_WORLD.rank == 0 else '')\n"
@@ -166,7 +165,7 @@ def test_two_ranks_take_the_same_branch(tmp_path: Path) -> None:
             "from pathlib import Path\n"
             "from riser_soil.whole_run import run\n"
             "from riser_soil.scene.reader import scene_from_mapping\n"
-            "from tests.support.buckling_scenes import blade\n"
+            "from tests.support.scenes import blade\n"
             f"run(scene_from_mapping(blade(20, 3.0)), Path({str(folder)!r}))\n"
         )
         done = mpirun(ranks, "-c", script)

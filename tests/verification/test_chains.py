@@ -14,9 +14,9 @@ from riser_soil.checks.bending_plausibility import bending_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, dynamic, prescribed, riser_scene, stage_histories, static
 from tests.support.said import telling
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import distance, stage_histories
 
 W, EA, L, SPAN, RISE = 500.0, 1.0e6, 150.0, 90.0, 100.0
 HEAVE = {"end": {"harmonic": {"amplitude": [1.0, 0.0, 1.0], "period": 5.0, "ramp": 5.0}}}

@@ -21,11 +21,10 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.sizes import doubts
 from riser_soil.scene.variants import at_offset
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.run_on_ranks import ran
 from tests.support.said import line_with
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
 D, BORE, T_CORR, T_FAB = 0.1143, 0.0801, 0.002, 0.0015  # m
 T1, T2 = 0.5 * (D - BORE) - T_CORR - T_FAB, 0.5 * (D - BORE) - T_CORR

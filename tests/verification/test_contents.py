@@ -11,8 +11,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.modes.modes import modes_of
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import StageHistory, stage_histories
 
 G, BORE = 9.81, 0.2
 AREA = 0.25 * math.pi * BORE**2

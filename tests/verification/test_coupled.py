@@ -25,8 +25,8 @@ from riser_soil.soil.soil import Soil
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import LAID_IN
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, touchdown
 from tests.support.driven_stage import built, take
+from tests.support.scenes import LAY, ON_BLOCK, Mapping, touchdown
 from tests.support.watched_run import WatchedRun
 
 KINDS = [("hex", 2), ("tet", 3), *(pytest.param(*kind, marks=pytest.mark.verify) for kind in (("hex", 3), ("tet", 2)))]

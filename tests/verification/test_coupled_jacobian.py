@@ -12,8 +12,8 @@ from riser_soil.contact.node_contact import NodeContact
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.soil.laws import LAWS
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 LIFT: Mapping = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.1]}}
 NEXT = {"static": LIFT, "dynamic": heave(1.0, time_step=0.01)}

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built
-from tests.support.heaved_soil import HeavedSoil
+from tests.support.scenes import LAY, Mapping, heave, touchdown
+from tests.support.stage_histories import HeavedSoil
 
 LAWS: dict[str, Mapping] = {
     "kinematic-hardening": {"elastic_share": 0.2},

@@ -13,8 +13,8 @@ from demos.page import ROOT, all_pages, block, places
 from demos.touchdown_clay.run import AT_REST, COARSER, HERE, PAGE, SCENE, figures, stiffness, told_of
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene
-from tests.support.coupled_scenes import DEMO
 from tests.support.pages import same_figures, text
+from tests.support.scenes import DEMO
 from tests.support.watched_run import WatchedRun, watched_run
 
 TEXT = PAGE.read_text(encoding="utf-8")

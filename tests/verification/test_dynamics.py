@@ -11,17 +11,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import (
-    AVERAGE,
-    StageHistory,
-    distance,
-    dynamic,
-    prescribed,
-    riser_scene,
-    stage_histories,
-    static,
-)
+from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import StageHistory, distance, stage_histories
 
 SCENES = Path(__file__).parents[1] / "scenes"
 FLEXIBLE = {

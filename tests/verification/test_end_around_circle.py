@@ -25,10 +25,17 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
-from tests.support.end_around_circle import LARGEST, end_led_around, way_around
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.scenes import (
+    LARGEST_AROUND,
+    Mapping,
+    dynamic,
+    end_led_around,
+    prescribed,
+    riser_scene,
+    static,
+    way_around,
+)
 
 
 @cache
@@ -59,7 +66,7 @@ def test_mirror_images_move_as_such(way: int) -> None:
 @pytest.mark.parametrize(("way", "off"), [(1, 0.002), (-1, 0.03)])
 def test_both_ways_in_long_steps(way: int, off: float) -> None:
     """Largest tension at the start, above what 2,000 steps find: 34.375 kN one way, 47.563 kN the other."""
-    assert led_around(way, 1, 0.2)[:, 0].max() == pytest.approx(LARGEST[way], rel=off)
+    assert led_around(way, 1, 0.2)[:, 0].max() == pytest.approx(LARGEST_AROUND[way], rel=off)
 
 
 @pytest.mark.verify
@@ -68,7 +75,7 @@ def test_both_ways_in_long_steps(way: int, off: float) -> None:
 def test_both_ways_converge(way: int, elements: int, dimension: int, time_step: float) -> None:
     """In space the crushed bend rebounds with 49.95 kN in steps of 0.05 s; such a run warns, and asks for 0.022 s."""
     found = led_around(way, 1, time_step, elements, dimension)[:, 0].max()
-    assert found == pytest.approx(LARGEST[way], rel=0.002)
+    assert found == pytest.approx(LARGEST_AROUND[way], rel=0.002)
 
 
 def catenary_led_around(table: str, elements: int, time_step: float) -> Mapping:

@@ -12,9 +12,8 @@ import pytest
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, in_waves, prescribed, riser_scene, static
 from tests.support.said import line_with
+from tests.support.scenes import Mapping, dynamic, in_waves, prescribed, riser_scene, static
 
 DENSITY, DRAG, WEIGHT, MASS, DIAMETER, LENGTH, DROP = 1025.0, 1.2, 700.0, 200.0, 0.3, 10.0, 2.0
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from tests.support.coupled_scenes import LAY, Mapping, heave, lying_pipe, touchdown
 from tests.support.on_ranks import HANGS, Job, mpirun
+from tests.support.scenes import LAY, Mapping, heave, lying_pipe, touchdown
 from tests.support.vtk_reading import read_by_vtk
 
 ALONE = pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])

@@ -21,9 +21,8 @@ from riser_soil.fatigue.stress_history import stress_history
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene
 from tests.support.said import line_with, lines_with
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene
 
 YEAR = 365.25 * 86400.0  # s
 OUTER, INNER, PULL, BEND = 0.2731, 0.2319, 3.0e5, 6.0e4

@@ -20,10 +20,10 @@ from riser_soil.core.system import Timer
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.momentum import momentum
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories
+from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene
+from tests.support.stage_histories import stage_histories
 
 MIDPOINT: Mapping = {"midpoint": {}}
 PULSE = {

@@ -11,7 +11,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.riser_scenes import distance, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import prescribed, riser_scene, static
+from tests.support.stage_histories import distance, stage_histories
 
 W, STIFFNESS, SLOPE = 700.0, 1e5, 3.0  # N/m, N/m2, deg
 PIPE = {"EA": 3e8, "EI": 2e4, "GJ": 1e4, "outer_diameter": 0.3, "submerged_weight": W}

@@ -35,10 +35,9 @@ from riser_soil.scene.scene import Scene
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import Solution, Step
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built, take
-from tests.support.falling_pipe import FALL, Energies, flat, pinned, tilted
-from tests.support.riser_scenes import stage_histories
+from tests.support.scenes import FALL, Mapping, flat, pinned, tilted
+from tests.support.stage_histories import Energies, stage_histories
 
 AVERAGE = {"newmark": {"beta": 0.25, "gamma": 0.5}}
 PAGE = Path(__file__).parents[2] / "docs" / "impact.md"

@@ -12,11 +12,10 @@ from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.stages import run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built
-from tests.support.falling_on_soil import CLAY, ELASTIC, END, FALL, MIDDLE, falling
-from tests.support.falling_pipe import Energies
 from tests.support.said import lines_with
+from tests.support.scenes import CLAY, ELASTIC, END, FALL_ON_SOIL, MIDDLE, Mapping, falling_on_soil
+from tests.support.stage_histories import Energies
 
 LAWS = pytest.mark.parametrize("law", [ELASTIC, CLAY], ids=["elastic", "clay"])
 WHERE = pytest.mark.parametrize("where", [MIDDLE, END], ids=["middle", "end"])
@@ -28,13 +27,13 @@ def gains_nothing(k: float, dt: float, law: Mapping, where: tuple[float, float])
     Contact's own account is of either sign in a step, as the surface turns while clay flows; it gives nothing on the
     whole.
     """
-    assembly, seen = built(falling(k, dt, law, where)), Energies()
+    assembly, seen = built(falling_on_soil(k, dt, law, where)), Energies()
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Timer.new())
     print(f"k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
-    assert seen.gain[-1] < -0.1 * FALL, "nothing was struck"
-    assert seen.gain.max() < 1e-9 * FALL
-    assert seen.appeared.max() < 5e-3 * FALL
-    assert seen.by_contact.sum() > -5e-3 * FALL
+    assert seen.gain[-1] < -0.1 * FALL_ON_SOIL, "nothing was struck"
+    assert seen.gain.max() < 1e-9 * FALL_ON_SOIL
+    assert seen.appeared.max() < 5e-3 * FALL_ON_SOIL
+    assert seen.by_contact.sum() > -5e-3 * FALL_ON_SOIL
 
 
 @pytest.mark.parametrize(
@@ -50,7 +49,7 @@ def test_impact_on_soil_gains_no_energy(k: float, dt: float, law: Mapping) -> No
 @pytest.mark.parametrize(("k", "reported"), [(1e4, True), (1e7, False)], ids=["sinks through", "lands"])
 def test_a_pipe_that_sinks_through_the_surface_is_reported(k: float, reported: bool, tmp_path: Path) -> None:
     """Contact as soft as that pushes it out below, with more energy than it took."""
-    run(scene_from_mapping(falling(k, 0.02, ELASTIC)), tmp_path)
+    run(scene_from_mapping(falling_on_soil(k, 0.02, ELASTIC)), tmp_path)
     (stage,) = Run(tmp_path).summary["stages"]
     warnings = [warning for warning in stage["warnings"] if "sank through the soil's surface" in warning]
     assert len(warnings) == reported
@@ -58,7 +57,7 @@ def test_a_pipe_that_sinks_through_the_surface_is_reported(k: float, reported: b
     assert lost["contact"] == 0.0
     given = -lost["contact_time_scheme"]
     assert lines_with(warnings, "contact with the soil", f"gave {given:.3g} J") == warnings
-    assert (given > FALL) == reported
+    assert (given > FALL_ON_SOIL) == reported
 
 
 @pytest.mark.verify

@@ -19,9 +19,9 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve import iterative_solver, stability
 from riser_soil.solve.iterative_solver import IterativeSolver
 from riser_soil.stages import LayingCounter, run_stage
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.run_on_ranks import COMPARED, ran
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 
 def on_clay(linear: str) -> Mapping:

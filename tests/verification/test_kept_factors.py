@@ -12,8 +12,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.time_stepper import AcceptedStep
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built, take
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 TOLERANCE = 1e-7
 LAWS = {

@@ -19,8 +19,8 @@ from riser_soil.results.ownership import refuse
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.equal_runs import unlike
+from tests.support.scenes import LAY, heave, touchdown
 
 ROOT = Path(__file__).parents[2]
 OFTEN = {"every": 0.05}  # s

@@ -17,9 +17,8 @@ from riser_soil.errors import SolveError
 from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import static
+from tests.support.scenes import Mapping, static
 
 MOST = 8  # Newton iterations in the step that lays the riser
 PIPE = {"outer_diameter": 0.273, "inner_diameter": 0.222, "mass": 155.0, "EA": 4.1e9, "EI": 3.18e7, "GJ": 2.4e7}

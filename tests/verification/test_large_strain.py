@@ -16,10 +16,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.on_ranks import mpirun
 from tests.support.pages import Tell
+from tests.support.scenes import Mapping
 from tests.support.sinking_pipe import CLAY, SU, D, Sunk, sink, sinking, sinking_into_tetrahedra
 
 ROUGH = {"contact": {"friction": {"axial": 0.4, "lateral": 0.4}}}

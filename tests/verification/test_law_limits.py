@@ -12,10 +12,10 @@ import pytest
 from riser_soil.soil.laws import LAWS
 from riser_soil.soil.rate import Rate
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built
-from tests.support.heaved_soil import HeavedSoil
 from tests.support.material_paths import initial_stress, random_paths
+from tests.support.scenes import LAY, Mapping, heave, touchdown
+from tests.support.stage_histories import HeavedSoil
 from tests.support.strip import SU, press_strip
 
 pytestmark = pytest.mark.verify

@@ -19,9 +19,9 @@ from riser_soil.assembly import Assembly
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
 from tests.support.on_ranks import HANGS, ROOT, environment
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 FOR_SOIL = {"dolfinx", "dolfinx_cpp", "ufl", "ffcx", "basix", "gmsh"}
 FOR_PICTURES = {"pyvista", "vtk", "vtkmodules", "matplotlib"}

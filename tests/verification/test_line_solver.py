@@ -17,7 +17,7 @@ from tests.support.line_solver import (
     require_tangles,
 )
 from tests.support.sample_line import sample
-from tests.support.turned_bar import turned_bar
+from tests.support.scenes import turned_bar
 
 pytestmark = pytest.mark.verify
 

@@ -10,8 +10,8 @@ import pytest
 
 from riser_soil.checks.estimate import WITHIN, size_of
 from riser_soil.scene.reader import read_scene
-from tests.support.coupled_scenes import ON_BLOCK
 from tests.support.on_ranks import ROOT, environment
+from tests.support.scenes import ON_BLOCK
 
 SHORT = ("stages.1.duration=0.2", "solver.tolerance=1e-4")
 MESHES = {

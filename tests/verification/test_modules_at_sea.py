@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.sea.waterline import wet_share
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import StageHistory, stage_histories
 
 G, RHO = 9.81, 1025.0
 ROD: Mapping = {"EA": 1.0e9, "EI": 1.0e8, "GJ": 1.0e8, "mass": 1.0, "submerged_weight": 0.0}

@@ -17,8 +17,8 @@ from riser_soil import __version__
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
 from riser_soil.stages import LAID_IN
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.on_ranks import HANGS, ROOT, environment, mpirun
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 from tests.support.vtk_reading import read_by_vtk
 from tests.support.watched_run import WatchedRun
 

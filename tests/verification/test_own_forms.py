@@ -8,9 +8,9 @@ import pytest
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.on_ranks import ROOT
 from tests.support.pages import blocks
+from tests.support.scenes import LAY, heave, touchdown
 
 (SHOWN,) = blocks(ROOT / "docs/weak_form.md", "python")
 WAYS = {"none": None, "shown": SHOWN, "viscous": SHOWN.replace("PULL = 2.0e4, 120.0", "PULL = 2.0e4, 0.0")}

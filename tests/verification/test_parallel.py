@@ -15,9 +15,8 @@ from ruamel.yaml import YAML
 
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, heave, touchdown
 from tests.support.on_ranks import mpirun
-from tests.support.riser_scenes import in_waves
+from tests.support.scenes import LAY, ON_BLOCK, Mapping, heave, in_waves, touchdown
 
 SCENES = Path(__file__).parents[1] / "scenes"
 CATENARY, CLAY = SCENES / "catenary.yaml", SCENES / "hysteretic.yaml"

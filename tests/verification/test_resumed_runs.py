@@ -11,9 +11,9 @@ import pytest
 
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene, Solver
-from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
 from tests.support.line_scenes import RIGID, mooring, shaken
+from tests.support.scenes import LAY, heave, touchdown
 from tests.support.sinking_pipe import sinking, sinking_into_tetrahedra
 
 ROOT = Path(__file__).parents[2]

@@ -9,18 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import (
-    AVERAGE,
-    StageHistory,
-    distance,
-    dynamic,
-    in_waves,
-    prescribed,
-    riser_scene,
-    stage_histories,
-    static,
-)
+from tests.support.scenes import AVERAGE, Mapping, dynamic, in_waves, prescribed, riser_scene, static
+from tests.support.stage_histories import StageHistory, distance, stage_histories
 
 RHO, D, CD, CA, MASS = 1025.0, 0.3, 1.1, 1.0, 120.0
 PIPE: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "GJ": 2.0e3, "outer_diameter": D, "mass": MASS}

@@ -8,15 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from tests.support.riser_scenes import (
-    AVERAGE,
-    StageHistory,
-    distance,
-    dynamic,
-    prescribed,
-    riser_scene,
-    stage_histories,
-)
+from tests.support.scenes import AVERAGE, dynamic, prescribed, riser_scene
+from tests.support.stage_histories import StageHistory, distance, stage_histories
 
 PIPE = {"EA": 1.0e7, "EI": 2.0e5, "GJ": 1.5e5, "mass": 40.0, "outer_diameter": 0.3, "rotary_inertia": True}
 ARM = 8.0

@@ -15,7 +15,7 @@ from riser_soil.riser.line import End, Line
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import tangent
 from tests.support.driven_stage import built, take
-from tests.support.riser_scenes import AVERAGE, dynamic, riser_scene
+from tests.support.scenes import AVERAGE, dynamic, riser_scene
 
 LENGTH, EA, EI, GJ, MASS, INERTIA = 30.0, 1.0e10, 5.0e5, 3.0e5, 80.0, 300.0
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from riser_soil.soil.drucker_prager import DruckerPrager
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built
-from tests.support.heaved_soil import HeavedSoil
 from tests.support.material_paths import initial_stress, random_paths
+from tests.support.scenes import LAY, Mapping, heave, touchdown
+from tests.support.stage_histories import HeavedSoil
 from tests.support.strip import press_strip
 
 pytestmark = pytest.mark.verify

@@ -14,10 +14,10 @@ from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
 from tests.support.flexible_riser import elastica_H, guess, properties
-from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 from tests.support.rod_reference import Rod, tip
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 SCENES = Path(__file__).parents[1] / "scenes"
 Solve = Callable[..., Run]

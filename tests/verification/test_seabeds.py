@@ -14,8 +14,8 @@ from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.laws import LAWS
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
+from tests.support.stage_histories import distance, stage_histories
 
 SCENES = Path(__file__).parents[1] / "scenes"
 W, SLOPE = 700.0, 2.0  # N/m, deg; steeper, the riser would be pushed at its start, and lie down beside its plane

@@ -19,9 +19,9 @@ from riser_soil.results import Run
 from riser_soil.solve import newton
 from riser_soil.solve.section_solver import Csr, SectionFactors, SectionSolver
 from riser_soil.solve.time_stepper import AcceptedStep
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built, take
 from tests.support.run_on_ranks import COMPARED, ran
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 SECTIONS = 14
 FRICTION: Mapping = {"axial": 0.3, "lateral": 0.3}

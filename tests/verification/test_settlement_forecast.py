@@ -10,7 +10,7 @@ from benchmarks.error_bars.soil_page import WITHIN, forecast_factors
 from riser_soil.assembly.scales import Scales
 from riser_soil.checks.settlement import settlement
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping
+from tests.support.scenes import Mapping
 from tests.support.sinking_pipe import SU, D, sink, sinking
 
 LOADS = (0.6, 1.2, 2.0, 2.6)  # su D

@@ -12,9 +12,9 @@ from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.solve import settling
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.said import telling
+from tests.support.scenes import Mapping
 from tests.support.sinking_pipe import SU, D, sink, sinking
 
 CELLS, ARM, LOAD_STEPS = 8, 30.0, 8  # across the pipe; diameters from its hinge to the slice; of its weight

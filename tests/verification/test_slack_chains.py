@@ -16,10 +16,9 @@ from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import lines_with
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
 W, SPAN, HEIGHT = 1400.0, 170.0, 115.0
 CHAIN = {"EA": 6e8, "EI": 0.0, "GJ": 1.0, "submerged_weight": W, "outer_diameter": 0.15, "mass": 165.0}

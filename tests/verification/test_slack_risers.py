@@ -12,9 +12,8 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with, telling
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
 W, PIPE = 500.0, {"EA": 1e8, "EI": 1e4, "GJ": 1e4, "submerged_weight": 500.0, "outer_diameter": 0.2, "mass": 60.0}
 

@@ -22,9 +22,8 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene
 
 L, SLACK, MASS, EA, g = 20.0, 1.0, 500.0, 1.0e7, 9.81
 WEIGHT = MASS * g

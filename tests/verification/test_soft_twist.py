@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.scene.reader import read_scene
-from tests.support.riser_scenes import StageHistory, stage_histories
+from tests.support.stage_histories import StageHistory, stage_histories
 
 FIRST_SCENE = Path(__file__).parents[2] / "demos" / "first_scene.yaml"
 AGREEMENT = 1e-9  # m; Newton's tolerance leaves some of it, round-off the rest

@@ -13,9 +13,9 @@ from riser_soil.checks.check import describe
 from riser_soil.checks.soil_edge import penetration, settlement
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.driven_stage import built, take
 from tests.support.said import line_with
+from tests.support.scenes import Mapping, touchdown
 
 D, DOWN, LENGTH = 0.3, 2.0e-3, 0.02
 SOFT: Mapping = {"kind": "linear-elastic", "E": 1.5e6, "nu": 0.49}

@@ -13,8 +13,8 @@ from ruamel.yaml import YAML
 from demos.own_law.run import HERE
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from tests.support.coupled_scenes import Mapping
 from tests.support.run_on_ranks import ran
+from tests.support.scenes import Mapping
 from tests.support.vtk_reading import read_by_vtk
 
 TENSORS = ("stress", "effective_stress", "strain", "plastic_strain")

@@ -12,8 +12,8 @@ import pytest
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.on_ranks import mpirun
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 WAYS: dict[str, tuple[Mapping, Mapping]] = {
     "quasi-static": ({"strain": "small"}, {}),

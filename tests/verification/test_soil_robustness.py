@@ -20,9 +20,8 @@ from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import LAID_IN, run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, heave, touchdown
 from tests.support.driven_stage import Watcher, built, take
-from tests.support.falling_on_soil import CLAY, ELASTIC, MIDDLE, D, falling
+from tests.support.scenes import CLAY, ELASTIC, LAY, MIDDLE, ON_BLOCK, Mapping, falling_on_soil, heave, touchdown
 
 
 def changed(kind: str, law: Mapping) -> Mapping:
@@ -168,8 +167,8 @@ def test_a_stiff_pipe_is_pressed_into_fine_cells_in_few_iterations() -> None:
 @pytest.mark.parametrize("law", [ELASTIC, CLAY], ids=["elastic", "clay"])
 def test_pipe_that_leaves_the_soil_touches_again(law: Mapping) -> None:
     """Both ends go up and down by 0.06 m every half a second about 0.05 m above the soil."""
-    scene = falling(1e7, 0.02, law, MIDDLE)
-    z = 0.5 * D + 0.05
+    scene = falling_on_soil(1e7, 0.02, law, MIDDLE)
+    z = 0.15 + 0.05  # the pipe's radius and its middle above the soil
     motion = {"harmonic": {"amplitude": [0.0, 0.0, 0.06], "period": 0.5, "ramp": 0.25}}
     scene["riser"] |= {
         end: {"position": [x, 0.0, z], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", 1.0))

@@ -14,8 +14,7 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 SCENES = Path(__file__).parents[1] / "scenes"
 DISTANCE, W = 100.0, 500.0

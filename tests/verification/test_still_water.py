@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import StageHistory, stage_histories
 
 RHO, D, CD, CA, MASS, WEIGHT = 1025.0, 0.3, 1.1, 1.0, 150.0, 800.0
 PIPE: Mapping = {"EA": 1.0e7, "EI": 1.0e4, "outer_diameter": D, "mass": MASS, "submerged_weight": WEIGHT}

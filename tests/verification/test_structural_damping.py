@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 LENGTH, EA, EI, MASS, TENSION, RATIO, ELEMENTS, DT = 30.0, 1.0e9, 5.0e5, 80.0, 4.0e4, 0.02, 20, 0.02
 STRETCH = 1.0 + TENSION / EA

@@ -18,10 +18,10 @@ from riser_soil.core.system import System
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built, take
 from tests.support.pushed_pipe import INDENTATION, NU, D, E, Pushed, slice_of_soil
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 
 @cache

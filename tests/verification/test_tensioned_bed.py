@@ -26,7 +26,7 @@ from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import prescribed, riser_scene, static
 
 EI, H, WEIGHT = 1.0e3, 1.0e3, 0.1  # l = 1 m; slopes of some thousandths
 PIPE = {"outer_diameter": 0.1, "mass": 1.0, "submerged_weight": WEIGHT, "EA": 1.0e9, "EI": EI}

@@ -16,9 +16,8 @@ from riser_soil.core.system import Timer
 from riser_soil.riser import stations
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
 from tests.support.touchdown_reference import equivalent_point
 
 D, AREA, INERTIA = 0.27, 1.71405e-2, 1.32801e-4  # m, m2, m4 of a steel pipe whose wall is 22 mm

@@ -15,8 +15,7 @@ from riser_soil.results import Run
 from riser_soil.results.instants import joined
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.scenes import LAY, Mapping, dynamic, prescribed, riser_scene, static, touchdown
 
 EI, ALLOWED, RADIUS = 2.0e4, 4.0, 0.1
 PIPE: Mapping = {"EA": 1e7, "EI": EI, "mass": 60.0, "outer_diameter": 2.0 * RADIUS, "submerged_weight": 300.0}

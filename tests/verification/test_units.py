@@ -22,10 +22,9 @@ from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
-from tests.support.coupled_scenes import heave as heaved
 from tests.support.driven_stage import Watcher
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.scenes import LAY, Mapping, dynamic, prescribed, riser_scene, static, touchdown
+from tests.support.scenes import heave as heaved
 
 SCALES = (1e-6, 1e-3, 1e3, 1e6)
 ON_SOIL: dict[str, float] = {"outer_diameter": 1, "inner_diameter": 1, "mass": 2, "EA": 3, "EI": 5, "GJ": 5}

@@ -15,9 +15,8 @@ from riser_soil.core.part import Work
 from riser_soil.core.system import System
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built_of, take
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, static
+from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
 
 RHO, CD, CV, MIDDLE, WIDTH = 1025.0, 1.2, 1.2, 0.18, 0.08
 FORCES: Mapping = {"drag": {"normal": CD}, "added_mass": {"normal": 1.0}, "vortex_force": {"coefficient": CV}}

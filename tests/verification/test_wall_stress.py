@@ -14,9 +14,9 @@ from riser_soil.errors import SceneError
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 from tests.support.said import line_with, lines_with
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 G, RHO, OIL, P, L = 9.81, 1025.0, 850.0, 20.0e6, 40.0
 OUTER, INNER, COATED, MASS = 0.2731, 0.2319, 0.35, 160.0

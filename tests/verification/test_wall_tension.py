@@ -14,9 +14,9 @@ from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import QuasiStaticStage, StaticStage, pressure_in
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
 from tests.support.said import telling
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import StageHistory, stage_histories
 
 G, RHO, OIL, L = 9.81, 1025.0, 850.0, 40.0
 OUTER, INNER, MASS = 0.3, 0.2, 120.0

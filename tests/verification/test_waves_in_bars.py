@@ -20,9 +20,8 @@ from riser_soil.core.system import Timer
 from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene
 
 L, MASS, EA, V = 10.0, 100.0, 1e8, 1.0
 C = float(np.sqrt(EA / MASS))

@@ -18,8 +18,8 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.scene.stages import DynamicStage
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.said import telling
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 ELEMENTS, TIME, SOIL, PENALTY = SETTINGS
 

@@ -20,7 +20,7 @@ from riser_soil.sea import spectra
 from riser_soil.sea.components import Components
 from riser_soil.sea.flows import Sea
 from riser_soil.sea.waves import WaveField
-from tests.support.small_scene import BASE
+from tests.support.scenes import ON_SEABED
 
 SEA = {"Hs": 4.0, "Tp": 10.0, "components": 60}
 DEPTH = 100.0
@@ -28,7 +28,7 @@ DEPTH = 100.0
 
 def scene(waves: dict[str, Any], folder: Path = Path(), **more: Any) -> Scene:
     water = {"density": 1025.0, "surface_level": DEPTH, "waves": waves}
-    return scene_from_mapping(BASE | {"water": water} | more, folder)
+    return scene_from_mapping(ON_SEABED | {"water": water} | more, folder)
 
 
 def sea(waves: dict[str, Any], folder: Path = Path()) -> Components:
@@ -80,7 +80,7 @@ def test_a_spread_sea_has_all_its_energy_evenly_over_its_directions() -> None:
 
 def test_a_spread_sea_is_no_plane_problem() -> None:
     motion = {"water": {"surface_level": DEPTH, "waves": {"jonswap": SEA}}}
-    assert resolved_dimension(scene_from_mapping(BASE | motion)) == 2
+    assert resolved_dimension(scene_from_mapping(ON_SEABED | motion)) == 2
     spread = {"jonswap": SEA | {"spreading": {"s": 10.0}}}
     assert resolved_dimension(scene(spread)) == 3
     with pytest.raises(SceneError, match=r"water\.waves\.jonswap\.spreading"):

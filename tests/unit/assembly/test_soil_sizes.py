@@ -23,8 +23,8 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import Block, CellSizes, GeneratedMesh
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import LAY, ON_BLOCK, Mapping, heave, touchdown
 from tests.support.said import telling
+from tests.support.scenes import LAY, ON_BLOCK, Mapping, heave, touchdown
 
 CLAY = VonMises(kind="von-mises", su=4.0e3, su_gradient=0.0, E_over_su=300.0, nu=0.49)
 SOFT = LinearElastic(kind="linear-elastic", E=1.2e6, nu=0.49)

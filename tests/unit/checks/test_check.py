@@ -13,9 +13,8 @@ from meshes.block import main as mesh
 from riser_soil.checks.check import describe
 from riser_soil.checks.inventory import built, left_out
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.support.riser_scenes import prescribed, riser_scene
 from tests.support.said import line_with, lines_with
+from tests.support.scenes import LAY, Mapping, heave, prescribed, riser_scene, touchdown
 
 # Of the small scenes, whose cells are wide beside what touches them, and whose clay is soft beside their springs.
 KNOWN = "at its nodes only", "soil.mesh.size_at_riser", "seabed beside the soil"

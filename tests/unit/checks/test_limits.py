@@ -19,8 +19,8 @@ from riser_soil.checks.inventory import unknowns
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.bad_scenes import GOOD
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 COMM = MPI.COMM_SELF
 

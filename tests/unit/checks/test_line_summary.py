@@ -19,8 +19,8 @@ from riser_soil.riser.attachments import PointAttachment
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 PIPE: Mapping = {"outer_diameter": 0.3, "inner_diameter": 0.2, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4}
 FLOAT: Mapping = PIPE | {"outer_diameter": 0.6, "mass": 180.0}

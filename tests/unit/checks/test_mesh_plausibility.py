@@ -14,9 +14,9 @@ from riser_soil.checks.settlement import Settled, foretold
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import GeneratedMesh
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 
 def on_block(*stages: Mapping, su: float = 6000.0, **soil: Any) -> Mapping:

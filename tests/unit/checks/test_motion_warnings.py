@@ -11,8 +11,8 @@ import pytest
 
 from riser_soil.checks.motion_plausibility import motion_warnings
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.riser_scenes import Mapping, dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with, lines_with
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
 PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
 HARMONIC: Mapping = {"amplitude": [0.0, 0.0, 2.0], "period": 6.2831853}  # 2 m/s at its middle

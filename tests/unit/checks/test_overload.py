@@ -20,9 +20,8 @@ from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.stages import run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static, touchdown
 from tests.support.soil_loops import aubeny_biscontin, randolph_quiggin
 
 W, D = 700.0, 0.3

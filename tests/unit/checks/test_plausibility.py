@@ -18,10 +18,9 @@ from riser_soil.results.bending_misfit import BendingMisfit
 from riser_soil.results.plausibility import LargestValue, Plausibility
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, dynamic, heave, prescribed, riser_scene, static, touchdown
 
 ONE_CELL: Mapping = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
 ROPE: Mapping = {"EA": 1.0e4, "EI": 1.0, "mass": 5.0, "outer_diameter": 0.02}

@@ -14,8 +14,8 @@ from riser_soil.scene.soil import SoilScene
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import built
+from tests.support.scenes import LAY, Mapping, touchdown
 
 D, DEPTH = 0.3, 2.0
 ELASTIC: Mapping = {"kind": "linear-elastic", "E": 1.0e6, "nu": 0.3}

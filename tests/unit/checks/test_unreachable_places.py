@@ -13,10 +13,9 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
 from tests.support.line_scenes import as_line
-from tests.support.riser_scenes import dynamic, prescribed, quasi_static, riser_scene, static
 from tests.support.said import line_with
+from tests.support.scenes import Mapping, dynamic, prescribed, quasi_static, riser_scene, static
 
 PIPE = {"EA": 1.0e9, "EI": 1.0e5, "GJ": 1.0e5, "mass": 60.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
 TOP = [400.0, 0.0, 300.0]

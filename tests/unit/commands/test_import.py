@@ -15,7 +15,7 @@ from riser_soil.imported_scene import ImportedScene, text_of
 from riser_soil.scene.problem import Path as KeyPath
 from riser_soil.scene.reader import read_scene
 from tests.support.said import line_with
-from tests.support.small_scene import BASE, joined
+from tests.support.scenes import ON_SEABED, overlaid
 
 LINES: dict[KeyPath, int] = {("line_types", "pipe"): 7, ("riser",): 12, ("riser", "end"): 15, ("stages",): 30}
 REMARK = (9, "a setting of its own")
@@ -24,7 +24,7 @@ LOADED = {"name": "hang", "kind": "static", "loads": [{"at": 70.0, "force": [0.0
 
 def imported(piece: dict[str, Any], folder: Path, monkeypatch: pytest.MonkeyPatch) -> Result:
     """The command, of a file whose importer gives the small scene with a piece laid over it."""
-    given = ImportedScene(joined(BASE, piece), [REMARK], {"given_table.csv": "1, 2\n"}, LINES)
+    given = ImportedScene(overlaid(ON_SEABED, piece), [REMARK], {"given_table.csv": "1, 2\n"}, LINES)
     monkeypatch.setattr(imports, "_imported", lambda *_: given)
     monkeypatch.chdir(folder)
     return CliRunner().invoke(app, ["import", "line.dat"])
@@ -45,10 +45,10 @@ def test_it_ends_with_what_check_says(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_a_warning_about_one_of_several_lines_has_its_line_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    own = {"east": BASE["riser"]}
+    own = {"east": ON_SEABED["riser"]}
     stages = [{"name": "hang", "kind": "static", "lines": {"east": {"loads": LOADED["loads"]}}},
               {"name": "hold", "kind": "static"}]  # fmt: skip
-    given = ImportedScene({**BASE, "lines": own, "stages": stages}, [], {}, LINES)
+    given = ImportedScene({**ON_SEABED, "lines": own, "stages": stages}, [], {}, LINES)
     del given.data["riser"]
     monkeypatch.setattr(imports, "_imported", lambda *_: given)
     monkeypatch.chdir(tmp_path)

@@ -14,9 +14,9 @@ from riser_soil.results.settlement_trough import offsets_of
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.law import NormalLaw
-from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.driven_stage import built
 from tests.support.said import telling
+from tests.support.scenes import Mapping, touchdown
 from tests.support.soil_loops import after, at
 
 WEIGHT, D, E = 700.0, 0.3, 1.2e6

@@ -13,8 +13,8 @@ from riser_soil.contact.integration_points import ENOUGH, LARGEST, divisions
 from riser_soil.contact.near_points import NearPoints, Surface, by_facet, fill_near, near_points, points_workspace
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array
-from tests.support.coupled_scenes import LAY, touchdown
 from tests.support.driven_stage import built
+from tests.support.scenes import LAY, touchdown
 from tests.support.soil_tops import top
 
 RADIUS, WITHIN, PARTS = 0.15, 0.05, 40

@@ -22,8 +22,8 @@ from riser_soil.errors import MemoryShortageError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve import linear_solver, linear_systems
 from riser_soil.stages import LayingCounter, run_stage
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, touchdown
 
 
 def on_fine_soil() -> Mapping:

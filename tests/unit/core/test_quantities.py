@@ -14,8 +14,8 @@ from riser_soil.assembly import build
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from tests.support.bad_scenes import GOOD
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.said import telling
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 OUTSIDE = [
     ("gravity=1.0e-300", "gravity: value 1e-300: must be 0, or from 1e-09 to 1e+09 m/s2"),

@@ -21,9 +21,9 @@ from riser_soil.material.point import MaterialPoint, drive
 from riser_soil.material.study import closed_cycles, turns
 from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.laws import LAWS
-from tests.support.coupled_scenes import touchdown
 from tests.support.on_ranks import HANGS, ROOT, environment
 from tests.support.said import line_with
+from tests.support.scenes import touchdown
 
 E, NU, SU = 1.2e6, 0.45, 4.0e3
 G = E / (2.0 * (1.0 + NU))

@@ -27,9 +27,9 @@ from riser_soil.commands.app import app
 from riser_soil.errors import ResultsError, SceneError, SolveError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.on_ranks import HANGS, environment
 from tests.support.said import line_with, telling
+from tests.support.scenes import LAY, heave, touchdown
 
 SMALL = """
 title: A small riser

@@ -23,10 +23,9 @@ from riser_soil.modes.eigenpairs import FEW, lowest
 from riser_soil.modes.modes import Modes, modes_of
 from riser_soil.modes.report import table
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.line_scenes import NAMES, POINT, RIGID, mooring, with_line_named
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import line_with, telling
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static, touchdown
 
 LENGTH, EA, EI, MASS, TENSION = 30.0, 1.0e9, 5.0e5, 80.0, 4.0e4
 BEAM: Mapping = {"EA": EA, "EI": EI, "GJ": EI, "mass": MASS, "outer_diameter": 0.3}

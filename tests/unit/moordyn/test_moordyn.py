@@ -17,8 +17,8 @@ from riser_soil.moordyn.deck_of import deck_of
 from riser_soil.moordyn.scene_of import scene_of
 from riser_soil.scene.dump import yaml_text
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from tests.support.coupled_scenes import Mapping
 from tests.support.said import line_with, telling
+from tests.support.scenes import Mapping
 
 PEER = Path(__file__).parents[3] / "benchmarks" / "peers" / "moordyn.py"
 DECK = """--------------------- MoorDyn Input File ---------------------

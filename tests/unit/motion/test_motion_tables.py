@@ -17,7 +17,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene
+from tests.support.scenes import dynamic, prescribed, riser_scene
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0}
 HEADER = "t [s], x [m], y [m], z [m]\n"

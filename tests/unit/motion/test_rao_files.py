@@ -17,8 +17,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.rao import Rao, read_capytaine
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.netcdf_files import Variables, write_netcdf
-from tests.support.riser_scenes import dynamic
-from tests.support.vessel_scenes import AIRY, END, mapping
+from tests.support.scenes import AIRY, VESSEL_END, below_vessel, dynamic
 
 DOFS = np.array(["Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw"])
 OMEGA = np.array([0.1, 0.5, 1.0, 3.0])
@@ -77,18 +76,18 @@ def test_an_end_moves_as_the_water_does(tmp_path: Path) -> None:
     omega = np.array([0.5 * w, w, 2.0 * w])
     write_netcdf(tmp_path / "rao.nc", variables(following(omega), omega))
     for heading in (toward - 90.0, toward + 135.0):
-        vessel = {"rao": "rao.nc", "reference": END, "heading_deg": heading}
+        vessel = {"rao": "rao.nc", "reference": VESSEL_END, "heading_deg": heading}
         stage = dynamic(20.0, 0.2, "sail", motion={"end": {"vessel": vessel}})
-        scene = scene_from_mapping(mapping(stage, waves=AIRY, rotation="fixed"), tmp_path)
+        scene = scene_from_mapping(below_vessel(stage, waves=AIRY, rotation="fixed"), tmp_path)
         assembly = build(scene, MPI.COMM_SELF)
         assembly.begin(scene.stages[0])
         motion, turning = assembly.line.end.motion, assembly.line.end.turning
         assert motion is not None
         assert turning is not None
         n, t, k = np.array([math.cos(math.radians(toward)), math.sin(math.radians(toward)), 0.0]), 17.3, w**2 / G
-        angle = k * float(n @ END) - w * t + math.radians(phase)
+        angle = k * float(n @ VESSEL_END) - w * t + math.radians(phase)
         moved = 0.5 * height * (math.cos(angle) * np.array([0.0, 0.0, 1.0]) - math.sin(angle) * n)
-        assert motion(t)[0] - END == pytest.approx(moved, abs=1e-6)
+        assert motion(t)[0] - VESSEL_END == pytest.approx(moved, abs=1e-6)
         steepest = 0.5 * height * k * math.sin(angle) * np.cross([0.0, 0.0, 1.0], n)
         assert turning(t).rotation == pytest.approx(steepest, abs=1e-6)
 
@@ -174,7 +173,7 @@ def test_a_body_that_turns_about_another_place_than_its_phases_count_from_is_ref
 )
 def test_files_without_raos(other: dict[str, Any], reported: str, tmp_path: Path) -> None:
     write_netcdf(tmp_path / "rao.nc", changed(**other))
-    stage = dynamic(20.0, 0.2, "sail", motion={"end": {"vessel": {"rao": "rao.nc", "reference": END}}})
+    stage = dynamic(20.0, 0.2, "sail", motion={"end": {"vessel": {"rao": "rao.nc", "reference": VESSEL_END}}})
     with pytest.raises(SceneError, match=reported) as error:
-        scene_from_mapping(mapping(stage, waves=AIRY), tmp_path)
+        scene_from_mapping(below_vessel(stage, waves=AIRY), tmp_path)
     assert "\n" not in str(error.value)

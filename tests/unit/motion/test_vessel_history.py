@@ -18,14 +18,13 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene
-from tests.support.vessel_scenes import AIRY, END, EVERYWHERE, REFERENCE, surface, table
-from tests.support.vessel_scenes import mapping as at_sea
+from tests.support.rao_tables import EVERYWHERE, REFERENCE, surface, table
+from tests.support.scenes import AIRY, VESSEL_END, Mapping, dynamic, prescribed, riser_scene
+from tests.support.scenes import below_vessel as at_sea
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0}
 HEADER = "t [s], surge [m], sway [m], heave [m], roll [deg], pitch [deg], yaw [deg]\n"
-ARM = np.array(END) - REFERENCE
+ARM = np.array(VESSEL_END) - REFERENCE
 T = np.linspace(0.0, 12.0, 241)
 SIZES = np.array([3.0, -2.0, 1.5, 14.0, -9.0, 25.0])
 
@@ -45,10 +44,10 @@ def mapping(motion: Mapping) -> Mapping:
     return riser_scene(
         dynamic(12.0, 0.1, motion={"end": motion}),
         pipe=PIPE,
-        length=float(np.linalg.norm(END)),
+        length=float(np.linalg.norm(VESSEL_END)),
         elements=3,
         start=prescribed(0.0, 0.0, 0.0),
-        end=prescribed(*END, rotation="fixed"),
+        end=prescribed(*VESSEL_END, rotation="fixed"),
     )
 
 
@@ -103,7 +102,7 @@ def test_velocities_and_accelerations_are_the_derivatives(tmp_path: Path) -> Non
 def test_it_is_the_table_of_the_end(tmp_path: Path) -> None:
     """Of its displacements and rotation vectors, worked out by hand row by row."""
     known = [by_hand(float(t), 0.0) for t in T]
-    rows = np.array([[*(x - END), *Rotation.from_matrix(R).as_rotvec()] for x, R in known])
+    rows = np.array([[*(x - VESSEL_END), *Rotation.from_matrix(R).as_rotvec()] for x, R in known])
     header = "t [s], x [m], y [m], z [m], rx [rad], ry [rad], rz [rad]\n"
     (tmp_path / "end.csv").write_text(text(rows, header=header), encoding="utf-8")
     one = end_of(scene_from_mapping(mapping({"table": "end.csv"}), tmp_path))
@@ -132,7 +131,7 @@ def test_small_motions_are_those_by_raos(tmp_path: Path) -> None:
     for t in (3.0, 6.0, 11.3):
         for values, expected in zip(other.motion(t), one.motion(t), strict=True):
             assert values == pytest.approx(expected, abs=4e-5)
-    assert np.abs(one.motion(6.0)[0] - END).max() > 0.01
+    assert np.abs(one.motion(6.0)[0] - VESSEL_END).max() > 0.01
 
 
 def test_echo_and_dimension(tmp_path: Path) -> None:

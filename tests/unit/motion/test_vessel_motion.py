@@ -23,10 +23,10 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, dynamic, stage_histories, static
+from tests.support.rao_tables import EVERYWHERE, MODES, REFERENCE, surface, table
 from tests.support.said import lines_with, telling
-from tests.support.vessel_scenes import AIRY, END, EVERYWHERE, JONSWAP, MODES, REFERENCE, mapping, surface, table
+from tests.support.scenes import AIRY, JONSWAP, VESSEL_END, Mapping, below_vessel, dynamic, static
+from tests.support.stage_histories import distance, stage_histories
 
 
 def aboard(duration: float = 20.0, name: str = "sail", **vessel: Any) -> Mapping:
@@ -36,7 +36,7 @@ def aboard(duration: float = 20.0, name: str = "sail", **vessel: Any) -> Mapping
 
 def scene(folder: Path, text: str, *stages: Mapping, **more: Any) -> Scene:
     (folder / "rao.csv").write_text(text, encoding="utf-8")
-    return scene_from_mapping(mapping(*(stages or (aboard(),)), **more), folder)
+    return scene_from_mapping(below_vessel(*(stages or (aboard(),)), **more), folder)
 
 
 def begun(scene: Scene, stage: int = 0) -> Assembly:
@@ -47,7 +47,7 @@ def begun(scene: Scene, stage: int = 0) -> Assembly:
 
 def displaced(assembly: Assembly, t: float) -> Array:
     assert assembly.line.end.motion is not None
-    return assembly.line.end.motion(t)[0] - END
+    return assembly.line.end.motion(t)[0] - VESSEL_END
 
 
 def turned(assembly: Assembly, t: float) -> SupportRotation:
@@ -95,7 +95,7 @@ def test_modes_move_along_and_about_the_vessels_axes(mode: str, axis: int, sign:
     heading = np.array(rotations.exp((0.0, 0.0, np.radians(30.0))))
     t, along = 17.3, heading[:, axis] * 0.02
     size = surface(floating, t)
-    expected = np.cross(along, np.array(END) - REFERENCE) if sign else along
+    expected = np.cross(along, np.array(VESSEL_END) - REFERENCE) if sign else along
     assert displaced(assembly, t) == pytest.approx(size * expected, abs=1e-13)
     assert turned(assembly, t).rotation == pytest.approx(sign * size * along, abs=1e-14)
     state = State.at_rest(t, assembly.line.size)
@@ -116,7 +116,7 @@ def test_response_to_a_sea_is_the_rao_times_its_components(tmp_path: Path) -> No
     vessels, waves = begun(floating).vessels, components_of(floating)
     assert vessels is not None
     assert waves is not None
-    response = vessels.motion(floating.stages[0], "end", np.array(END)).response
+    response = vessels.motion(floating.stages[0], "end", np.array(VESSEL_END)).response
     found = np.abs(response.amplitude[:, 0]) ** 2
     assert found == pytest.approx((2.0 / (1.0 + waves.frequency**2)) ** 2 * waves.amplitude**2, rel=2e-3)
     lag = waves.wave_number * -REFERENCE[0] + waves.phase + np.radians(40.0 * waves.frequency)
@@ -130,7 +130,7 @@ def test_rates_are_derivatives_and_it_starts_at_rest(tmp_path: Path) -> None:
     motion, turning, h = assembly.line.end.motion, assembly.line.end.turning, 1e-3
     assert motion is not None
     assert turning is not None
-    for values, first in zip(motion(0.0), (END, [0.0] * 3, [0.0] * 3), strict=True):
+    for values, first in zip(motion(0.0), (VESSEL_END, [0.0] * 3, [0.0] * 3), strict=True):
         assert values == pytest.approx(first, abs=1e-12)
     for t in (0.5, 5.0, 8.99, 9.01, 31.0):
         for k in (0, 1):
@@ -189,12 +189,12 @@ def test_after_a_break_it_swings_about_the_same_mean(name: str, tmp_path: Path) 
     motion, turning = assembly.line.end.motion, assembly.line.end.turning
     assert motion is not None
     assert turning is not None
-    assert np.abs(found[2][1] - END).max() > 0.1
+    assert np.abs(found[2][1] - VESSEL_END).max() > 0.1
     assert motion(0.0)[0] == pytest.approx(found[2][1], abs=1e-12)
     for values in (*motion(0.0)[1:], *turning(0.0)):
         assert values == pytest.approx(np.zeros(3), abs=1e-12)
     period = map(float, np.arange(9.0, 18.0, 0.25))
-    assert np.mean([motion(t)[0] for t in period], axis=0) == pytest.approx(END, abs=1e-9)
+    assert np.mean([motion(t)[0] for t in period], axis=0) == pytest.approx(VESSEL_END, abs=1e-9)
     if "reference" not in change:
         late = displaced(assembly, 12.0)
         whole = begun(scene(tmp_path, table(*EVERYWHERE, **modes), static(), aboard(60.0)), 1)
@@ -218,7 +218,7 @@ def test_a_move_in_a_static_stage_takes_the_berth_along(tmp_path: Path) -> None:
     target = [float(value) for value in found[1][1] + by]
     moved = static(), aboard(12.6), static("rest", move={"end": target}), aboard(30.0, "again")
     assembly, found = ends(scene(tmp_path, text, *moved))
-    assert displaced(assembly, 0.0) == pytest.approx(np.array(target) - END, abs=1e-12)
+    assert displaced(assembly, 0.0) == pytest.approx(np.array(target) - VESSEL_END, abs=1e-12)
     mean = np.mean([displaced(assembly, t) for t in map(float, np.arange(9.0, 18.0, 0.25))], axis=0)
     assert mean == pytest.approx(by, abs=1e-9)
 
@@ -257,7 +257,7 @@ def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> 
     floating = scene(tmp_path, text, aboard(), aboard(name="sail on"), waves=JONSWAP)
     assembly = begun(floating)
     assert assembly.vessels is not None
-    response = assembly.vessels.motion(floating.stages[0], "end", np.array(END)).response
+    response = assembly.vessels.motion(floating.stages[0], "end", np.array(VESSEL_END)).response
     above = response.frequency > 1.1
     assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
     assert not np.any(response.amplitude[above])

@@ -36,8 +36,8 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run as run_scene
 from tests.support.on_ranks import ROOT
 from tests.support.recorded_run import record
-from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.said import line_with
+from tests.support.scenes import prescribed, riser_scene, static
 
 SCENE = (ROOT / "demos/first_scene.yaml").read_text(encoding="utf-8")
 

@@ -26,9 +26,9 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, stage_histories, static
 from tests.support.said import telling
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 W, L, RISE = 200.0, 60.0, 40.0
 CHAIN: Mapping = {"EA": 1.0e10, "EI": 0.0, "submerged_weight": W}

@@ -13,9 +13,8 @@ from riser_soil.results.bending_misfit import BendingMisfit, misfit
 from riser_soil.results.observer import elastic_residual
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 
 def found(scene: Mapping) -> tuple[BendingMisfit, float]:

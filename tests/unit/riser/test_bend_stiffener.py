@@ -12,9 +12,9 @@ from scipy.integrate import quad
 from riser_soil.assembly import build
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 from tests.support.said import telling
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 PIPE: Mapping = {"EA": 1.0e8, "EI": 2.0e4, "outer_diameter": 0.2, "mass": 50.0}
 TAPER: Mapping = {"length": 2.0, "base_diameter": 0.6, "tip_diameter": 0.25, "E": 6.0e7, "density": 1200.0}

@@ -24,12 +24,11 @@ from riser_soil.riser.line_ends import End
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Initial, Scene
-from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent
 from tests.support.driven_stage import built
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.said import telling
 from tests.support.sample_line import sample
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
 G, BORE, AREA = 9.81, 0.3, 0.25 * math.pi * 0.3**2
 L = 8.0  # m, of the sample

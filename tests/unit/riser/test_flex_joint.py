@@ -12,8 +12,8 @@ from riser_soil.hang_off import from_vertical
 from riser_soil.riser import rotations
 from riser_soil.riser.part_kernels import add_energy
 from riser_soil.riser.springs import PlanarSpring, SpatialSpring
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 ROD: Mapping = {"EA": 1.0e9, "EI": 1.0e10, "GJ": 1.0e10}
 L, K = 10.0, 5.0e3

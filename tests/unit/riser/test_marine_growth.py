@@ -18,12 +18,12 @@ from riser_soil.riser import additions
 from riser_soil.riser.additions import Growth, with_growth
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
-from tests.support.riser_scenes import IN_WAVES, in_waves, prescribed, riser_scene, stage_histories, static
 from tests.support.said import telling
 from tests.support.sample_line import Sample, sample
+from tests.support.scenes import IN_WAVES, Mapping, in_waves, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 RHO, G, D, T, DENSITY = 1025.0, 9.81, 0.3, 0.05, 1325.0
 EVERYWHERE = [[0.0, T, DENSITY]]

@@ -7,9 +7,9 @@ import pytest
 
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, stage_histories, static
 from tests.support.said import telling
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 W, L, EA, T = 400.0, 50.0, 1.0e7, 4.0e4
 PIPE: Mapping = {"EA": EA, "EI": 1.0e4, "GJ": 1.0e4, "mass": 60.0, "submerged_weight": W}

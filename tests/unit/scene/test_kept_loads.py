@@ -8,8 +8,8 @@ import pytest
 
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import loads_in
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 ROD: Mapping = {"EA": 1.0e6, "EI": 1.0e3, "mass": 1.0}
 L = 10.0

@@ -14,7 +14,7 @@ from riser_soil.riser.sections import Elements
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+from tests.support.scenes import dynamic, prescribed, riser_scene, static
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e4, "GJ": 1.0e4, "mass": 50.0, "outer_diameter": 0.4, "inner_diameter": 0.2}
 

@@ -29,8 +29,8 @@ from riser_soil.soil.layered import LayeredFormula, LayeredWeight, law_by_depth
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import touchdown
 from tests.support.said import telling
+from tests.support.scenes import touchdown
 from tests.support.soil_bench import Bench
 from tests.support.soil_cases import KINDS
 

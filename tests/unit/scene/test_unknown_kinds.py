@@ -28,8 +28,8 @@ from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.laws import LAWS
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.said import telling
+from tests.support.scenes import LAY, heave, touchdown
 
 CLAY: dict[str, Any] = {"su": 4.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
 

@@ -20,9 +20,8 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.variants import at_offset
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, prescribed, quasi_static, riser_scene, static
 from tests.support.said import line_with, telling
+from tests.support.scenes import Mapping, dynamic, prescribed, quasi_static, riser_scene, static
 
 PIPE = {"EA": 1.0e9, "EI": 1.0e3, "GJ": 1.0e3, "mass": 20.0, "submerged_weight": 200.0}
 VESSEL: Mapping = {"vessel_history": {"file": "vessel.csv", "reference": [60.0, 0.0, 45.0]}}

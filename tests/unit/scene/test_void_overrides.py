@@ -11,8 +11,7 @@ import pytest
 from riser_soil.api import Scene as WrittenScene
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 PIPE = {"EA": 1.0e9, "EI": 1.0e3, "GJ": 1.0e3, "mass": 20.0, "submerged_weight": 200.0}
 

@@ -20,9 +20,9 @@ from riser_soil.sea.morison import Morison
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
-from tests.support.riser_scenes import dynamic, riser_scene, stage_histories
 from tests.support.sample_line import sample
-from tests.support.water_scenes import MIDDLE, scene_in
+from tests.support.scenes import MIDWATER, dynamic, in_water, riser_scene
+from tests.support.stage_histories import stage_histories
 
 LEVEL, TIME = np.array([-100.0, -20.0, 0.0]), np.array([10.0, 30.0, 35.0])
 VELOCITY = np.array(
@@ -127,9 +127,9 @@ HISTORY = [
 
 
 def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
-    scene = scene_in({"current": {"history": HISTORY}})
+    scene = in_water({"current": {"history": HISTORY}})
     found = [water_of(scene, stage) for stage in scene.stages]
-    values = [water(0.5, MIDDLE).velocity[0, 0] for water in found if water is not None]
+    values = [water(0.5, MIDWATER).velocity[0, 0] for water in found if water is not None]
     s = np.array([0.0, 0.5, 20.0, 20.5]) / 30.0
     expected = 0.6 - (3.0 * s**2 - 2.0 * s**3)
     assert values == pytest.approx(expected * [0.5, 1.0, 1.0, 1.0])
@@ -138,7 +138,7 @@ def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
     assert times_to_hit(scene, storm)[-1] == 10.0
     assert resolved_dimension(scene) == 2
     across = [HISTORY[0], {"time": 30.0, "profile": [[0.0, 0.0, 0.3]]}]
-    assert resolved_dimension(scene_in({"current": {"history": across}})) == 3
+    assert resolved_dimension(in_water({"current": {"history": across}})) == 3
 
 
 @pytest.mark.parametrize(
@@ -153,5 +153,5 @@ def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
 )
 def test_bad_input_is_reported_in_a_line(current: dict[str, Any], reported: str) -> None:
     with pytest.raises(SceneError, match=reported) as raised:
-        scene_in({"current": current})
+        in_water({"current": current})
     assert "\n" not in str(raised.value)

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.support.riser_scenes import IN_WAVES, dynamic, prescribed, riser_scene, stage_histories, static
+from tests.support.scenes import IN_WAVES, dynamic, prescribed, riser_scene, static
+from tests.support.stage_histories import stage_histories
 
 STEADY = {"profile": [[0.0, 0.2, 0.0], [20.0, 1.5, 0.0]]}
 CHANGING = {"history": [{"time": 0.0, **STEADY}, {"time": 2.0, "profile": [[0.0, -0.5, 0.0]]}]}

@@ -19,11 +19,11 @@ from riser_soil.sea.morison_law import drag_coefficients
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import FlowAtStations
 from tests.support import sample_water
-from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
-from tests.support.riser_scenes import in_waves, stage_histories
 from tests.support.sample_line import RHO, Sample, sample
+from tests.support.scenes import Mapping, in_waves
+from tests.support.stage_histories import stage_histories
 from tests.support.through_water import derivatives, resistance
 
 NU, D = 1.19e-6, 0.4

@@ -21,7 +21,7 @@ from riser_soil.sea import spectra
 from riser_soil.sea.components import Components
 from tests.support.netcdf_files import Variables, write_netcdf
 from tests.support.said import telling
-from tests.support.small_scene import BASE
+from tests.support.scenes import ON_SEABED
 
 FREQ = np.arange(0.04, 0.5, 0.005)
 DIR = np.arange(0.0, 360.0, 15.0)
@@ -43,7 +43,7 @@ def variables(efth: Array) -> Variables:
 
 def scene(given: dict[str, Any], folder: Path, **more: Any) -> Scene:
     water = {"surface_level": 100.0, "waves": {"spectrum": {"file": "sea.nc"} | given}}
-    return scene_from_mapping(BASE | {"water": water} | more, folder)
+    return scene_from_mapping(ON_SEABED | {"water": water} | more, folder)
 
 
 def drawn(given: dict[str, Any], folder: Path) -> Components:

@@ -30,7 +30,7 @@ from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.said import telling
 from tests.support.sample_line import sample
-from tests.support.water_scenes import scene_in
+from tests.support.scenes import in_water
 
 G, T, LEVEL, DIRECTION = 9.81, 10.0, 7.0, 0.6
 CASES = [
@@ -244,7 +244,7 @@ REGULAR = {"regular": {"height": 8.0, "period": 10.0, "direction_deg": 180.0}}
 
 
 def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> None:
-    scene = scene_in({"surface_level": 100.0, "waves": REGULAR})
+    scene = in_water({"surface_level": 100.0, "waves": REGULAR})
     (reported,) = reported_regular(scene)
     assert "fifth order: 160" in reported
     assert list(wave_warnings(scene)) == []
@@ -260,7 +260,7 @@ def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> Non
 
 
 def test_a_vessel_follows_the_first_harmonic() -> None:
-    (waves,) = zip(*components_of(scene_in({"surface_level": 100.0, "waves": REGULAR})) or (), strict=True)
+    (waves,) = zip(*components_of(in_water({"surface_level": 100.0, "waves": REGULAR})) or (), strict=True)
     a, w, k, toward, _ = waves
     assert (a, w, toward) == pytest.approx((4.0, 0.2 * math.pi, math.pi))
     assert k == pytest.approx(made("stokes", 8.0, math.inf).k, rel=1e-12)
@@ -268,7 +268,7 @@ def test_a_vessel_follows_the_first_harmonic() -> None:
 
 def test_stretching_is_refused() -> None:
     with pytest.raises(SceneError, match=telling("water.waves.stretching:", "finite height", "leave it out")):
-        scene_in({"surface_level": 100.0, "waves": REGULAR | {"stretching": "wheeler"}})
+        in_water({"surface_level": 100.0, "waves": REGULAR | {"stretching": "wheeler"}})
 
 
 @pytest.mark.parametrize(
@@ -284,7 +284,7 @@ def test_stretching_is_refused() -> None:
     ],
 )
 def test_what_can_not_be_is_reported_in_a_line(depth: float, given: dict[str, Any], reported: str) -> None:
-    scene = scene_in({"surface_level": 100.0, "depth": depth, "waves": {"regular": {"period": 10.0} | given}})
+    scene = in_water({"surface_level": 100.0, "depth": depth, "waves": {"regular": {"period": 10.0} | given}})
     with pytest.raises(SceneError, match=reported) as raised:
         water_of(scene, scene.stages[1])
     assert "\n" not in str(raised.value)

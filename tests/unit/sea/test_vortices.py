@@ -18,12 +18,11 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import FlowAtStations
 from riser_soil.sea.vortices import Push, Vortices
 from tests.support import sample_water
-from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.driven_stage import built
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 from tests.support.sample_line import RHO, Sample, sample
+from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 from tests.support.through_water import resistance
 
 D, U, MIDDLE, WIDTH = 0.3, 0.8, 0.18, 0.08

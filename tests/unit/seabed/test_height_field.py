@@ -20,8 +20,8 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.seabed.grounds import Plane
 from riser_soil.seabed.height_field import HeightField, Profile
-from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.said import line_with, lines_with
+from tests.support.scenes import prescribed, riser_scene, static
 
 X = np.random.default_rng(7).uniform(-3.0, 12.0, size=(60, 3))
 XS, YS = np.array([-2.0, 0.5, 2.0, 5.0, 9.0]), np.array([-1.0, 2.0, 4.5, 10.0])

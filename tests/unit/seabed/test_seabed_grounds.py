@@ -11,7 +11,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import Profile
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.scenes import prescribed, riser_scene, static
 
 X = np.random.default_rng(4).uniform(-3.0, 12.0, size=(40, 3))
 HILL = Profile(

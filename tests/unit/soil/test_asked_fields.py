@@ -24,8 +24,8 @@ from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.mirror import Mirror, Unfolding
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.said import line_with, telling
+from tests.support.scenes import LAY, Mapping, touchdown
 from tests.support.soil_bench import Bench
 from tests.support.soil_cases import KINDS, distorted, sheared, small_block
 

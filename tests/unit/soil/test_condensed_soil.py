@@ -22,9 +22,9 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, Watcher, before_commit, built
 from tests.support.said import line_with, telling
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 ELASTIC: Mapping = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}
 FRICTION = {"axial": 0.4, "lateral": 0.7}

@@ -14,7 +14,7 @@ from riser_soil.soil import mandel
 from riser_soil.soil.iwan import IwanOverlay, Overlay
 from riser_soil.soil.kinematic_hardening import CyclicClay, KinematicHardening
 from riser_soil.soil.law import PLASTIC_STRAIN
-from tests.support.coupled_scenes import touchdown
+from tests.support.scenes import touchdown
 from tests.support.two_surfaces import (
     added_by_the_last_cycle,
     fading_backstress,

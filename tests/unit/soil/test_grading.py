@@ -12,8 +12,8 @@ from riser_soil.assembly.riser import elements_of
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.riser import graded_lengths
-from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.said import telling
+from tests.support.scenes import prescribed, riser_scene, static
 
 
 def test_doubling() -> None:

@@ -23,11 +23,11 @@ from riser_soil.soil.imported_law import ImportedLaw
 from riser_soil.soil.large_strain import turned
 from riser_soil.soil.law import STRESS
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import built
 from tests.support.material_paths import initial_stress, random_paths
 from tests.support.run_on_ranks import COMPARED, ran
 from tests.support.said import line_with, telling
+from tests.support.scenes import LAY, Mapping, touchdown
 
 E, NU = 2.4e6, 0.3
 MU, LAME = E / (2.0 * (1.0 + NU)), E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU))

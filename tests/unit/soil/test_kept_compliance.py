@@ -20,9 +20,9 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil import compliance as kept_compliance
 from riser_soil.soil.compliance import Compliance
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, touchdown
 
 SWITCH = "RISER_SOIL_COMPLIANCE"
 CLAY: Mapping = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}

@@ -14,10 +14,10 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil import mandel
 from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.laws import LAWS
-from tests.support.coupled_scenes import LAY, touchdown
 from tests.support.driven_stage import take
 from tests.support.material_paths import initial_stress, random_paths
 from tests.support.said import telling
+from tests.support.scenes import LAY, touchdown
 
 CLAY = {"su": 4.0e3, "su_gradient": 1.0e3, "E_over_su": 300.0}
 GIVEN: dict[str, dict[str, Any]] = {

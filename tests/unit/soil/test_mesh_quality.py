@@ -15,9 +15,9 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grid import DistributedMesh, block_grid
 from riser_soil.soil.quality import MeshQuality, quality_of
-from tests.support.coupled_scenes import touchdown
 from tests.support.mesh_drawings import LEFT, RIGHT, Drawing, msh
 from tests.support.said import line_with
+from tests.support.scenes import touchdown
 
 CUBE = np.array([[i, j, k] for k in (0.0, 1.0) for j in (0.0, 1.0) for i in (0.0, 1.0)])
 REGULAR = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])

@@ -23,8 +23,8 @@ from riser_soil.soil.law import PLASTIC_STRAIN, STRESS
 from riser_soil.soil.mirror import Mirror
 from riser_soil.soil.slices import slice_grid
 from riser_soil.soil.soil import Soil
-from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.said import line_with
+from tests.support.scenes import Mapping, touchdown
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import CLAY
 

@@ -21,8 +21,8 @@ from riser_soil.soil.layered import of_layers
 from riser_soil.soil.rate import Rate
 from riser_soil.soil.remoulding import Remoulding
 from riser_soil.soil.von_mises import VonMises
-from tests.support.coupled_scenes import touchdown
 from tests.support.material_paths import initial_stress, random_paths
+from tests.support.scenes import touchdown
 
 SU, NU, MU, SLOW = 4.0e3, 0.45, 0.12, 1.0e-5
 G = 300.0 * SU / (2.0 * (1.0 + NU))

@@ -21,8 +21,8 @@ from riser_soil.soil.von_mises import VonMises
 from riser_soil.solve.newton import balance_held
 from riser_soil.solve.solver import NewtonSettings
 from riser_soil.solve.time_stepper import AcceptedStep
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built, take
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import distorted, moved, sheared, small_block
 

@@ -17,8 +17,8 @@ from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.law import PLASTIC_STRAIN
 from riser_soil.soil.remoulding import RemouldedClay, Remoulding
 from riser_soil.soil.von_mises import PerfectlyPlastic, VonMises
-from tests.support.coupled_scenes import touchdown
 from tests.support.material_paths import at_start, dissipated, initial_stress, random_paths
+from tests.support.scenes import touchdown
 
 SU, NU, REST, XI = 4.0e3, 0.45, 0.25, 2.0
 G = 300.0 * SU / (2.0 * (1.0 + NU))

@@ -13,8 +13,8 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil import mandel
 from riser_soil.soil.drucker_prager import DruckerPrager, FrictionalSoil
 from riser_soil.soil.law import PLASTIC_STRAIN
-from tests.support.coupled_scenes import touchdown
 from tests.support.material_paths import initial_stress, random_paths
+from tests.support.scenes import touchdown
 
 E, NU, C = 2.0e7, 0.3, 200.0
 ANGLES = pytest.mark.parametrize(("phi", "psi"), [(20.0, 0.0), (35.0, 5.0), (32.0, 32.0), (45.0, 15.0)])

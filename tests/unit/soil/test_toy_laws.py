@@ -21,10 +21,9 @@ from riser_soil.seabed.laws import LAWS as SEABED_LAWS
 from riser_soil.soil.laws import LAWS as SOIL_LAWS
 from riser_soil.soil.soil import Soil
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.said import telling
+from tests.support.scenes import LAY, Mapping, prescribed, riser_scene, static, touchdown
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import KINDS, distorted, moved, sheared, small_block
 from tests.support.soil_loops import after, at, forces, through, work

@@ -22,7 +22,7 @@ from riser_soil.soil.families import point_volumes
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid
 from riser_soil.soil.seabed_feature import GrooveSpec, TrenchSpec
 from riser_soil.soil.soil import Soil
-from tests.support.coupled_scenes import touchdown
+from tests.support.scenes import touchdown
 from tests.support.soil_bench import Bench
 from tests.support.soil_cases import ELASTIC
 

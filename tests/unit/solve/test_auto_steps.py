@@ -11,8 +11,8 @@ from riser_soil.assembly.stage import times_to_hit
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.solve.step_control import AutoSteps
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene
 from tests.support.said import line_with
+from tests.support.scenes import dynamic, prescribed, riser_scene
 
 TOLERANCE = 1e-3
 

@@ -14,7 +14,7 @@ from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 
 @pytest.fixture

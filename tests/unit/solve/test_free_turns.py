@@ -17,10 +17,9 @@ from riser_soil.solve import stability
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solver import NewtonSettings
 from riser_soil.solve.time_scheme import Static
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take
-from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.sample_line import sample
+from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 FREE, HINGED, CLAMPED = End(False), End(True), End(True, rotation_fixed=True)
 

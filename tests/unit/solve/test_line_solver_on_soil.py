@@ -22,8 +22,8 @@ from riser_soil.solve.solver import NewtonSettings, Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import Watcher, before_commit, built
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 SAME = 1e-8
 CASES: dict[str, tuple[int, Mapping]] = {

@@ -15,9 +15,9 @@ from riser_soil.scene.stages import StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take
 from tests.support.pushed_pipe import D, slice_of_soil
+from tests.support.scenes import Mapping
 
 CLAY: Mapping = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.49}
 

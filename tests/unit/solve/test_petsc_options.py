@@ -22,10 +22,10 @@ from riser_soil.solve.snes import SnesLoop
 from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step
 from riser_soil.solve.step_iteration import StepIteration
 from riser_soil.solve.time_scheme import Static
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import built, take
 from tests.support.on_ranks import mpirun
 from tests.support.said import line_with
+from tests.support.scenes import LAY, Mapping, touchdown
 from tests.support.toy_chain import Chain, Springs
 
 STIFFENING = {"k": 10.0, "cubic": 100.0, "weight": 2.0}  # N/m, N/m3, N: full steps go far beyond the equilibrium

@@ -25,13 +25,13 @@ from riser_soil.solve.step_control import PathSteps
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from riser_soil.whole_run import run
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
 from tests.support.equal_runs import unlike
 from tests.support.left_run import leave_after
 from tests.support.on_ranks import mpirun
-from tests.support.riser_scenes import dynamic, prescribed, quasi_static, riser_scene, stage_histories, static
 from tests.support.said import line_with, lines_with, telling
+from tests.support.scenes import LAY, Mapping, dynamic, prescribed, quasi_static, riser_scene, static, touchdown
+from tests.support.stage_histories import stage_histories
 
 L, EA = 10.0, 1.0e6
 ROD: Mapping = {"EA": EA, "EI": 1.0e3, "mass": 50.0, "outer_diameter": 0.3, "submerged_weight": 0.0}

@@ -11,8 +11,8 @@ from petsc4py import PETSc
 from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import RiserAboveSoil, exact_solver
 from tests.support.above_soil import hanging
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built
+from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 
 def at_start(scene: Mapping) -> System:

@@ -16,8 +16,8 @@ from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution,
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take
+from tests.support.scenes import turned_bar
 from tests.support.toy_chain import Chain, Springs
-from tests.support.turned_bar import turned_bar
 
 
 @pytest.mark.parametrize(

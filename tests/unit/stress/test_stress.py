@@ -24,8 +24,8 @@ from riser_soil.whole_run import run
 from tests.stress.page import page
 from tests.support.line_scenes import CHAIN, mooring, shaken
 from tests.support.on_ranks import ROOT, environment
-from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.said import line_with
+from tests.support.scenes import prescribed, riser_scene, static
 
 FIRST_SCENE = ROOT / "demos" / "first_scene.yaml"
 RIGHT, OFF = near("T [N]", 101.0, 100.0, rel=0.02), near("T [N]", 103.0, 100.0, rel=0.02)

@@ -1,4 +1,4 @@
-"""Scenes of a pipe that hangs from a vessel in waves, with its table of RAOs."""
+"""Tables of a vessel's RAOs, and the surface of the sea at the point to which they refer."""
 
 from __future__ import annotations
 
@@ -8,14 +8,8 @@ import numpy as np
 
 from riser_soil.assembly.sea import water_of
 from riser_soil.scene.scene import Scene
-from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene
 
-PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
-END, REFERENCE = [40.0, 0.0, 3.0], [55.0, 4.0, -2.0]
-AIRY = {"airy": {"height": 3.0, "period": 9.0, "direction_deg": 35.0, "phase_deg": 70.0}}
-JONSWAP = {"jonswap": {"Hs": 3.0, "Tp": 9.0, "components": 40, "direction_deg": 180.0}}
-W = 2.0 * np.pi / 9.0
+REFERENCE = [55.0, 4.0, -2.0]
 MODES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
 
@@ -33,21 +27,6 @@ def table(frequencies: Any, directions: Any, **modes: Any) -> str:
 
 
 EVERYWHERE = ([0.2, 0.5, 1.0, 2.0, 4.0], range(0, 360, 45))
-
-
-def mapping(*stages: Mapping, rotation: Any = "free", waves: Mapping = AIRY, **more: Any) -> Mapping:
-    """A hanging pipe under the sea's surface; its end moves in the stages as they say."""
-    return riser_scene(
-        *stages,
-        pipe=PIPE,
-        length=60.0,
-        elements=6,
-        start=prescribed(0.0, 0.0, -30.0),
-        end=prescribed(*END, rotation=rotation),
-        gravity=9.81,
-        water={"surface_level": 10.0, "waves": waves},
-        **more,
-    )
 
 
 def surface(scene: Scene, t: float) -> float:
