@@ -21,7 +21,7 @@ from riser_soil.results import Run
 from tests.support.on_ranks import environment
 from tests.support.said import line_with
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 # The command in a scene that goes on for ever, which sends itself a signal after some accepted steps.
 ENDLESS = """
 import os, signal, sys
