@@ -21,7 +21,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test quick lint coverage verify stress fuzz mutants bench bench-peers bench-decks parts bars asked precision quality figures verify-fresh docs dist docker pins clean
+.PHONY: help setup demo demos test quick lint coverage verify stress around fuzz mutants bench bench-peers bench-decks parts bars asked precision quality figures verify-fresh docs dist docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -62,13 +62,16 @@ verify: setup ## the long comparisons with closed forms, references and finer me
 	$(PYTHON) -m pytest -m verify
 
 stress: setup ## stiff and extreme scenes with known answers, each in a process with limits: docs/stress.md; also among those of verify
-	$(PYTHON) -m tests.stress.run --page
+	$(PYTHON) -m tests.robustness.stress.run --page
+
+around: setup ## extremes of a scene, SCENE=file.yaml, each in a process with limits: which end quietly wrong
+	$(PYTHON) -m tests.robustness.stress.around $(SCENE)
 
 fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; also among those of verify
-	$(PYTHON) -m tests.fuzz.run --count 600 --seed 1
+	$(PYTHON) -m tests.robustness.fuzz.run --count 600 --seed 1
 
 mutants: setup ## some 70 places of the package broken one at a time: which of them the quick tests notice; takes long
-	$(PYTHON) -m tests.mutants.run
+	$(PYTHON) -m tests.robustness.mutants.run
 
 bench: setup ## what steps of lines, soils, waves and storms cost: docs/speed.md; Newton iterations against the bare work in them, energy of an impact by scheme
 	$(PYTHON) -m benchmarks --page

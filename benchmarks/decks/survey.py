@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from riser_soil.results.read import Run
-from riser_soil.stress.limited_process import FORKING, Ending, Limits, ended, import_all
+from tests.robustness.limited_process import FORKING, Ending, Limits, ended, import_all
 
 LIMITS = Limits(cpu=180, wall=600.0)
 ENDINGS = (".dat", ".txt", ".yml", ".yaml", ".map", ".inp", ".ipt")

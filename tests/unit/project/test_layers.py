@@ -31,7 +31,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("stages", "plots"),
     ("whole_run", "material", "calibration", "modes", "hang_off", "moordyn", "orcaflex", "drafts", "fatigue"),
     ("accuracy",),
-    ("stress", "cases", "report"),
+    ("cases", "report"),
     ("api",),
     ("commands",),
     ("__main__",),

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer, between, near
-from tests.stress.case import Trial, one, stress_case
+from tests.robustness.stress.bounds import Answer, between, near
+from tests.robustness.stress.case import Trial, one, stress_case
 from tests.support.scenes import AVERAGE, Mapping, dynamic, riser_scene
 
 W, G = 700.0, 9.81

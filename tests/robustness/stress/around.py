@@ -1,7 +1,13 @@
-"""Stress around a scene: its extremes, each run in a process with limits and judged by bounds and by its neighbours."""
+"""Stress around a scene: its extremes, each run in a process with limits and judged by bounds and by its neighbours.
+
+    python -m tests.robustness.stress.around SCENE [-o FOLDER] [--limit SECONDS] [--jobs N]
+
+Ends with status 1 where a run ends quietly wrong, broken or out of time.
+"""
 
 from __future__ import annotations
 
+import argparse
 import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -16,11 +22,11 @@ from riser_soil.results.read import Run
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from riser_soil.stress.bounds import Answer, between, bounds
-from riser_soil.stress.extremes import ExtremeScene, extremes, is_at_rest
-from riser_soil.stress.limited_process import Ending, Job, Limits, ended, import_all
-from riser_soil.stress.outcome import PASSED, REPORTED, StressOutcome, as_json, markdown, outcome, reported
 from riser_soil.whole_run import run
+from tests.robustness.limited_process import Ending, Job, Limits, ended, import_all
+from tests.robustness.stress.bounds import Answer, between, bounds
+from tests.robustness.stress.extremes import ExtremeScene, extremes, is_at_rest
+from tests.robustness.stress.outcome import PASSED, REPORTED, StressOutcome, as_json, markdown, outcome, reported
 
 AT_REST = 1e-3  # of a key_result: what time steps without motion may change
 
@@ -134,3 +140,26 @@ def running(names: Sequence[str]) -> Job:
         return 0
 
     return job
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", type=Path)
+    parser.add_argument("-o", "--output", type=Path, help="folder; else the scene's name and -stress")
+    parser.add_argument("--limit", type=int, default=120, help="processor time that each run may take [s]")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at a time, each a process")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a change of the scene")
+    asked = parser.parse_args(arguments)
+    try:
+        scene = read_scene(asked.scene, asked.set)
+    except RiserSoilError as err:
+        parser.error(str(err))
+    folder = asked.output or Path(f"{asked.scene.stem}-stress")
+    rows = stress(scene, folder, Limits(cpu=asked.limit), asked.jobs, f"around {asked.scene}", print)
+    bad = [row.name for row in rows if not row.as_hoped]
+    print(f"{len(rows)} runs; quietly wrong, broken or out of time: {'; '.join(bad) or 'none'}; tables are in {folder}")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

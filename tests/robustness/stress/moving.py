@@ -12,8 +12,8 @@ from ruamel.yaml import YAML
 from scipy.special import j1, jn_zeros
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer, between, near
-from tests.stress.case import Runs, Trial, one, stress_case
+from tests.robustness.stress.bounds import Answer, between, near
+from tests.robustness.stress.case import Runs, Trial, one, stress_case
 from tests.support.scenes import (
     AVERAGE,
     LARGEST_AROUND,
@@ -27,7 +27,7 @@ from tests.support.scenes import (
     way_around,
 )
 
-FIRST_SCENE = Path(__file__).parents[2] / "demos" / "first_scene.yaml"
+FIRST_SCENE = Path(__file__).parents[3] / "demos" / "first_scene.yaml"
 TOO_LONG = r"time steps? of .*(tenth|long)|longer than a tenth|time_step"
 
 

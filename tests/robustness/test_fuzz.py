@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.fuzz.mutations import cases
+from tests.robustness.fuzz.mutations import cases
 from tests.support.on_ranks import ROOT, environment
 
 COUNT, SEED = 600, 1
@@ -22,7 +22,7 @@ def test_a_seed_gives_the_same_scenes() -> None:
 
 @pytest.mark.verify
 def test_mutated_scenes_end_well(tmp_path: Path) -> None:
-
-    call = [sys.executable, "-m", "tests.fuzz.run", "--count", str(COUNT), "--seed", str(SEED), "--keep", str(tmp_path)]
+    options = ["--count", str(COUNT), "--seed", str(SEED), "--keep", str(tmp_path)]
+    call = [sys.executable, "-m", "tests.robustness.fuzz.run", *options]
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

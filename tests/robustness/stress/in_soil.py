@@ -11,8 +11,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer, between, near
-from tests.stress.case import Runs, Trial, one, stress_case
+from tests.robustness.stress.bounds import Answer, between, near
+from tests.robustness.stress.case import Runs, Trial, one, stress_case
 from tests.support.pushed_pipe import INDENTATION, D, E, slice_of_soil
 from tests.support.scenes import Mapping, lying_pipe
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer, near
-from tests.stress.case import Trial, one, stress_case
-from tests.stress.closed_forms import hanging
+from tests.robustness.stress.bounds import Answer, near
+from tests.robustness.stress.case import Trial, one, stress_case
+from tests.robustness.stress.closed_forms import hanging
 from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 W = 500.0  # N/m

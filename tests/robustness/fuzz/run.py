@@ -1,6 +1,6 @@
 """Runs mutated scenes, each in a process of its own with limits, and counts how they end.
 
-    python -m tests.fuzz.run --count 600 --seed 1 --keep FOLDER
+    python -m tests.robustness.fuzz.run --count 600 --seed 1 --keep FOLDER
 
 A scene ends well with the status of a finished run, of bad input, of a failed solve or of results that can't be
 written, and without a traceback. A scene that needs more time than a process may take hangs, unless the program itself
@@ -19,8 +19,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from riser_soil.stress.limited_process import Ending, Limits, ended, import_all
-from tests.fuzz.mutations import SCENE, Case, cases
+from tests.robustness.fuzz.mutations import SCENE, Case, cases
+from tests.robustness.limited_process import Ending, Limits, ended, import_all
 
 LIMITS = Limits(cpu=180, reported_long=5)  # a search for an equilibrium that there is none of may take two minutes
 

@@ -1,6 +1,6 @@
 """Runs the stress cases, each in a process with limits, and publishes their table.
 
-    python -m tests.stress.run --page
+    python -m tests.robustness.stress.run --page
 
 Ends with status 1 where a case does not end as it is to: quietly wrong, broken, out of time, or told where an answer is
 known.
@@ -18,16 +18,16 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
 
-from riser_soil.stress.around import running
-from riser_soil.stress.bounds import Answer, bounds
-from riser_soil.stress.limited_process import FORKING, Limits, ended, import_all
-from riser_soil.stress.outcome import StressOutcome, outcome, reported, runs_in
-from tests.stress.case import CASES, StressCase, Trial
-from tests.stress.page import publish
+from tests.robustness.limited_process import FORKING, Limits, ended, import_all
+from tests.robustness.stress.around import running
+from tests.robustness.stress.bounds import Answer, bounds
+from tests.robustness.stress.case import CASES, StressCase, Trial
+from tests.robustness.stress.outcome import StressOutcome, outcome, reported, runs_in
+from tests.robustness.stress.page import publish
 
 SUBJECTS = ("hanging", "lying", "beams", "moving", "falling", "at_sea", "in_soil")
 for subject in SUBJECTS:
-    import_module(f"tests.stress.{subject}")
+    import_module(f"tests.robustness.stress.{subject}")
 
 
 def outcomes(cases: Iterable[StressCase], folder: Path, workers: int) -> Iterator[StressOutcome]:

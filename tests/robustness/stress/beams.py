@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer, between, near
-from tests.stress.case import Runs, Trial, one, stress_case
+from tests.robustness.stress.bounds import Answer, between, near
+from tests.robustness.stress.case import Runs, Trial, one, stress_case
 from tests.support.rod_reference import Rod, first_buckling
 from tests.support.scenes import EULER, Mapping, blade, column, frame, prescribed, riser_scene, static
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer
+from tests.robustness.stress.bounds import Answer
 
 Runs = Mapping[str, Run]
 

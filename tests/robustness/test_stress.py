@@ -16,12 +16,12 @@ import pytest
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
-from riser_soil.stress.bounds import Answer, between, bounds, near
-from riser_soil.stress.extremes import BASE, extremes
-from riser_soil.stress.limited_process import Ending, Limits, ended
-from riser_soil.stress.outcome import BROKEN, LONG, PASSED, REPORTED, WRONG, StressOutcome, outcome
 from riser_soil.whole_run import run
-from tests.stress.page import page
+from tests.robustness.limited_process import Ending, Limits, ended
+from tests.robustness.stress.bounds import Answer, between, bounds, near
+from tests.robustness.stress.extremes import BASE, extremes
+from tests.robustness.stress.outcome import BROKEN, LONG, PASSED, REPORTED, WRONG, StressOutcome, outcome
+from tests.robustness.stress.page import page
 from tests.support.line_scenes import CHAIN, mooring, shaken
 from tests.support.on_ranks import ROOT, environment
 from tests.support.said import line_with
@@ -128,10 +128,33 @@ _MOVED = ("harmonic motion times 10", "no motion")
 
 @pytest.mark.verify
 def test_the_cheapest_cases_end_as_they_are_to() -> None:
-    call = [sys.executable, "-m", "tests.stress.run", "--quick", "--workers", "1"]
+    call = [sys.executable, "-m", "tests.robustness.stress.run", "--quick", "--workers", "1"]
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("passed: ") > 5
+
+
+@pytest.mark.verify
+def test_all_cases_end_as_they_are_to(tmp_path: Path) -> None:
+    """Right, or reported plainly where that is an answer, too."""
+    call = [sys.executable, "-m", "tests.robustness.stress.run", "--keep", str(tmp_path)]
+    done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_extremes_around_a_scene_are_run_and_judged(tmp_path: Path) -> None:
+    """A line that hangs, of few elements: its table has a row a run, and none is quietly wrong."""
+    pipe = {"EA": 1e8, "EI": 10.0, "mass": 50.0, "submerged_weight": 500.0, "outer_diameter": 0.2}
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(80.0, 0.0, 30.0)}
+    scene = riser_scene(static(), pipe=pipe, length=100.0, elements=10, gravity=9.81, **ends)
+    (tmp_path / "line.yaml").write_text(json.dumps(scene), encoding="utf-8")
+    paths = (str(tmp_path / "line.yaml"), "-o", str(tmp_path / "out"))
+    call = [sys.executable, "-m", "tests.robustness.stress.around", *paths]
+    done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = json.loads((tmp_path / "out/stress.json").read_text(encoding="utf-8"))["cases"]
+    assert rows[0]["name"] == BASE
+    assert {row["verdict"] for row in rows} <= {PASSED, REPORTED}
 
 
 def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:

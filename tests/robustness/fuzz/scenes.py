@@ -17,7 +17,7 @@ from riser_soil.scene.document import parse
 from tests.support.bad_scenes import GOOD
 from tests.support.scenes import IN_WAVES, LAY, dynamic, heave, in_waves, prescribed, riser_scene, static, touchdown
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 WRITTEN = (
     "demos/first_scene.yaml",
     "demos/catenary/scene.yaml",

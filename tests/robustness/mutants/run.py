@@ -1,6 +1,6 @@
 """Breaks the package at the places of places.txt, one at a time, and counts those that the quick tests notice.
 
-    python -m tests.mutants.run [--only TEXT]
+    python -m tests.robustness.mutants.run [--only TEXT]
 
 Each mutant is made in a copy, in `build/mutants`, and the test files named beside its place run there until the first
 failure; first without any mutant, when all must pass. A mutant that makes tests hang is noticed, too. Most of them take
@@ -20,7 +20,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-REPOSITORY = Path(__file__).parents[2]
+REPOSITORY = Path(__file__).parents[3]
 TESTS = REPOSITORY / "tests"
 AT = REPOSITORY / "build" / "mutants"
 COPY = AT / "copy"

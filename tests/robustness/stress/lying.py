@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer, between, near
-from tests.stress.case import Trial, one, stress_case
-from tests.stress.closed_forms import landed
+from tests.robustness.stress.bounds import Answer, between, near
+from tests.robustness.stress.case import Trial, one, stress_case
+from tests.robustness.stress.closed_forms import landed
 from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 W, EA, SPAN, HEIGHT, LENGTH = 500.0, 1e8, 110.0, 50.0, 130.0

@@ -9,7 +9,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
-from tests.fuzz.scenes import Mapping, bases
+from tests.robustness.fuzz.scenes import Mapping, bases
 
 SCENE = "scene.yaml"
 EXTREMES: tuple[Any, ...] = (

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.stress.bounds import Answer, near
-from tests.stress.case import Trial, one, stress_case
+from tests.robustness.stress.bounds import Answer, near
+from tests.robustness.stress.case import Trial, one, stress_case
 from tests.support.scenes import dynamic, prescribed, riser_scene, static
 
 RHO, G = 1025.0, 9.81

@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from demos.page import table
-from riser_soil.stress.outcome import PASSED, StressOutcome, as_json, circumstances
+from tests.robustness.stress.outcome import PASSED, StressOutcome, as_json, circumstances
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[3] / "docs"
 COMMAND = "make stress"
 INTRODUCTION = """\
 # Stiff and extreme
 
 Scenes that are stiff or extreme, each with an answer that is exact or bounded, and what became of it. `make stress`
-runs them, each in a process of its own with limits on processor time and memory, and writes this page. `riser-soil
-stress SCENE` does the same [around a scene of yours](command_line.md#stress).
+runs them, each in a process of its own with limits on processor time and memory, and writes this page.
+`make around` does the same [around a scene](#around-a-scene).
 
 | verdict | meaning |
 | --- | --- |
@@ -31,7 +31,22 @@ contact, loads and weight are in balance, and the energy balance is within 1 % o
 Shown is of each case the answer that is nearest to its limit, and its error relative to the exact value (of bounds: how
 far beyond them). [stress.json](stress.json) has of each case what is extreme and how the answer follows, values, the
 largest energy residual, Newton iterations, steps that were cut and processor time; the derivations stand with the cases
-in `tests/stress/`.
+in `tests/robustness/stress/`.
+
+## Around a scene
+
+`make around SCENE=file.yaml` runs a scene as it is and with one property made extreme, as far as it has them: elements,
+steps, cells of the soil, penalty, EI, EA, nu and su of the soil, harmonic motions, no gravity, three dimensions instead
+of two. Each run is a process of its own, which may take 120 s of processor time and 6 GiB (`--limit`, `--jobs` of
+`python -m tests.robustness.stress.around`).
+
+A run must end in the program's own error, or in results whose bounds hold: those of every run above. Its forces must be
+within 10 % of the scene's as it is (elements, steps, harder penalties), 2 % of the next extreme on the way to a limit
+such as EI → 0, 10⁻⁴ in three dimensions, 10⁻³ at rest where nothing moves. What does not hold and is not warned of is
+QUIETLY WRONG. A coarse setting may be. The folder gets the scenes, their results and output, `stress.md` and
+`stress.json`. Exit status 1: at least one run gave a wrong result without a warning, crashed, or timed out.
+
+## Cases
 """
 
 

@@ -16,8 +16,8 @@ from typing import Any
 import riser_soil
 from riser_soil.results.read import Run
 from riser_soil.results.summary import plain_json
-from riser_soil.stress.bounds import ENERGY, Answer, worst_residual
-from riser_soil.stress.limited_process import Ending
+from tests.robustness.limited_process import Ending
+from tests.robustness.stress.bounds import ENERGY, Answer, worst_residual
 
 PASSED, REPORTED, WRONG, BROKEN, LONG = "passed", "reported", "QUIETLY WRONG", "broken", "out of time"
 HEAD = ("case", "worst of its answers", "error", "energy residual", "Newton iterations", "cuts", "CPU s", "verdict")

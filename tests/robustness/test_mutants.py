@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.mutants.run import REPOSITORY, places
+from tests.robustness.mutants.run import REPOSITORY, places
 
 
 def test_the_package_has_each_place_once() -> None:
