@@ -21,7 +21,21 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import LAID_IN, run_stage
 from riser_soil.whole_run import run
 from tests.support.driven_stage import Watcher, built, take
-from tests.support.scenes import CLAY, ELASTIC, LAY, MIDDLE, ON_BLOCK, Mapping, falling_on_soil, heave, touchdown
+from tests.support.scenes import (
+    CLAY,
+    ELASTIC,
+    LAY,
+    MIDDLE,
+    ON_BLOCK,
+    Mapping,
+    block,
+    cells,
+    falling_on_soil,
+    heave,
+    level_pipe,
+    pushed_to,
+    touchdown,
+)
 
 
 def changed(kind: str, law: Mapping) -> Mapping:
@@ -130,26 +144,18 @@ PRESSED = 0.24  # m, the diameter of a pipe that is pressed into clay
 def pressed(across: float) -> Mapping:
     """By its ends by a tenth of its diameter, into cells of a size."""
     pipe = {"outer_diameter": PRESSED, "mass": 98.3, "EA": 2.0e7, "EI": 1.52e6, "GJ": 1.0e4}
-    ends = {
-        end: {"position": [x, 0.0, 0.5 * PRESSED], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", PRESSED))
-    }
-    segment = {"line_type": "pipe", "length": PRESSED, "elements": 12}
-    moves = {"start": [0.0, 0.0, 0.4 * PRESSED], "end": [PRESSED, 0.0, 0.4 * PRESSED]}
-    sizes = {"along": PRESSED, "across": across, "strip": 0.5 * PRESSED}
-    soil = {
-        "block": {"x": [0.4 * PRESSED, 0.6 * PRESSED], "y": [-1.1, 1.1], "depth": 1.1},
-        "mesh": {"kind": "hex", "size_at_riser": sizes, "size_far": 0.17},
-        "law": {"kind": "von-mises", "su": 1527.0, "su_gradient": 450.5, "E_over_su": 149.0},
-    }
-    return {
-        "water": {"density": 1025.0},
-        "dimension": 2,
-        "line_types": {"pipe": pipe},
-        "riser": {"segments": [segment], "initial": "straight"} | ends,
-        "soil": soil,
-        "contact": {"method": "surface"},
-        "stages": [{"name": "press", "kind": "static", "move": moves}],
-    }
+    law = {"kind": "von-mises", "su": 1527.0, "su_gradient": 450.5, "E_over_su": 149.0}
+    mesh = cells({"along": PRESSED, "across": across, "strip": 0.5 * PRESSED}, 0.17)
+    return level_pipe(
+        pushed_to(PRESSED, 0.4 * PRESSED),
+        pipe=pipe,
+        length=PRESSED,
+        elements=12,
+        height=0.5 * PRESSED,
+        water={"density": 1025.0},
+        soil=block(law, (0.4 * PRESSED, 0.6 * PRESSED), 1.1, 1.1, mesh),
+        contact={"method": "surface"},
+    )
 
 
 @pytest.mark.verify
