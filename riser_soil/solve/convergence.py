@@ -72,7 +72,7 @@ class Convergence:
                 small = below_floor or norm <= limits.tolerance * in_play
             if small or (stalled(self.norms) and at_round_off()):
                 return CONVERGED
-            if taken >= max(DIVERGES_AFTER, limits.least) and norm > DIVERGES * self.norms[self.first]:
+            if taken >= DIVERGES_AFTER and norm > DIVERGES * self.norms[self.first]:
                 return DIVERGED
         return ITERATING if taken < self.most else TOO_MANY
 

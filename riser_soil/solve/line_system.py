@@ -6,7 +6,6 @@ Kernels are bound to their arguments once, so that an iteration is three calls.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from operator import attrgetter
 from typing import Any
@@ -126,7 +125,7 @@ class LineSystem:
 
     def __init__(self, lines: Sequence[PackedLine], couplings: Sequence[Coupling], weights: Packed) -> None:
         self.lines, self.couplings, self._weights = lines, couplings, weights
-        self._sums, self._above = np.zeros(5), np.zeros(1, dtype=np.bool_)
+        self._norms, self._above = np.zeros(3), np.zeros(1, dtype=np.bool_)
         self._failure = np.zeros(1, dtype=np.int64)
         self._bind()
         self.energy = np.zeros(3)
@@ -145,13 +144,14 @@ class LineSystem:
     def _bind(self) -> None:
         """Bind the kernels of the loop to where they read and write."""
         lines, coupled, smooth = self.lines, self._kernels, self.all_couplings(attrgetter("smooth"))
-        sums, above, failure = map(Packed, (self._sums, self._above, self._failure))
+        sums, norms, above, failure = map(Packed, (np.zeros(5), self._norms, self._above, self._failure))
         evaluate = [
             *(kernel for line in lines for kernel in line.evaluate()),
             *coupled(lambda it: it.forces()),
             Bound(kernels.set_zero, sums),
             *(kernel for line in lines for kernel in line.balance(sums)),
             *coupled(lambda it: it.norms(sums)),
+            Bound(kernels.write_norms, sums, norms),
             Bound(kernels.set_zero, failure),
             *coupled(lambda it: it.outgrown(failure)),
         ]
@@ -205,11 +205,11 @@ class LineSystem:
         is room for.
         """
         self.evaluate()
-        own, apart, reactions, moving, contact = as_list(self._sums)
-        self.convergence.add(math.sqrt(own), math.sqrt(apart))
+        norm, apart, in_play = as_list(self._norms)
+        self.convergence.add(norm, apart)
         if self._failure[0] != kernels.NONE:
             return OUTGROWN
-        return self.convergence.ending(math.sqrt(max(reactions, moving, contact)), self._at_round_off)
+        return self.convergence.ending(in_play, self._at_round_off)
 
     def _at_round_off(self) -> bool:
         """Whether nothing in the residual can be told from its round-off; the tangent's workspace is lost."""

@@ -6,6 +6,7 @@ so that each is compiled once for all risers.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -120,6 +121,15 @@ def add_norms(forces: LineForces, dofs: Dofs, sums: Array) -> None:
     sums[2] += reactions
     sums[3] += moving
     sums[4] += contact
+
+
+@njit
+def write_norms(sums: Array, norms: Array) -> None:
+    """Write the norms (3,) [N] of the residual, of its share where nothing touches, and of the forces in play, by the
+    squares that `add_norms` has added up.
+    """
+    norms[0], norms[1] = math.sqrt(sums[0]), math.sqrt(sums[1])
+    norms[2] = math.sqrt(max(sums[2], sums[3], sums[4]))
 
 
 @njit
