@@ -77,7 +77,7 @@ def let_go(
         "contact": {},
         "stages": [dynamic(duration, time_step, "fall")],
     }
-    return lines_scene(lines={"rope": line("rope", 2.0, 2, *ends)}, **sections | more)
+    return lines_scene(lines={"rope": line("rope", 2.0, 2, *ends)}, **sections) | more
 
 
 def ran(scene: dict[str, Any], folder: Path) -> Run:

@@ -51,7 +51,7 @@ def mooring(
         c, s = math.cos(2.0 * math.pi * n / 3.0), math.sin(2.0 * math.pi * n / 3.0)
         lines[name] = line("chain", LENGTH, elements, {"position": [RADIUS * c, RADIUS * s, -DEPTH]}, "free")
         joints[f"{name}_top"] = pin(name, "end", "buoy", offset=[arm * c, arm * s, -arm])
-    return lines_scene(*stages, line_types=types, lines=lines, bodies=bodies, joints=joints, **{"water": water} | more)
+    return lines_scene(*stages, line_types=types, lines=lines, bodies=bodies, joints=joints, water=water) | more
 
 
 def with_line_named(name: str) -> dict[str, Any]:
@@ -117,8 +117,10 @@ def lazy_s(*stages: Mapping[str, Any], **more: Any) -> dict[str, Any]:
         start, end = (held, "free") if ends_up else ("free", held)
         lines[name] = line("pipe" if kind is PIPE else "rope", length, elements, start, end)
         joints[f"{name}_hung"] = pin(name, "end" if ends_up else "start", "arch", offset=list(arm))
-    sections = {"water": {"density": RHO}, "line_types": {"pipe": PIPE, "rope": ROPE}, "bodies": {"arch": ARCH}}
-    return lines_scene(*stages, lines=lines, joints=joints, **sections | more)
+    types, water = {"pipe": PIPE, "rope": ROPE}, {"density": RHO}
+    return (
+        lines_scene(*stages, line_types=types, lines=lines, bodies={"arch": ARCH}, joints=joints, water=water) | more
+    )
 
 
 def lazy_s_by_catenaries() -> tuple[Array, dict[str, tuple[float, float]]]:

@@ -69,9 +69,9 @@ def line(line_type: str, length: float, elements: int, start: Any, end: Any, **m
 
 
 def block(
-    law: Mapping, x: tuple[float, float], half_width: float, depth: float, mesh: Mapping | str, **more: Any
+    law: Mapping, x: tuple[float, float], half_width: float, depth: float, mesh: Mapping | str, /, **more: Any
 ) -> Mapping:
-    """Soil under a line along x, as far to either side; more: its other keys."""
+    """Soil under a line along x, as far to either side; more: its other keys, or others in the place of these."""
     around = {"x": list(x), "y": [-half_width, half_width], "depth": depth}
     return {"block": around, "mesh": mesh, "law": dict(law), **more}
 
@@ -228,17 +228,15 @@ MIDWATER = np.array([[10.0, 0.0, 50.0]])
 def in_water(water: Mapping | None, *stages: Mapping, **more: Any) -> Scene:
     """A hanging riser in water that is given: four stages, of which two are dynamic. more: sections of the scene."""
     sections = {"gravity": 9.81, "water": water, **more}
-    return scene_from_mapping(
-        riser_scene(
-            *(stages or CALM_AND_STORM),
-            pipe=PIPE,
-            length=148.0,
-            elements=10,
-            start=prescribed(0.0, 0.0, 1.0),
-            end=prescribed(80.0, 0.0, 100.0),
-            **{key: value for key, value in sections.items() if value is not None},
-        )
+    hanging = riser_scene(
+        *(stages or CALM_AND_STORM),
+        pipe=PIPE,
+        length=148.0,
+        elements=10,
+        start=prescribed(0.0, 0.0, 1.0),
+        end=prescribed(80.0, 0.0, 100.0),
     )
+    return scene_from_mapping(hanging | {key: value for key, value in sections.items() if value is not None})
 
 
 VESSEL_END = [40.0, 0.0, 3.0]
