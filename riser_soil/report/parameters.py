@@ -42,6 +42,7 @@ GROUND_WORDS = {
     "submerged_unit_weight": ("submerged unit weight", "kN/m³", 1e-3),
 }
 _PATHS = {"vessel.offset": "offset of the vessel", "seed": "seed", "Hs": "Hs", "Tp": "Tp", "direction_deg": "direction"}
+_NO_PARAMETERS = ("error_bars", "output", "title")  # keys of the scene that don't change what it is of
 _MIDDLE = ("mean", "best", "best estimate", "best-estimate", "base")
 
 
@@ -66,7 +67,12 @@ class Parameter:
 
 def parameters(cases: Sequence[LoadCase]) -> list[Parameter]:
     """All that varies among cases but seeds; paths that always change together are one parameter."""
-    paths = dict.fromkeys(path for case in cases for path in case.given if not is_seed(path))
+    paths = dict.fromkeys(
+        path
+        for case in cases
+        for path in case.given
+        if not is_seed(path) and path.partition(".")[0] not in _NO_PARAMETERS
+    )
     together: dict[tuple[int, ...], list[str]] = {}
     for path in paths:
         values = [_text(case, (path,)) for case in cases]

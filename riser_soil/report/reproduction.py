@@ -11,13 +11,12 @@ from riser_soil.report import health
 from riser_soil.report.document import Block, Code, Paragraph, ReportSection, TableBlock
 from riser_soil.report.parameters import reference_of
 from riser_soil.report.sources import LoadCase, Sources
-from riser_soil.report.tables import ReportTable, given_value
+from riser_soil.report.tables import BREAK, ReportTable, given_value
 from riser_soil.scene.dump import yaml_text
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
 _MOST_ROWS, _COLUMNS = 120, 6
-_BREAK = "\u200b"  # without width: where a long name may be broken
 
 
 def chapter(sources: Sources) -> ReportSection:
@@ -60,7 +59,7 @@ def _differences(cases: Sequence[LoadCase], first: LoadCase) -> Iterator[TableBl
     more = "" if len(cases) <= _MOST_ROWS else "More are in the tables of the cases' folder."
     for shown in (paths[n : n + _COLUMNS] for n in range(0, len(paths), _COLUMNS)):
         rows = [[case.name, *(given_value(case.value(path)) for path in shown)] for case in cases[:_MOST_ROWS]]
-        head = ("load case", *(path.replace(".", f".{_BREAK}") for path in shown))
+        head = ("load case", *(path.replace(".", f".{BREAK}") for path in shown))
         yield TableBlock("Values in which the load cases differ", ReportTable(head, rows, more), key="differences")
 
 

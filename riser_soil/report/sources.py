@@ -19,6 +19,7 @@ SEED, TABLE = "seed", "table"
 _CASES, _CHARACTERISTIC, _FATIGUE, _MODES = "cases.csv", "characteristic.csv", "fatigue.json", "modes.nc"
 _DAMAGE = "fatigue.csv"
 _FIRST, _STATUS, _REASON = "case", "status", "reason"
+_TOP_LEVEL = {*Scene.model_fields, *(field.alias for field in Scene.model_fields.values())} - {"soil"}  # an axis, too
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,8 +180,8 @@ def _of_cases(folder: Path, known: set[str]) -> tuple[list[LoadCase], dict[str, 
     for row in rows:
         values = list(row.items())
         before = values[1 : [name for name, _ in values].index(_STATUS)]
-        axes = {name: value for name, value in before if "." not in name and value}
-        given = {name: value for name, value in before if "." in name and value}
+        axes = {name: value for name, value in before if not _is_path(name) and value}
+        given = {name: value for name, value in before if _is_path(name) and value}
         name = prefix + row[_FIRST]
         if row[_STATUS] != "0":
             failed[name] = row[_REASON]
@@ -191,6 +192,11 @@ def _of_cases(folder: Path, known: set[str]) -> tuple[list[LoadCase], dict[str, 
             for line, own in Run(place).of_lines.items()
         ]
     return found, failed
+
+
+def _is_path(name: str) -> bool:
+    """Whether a column of a table of cases is a value of the scene by its path, and not an axis of the case file."""
+    return "." in name or name in _TOP_LEVEL
 
 
 def _with_differences(cases: Sequence[LoadCase]) -> Iterator[LoadCase]:

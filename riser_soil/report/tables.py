@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 NOTHING = "–"
+BREAK = "\u200b"  # without width: where a long name may be broken
 _NUMERIC = re.compile(r"([+−-]?[0-9][0-9.,e+−-]*( ?[%m°]| ± .*| \(.*\)| to .*| [0-9−-].*)?$|[–>]|$)")
 _PATH = re.compile(r"(?<![\w.])(?:/[\w.+=-]+)+/(?=[\w.+=-])")
 

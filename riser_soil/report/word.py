@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +26,11 @@ from riser_soil.report.document import (
     numbered,
 )
 from riser_soil.report.html import Began, running_title
+from riser_soil.report.tables import BREAK
 
 _MARGIN, _TEXT = Mm(20), Mm(170)
 _WIDE = 7  # columns, from which on a table has smaller letters
+_LETTER = 0.68  # of the size of letters: width of most
 _ACCENT, _WARN = RGBColor(0x1F, 0x4F, 0x79), RGBColor(0x8A, 0x4B, 0x00)
 
 
@@ -137,10 +140,14 @@ def _add_table(made: Any, item: TableBlock) -> None:
     _add_caption(made, "Table", item.number, item.caption).paragraph_format.keep_with_next = True
     head, rows = item.content.head, item.content.rows
     table = made.add_table(rows=1 + len(rows), cols=len(head), style="Light List Accent 1")
-    size = Pt(7 if len(head) > _WIDE else 8)
+    points = 7 if len(head) > _WIDE else 8
+    size, widths = Pt(points), column_widths([head, *rows], points)
+    table.autofit = False
+    for column, width in zip(table.columns, widths, strict=True):
+        column.width = width
     for row, cells in enumerate([head, *rows]):
-        for cell, text, place in zip(table.rows[row].cells, cells, range(len(head)), strict=True):
-            paragraph = cell.paragraphs[0]
+        for cell, text, place, width in zip(table.rows[row].cells, cells, range(len(head)), widths, strict=True):
+            cell.width, paragraph = width, cell.paragraphs[0]
             run = paragraph.add_run(text)
             run.font.size, run.bold = size, row == 0
             if place >= item.words and not item.content.has_words(place):
@@ -150,6 +157,26 @@ def _add_table(made: Any, item: TableBlock) -> None:
     table.rows[0]._tr.get_or_add_trPr().append(repeat)
     note = made.add_paragraph().add_run(item.content.note)
     note.font.size = Pt(7.5)
+
+
+def column_widths(rows: Sequence[Sequence[str]], points: float) -> list[int]:
+    """Widths of a table's columns, within that of the text: as wide as their longest cell, else less by what can be
+    broken into lines, and where even words are too long in proportion.
+    """
+    letter, edges = Pt(_LETTER * points), Mm(4.5)
+    columns = [[text.split(BREAK) for text in column] for column in zip(*rows, strict=True)]
+    whole = [edges + letter * max(len("".join(parts)) for parts in column) for column in columns]
+    words = [
+        edges + letter * max((len(word) for parts in column for part in parts for word in part.split()), default=0)
+        for column in columns
+    ]
+    if sum(whole) <= _TEXT:
+        return [int(width) for width in whole]
+    spare = _TEXT - sum(words)
+    if spare < 0:
+        return [int(width * _TEXT / sum(words)) for width in words]
+    share = spare / (sum(whole) - sum(words))
+    return [int(least + share * (most - least)) for least, most in zip(words, whole, strict=True)]
 
 
 def _add_field(paragraph: Any, code: str, shown: str) -> None:

@@ -162,6 +162,19 @@ def test_the_appendix_has_a_row_a_case_of_what_differs(run: Path, tmp_path: Path
     assert [list(row) for row in content.rows] == [["near", "0, 0"], ["far", "1, 0"]]
 
 
+def test_error_bars_asked_for_in_some_cases_are_no_parameter(run: Path, tmp_path: Path) -> None:
+    """A key of the scene without a dot is a value, not an axis of the case file."""
+    axes = ("soil", "vessel.offset", "error_bars")
+    rows: dict[str, tuple[dict[str, str], Changed]] = {
+        "a": ({"soil": "soft", "vessel.offset": "[0, 0]"}, moved(0.0, lambda _: None)),
+        "b": ({"soil": "stiff", "vessel.offset": "[0, 0]", "error_bars": "True"}, moved(0.0, lambda _: None)),
+    }
+    write_cases(tmp_path, run, axes, rows)
+    content = table(items_of(opened_at(tmp_path)), "cases")
+    assert list(content.head) == ["load case", "soil"]
+    assert [list(row) for row in content.rows] == [["a", "soft"], ["b", "stiff"]]
+
+
 def test_static_configurations_that_are_one_have_one_row(cases: Path) -> None:
     rows = table(items_of(opened_at(cases)), "static").rows
     assert len(rows) == 1, "offsets and seeds of the recorded run hang alike"

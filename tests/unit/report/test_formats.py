@@ -8,6 +8,7 @@ from pathlib import Path
 
 import docx
 import pytest
+from docx.shared import Mm
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -29,7 +30,7 @@ from riser_soil.report.document import (
 )
 from riser_soil.report.pdf import write_pdf
 from riser_soil.report.tables import ReportTable
-from riser_soil.report.word import write_word
+from riser_soil.report.word import column_widths, write_word
 from tests.support.recorded_run import record
 from tests.support.said import line_with
 
@@ -136,3 +137,16 @@ def test_a_format_whose_package_is_not_there_is_refused_in_a_line(
         writing.writer_of(tmp_path / "report.pdf")
     line_with(str(caught.value), "report.pdf:", "no_such_package", "riser_soil[report]", ".html")
     assert "\n" not in str(caught.value)
+
+
+def test_columns_are_as_wide_as_their_words_and_share_what_is_left() -> None:
+    """A narrow table keeps its width; a wide one has that of the text, and no word of it is cut."""
+    narrow = column_widths([["case", "value"], ["a", "1.0"]], 8.0)
+    assert narrow[0] < narrow[1]
+    assert sum(narrow) < Mm(60)
+    words = "a long sentence that is to be broken into several lines"
+    wide = column_widths([["case", "remark"], ["near-stiff", f"{words}, {words}, {words}"]], 8.0)
+    assert sum(wide) == pytest.approx(Mm(170), rel=1e-4)
+    assert wide[0] >= column_widths([["near-stiff"]], 8.0)[0] - 1
+    crowded = column_widths([["wordswithoutspaces" * 3] * 5], 8.0)
+    assert sum(crowded) == pytest.approx(Mm(170), rel=1e-4)
