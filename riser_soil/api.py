@@ -62,7 +62,8 @@ class WrittenScene:
 
     @property
     def name(self) -> str:
-        """Of its results where no other folder is named: `output.directory`, else the file's name without its ending.
+        """Name of the folder for results where no other is given: `output.directory`, else the file's name without its
+        ending.
         """
         return self.model.output.directory or Path(self._document.name).stem
 

@@ -145,7 +145,9 @@ class _HangOffSearch:
         return min(self._tried, key=lambda each: float(np.abs(each[1]).max()))
 
     def _slopes(self, values: Array) -> Array:
-        """Of what is missed [1/m] (ends, ends): of one end by the two values tried, of several one by one."""
+        """Derivative of the ends' errors by the values that are solved for [1/m] (ends, ends): of one end from the last
+        two values tried, of several ends by one solve for each.
+        """
         off = self._off(values)
         others = self._tried[:-3:-1] if len(values) == 1 else []
         for other, seen in others:

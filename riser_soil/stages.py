@@ -189,7 +189,7 @@ class StageRun:
     relaxed: int = 0
 
     def state(self) -> Saved:
-        """All that the stage is resumed from, see `saved_state`."""
+        """All that a stage is resumed from, as arrays by name."""
         own: dict[str, Stateful] = {"assembly": self.assembly, "stepper": self.stepper}
         kept = gathered(owners(self.stepper.system.model) | own | self.listeners)
         return kept | {"relaxed": np.array(self.relaxed)}

@@ -54,7 +54,7 @@ class AssessedQuantity:
 
     @property
     def error(self) -> float:
-        """Of the scene as it is, relative."""
+        """Relative error of the scene as it is."""
         return self.error_of(self.scene)
 
     def allowed(self, target: float) -> float:

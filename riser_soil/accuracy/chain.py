@@ -143,7 +143,9 @@ def _cells(scene: Scene, run: RunValues) -> SoilOfRun:
 
 
 def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:
-    """Of a run whose peaks were gathered on the way; of the soil, whose peaks may not be, as told."""
+    """Values of a run whose peaks were gathered on the way. Peaks of the soil may be missing: the recorded values stand
+    for them.
+    """
     known = {key: key_result.value for key, key_result in reported.items()}
     of_nodes, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "smooth"))
     followed = {key: alone(value) for key, value in known.items()} | extremes_of(peaks)
@@ -151,7 +153,7 @@ def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:
 
 
 def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
-    """Of key results by their keys; which: sampled, of_nodes, peaks or smooth."""
+    """Values of key results by their keys; which: sampled, of_nodes, peaks or smooth."""
     return {key: key_result.value for key, key_result in key_results(peaks.reported(which)).items()}
 
 
@@ -236,7 +238,7 @@ class PeakObserver(StatelessObserver):
             self._record(0.0, stepper)  # not followed: no shape that a step has found
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
-        """Of a committed step; collective where there is soil."""
+        """Record a committed step; collective where there is soil."""
         whole = self._assembly.recovered_soil() if self._schedule.due(step.t, last).pictures else None
         soil = None if whole is None else whole.output_fields()
         if self._assembly.comm.rank == 0:

@@ -118,7 +118,7 @@ class SoilOfRun:
 def error_bars(
     run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, soil: SoilOfRun | None = None
 ) -> list[ErrorBar]:
-    """Of all key results. rigid: whether the ground is a rigid floor."""
+    """Error bars of all key results. rigid: whether the ground is a rigid floor."""
     return [_bar(each, run, chain, orders(each.name, rigid), soil) for each in run.reported.values()]
 
 
@@ -215,8 +215,10 @@ def gaps(key_result: KeyResult, run: RunValues) -> dict[str, float]:
 
 
 class Extreme(NamedTuple):
-    """Of a stage, between nodes and steps. windows (W,): of windows of a dynamic stage's time, nan where unknown; none
-    of a static one. least: whether it is the least value, not the largest.
+    """An extreme of a stage, between nodes and steps.
+
+    windows (W,): extremes in windows of a dynamic stage's time, nan where unknown; empty for a static stage. least:
+    whether it is the least value, not the largest.
     """
 
     value: float
@@ -240,7 +242,7 @@ def _followed(each: KeyResult, stage: StagePeaks) -> Extreme:
 
 
 def alone(value: float) -> Extreme:
-    """Of a quantity that was not followed in time."""
+    """Extreme of a quantity that was not followed in time."""
     return Extreme(value, np.empty(0))
 
 

@@ -42,7 +42,9 @@ class CostAndError:
         return product(*levels)
 
     def excess(self, point: Factors) -> float:
-        """Largest of the errors over what is allowed, those of the settings added without their signs."""
+        """Largest over the quantities of the error to be expected over the allowed one; errors of the settings are
+        added without their signs.
+        """
         parts = (
             math.fsum(self._share(each, *at) for at in enumerate(point)) / each.allowed(self.target)
             for each in self.quantities.values()
@@ -64,7 +66,7 @@ class CostAndError:
         return base * math.prod(self._cost(number, factor) for number, factor in enumerate(point))
 
     def _levels(self, number: int) -> list[float]:
-        """Of one setting's refinement series those that were computed."""
+        """The levels of one setting's refinement series that were computed, from coarse to fine."""
         points = zip(self.refinements.factors[number], self.refinements.along(number), strict=True)
         return [factor for factor, point in points if point in self.outcomes and self.outcomes[point].done]
 
@@ -81,7 +83,7 @@ class CostAndError:
         return each.share(number, finest) * (finest / factor) ** (order or 0.0)
 
     def _cost(self, number: int, factor: float) -> float:
-        """Over that of the scene."""
+        """Processor time at a level of one setting over that of the scene."""
         levels = self._levels(number)
         costs = [self.outcomes[self.refinements.turned(number, each)].cpu for each in levels]
         base = self.outcomes[self.refinements.base].cpu
@@ -105,7 +107,7 @@ def next_setting(foretold: CostAndError) -> Factors | None:
 
 
 def cheapest(foretold: CostAndError) -> PointOutcome | None:
-    """Of the settings that have been run, the one that reaches the target at the least cost."""
+    """The setting that reaches the target at the least cost, among those that have been run; None where none does."""
     able = [outcome for outcome in foretold.outcomes.values() if foretold.reached_by(outcome)]
     return min(able, key=lambda outcome: outcome.cpu, default=None)
 

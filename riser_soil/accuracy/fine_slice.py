@@ -189,6 +189,6 @@ def _pressed(scene: Scene, settlement: float = np.inf, load: float = np.inf) -> 
 
 
 def _at(x: Array, y: Array, value: float) -> float:
-    """Of a curve that rises in x; beyond its end along its last part."""
+    """Value at which a curve y(x), x increasing, is read; beyond its ends its first or last part goes on straight."""
     n = int(np.clip(np.searchsorted(x, value), 1, x.size - 1))
     return float(y[n - 1] + (y[n] - y[n - 1]) * (value - x[n - 1]) / (x[n] - x[n - 1]))

@@ -34,7 +34,7 @@ class Refinements:
 
     @cached_property
     def factors(self) -> tuple[tuple[float, ...], ...]:
-        """Of each setting, from coarse to fine; those that rounding makes equal are there once."""
+        """Levels of each setting, from coarse to fine; levels that rounding makes equal are there once."""
         finer = self.levels // 2
         exponents = range(finer + 1 - self.levels, finer + 1)
         powers = ([RATIOS[setting.name] ** n for n in exponents] for setting in self.settings)
@@ -64,7 +64,7 @@ class Refinements:
         return settings_reported(self.scene_at(point), self.settings)
 
     def fineness(self, number: int, factor: float) -> float:
-        """Of a level over the scene's, after counts are rounded."""
+        """Fineness at a level over that of the scene, after counts are rounded."""
         setting = self.settings[number]
         return setting.fineness(varied(self.scene, setting, factor)) / setting.fineness(self.scene)
 

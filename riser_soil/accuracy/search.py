@@ -127,7 +127,7 @@ def _graded(scene: Scene, segments: OfLines, seen: Envelopes, accuracy: float, c
 
 
 def _excess(seen: Envelopes, accuracy: float, comm: Any) -> float:
-    """Of all lines the largest."""
+    """Largest of all lines' errors over the accuracy asked for; the same on all ranks."""
     return _on_first(comm, lambda: max(own.excess(accuracy) for own in seen.values()))
 
 
@@ -148,7 +148,7 @@ def first_setting(scene: Scene) -> Scene:
 
 
 def _first_segments(scene: Scene) -> Iterator[Segment]:
-    """Of a scene of one line."""
+    """Segments of a scene of one line, cut into elements for the first run."""
     yield from (_cut(part, scene.line.length, least) for part, least in _parts(scene))
 
 

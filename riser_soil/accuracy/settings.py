@@ -114,7 +114,7 @@ def _with_stiffness(scene: Scene) -> Scene:
 
 
 def _scales(scene: Scene) -> Scales:
-    """Of all lines."""
+    """Typical sizes of all lines together."""
     from riser_soil.assembly.riser import elements_of
     from riser_soil.assembly.scales import of_several, scales_of
 
@@ -191,11 +191,11 @@ def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
 
 
 def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
-    """Of a rigid seabed so stiff that the automatic corner would be wider than what the riser sinks in by its weight:
-    just that, also where it was that before.
+    """The penalty's corner for a stiffer rigid seabed, as changed keys of `contact`.
 
-    Where an end is held on the seabed a wider one presses the riser by a force that grows with the penalty, to no
-    limit.
+    Where the automatic corner would be wider than what the riser sinks in by its weight, it is just that, also where it
+    was that before. Where an end is held on the seabed a wider one presses the riser by a force that grows with the
+    penalty, to no limit.
     """
     from riser_soil.assembly.ground import NARROWEST_CORNER
 
@@ -244,7 +244,7 @@ def _first_steps(scene: Scene) -> DynamicStage:
 
 
 def _steps_per_time(scene: Scene) -> float:
-    """Of the first dynamic stage [1/s]; of automatic steps up to a factor that stays."""
+    """Steps per time of the first dynamic stage [1/s]; for automatic steps up to a constant factor."""
     stage = _first_steps(scene)
     if stage.time_step != "auto":
         return 1.0 / float(stage.time_step)

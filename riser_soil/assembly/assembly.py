@@ -90,7 +90,7 @@ class Assembly:
 
     @property
     def name_on_soil(self) -> str:
-        """Of several lines the name of the one that lies on the soil, else ""."""
+        """Name of the line that lies on the soil in a scene of several lines, else ""."""
         return "" if self.scene.soil is None else self.scene.soil.line or ""
 
     @property
@@ -204,7 +204,7 @@ class Assembly:
 
     @property
     def scales(self) -> Scales:
-        """Of all lines."""
+        """Typical sizes of all lines together, which tolerances are relative to."""
         return of_several(own.scales for own in self.lines.values())
 
     def error_tolerance(self, stage: DynamicStage) -> float:

@@ -63,12 +63,14 @@ class Hung:
             self.joints.open = float(held)
 
     def close(self) -> list[Part]:
-        """Hold the bodies while joints close; the parts in that stage."""
+        """Hold the bodies in place while joints close, and return the parts of that stage."""
         self._hold(True)
         return self.lasting
 
     def let_go(self, reactions: Mapping[str, Array]) -> list[Part]:
-        """The same of the stage in which bodies are let go; reactions: on what held them, by name."""
+        """Release the bodies, and return the parts of that stage. reactions: on each body's temporary support, by the
+        body's name.
+        """
         self._hold(False)
         return [*self.lasting, *(Release(self.bodies[name], reaction) for name, reaction in reactions.items())]
 
@@ -79,7 +81,7 @@ class Hung:
         return {self.bodies[name]: self.weights[name].load for name in free}
 
     def parts_in(self, scene: Scene, stage: Stage) -> list[Part]:
-        """The same of a stage of the scene."""
+        """Release the bodies, and return the parts of a stage of the scene: dynamic stages add inertia and drag."""
         self._hold(False)
         parts = self.lasting
         for name, body in self.bodies.items():

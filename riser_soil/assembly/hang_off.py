@@ -78,7 +78,7 @@ class HungEnd:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Least and largest value that is looked at [m], the ends being where they are at first."""
+        """Least and largest value [m] of the search by the cable, the ends where they are at first."""
         L, rise = self.riser.length, float(self.span[2])
         if self.asked.by == "length":
             rest = L - self.segments[self.segment].length
@@ -88,7 +88,9 @@ class HungEnd:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """The same for the riser at rest: what a joint holds goes elsewhere."""
+        """Least and largest value [m] of the search with the riser at rest. No upper bound where a joint holds the
+        other end, which moves.
+        """
         low, high = self.limits
         return (NEAREST * low, math.inf) if getattr(self.riser, self.other).jointed else (low, high)
 
@@ -149,7 +151,9 @@ def _as_high_over_the_ground(scene: Scene, before: Scene, line: str, name: str) 
 
 
 def settled(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
-    """The same, once the values are found; SceneError where the scene can't be with them."""
+    """The scene with the values that were solved for [m], and no hang-off asked any more; SceneError where it has
+    conflicts then.
+    """
     scene = with_values(ends, values)
     for problem in all_conflicts(scene):
         wrong = message(problem, scene.model_dump(by_alias=True))

@@ -187,7 +187,9 @@ class LineAssembly:
         return self.enter(self.seen(stage), self.start_places[stage.name])
 
     def lay(self, stage: StaticStage) -> list[Part]:
-        """The same while the line is laid: without a current's drag."""
+        """Move the ends of a slack line to their places; the line's parts meanwhile, without a current's drag, contact
+        and friction.
+        """
         own = stage.model_copy(update={"move": self.laying})
         return [part for part in self.enter(own, end_positions(self.line)) if not part.traits.follows]
 

@@ -120,7 +120,7 @@ class _BodyLoads:
         return Morison(loads if self.surface is None else replace(loads, water=self.surface, span=body.span))
 
     def _through(self, dissipative: bool) -> WaterLoads:
-        """Of what moves through the water, where it is wet."""
+        """Loads of the water on a body that moves through it, on its wet part alone where the water has a surface."""
         from riser_soil.sea.morison import through
 
         return through(self._flow, None if self.surface is None else self.body.span, dissipative)

@@ -77,7 +77,7 @@ def loads_of(scene: Scene, line: Line, stage: Stage) -> list[Part]:
 
 
 def loads_of_body(scene: Scene, body: MovingBody, stage: Stage) -> list[Part]:
-    """The same on a body."""
+    """The part of the loads on a body in a stage, if there are any."""
     loads = loads_on_body(scene.stages, stage, body.name)
     if not loads:
         return []
@@ -140,7 +140,10 @@ def contents_of(scene: Scene, line: Line, elements: Elements, stage: Stage) -> l
 def contents_at(
     scene: Scene, line: Line, elements: Elements, clock: float, runs: bool = False, grows: bool = False
 ) -> list[Part]:
-    """The same at a reading of the clock [s]; runs: whether it goes on, grows: whether forces do, see `Flow`."""
+    """The part of uneven or flowing contents at a time of the sea's clock [s], if there are any.
+
+    runs: whether slugs move on. grows: whether the forces grow with the load factor.
+    """
     given = scene.line.contents
     if given is None or not given.uneven_or_moving:
         return []

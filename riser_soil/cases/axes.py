@@ -117,7 +117,7 @@ class _Waves:
     base: Document
 
     def path(self, key: str) -> str:
-        """Of a key of theirs in the scene; a whole path as it is."""
+        """Path in the scene of a key of the waves; a whole path is left as it is."""
         return key if "." in key else f"water.waves.{self._kind}.{key}"
 
     @property

@@ -153,7 +153,7 @@ _Seeds = Annotated[
 
 
 class Statistics(BaseModel):
-    """Of the last dynamic stage of each case."""
+    """Statistics over the last dynamic stage of each case."""
 
     model_config = FROZEN
 
@@ -163,7 +163,7 @@ class Statistics(BaseModel):
 
 
 class WantedExtremes(BaseModel):
-    """Of cases that differ in the seed of their waves alone."""
+    """Characteristic extremes from cases that differ in the seed of their waves alone."""
 
     model_config = FROZEN
 

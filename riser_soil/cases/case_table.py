@@ -27,7 +27,7 @@ class CaseTable:
 
     @cached_property
     def paths(self) -> list[str]:
-        """Of all values in which cases differ from the base scene."""
+        """Paths of all values in which cases differ from the base scene."""
         return list(dict.fromkeys(path for case in self.cases for path in case.values))
 
     @cached_property
@@ -38,7 +38,7 @@ class CaseTable:
 
     @cached_property
     def quantities(self) -> dict[str, CaseValue]:
-        """Of all cases by their keys, each as the first case has it."""
+        """Quantities of all cases by their keys, each as the first case that has it."""
         found: dict[str, CaseValue] = {}
         for values in self.values.values():
             for key, value in values.items():

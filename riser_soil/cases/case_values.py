@@ -67,8 +67,9 @@ def _spoken(figure: str) -> str:
 
 
 def case_values(folder: Path, since: float) -> list[CaseValue]:
-    """Of a run's folder, those of several lines and bodies behind their names. since: time of the last dynamic stage
-    [s] from which on it counts in statistics and samples.
+    """Key results and statistics in a run's folder; those of several lines and bodies carry their names.
+
+    since: time of the last dynamic stage [s] from which on it counts in statistics and samples.
     """
     run = Run(folder)
     last = _LastDynamic.of(run, since)
@@ -133,7 +134,7 @@ class _LastDynamic:
         return Sample(float((np.nanmin if least else np.nanmax)(recorded)), least, duration)
 
     def _time_of(self, result: KeyResult) -> float:
-        """Of an extreme in the stage [s]; its end where no time is known."""
+        """Time of an extreme in its stage [s]; the stage's end where no time is known."""
         own: Any = self.stage["lines"][result.of] if result.of in self.stage.get("lines", {}) else self.stage
         found = own["extremes"]
         for key in result.figure.split("."):
@@ -142,7 +143,7 @@ class _LastDynamic:
         return float(time) if isinstance(time, int | float) else math.inf
 
     def _recorded(self, result: KeyResult) -> Array | None:
-        """Of the figure that a key result is an extreme of (nt,); None where it isn't recorded."""
+        """The recorded series (nt,) of the figure that a key result is an extreme of; None where it isn't recorded."""
         own = self.run.of_lines.get(result.of)
         known = _RECORDED.get(result.figure)
         if own is None or known is None or not own.has(known[0]):

@@ -64,7 +64,7 @@ class CharacteristicExtreme:
 
     @property
     def key(self) -> str:
-        """As in the table of cases."""
+        """The quantity's key in the table of cases."""
         return f"{self.stage}: {self.name}"
 
     @property
@@ -73,7 +73,9 @@ class CharacteristicExtreme:
         return float(self.samples.min() if self.least else self.samples.max())
 
     def worse_than(self, other: CharacteristicExtreme) -> bool:
-        """Of the same quantity."""
+        """Whether this value is worse than another of the same quantity: the characteristic one, or else the extreme of
+        all seeds.
+        """
         mine, others = (
             each.of_seeds if math.isnan(each.characteristic.value) else each.characteristic.value
             for each in (self, other)
@@ -86,7 +88,7 @@ class CharacteristicExtreme:
 
     @cached_property
     def characteristic(self) -> Interval:
-        """Of the fractile, within its limits of confidence, the lower one first."""
+        """Value at the wanted fractile, with its limits of confidence, the lower one first."""
         found = self._at(self._longer - math.log(-math.log(self.wanted.fractile)))
         return Interval(found.value, *sorted((found.low, found.high)))
 
@@ -116,7 +118,7 @@ class CharacteristicExtreme:
 
 
 def characteristic_extremes(table: CaseTable, wanted: WantedExtremes) -> list[CharacteristicExtreme]:
-    """Of each group with extremes in a dynamic stage, its quantities in the table's order."""
+    """Characteristic extremes of each group with extremes in a dynamic stage, quantities in the table's order."""
     return [found for group in groups_of(table.cases) for found in _of_group(table, group, wanted)]
 
 
@@ -162,7 +164,7 @@ def row_of(found: CharacteristicExtreme, axes: Sequence[str]) -> dict[str, Any]:
 
 
 def governing(extremes: Sequence[CharacteristicExtreme]) -> list[CharacteristicExtreme]:
-    """Of each quantity that of the group that it is worst in, by the characteristic value where there is one."""
+    """For each quantity its worst group, by the characteristic value where there is one."""
     found: dict[str, CharacteristicExtreme] = {}
     for each in extremes:
         if each.key not in found or each.worse_than(found[each.key]):

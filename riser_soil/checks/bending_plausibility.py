@@ -228,7 +228,7 @@ def _layers(scene: Scene, hanging: Sequence[BoolArray]) -> BoolArray:
 
 
 def _reported(segment: Segment) -> str:
-    """As a scene file has it."""
+    """A segment in the words of a scene file."""
     first, last = segment.element_lengths[0], segment.element_lengths[-1]
     size = f"{first:.3g}" if abs(first - last) < 0.01 * first else f"[{first:.3g}, {last:.3g}]"
     return f"{{line_type: {segment.line_type}, length: {segment.length:.6g}, element_length: {size}}}"

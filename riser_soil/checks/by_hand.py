@@ -104,7 +104,8 @@ def _by_weight(weight: Array, climb: Array) -> list[tuple[float, float]]:
 
 
 def _held(assembly: Assembly, cable: Catenary, low: int, towards_end: bool) -> float:
-    """Of the attachments between the lowest point and an end: weight times the sine of the slope there [N]."""
+    """Tension that attachments between the lowest point and an end add there: weight times the sine of the slope [N].
+    """
     arc, z = assembly.line.arc, cable.curve.position[:, 2]
     steep = np.diff(z) / np.linalg.norm(cable.curve.chord, axis=1) * (1.0 if towards_end else -1.0)
     here = (each for each in assembly.attachments if (each.arc > arc[low]) == towards_end)

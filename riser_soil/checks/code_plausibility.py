@@ -11,7 +11,7 @@ from riser_soil.scene.stages import StaticStage
 
 
 def code_check_warnings(scene: Scene) -> Iterator[str]:
-    """Of one line's scene, which has code checks."""
+    """Warnings of the code checks of one line's scene."""
     unchecked = [name for name in scene.used_line_types if not checks_of(scene.code_check, name)]
     if unchecked:
         yield f"code_check: no check is for {', '.join(unchecked)}: add one, or know that it is not checked"

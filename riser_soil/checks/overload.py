@@ -79,7 +79,9 @@ def over_a_length(force: Array, line: Line, length: float) -> Array:
 
 
 def _overloads(assembly: Assembly, name: str, state: State) -> Iterator[Overload]:
-    """Of a line, on the rank that holds contact, where it is now: what touches weighs down at least with its weight."""
+    """Overloads of a line where it is now, on the rank that holds its contact: the ground bears its weight at least
+    where it touches.
+    """
     if not assembly.line.active:
         return
     for contact, capacity, meaning in _limits(assembly):

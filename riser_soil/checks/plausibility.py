@@ -97,7 +97,7 @@ def _moves(scene: Scene) -> bool:
 
 
 def _light_pipes(assembly: Assembly) -> Iterator[str]:
-    """Pipes that float though nobody says that they should; see `_meant_to_float`."""
+    """Warnings of pipes that float although neither a buoyancy module nor anything else is meant to lift them."""
     weight, arc = assembly.elements.weight, assembly.line.arc
     light = np.flatnonzero((weight < 0.0) & ~_meant_to_float(assembly) & ~_in_air(assembly))
     if light.size:

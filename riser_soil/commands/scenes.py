@@ -73,7 +73,7 @@ def _hung_as_cable(scene: "Scene") -> "Scene":
 
 
 def read_start(scene: str, overrides: list[str] | None) -> "Scene":
-    """As `read`; one that asks for an accuracy in the setting with which the search for it begins."""
+    """The scene in a file; where it asks for an accuracy, in the setting from which the search for it begins."""
     checked = read(scene, overrides)
     if checked.accuracy is None:
         return checked

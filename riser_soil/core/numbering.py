@@ -63,7 +63,9 @@ class Numbering:
         return self._summed(self._signs * values[self._free_local])
 
     def sizes_to_global(self, sizes: Array) -> Array:
-        """The same of sizes, which have no sign."""
+        """Sums (owned,) of local sizes, which have no sign, in their rows; entries of prescribed dofs stay behind;
+        collective.
+        """
         return self._summed(sizes[self._free_local])
 
     def _summed(self, mine: Array) -> Array:

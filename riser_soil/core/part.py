@@ -229,7 +229,7 @@ class Field(Protocol):
         ...
 
     def state(self) -> Saved:
-        """The committed configuration, see `saved_state`."""
+        """The committed configuration, as arrays by name."""
         ...
 
     def restore(self, saved: Saved) -> None:
@@ -264,7 +264,7 @@ class LineField(Field, Protocol):
         ...
 
     def held(self) -> AbstractContextManager[None]:
-        """As long as this lasts all dofs are prescribed not to move."""
+        """While the context lasts all dofs are prescribed not to move."""
         ...
 
     def inadmissible(self, state: State, before: State | None = None) -> str:

@@ -109,7 +109,7 @@ def owners(model: Model) -> dict[str, Stateful]:
 
 
 def name_of(part: Part) -> str:
-    """Of one instance: that of its kind, behind the name of its line where there may be several."""
+    """Name of one part: that of its kind, behind the name of its line where there may be several lines."""
     line = getattr(part, "line", None)
     return part.name if line is None or line.name == "riser" else f"{line.name}/{part.name}"
 

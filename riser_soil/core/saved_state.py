@@ -53,7 +53,7 @@ def within(saved: Saved, name: str) -> Saved:
 
 
 def under(name: str, saved: Saved) -> Saved:
-    """The same arrays as those of the owner of a name."""
+    """Saved arrays under the name of their owner."""
     return {f"{name}/{key}": value for key, value in saved.items()}
 
 

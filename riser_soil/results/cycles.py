@@ -92,7 +92,9 @@ def cycles(run: Run, stage: int, period: float) -> list[Cycle]:
 
 @dataclass(frozen=True, eq=False)
 class SecantStiffness:
-    """Of nc cycles at na arc lengths; su: strength at the ground's surface [Pa], nan where its law has none."""
+    """Secant stiffness in nc cycles at na arc lengths. su: strength at the ground's surface [Pa], nan where its law has
+    none.
+    """
 
     arc: Array  # (na,) m
     end: Array  # (nc,) s, of the run

@@ -69,12 +69,12 @@ class DoubtfulExtreme:
 
     @property
     def share(self) -> float:
-        """Of the scale."""
+        """Estimated error over the scale."""
         return self.error / self.scale if self.scale > 0.0 else 0.0
 
     @property
     def excess(self) -> float:
-        """Above 1 it is a warning."""
+        """The share over the allowed one; above 1 it is a warning."""
         return self.share / self.allowed
 
     def warning(self, automatic: bool) -> str:
@@ -98,7 +98,7 @@ class JudgedExtremes:
     weight: float
 
     def warnings(self, automatic: bool) -> Iterator[str]:
-        """Of the tension that is most in doubt, and of the moment."""
+        """Warnings of the tension that is most in doubt, and of the bending moment."""
         for worst in (max(self._tensions(), key=lambda each: each.excess), self._moment()):
             if worst.excess > 1.0:
                 yield worst.warning(automatic)

@@ -214,6 +214,6 @@ def _exceeds(value: float, before: float) -> bool:
 
 
 def _first(positions: Array) -> Array:
-    """Of (n, 3) the one with the least x, then y, then z: the same however the mesh is shared out."""
+    """The position (3,) with the least x, then y, then z, of (n, 3): however ranks share out the mesh."""
     x, y, z = np.round(positions, 6).T
     return np.asarray(positions[np.lexsort((z, y, x))[0]])

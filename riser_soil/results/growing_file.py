@@ -131,7 +131,9 @@ def append_rows(dataset: h5py.Dataset, rows: object) -> None:
 
 @contextmanager
 def cutting_back(file: GrowingFile) -> Iterator[h5py.File]:
-    """The same of a file that goes on; ResultsError where it is damaged, which HDF5 tells by all kinds of errors."""
+    """The HDF5 file of a run that resumes, to be changed; ResultsError where it is damaged, which HDF5 tells by all
+    kinds of errors.
+    """
     try:
         with appending(file) as store:
             yield store

@@ -75,5 +75,5 @@ def looked_at(reader: HungReader | None, state: State) -> dict[str, Array]:
 
 
 def joined(looks: Sequence[Mapping[str, Array]]) -> dict[str, Array]:
-    """Of several instants in turn."""
+    """Values at several instants, one after another, by name; the first axis is time."""
     return {name: np.concatenate([each[name] for each in looks]) for name in looks[0]}

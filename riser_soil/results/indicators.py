@@ -71,8 +71,8 @@ class ImpactLoss:
             self.largest, self.time = self.recent, t
 
     def _lost_by_motion(self, ledger: Ledger) -> float:
-        """Of the last step: all of contact's loss, but for the share of forces ahead of their mean that the scheme has
-        put in in that step.
+        """Energy that contacts lost in the last step [J], less the share that the time scheme put in itself by forces
+        ahead of their mean.
         """
         booked = sum(ledger.dissipated_by.get(name, 0.0) for name in LOSSES)
         now = booked, ledger.ahead, ledger.numerical
@@ -83,7 +83,7 @@ class ImpactLoss:
 
     @property
     def share(self) -> float:
-        """Of the largest kinetic energy, 0 to 1, that one impact lost."""
+        """Energy that one impact lost over the largest kinetic energy, 0 to 1."""
         return min(1.0, self.largest / self.kinetic) if self.kinetic > 0.0 else 0.0
 
     @property
@@ -115,13 +115,13 @@ class StageIndicators:
         self.resolution.update(t, vector[AT])
 
     def follow(self, times: Array, rows: Array) -> None:
-        """After steps of a dynamic stage, in turn: times (nt,) [s] of the run, and the figures then."""
+        """Follow the figures of accepted steps: times (nt,) [s] of the run, rows (nt, figures)."""
         values = rows[:, AT]
         self.resolution.update(times, values)
         self.largest = np.fmax(self.largest, np.fmax.reduce(np.abs(values)))
 
     def follow_steps(self, times: Array, steps: Sequence[StepRecord]) -> None:
-        """The same of the steps themselves."""
+        """Follow local errors and energies of accepted steps. times (nt,): s of the run."""
         for t, step in zip(as_list(times), steps, strict=True):
             self.step.follow(t, step.health)
             self.impact.follow(t, step.health.time_step, self.contact_period, step.ledger)
@@ -153,7 +153,7 @@ class StageIndicators:
         }
 
     def warnings(self) -> Iterator[str]:
-        """Of a dynamic stage, with numbers and a remedy."""
+        """Warnings of a dynamic stage, with numbers and a remedy."""
         yield from self.warnings_of_extremes()
         yield from self._jumps()
         yield from self._lost_impact()

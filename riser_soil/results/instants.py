@@ -107,7 +107,7 @@ class InstantReader:
         return SectionForces.within(numbers, self._assembly.line.nodes)
 
     def _found(self, numbers: Sequence[Array]) -> list[ContactResults]:
-        """Of each contact."""
+        """Results of each contact from packed numbers, a row an instant."""
         if not numbers:
             return []
         from riser_soil.contact.contact import ContactResults
@@ -168,7 +168,7 @@ class InstantReader:
         return None if contact is None else contact.settlement(xy, state)
 
     def _on_soil(self, state: State) -> Array:
-        """Of contact and friction together."""
+        """Force per length on the soil [N/m], of contact and friction together."""
         return np.sum([part.force_on_soil_per_length(state) for part in self._assembly.on_soil], axis=0)
 
     def state(self) -> Saved:

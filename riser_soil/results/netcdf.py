@@ -74,7 +74,7 @@ def lay_out(file: h5py.File, sizes: Mapping[str, int | None], variables: Mapping
 
 
 def values_in(variable: Variable, sizes: Mapping[str, int | None]) -> int:
-    """Of one row."""
+    """How many numbers one row of a variable holds."""
     return math.prod(sizes[dim] or 0 for dim in variable.dims[1:])
 
 
@@ -127,7 +127,7 @@ _COMPONENT = Variable(("component",), "", "global axis", dtype=h5py.string_dtype
 
 
 def variable(output: OutputQuantity[Any]) -> Variable:
-    """Of results.nc, where an output is written along the riser, by instants or by steps."""
+    """The variable of results.nc for an output, along the riser, by instants or by steps."""
     along = _DIMS[output.where]
     dims = (*along, "component") if output.vector else along
     return Variable(dims, output.units, output.text, output.sign, output.dtype)
@@ -147,7 +147,7 @@ HEALTH: dict[str, Variable] = {
 
 
 def ledger_variables(dissipating: Collection[str], working: Collection[str]) -> dict[str, Variable]:
-    """Of each step, beside HEALTH: what adds up to `dissipated` and to `work`, by part."""
+    """Variables of each step by part, beside HEALTH: the terms of `dissipated` and of `work`."""
     lost = "energy dissipated since the stage began by: "
     added = "energy added since the stage began by: "
     return {
@@ -251,7 +251,7 @@ class SeriesFile:
         self._file.close()
 
     def outlast_power(self) -> None:
-        """From now on, see `GrowingFile`."""
+        """Write through to the disk from now on, so that the file outlasts a power cut."""
         self._file.outlast_power()
 
     def _layout(self, arcs: Mapping[str, Array], title: str, version: str) -> bytes:

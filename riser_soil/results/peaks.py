@@ -47,7 +47,7 @@ def least_between_nodes(arc: Array, along: Array) -> float:
 
 
 def pack_peaks(seen: Instant) -> Array:
-    """As `pack` of many instants, with the least tension between nodes in place of that at nodes."""
+    """Figures of many instants in rows, with the least tension between nodes in place of that at nodes."""
     rows = pack(seen)
     rows[:, places_of(_TENSION)] = [[least_between_nodes(seen.arc, along)] for along in seen.riser.effective_tension]
     return rows
@@ -71,7 +71,7 @@ class StagePeaks:
         self._last: list[Array] = []
 
     def update(self, times: Sequence[float], seen: Instant) -> None:
-        """Of the state that a dynamic stage begins with, and of accepted steps in turn; times: s or load factors."""
+        """Follow the state that a dynamic stage begins with, and accepted steps in turn; times: s or load factors."""
         for t, sampled, peaked in zip(times, pack(seen), pack_peaks(seen), strict=True):
             self._follow(t, sampled, peaked)
         self._seen = instants_at(seen, -1)
@@ -122,7 +122,7 @@ class StagePeaks:
 
     @property
     def final(self) -> dict[str, Any] | None:
-        """As the summary tells it, of what was seen last."""
+        """Figures of the last state that was followed, as the summary has them; None before there is one."""
         if self._seen is not None:
             self._final, self._seen = final_state(self._seen), None
         return self._final
@@ -158,7 +158,7 @@ class StagePeaks:
         return np.asarray(self._windows[("min", "max").index(which), :, places_of(figure).start])
 
     def reported(self, which: str) -> dict[str, Any]:
-        """As the summary tells the stage; which: sampled, of_nodes, peaks or smooth."""
+        """The stage as the summary has it; which: sampled, of_nodes, peaks or smooth."""
         if self.final is None:
             return {"name": self.name, "kind": self.kind, "final": None}
         final = dict(self.final)
@@ -216,7 +216,9 @@ class RunPeaks:
         soil: SoilSnapshot | None = None,
         hung: Mapping[str, Array] | None = None,
     ) -> None:
-        """Of accepted steps in turn; soil: where it is recorded at the last of them; hung: rows of steps, by path."""
+        """Follow accepted steps in turn. soil: at the last of them, where recorded; hung: values of joints and
+        clearances by path, a row a step.
+        """
         self._hung[-1].update(np.array(times), hung or {})
         for line, instant in seen.items():
             stage = self.stages[-1][line]

@@ -152,7 +152,7 @@ class Run:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """Of one of several lines with its figures in the places of the only one's."""
+        """The run's summary; of one of several lines, its own figures stand in the places of a single riser's."""
         found, line = self._whole_summary, self._group[:-1]
         if not line:
             return found
@@ -280,6 +280,6 @@ def load(path: Path, group: str = "") -> xr.Dataset:
 
 
 def _names(stage: xr.DataArray) -> np.ndarray:
-    """Of the stages by their numbers, blanks as underscores."""
+    """Names of the stages by their numbers, blanks as underscores."""
     known = np.array(str(stage.attrs.get("flag_meanings", "")).split(), dtype=str)
     return known[stage.values] if stage.size else np.empty(0, dtype=str)

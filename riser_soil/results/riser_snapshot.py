@@ -72,7 +72,7 @@ def snapshot_of(
 
 
 def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
-    """Of the elements (ne, 2 ndof), less what follows from strain rates."""
+    """Residual of the elements (ne, 2 ndof) [N, N m], less what follows from strain rates."""
     line, state = assembly.line, stepper.now
     residual = stepper.newton.accepted.element_residual(line, state)
     viscous = viscous_residual(line, acting_on(line, stepper.system.model.parts), state)
@@ -111,8 +111,8 @@ def _wall_tension(assembly: Assembly, inside: SectionForces, pressure: Array | f
 
 
 def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
-    """Of the nodes (..., nn), nan where any tension is allowed; None where it is everywhere. A node has the smaller
-    tension allowed beside it.
+    """Tension over the allowed one at the nodes (..., nn), the smaller one beside a node; nan where there is no limit.
+    None where there is none anywhere.
     """
     if not assembly.elements.limits_tension:
         return None
@@ -180,7 +180,9 @@ def _pressures(assembly: Assembly, forces: SectionForces, pressure: Array) -> tu
 
 
 def _utilisation(sections: WallSections, von_mises: Array, nodes: int) -> tuple[Array, Array] | tuple[None, None]:
-    """Of the nodes (..., nn), and the stress that it is of; nan where no stress is allowed, None if nowhere."""
+    """Stress over the allowed one at the nodes (..., nn), and that stress [Pa]; nan where no limit is given, None if
+    nowhere.
+    """
     limited = sections.allowable > 0.0
     if not limited.any():
         return None, None

@@ -22,8 +22,8 @@ from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 
 def series_rows(stamps: Sequence[float], seen: Instants, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
-    """Of many instants, by the names of netcdf.SERIES behind those of the lines' groups, but for choices that are not
-    among the fields of the line.
+    """Rows of many instants by the names of netcdf.SERIES behind those of the lines' groups, without outputs that are
+    not among a line's fields.
     """
     along = {
         f"{group(line)}{name}": get(instant) for line, instant in seen.items() for name, get in _wanted(fields[line])
@@ -128,7 +128,7 @@ class RunFrames:
 
     @property
     def owners(self) -> dict[str, Stateful]:
-        """Of what is kept on the way."""
+        """What keeps a state from step to step, by the names under which it is saved."""
         lines: dict[str, Stateful] = {f"{line or 'riser'}_frames": file for line, file in self._lines.items()}
         return lines if self._soil is None else lines | {"soil_frames": self._soil}
 

@@ -317,7 +317,7 @@ def add_to_summary(folder: Path, blocks: Mapping[str, Any]) -> None:
 
 
 def plain_json(value: Any) -> Any:
-    """The same value in JSON's terms: plain numbers; null for nan and infinities, which JSON lacks."""
+    """A value in JSON's terms: plain numbers; null for nan and infinities, which JSON lacks."""
     if isinstance(value, Mapping):
         return {str(key): plain_json(v) for key, v in value.items()}
     if isinstance(value, list | tuple | np.ndarray):

@@ -41,7 +41,7 @@ class Tallies:
         return self.stage.of(self._on_soil)
 
     def begin_stage(self, name: str, kind: str, automatic: bool) -> None:
-        """As of `Recorder.begin_stage`."""
+        """Begin a stage: a tally of it for the whole and for each line. automatic: whether its time steps are."""
         self._time.begin_stage(kind)
         stage = self._new(name, kind, automatic, "")
         stage.lines = {line: self._new(name, kind, automatic, line) for line in self._lines if line}

@@ -132,7 +132,7 @@ def values_at(store: h5py.File, number: int) -> dict[str, Array]:
 
 
 def _rows(root: h5py.Group, kind: str) -> int:
-    """Of an instant: points or cells."""
+    """How many points or cells one instant has."""
     if kind == "Cell" and _KINDS_OF_LINES[1] in root:
         root = root[_KINDS_OF_LINES[1]]
     return int(root[f"NumberOf{kind}s"][0])

@@ -105,7 +105,7 @@ class XdmfFile:
             self._text.close()
 
     def outlast_power(self) -> None:
-        """From now on, see `GrowingFile`."""
+        """Write through to the disk from now on, so that the files outlast a power cut."""
         self._lasting = True
         for file in (self._heavy, self._text):
             if file is not None:

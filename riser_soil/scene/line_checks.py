@@ -220,7 +220,7 @@ def _clearances(scene: Scene) -> Iterator[Problem]:
 
 
 def _clearances_beyond(scene: Scene) -> Iterator[Problem]:
-    """Of a scene without other conflicts."""
+    """Problems of clearances whose `beyond` leaves no element of a line; for a scene without other conflicts."""
     for n, pair in enumerate(scene.output.clearance):
         for name in pair.between:
             if not any(apart_from_joints(scene, name, pair.beyond)):

@@ -118,7 +118,7 @@ def _without_soil(scene: Scene) -> dict[str, Any]:
 
 
 def _end(scene: Scene, name: str, key: str) -> Any:
-    """As it is given, or held by its joint."""
+    """An end of a line as the scene gives it; a free end in a joint becomes one that the joint holds."""
     given = getattr(scene.lines[name], key)
     for joint in scene.joints.values():
         for point in joint.between:
@@ -154,8 +154,8 @@ def arc_of(line: Riser, point: JointPoint) -> float:
 
 
 def apart_from_joints(scene: Scene, name: str, beyond: float) -> list[bool]:
-    """Of each element of a line, whether no part of it lies within a length [m] of the line's joints; a length of zero
-    leaves out none.
+    """Whether each element of a line is farther than a length [m] along it from the line's joints; a length of zero
+    leaves out no element.
     """
     line = by_line(scene)[name].line
     points = (point for joint in scene.joints.values() for point in joint.between if point.line == name)

@@ -244,7 +244,7 @@ def _dim(file: Path, rao: NetcdfVariable, known: tuple[str, ...]) -> str:
 
 
 def _mode(file: Path, name: str | bytes) -> str:
-    """Of a degree of freedom, `Heave` or `hull__Heave`."""
+    """Name of a motion in lower case, from that of a degree of freedom such as `Heave` or `hull__Heave`."""
     mode = _word(name).rpartition("__")[2].lower()
     if mode not in MODES:
         raise wrong_file(f"{file}: {_word(name)} is no motion of a rigid vessel ({', '.join(MODES)}); leave it out")

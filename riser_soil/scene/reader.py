@@ -43,7 +43,7 @@ def read_document(file: str | Path) -> Document:
 
 
 def overridden_document(file: str | Path, overrides: Sequence[str] = ()) -> Document:
-    """The same with `path=value` overrides."""
+    """The content of a scene file with `path=value` overrides, as yet unchecked."""
     document = read_document(file)
     override(document, overrides)
     return document

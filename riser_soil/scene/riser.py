@@ -271,7 +271,8 @@ class Riser(BaseModel):
     _across: int | None = PrivateAttr(default=None)
 
     def of_several(self, tied: bool, across: int | None) -> Self:
-        """As one of several lines. tied: whether joints hold it between its ends; across: see there."""
+        """A copy for a scene of several lines. tied: whether joints hold it between its ends; across: see the property.
+        """
         line = self.model_copy()
         line._tied, line._across = tied, across
         return line

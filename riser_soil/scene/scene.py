@@ -229,7 +229,7 @@ class Scene(BaseModel):
 
     @property
     def largest_diameter(self) -> float:
-        """Of the riser's line types [m], 0 where none has one."""
+        """Largest outer diameter of the riser's line types [m]; 0 where none has one."""
         return max((line.outer_diameter or 0.0 for line in self.used_line_types.values()), default=0.0)
 
     @property

@@ -188,7 +188,7 @@ class SeabedScene(BaseModel):
 
     @property
     def undrained_strength(self) -> Strength | None:
-        """Of clay, by depth; None of other ground."""
+        """Undrained shear strength of a clay seabed by depth; None of other grounds."""
         return None
 
 

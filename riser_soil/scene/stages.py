@@ -341,7 +341,7 @@ def loads_in(stages: Sequence[Stage], stage: Stage) -> tuple[Load, ...]:
 
 
 def loads_on_body(stages: Sequence[Stage], stage: Stage, name: str) -> tuple[BodyLoad, ...]:
-    """The same on a body."""
+    """The loads on a body in a stage, with those that earlier stages keep."""
     return _with_kept(stages, stage, lambda each: each.bodies[name].loads if name in each.bodies else ())
 
 

@@ -79,7 +79,8 @@ def _sea(file: Path, table: SpectrumTable) -> SpectrumTable:
 
 
 def _by_direction(file: Path, at: Mapping[str, int], north: float) -> SpectrumTable:
-    """Of the variables freq [Hz], dir [deg] and efth [m2 s/deg], or m2 s without dir, that wavespectra writes.
+    """Spectrum from the variables freq [Hz], dir [deg] and efth [m2 s/deg], or m2 s without dir, as wavespectra writes
+    them.
 
     A direction is that from which waves come, clockwise from north, unless its standard name says `to_direction`.
     """

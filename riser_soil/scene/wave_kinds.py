@@ -123,7 +123,7 @@ class PeakedSea(DrawnSea):
 
     @property
     def period(self) -> float:
-        """Of the peak [s]."""
+        """Period of the spectrum's peak [s]."""
         return self.Tp
 
 
@@ -177,7 +177,7 @@ class GivenSpectrum(DrawnSea):
 
     @property
     def period(self) -> float:
-        """Of the peak [s]."""
+        """Period of the spectrum's peak [s]."""
         return 2.0 * math.pi / self.table.peak
 
 
