@@ -27,7 +27,9 @@ LEFT = "while its error bars were computed; {} has the whole run, without them"
 
 
 def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, restart: bool = False) -> None:
-    """As `run`, then tell the error bars; collective. What goes wrong with a comparison run leaves the run as it is."""
+    """Run a scene, then print the error bars of its results; collective. Where a comparison run fails, the run itself
+    stays as it is.
+    """
     folder, comm, peaks = Path(folder), communicator_of(scene), RunPeaks()
     began = compiled.seconds_of_work()
     run(scene, folder, force, peaks, restart)
@@ -53,7 +55,7 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
 
 
 def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:
-    """Of a finished run, with the peaks that were gathered on the way."""
+    """Values of a finished run, with the peaks that were gathered on the way."""
     return run_values(key_results(json.loads((folder / SUMMARY).read_text(encoding="utf-8"))), peaks)
 
 

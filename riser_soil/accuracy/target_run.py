@@ -34,7 +34,7 @@ SOUGHT = "while a setting for the accuracy was sought; nothing was written"
 
 
 def run_to_accuracy(scene: Scene, folder: Path | str, force: bool = False) -> None:
-    """As `run`, with a setting that reaches `scene.accuracy`; collective. AccuracyError where none was found: the
+    """Run a scene with a setting that reaches `scene.accuracy`; collective. AccuracyError where none was found: the
     finest run is in the folder then, with its error bars.
     """
     folder, comm, began = Path(folder), communicator_of(scene), compiled.seconds_of_work()

@@ -71,7 +71,7 @@ class MovingBody(MovingNodes):
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """As long as this lasts it does not move."""
+        """While the context lasts the body does not move."""
         free, self.prescribed = self.prescribed, np.ones(self.size, dtype=bool)
         try:
             yield
@@ -147,7 +147,9 @@ class BodyProperties:
 
 
 def _about_origin(mass: Array, inertia: Array, centre: Array) -> Array:
-    """Of a mass matrix (3, 3) at a centre that moves with b + W x c, and an inertia about it."""
+    """Matrix (6, 6) about the origin of a mass matrix (3, 3) at a centre that moves with b + W x c, and an inertia (3,
+    3) about it.
+    """
     lever = -_skew(centre)
     return np.block([[mass, mass @ lever], [lever.T @ mass, inertia + lever.T @ mass @ lever]])
 
@@ -191,7 +193,7 @@ class Posture(NamedTuple):
 
 @njit
 def posture(at: SpatialConfiguration) -> Posture:
-    """Of the body whose configuration this is."""
+    """Place, rates and rotation of a body in a configuration."""
     R, H = matrix(at.frames[0]), matrix(at.H[0])
     rates = vector(at.v[0, :3]), vector(at.a[0, :3]), vector(at.v[0, 3:]), vector(at.a[0, 3:])
     return Posture(vector(at.x[0]), *rates, R, H, matmul(transpose(R), H))

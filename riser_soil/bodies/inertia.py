@@ -76,7 +76,7 @@ class InertiaData(NamedTuple):
 
 @njit
 def _momenta(part: InertiaData, b: Vec, W: Vec) -> tuple[Vec, Vec]:
-    """M times the rates of translation and rotation, or their accelerations."""
+    """M times the rates of translation b and rotation W, or times their accelerations."""
     M = part.M
     linear = add(matvec(matrix(M[:3, :3]), b), matvec(matrix(M[:3, 3:]), W))
     return linear, add(matvec(matrix(M[3:, :3]), b), matvec(matrix(M[3:, 3:]), W))
@@ -84,7 +84,7 @@ def _momenta(part: InertiaData, b: Vec, W: Vec) -> tuple[Vec, Vec]:
 
 @njit
 def _momenta_by(part: InertiaData, b: Mat, W: Mat) -> tuple[Mat, Mat]:
-    """The same of their derivatives."""
+    """M times derivatives of the rates of translation b (3, n) and rotation W (3, n), or of the accelerations."""
     M = part.M
     linear = matadd(matmul(matrix(M[:3, :3]), b), matmul(matrix(M[:3, 3:]), W))
     return linear, matadd(matmul(matrix(M[3:, :3]), b), matmul(matrix(M[3:, 3:]), W))
@@ -236,7 +236,7 @@ def _add_kinetic_over_step(part: MidpointInertiaData, at: SpatialConfiguration, 
 
 
 class MidpointBodyInertia(BodyInertia):
-    """The same in steps of the midpoint rule, and between them that of an instant."""
+    """Inertia of a body in steps of the midpoint rule; between steps, that of an instant."""
 
     traits = Traits("I", symmetric=False, roles=(Starting, Stateful))
 

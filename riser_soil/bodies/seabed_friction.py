@@ -61,7 +61,7 @@ def _moved(part: BodyFrictionData, p: int) -> Vec:
 
 @njit
 def _mapped(part: BodyFrictionData, p: int) -> tuple[Pair, tuple[Pair, Pair], Pair]:
-    """The traction per length at a point, see `coulomb.return_map`."""
+    """Traction per length at a point and its derivatives, as of `coulomb.return_map`."""
     found, mu = part.contact.found, (part.mu[0], part.mu[1])
     most = adhesion_at(part.adhesion, found.penetration[p]) if mu[0] < np.inf else (np.inf, 0.0)
     limit, rise = limits(found.force[p], found.slope[p], mu, most)

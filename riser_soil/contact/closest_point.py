@@ -34,8 +34,10 @@ class Axis(NamedTuple):
 def nearest(
     axis: Axis, bow: Array, elements: IntArray, p: tuple[float, float, float], within: float
 ) -> tuple[int, float, float, float]:
-    """Of some elements the one whose axis comes nearest to a point, the place on it, and the gap [m]; the first where
-    two come as near. -1 where none can come within that gap. Last the clearance [m]: no gap is less.
+    """Nearest of some elements to a point: its number, the place on its axis, the gap [m] and the clearance [m].
+
+    The first one where two come as near; -1 where no gap is less than `within`, and then no gap is less than the
+    clearance.
     """
     nearest, place_on, gap, distance, clearance = -1, 0.0, np.inf, np.inf, np.inf
     for e in elements:

@@ -107,7 +107,7 @@ class ContactResults(NamedTuple):
 
     @classmethod
     def within(cls, vector: Array, nodes: int, points: int) -> ContactResults:
-        """As views of the numbers (..., n); see `size_of`."""
+        """The results as views of one vector of packed numbers (..., n), n from `size_of`."""
         return cls(*views(vector, _shapes(nodes, points)))
 
 
@@ -116,7 +116,7 @@ def _shapes(nodes: int, points: int) -> list[tuple[int, ...]]:
 
 
 def size_of(nodes: int, points: int) -> int:
-    """How many numbers they are."""
+    """How many numbers the results at some nodes and points have."""
     return sum(math.prod(shape) for shape in _shapes(nodes, points))
 
 

@@ -153,9 +153,10 @@ def gaps_of(axis: Axis, points: Array) -> tuple[Array, Array]:
 
 
 class Slide(NamedTuple):
-    """Of a point over which the pipe slides: the way e (3,) [m] and its derivative by s (3,) at fixed q and p; axial
-    and lateral direction (2, 3), and their derivatives by s (2, 3) [1/m]; de/dz at fixed s (3, nz); d²e/ds dz (3, nz)
-    [1/m]; workspace. z: q of the element in axes basis (3, d), then the facet's nodes.
+    """How the pipe slides over a point. z: q of the element in axes basis (3, d), then the facet's nodes.
+
+    The way e (3,) [m] and its derivative by s (3,) at fixed q and p; axial and lateral direction (2, 3), and their
+    derivatives by s (2, 3) [1/m]; de/dz at fixed s (3, nz); d²e/ds dz (3, nz) [1/m]; workspace.
     """
 
     moved: Array

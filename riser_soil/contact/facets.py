@@ -157,7 +157,7 @@ def heights(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> Arra
 
 @njit
 def height_at(nodes: IntArray, xi: float, eta: float, points: Array) -> float:
-    """The same at a place on one facet of nodes (nv,)."""
+    """Height [m] of the deformed surface at a place (xi, eta) on one facet of nodes (nv,)."""
     N, _ = shape(len(nodes), xi, eta)
     height = 0.0
     for a, p in enumerate(nodes):

@@ -60,7 +60,7 @@ def directions_at(tau: Vec, normal: Vec) -> Along:
 
 @njit
 def components(along: Along, v: Vec) -> Pair:
-    """Of a vector by both directions."""
+    """Components of a vector along both directions."""
     return dot(along[0], v), dot(along[1], v)
 
 

@@ -159,7 +159,7 @@ class DeformedSurface:
         return np.where(np.isfinite(found), found, np.nan)
 
     def heights(self, xy: Array, points: Array) -> Array:
-        """The same; −inf beside it."""
+        """Height (n,) [m] of the surface of some points at horizontal positions (n, 2) [m]; −inf beside it."""
         return np.asarray(heights(*self.locate(xy, points), self.corners, points))
 
     def heights_at(self, facet: IntArray, xi: Array, points: Array) -> Array:
@@ -171,7 +171,9 @@ class DeformedSurface:
         return self._pairing.locate(xy, points)
 
     def cover(self, points: Array | None = None) -> Cover:
-        """Of what lies below the surface with its points at (np, 3) [m], as accepted so far where none are given."""
+        """The surface as what covers all below it, with its points at (np, 3) [m]; as accepted so far where none are
+        given.
+        """
         return self._pairing.cover(self.settled if points is None else points)
 
     def facet_dofs(self, facet: IntArray) -> IntArray:
@@ -313,7 +315,7 @@ class CandidatePairs:
 
     @cached_property
     def filled(self) -> BoolArray:
-        """Those pairs whose blocks of the tangent are written to, see `MatrixBlock`."""
+        """Whether each pair's block of the tangent was written to, see `MatrixBlock`."""
         return np.zeros(len(self.pairs), dtype=bool)
 
     @property

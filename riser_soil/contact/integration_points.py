@@ -52,7 +52,7 @@ def divisions(
 
 
 def _of_triangles(at: Array, along: Array, spacing: float, element: float) -> IntArray:
-    """Of triangles with corners (nf, 3, 3) [m]; across the riser is square to it in their plane."""
+    """How finely to divide triangles with corners (nf, 3, 3) [m]; across the riser is square to it in their plane."""
     sides = at - at[:, :1]
     ahead = np.array([*along, 0.0])
     normal = np.cross(sides[:, 1], sides[:, 2])

@@ -49,7 +49,7 @@ class PenaltyData(NamedTuple):
 
 @njit
 def ramp(law: PenaltyData, penetration: float) -> tuple[float, float, float]:
-    """f [N/m], df/dδ [N/m2] and ψ [N], see `Penalty`."""
+    """Force f [N/m], stiffness df/dδ [N/m2] and energy ψ [N] of a penalty law at a penetration [m], see `Penalty`."""
     k, s = law.stiffness, law.smoothing
     if abs(penetration) < s:
         within = penetration + s

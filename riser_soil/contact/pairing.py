@@ -67,7 +67,7 @@ class FacetSearch:
         self._plan = _plan(bounds(points, self._facets))
 
     def cover(self, points: Array) -> Cover:
-        """Of the facets with their points at (np, 3) [m], which may be renewed."""
+        """The facets as what covers all below them, with their points at (np, 3) [m], which may be renewed."""
         boxes, work = bounds(points, self._facets), np.empty((self._facets.shape[1], 3))
         made = Cover(self._plan, self._facets, points.copy(), boxes, np.empty(4), work, np.empty(2), np.empty(2))
         made.renew(points)
@@ -83,7 +83,7 @@ class FacetSearch:
 
 
 def _plan(boxes: Array) -> Plan:
-    """As many rectangles as facets, about as long as wide; boxes: see `bounds`."""
+    """A grid of about as many rectangles as facets, each about as long as wide; boxes as of `bounds`."""
     corner, extent = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
     counts = np.ceil(np.sqrt(len(boxes) * extent / extent[::-1])).astype(np.int64)
     size = extent / counts

@@ -53,7 +53,7 @@ class PressedPoints:
     def of(
         cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, before: Array
     ) -> PressedPoints:
-        """Of those where it may act, by the law's kernel data and its history (n, nh) at the points."""
+        """The points among these where the law may act, by its kernel data and its history (n, nh) at the points."""
         n = keep_active(law, points, len(points.gap), before)
         points, before = first_of(points, n), before[:n]
         force, slope, after = np.empty(n), np.empty(n), np.empty_like(before)
@@ -74,7 +74,9 @@ class PressedPoints:
 
     @cached_property
     def forms(self) -> tuple[Array, Array]:
-        """Of the gap, see `gap_forms`."""
+        """Linear forms (n, 4, 4 d + 3 nv) of the gap at the points, and the symmetric matrices C (n, 4, 4) with which
+        δ²g = forms·C·forms, as of `gap_forms`.
+        """
         found: tuple[Array, Array] = gap_forms(self.axis, self.surface, self.points, self.basis)
         return found
 

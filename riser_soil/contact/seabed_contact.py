@@ -111,7 +111,7 @@ class SeabedContact(CompiledPart, RiserContact):
         return bound(write_results, self._data, Packed(self._trials.now.at), Packed(out))
 
     def results(self, state: State) -> Array:
-        """See `ContactResults.within`."""
+        """Results at an accepted state in one vector, in the order of `ContactResults`."""
         if self.active:
             found = self._found(state).found
             if self._reported != found:
@@ -135,7 +135,7 @@ class SeabedContact(CompiledPart, RiserContact):
         return self._results(state).penetration
 
     def depth(self, state: State) -> Array:
-        """The same: this ground is where it lay at first."""
+        """Depth (nn,) [m] of the nodes' undersides below the ground as it lay at first: here the penetration."""
         return self._results(state).depth
 
     def max_penetration(self, state: State) -> float:

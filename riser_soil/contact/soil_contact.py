@@ -160,7 +160,7 @@ class SoilContact(RiserContact):
         return self.clearance(state), self.force_per_length(state)
 
     def results(self, state: State) -> Array:
-        """See `ContactResults.within`."""
+        """Results at an accepted state in one vector, in the order of `ContactResults`."""
         of_nodes = self.force_per_length(state), self.penetration(state), self.depth(state)
         whole = [self.max_penetration(state)], self.force_on_riser(state)
         return np.concatenate([*of_nodes, *self.contact_along_line(state), *whole])
@@ -172,7 +172,9 @@ class SoilContact(RiserContact):
         return np.maximum(0.0, -self.clearance(state) - self.law.start)
 
     def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `along_step`."""
+        """First guess of a step's increments (size,), changed so that nodes which would pass through the top land on
+        it.
+        """
         if not self.active:
             return guess.u
         present = self.clearance(State.at_rest(guess.t, guess.u.size))
@@ -242,7 +244,8 @@ class LoopContact(ABC):
         return float(self.energy[0])
 
     def _work(self, before: State, after: State) -> Work:
-        """See `SurfaceContact.work`: without a history all is the time scheme's."""
+        """Work of the step solved last. A law without history dissipates nothing: what is missing is the time scheme's.
+        """
         if self.contact.law.columns:
             return self.contact.work(before, after)
         first, last = self._stored.get(before.t), float(self.energy[0])

@@ -39,7 +39,9 @@ class Resistance(NamedTuple):
 
 
 class SlidingPoints(NamedTuple):
-    """Of n points: what is kept of them (n, 4) and adhesion (n,) [Pa]; at a trial way slid (n, 3) [m], directions
+    """Friction at n points in a trial state.
+
+    Kept from the accepted state: history (n, 4) and adhesion (n,) [Pa]. In the trial: way slid (n, 3) [m], directions
     (n, 2, 3), elastic guess and traction (n, 3) [Pa], and force (n, 3) [N] on the riser.
     """
 
@@ -136,7 +138,7 @@ class SoilFriction(LinePart):
         return FrictionInLoop(self, SoilFrictionData(self._resistance, self._memory.kept, q))
 
     def at_start(self, given: SoilFrictionData, state: State) -> SoilFrictionData:
-        """The same for a step that starts at a state."""
+        """Kernel data of the friction for a step that starts at an accepted state."""
         given.q[...] = self.contact.axis(self.line.trial(state)).q
         return given._replace(kept=self._memory.kept)
 

@@ -134,7 +134,7 @@ class SurfaceContact(SoilContact):
         return self.at_start(TouchData(axis, surface, self._basis, self.line.origin, law, self._memory.kept, 0.0))
 
     def at_start(self, touch: TouchData) -> TouchData:
-        """The same for a step that starts here."""
+        """Kernel data of the contact for a step that starts here: history, and the gap within which the law may act."""
         return touch._replace(kept=self._memory.kept, reach=self._acts_within)
 
     def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
@@ -352,7 +352,7 @@ class SurfaceContact(SoilContact):
         return self._over(self.line.to_global(trial.x), surface, larger_beside(self._radius))
 
     def _over(self, x: Array, surface: Array, radius: Array) -> Array:
-        """The same of places x (n, 3) with radii (n,)."""
+        """Height (n,) [m] of undersides over the surface at places x (n, 3) with radii (n,); inf beside it."""
         return np.asarray(x[:, 2] - radius - self._soil.heights(x[:, :2], surface))
 
     def state(self) -> Saved:

@@ -85,7 +85,7 @@ def solve(ab: Array, pivots: IntArray, x: Array, B: Size) -> None:
 
 @njit
 def _take_off(ab: Array, pivots: IntArray, x: Array, B: Size) -> int:
-    """Take multiples of each row's number off those below it; the row from which on none has any fill."""
+    """Forward elimination of a right-hand side; the row from which on none has any fill."""
     n, wide = pivots.size, 0
     for k in range(n):
         p = pivots[k]
@@ -103,7 +103,7 @@ def _take_off(ab: Array, pivots: IntArray, x: Array, B: Size) -> int:
 
 @njit
 def _insert(ab: Array, x: Array, end: int, first: int, b: int) -> None:
-    """Solve for the rows before `end`, down to the first, which the matrix' end may cut short."""
+    """Back substitution for the rows before `end`, down to `first`; the matrix' end may cut rows short."""
     for k in range(end - 1, first - 1, -1):
         total = x[k]
         for j in range(1, min(2 * b, x.size - 1 - k) + 1):
@@ -113,9 +113,9 @@ def _insert(ab: Array, x: Array, end: int, first: int, b: int) -> None:
 
 @njit
 def _insert_whole(ab: Array, x: Array, end: int, first: int, b: int, reach: int) -> None:
-    """The same for rows with as many numbers beyond their pivots as `reach` says.
+    """Back substitution for rows with as many numbers beyond their pivots as `reach` says.
 
-    But one product all of a row is there before the number found last is: the rest is added in two sums.
+    All products but one are summed before the number found last is there; the rest is added in two sums.
     """
     if end <= first:
         return

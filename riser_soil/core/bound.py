@@ -64,7 +64,9 @@ def _layout(value: Any) -> Iterator[str]:
 
 
 def _words(value: Any) -> Iterator[Any]:
-    """As numba's data models have them: an array that compiled code doesn't own begins with two null pointers."""
+    """The words of a value in numba's data models; an array that compiled code doesn't own begins with two null
+    pointers.
+    """
     if isinstance(value, np.ndarray):
         yield from (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
     elif isinstance(value, tuple):

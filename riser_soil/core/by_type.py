@@ -50,7 +50,9 @@ def by_type(stub: Any, apart: bool = True) -> Any:
 
 
 def bound_by_type(stub: Any) -> Any:
-    """As `by_type`, for kernels that are called by address alone, see `bound`: each stands in one place, inlined."""
+    """A function chosen by the type of its first argument, for kernels that are called by address alone (`bound`): each
+    is inlined where it is called.
+    """
     return by_type(stub, apart=False)
 
 

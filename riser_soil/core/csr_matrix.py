@@ -21,7 +21,7 @@ class CsrMatrix:
 
     @cached_property
     def mat(self) -> Any:
-        """The same arrays as a matrix of PETSc."""
+        """The matrix as one of PETSc on the same arrays."""
         from riser_soil.core.petsc_matrix import on_arrays
 
         return on_arrays(*self.csr(), symmetric=self._symmetric)
@@ -173,7 +173,9 @@ def add_at(data: Array, places: IntArray, values: Array) -> None:
 
 @njit
 def add_filled_at(data: Array, places: IntArray, values: Array, filled: BoolArray) -> None:
-    """The same for blocks that are filled (m,), of as many values each, one block after the other."""
+    """Add values of blocks, as many each, one block after the other, to those at places, where `filled` (m,) says so;
+    at -1 - place they are subtracted.
+    """
     size = values.size // max(filled.size, 1)
     for block in np.flatnonzero(filled):
         first, last = block * size, (block + 1) * size

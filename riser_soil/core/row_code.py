@@ -18,7 +18,7 @@ Size = tuple[int, ...]  # of `compiled.fixed`; or an array, where a length is no
 
 @intrinsic
 def add_multiple(context: Any, out: Any, at: Any, factor: Any, rows: Any, start: Any, N: Any) -> Any:
-    """See `rows`."""
+    """Code of `rows.add_multiple`."""
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of = _Rows(builder, len(N))
@@ -32,7 +32,7 @@ def add_multiple(context: Any, out: Any, at: Any, factor: Any, rows: Any, start:
 
 @intrinsic
 def numbers_at(context: Any, values: Any, start: Any, D: Any) -> Any:
-    """See `rows`."""
+    """Code of `rows.numbers_at`."""
     found = types.UniTuple(types.float64, len(D))
 
     def read(target: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -44,7 +44,7 @@ def numbers_at(context: Any, values: Any, start: Any, D: Any) -> Any:
 
 @intrinsic
 def combined(context: Any, terms: Any, D: Any) -> Any:
-    """See `rows`."""
+    """Code of `rows.combined`."""
     found = types.UniTuple(types.float64, len(D))
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -60,7 +60,7 @@ def combined(context: Any, terms: Any, D: Any) -> Any:
 
 @intrinsic
 def add_shares(context: Any, F: Any, start: Any, four: Any, first: Any, f: Any, D: Any) -> Any:
-    """See `rows`."""
+    """Code of `rows.add_shares`."""
     d = len(D)
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -99,7 +99,7 @@ def two_polynomials(context: Any, c: Any, start: Any, x: Any, y: Any, N: Any) ->
 
 @intrinsic
 def add_weighed(context: Any, S: Any, weights: Any, terms: Any, D: Any, R: Any) -> Any:
-    """See `rows`; each row is read once."""
+    """Code of `rows.add_weighed`; each row is read once."""
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of = _Rows(builder, 2 * (len(D) + len(R)))
@@ -115,7 +115,7 @@ def add_weighed(context: Any, S: Any, weights: Any, terms: Any, D: Any, R: Any) 
 
 @intrinsic
 def write_weighed(context: Any, S: Any, stations: Any, D: Any, R: Any) -> Any:
-    """See `rows`; S is not read."""
+    """Code of `rows.write_weighed`; S is not read."""
 
     def put(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of, each = _Rows(builder, 2 * (len(D) + len(R))), list[tuple[Any, Any]]()
@@ -158,7 +158,7 @@ def _rows_of_shapes(builder: Any, rows_of: _Rows, to: Any, d: int) -> Iterator[t
 
 @intrinsic
 def write_blocks(context: Any, S: Any, M: Any, factor: Any, rows: Any, D: Any, R: Any) -> Any:
-    """See `rows`."""
+    """Code of `rows.write_blocks`."""
     d, n = len(D), 2 * (len(D) + len(R))
 
     def put(target: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -177,7 +177,7 @@ def write_blocks(context: Any, S: Any, M: Any, factor: Any, rows: Any, D: Any, R
 
 @intrinsic
 def add_pulled_back(context: Any, out: Any, P: Any, S: Any, D: Any, R: Any) -> Any:
-    """See `rows`."""
+    """Code of `rows.add_pulled_back`."""
     d, r, ndof = len(D), len(R), len(D) + len(R)
     n = 2 * ndof
 

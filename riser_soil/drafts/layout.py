@@ -165,7 +165,9 @@ def free_hanging(line: HangingLine, height: float, angle: float) -> Hanging:
 
 
 def lazy_wave(line: HangingLine, floats: HangingLine, height: float, angle: float) -> Hanging:
-    """The same with a hog, where a stretch floats, and a sag."""
+    """A lazy wave that rises by `height` [m] from its touchdown point and leaves at an angle [rad] from the vertical:
+    from the seabed up, a hog where a stretch floats, then a sag.
+    """
     top = 1.0 / math.sin(angle)
     a = (1.0 - SAG) * height / (top - 1.0)
     H = line.weight * a

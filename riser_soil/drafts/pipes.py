@@ -90,7 +90,7 @@ def flexible(diameter: float, wall: float | None, mass: float | None) -> CrossSe
 
 
 def buoyant(pipe: CrossSection) -> CrossSection:
-    """The same pipe inside buoyancy modules spread evenly, which lift it by its own submerged weight."""
+    """A pipe inside buoyancy modules spread evenly, which lift it by its own submerged weight."""
     volume = (1.0 + LIFT) * pipe.weight / (GRAVITY * (WATER - FLOAT_DENSITY))
     outer = rounded(math.sqrt(pipe.outer**2 + 4.0 * volume / math.pi))
     reported = "the same pipe inside buoyancy modules, spread evenly"

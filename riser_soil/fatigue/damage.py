@@ -85,7 +85,7 @@ def rainflow_ranges(history: Array, load_classes: int) -> Array:
 
 
 def _counted(history: Array, load_classes: int) -> Array:
-    """As fatpack counts; none where the history has fewer turns than it can take."""
+    """Ranges of rainflow cycles, as fatpack counts them; none where the history has fewer turns than it can count."""
     try:
         return np.asarray(fatpack.find_rainflow_ranges(history, k=load_classes))
     except (IndexError, ValueError):

@@ -47,7 +47,9 @@ class StressHistory:
 
 
 def stress_history(run: Run, stage: str | None = None, skip: float = 0.0) -> StressHistory:
-    """Of a dynamic stage, by default the last, but for its first `skip` [s]; ResultsError where records are missing."""
+    """Stress history of a dynamic stage, by default the last, without its first `skip` [s]; ResultsError where records
+    are missing.
+    """
     run.require_one_line("stress")
     number = dynamic_stage(run, stage)
     since = beginning(run, number) + skip

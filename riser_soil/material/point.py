@@ -158,8 +158,10 @@ class StressRelaxation(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """By strain amplitude; and the shear strain at the top of each cycle of stress, the first way up too (CYCLES + 1,),
-    nan where the soil can't follow it.
+    """How a soil remembers cycles: stress relaxation by strain amplitude, and ratcheting.
+
+    ratchet (CYCLES + 1,): shear strain [-] at the top of each cycle of stress, the first way up too; nan where the soil
+    can't follow it.
     """
 
     relaxation: tuple[StressRelaxation, ...]
@@ -167,7 +169,7 @@ class Memory(NamedTuple):
 
 
 def memory(point: MaterialPoint) -> Memory:
-    """Of a point's law, from where it is at first."""
+    """How the law of a point remembers cycles, from its initial state on."""
     relaxation = tuple(_relaxation(point, amplitude) for amplitude in AMPLITUDES)
     return Memory(relaxation, _ratchet(point, float(relaxation[0].top[0])))
 
@@ -208,6 +210,6 @@ def reported(found: Memory) -> list[str]:
 
 
 def columns(found: Memory) -> dict[str, Array]:
-    """Of a table, from the first way up on."""
+    """Columns of a table by their headings, a row a cycle; the first row is the first way up."""
     tops = {f"stress_at_{each.amplitude:.4g} [Pa]": each.top for each in found.relaxation}
     return {"cycle [-]": np.arange(CYCLES + 1.0), **tops, "strain_of_stress_cycles [-]": found.ratchet}

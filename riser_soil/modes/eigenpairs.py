@@ -70,7 +70,8 @@ def _dense(inverse: LinearOperator, M: csr_array, massive: IntArray) -> tuple[Ar
 def _lanczos(
     inverse: LinearOperator, K: csr_array, M: csr_array, count: int, shift: float
 ) -> tuple[Array, Array]:
-    """The same of the pairs nearest to the shift."""
+    """Shares 1/(ω² - shift) (count,) and modes (count, n) of the eigenpairs nearest to the shift, by Lanczos' method.
+    """
     begin = inverse @ (M @ np.random.default_rng(SEED).standard_normal(K.shape[0]))
     try:
         squares, modes = eigsh(K, count, M, sigma=shift, OPinv=inverse, v0=begin)

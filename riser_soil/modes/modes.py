@@ -43,8 +43,10 @@ MOVING = DynamicStage(name="small vibrations", kind="dynamic", duration=1.0, tim
 
 
 class LineShapes(NamedTuple):
-    """Of a line, n modes, nn nodes: arc (nn,) [m], position (nn, 3) [m] at rest, global axes. shape (n, nn, 3):
-    displacement of the axis, global axes, and twist (n, nn) [rad/m]: rotation about the pipe's axis.
+    """Shapes of n modes of a line with nn nodes, global axes.
+
+    arc (nn,) [m]; position (nn, 3) [m] at rest. shape (n, nn, 3): displacement of the axis; twist (n, nn) [rad/m]:
+    rotation about the pipe's axis.
     """
 
     arc: Array
@@ -58,7 +60,9 @@ class LineShapes(NamedTuple):
 
 
 class BodyShapes(NamedTuple):
-    """Of a body, n modes: displacement of the origin of its axes (n, 3), and rotation (n, 3) [rad/m], global axes."""
+    """Shapes of n modes of a body: displacement of the origin of its axes (n, 3), and rotation (n, 3) [rad/m], global
+    axes.
+    """
 
     shape: Array
     rotation: Array
@@ -240,7 +244,7 @@ def _squared(line: Line, state: State, own: LineShapes) -> Array:
 
 
 def _shares(parts: Array, least: float) -> Array:
-    """Of the sum over parts (n, 4); nan where it is not more than the least."""
+    """Shares (n, 4) of parts in their sum; nan where the sum is not more than the least."""
     total = parts.sum(axis=1)[:, None]
     return np.divide(parts, total, out=np.full_like(parts, np.nan), where=total > least)
 

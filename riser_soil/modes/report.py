@@ -64,7 +64,7 @@ def titles(modes: Modes) -> list[str]:
 
 
 def datasets(modes: Modes) -> dict[str, xarray.Dataset]:
-    """As modes.nc has them by group, "/" the whole: units, signs and places with each variable."""
+    """Datasets of modes.nc by group, "/" the whole: units, signs and places with each variable."""
     found = {"/": _of_all(modes)}
     for name, own in modes.lines.items():
         found[name or "/"] = _of_line(own) if name else found["/"].merge(_of_line(own))

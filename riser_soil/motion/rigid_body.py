@@ -39,7 +39,7 @@ class RigidBody:
     axes: Array
 
     def displacement(self, t: float) -> Kinematics:
-        """Of the reference point (3,) [m], its velocity and acceleration."""
+        """Displacement (3,) [m] of the reference point, its velocity [m/s] and acceleration [m/s2]."""
         x, v, a = (self.axes @ values[:3] for values in self.six(t))
         return x, v, a
 

@@ -268,7 +268,8 @@ def _joint_stiffness(row: Item) -> float:
 
 
 def _neutral_angle(end: LineEnd, lower: LineEnd, upper: LineEnd) -> float | None:
-    """Of the line followed upwards from the vertical [deg], positive towards the upper end; None out of their plane.
+    """Angle of the line, followed upwards, from the vertical [deg], positive towards the upper end; None out of the
+    ends' plane.
 
     An end's own axis points from A to B: down by the declination from z, its azimuth from x towards y.
     """

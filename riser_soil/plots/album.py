@@ -167,7 +167,7 @@ class TouchdownView:
             return picture(self.run.place, Path(place) / "touchdown.png").read_bytes()
 
     def content(self, ending: str) -> bytes:
-        """The same, in its one format."""
+        """Bytes of the picture in its one format; ResultsError where it can't be drawn."""
         assert ending in self.endings
         return self.png
 

@@ -18,7 +18,7 @@ _CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.
 
 
 def exit_status(draw: Callable[[], None]) -> int:
-    """Of a process that draws: 0, or 1 after a failure, which is one line on standard error."""
+    """Exit status of a process that draws: 0, or 1 after a failure, which is one line on standard error."""
     try:
         draw()
     except (ResultsError, OSError) as err:

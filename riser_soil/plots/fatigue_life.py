@@ -52,7 +52,7 @@ def draw_damage(png: Path, damage: Damage, reported: Sequence[str]) -> Path:
 
 
 def life_sheet(damage: Damage) -> Figure:
-    """The same without a title."""
+    """A figure without a title: life along the pipe, damage in the touchdown zone and around the hotspot."""
     figure, (along, near, around) = sheet(3, 1, width=PAGE, height=2.5)
     _draw_life(along, damage)
     _draw_near(near, damage)

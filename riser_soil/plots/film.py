@@ -65,7 +65,7 @@ class _Film:
 
 
 def film(run: Run, file: Path, stage: str | None, period: float | None, field: str, magnify: float | None) -> None:
-    """Writes the film; see `riser_soil.plots.film`."""
+    """Draw the film of a stage into a file, every `period` [s]; arguments as of `riser_soil.plots.film`."""
     if field not in FIELDS:
         raise ResultsError(f'"{field}" is no field of a film; allowed: {", ".join(FIELDS)}')
     times = _filmed(run, stage, period)
@@ -162,7 +162,9 @@ def _caption(scene: _Film, time: float) -> str:
 
 
 def _look(plotter: pv.Plotter, focus: Array, bounds: tuple[float, ...], ahead: Array) -> None:
-    """The same for all frames."""
+    """Point the camera at the focus, the same way in all frames. bounds: of the soil [m]; ahead: direction along the
+    riser.
+    """
     reach = 0.4 * max(bounds[1] - bounds[0], bounds[3] - bounds[2])
     side = np.cross(UP, ahead)
     plotter.camera.focal_point = focus + 0.05 * reach * UP

@@ -28,7 +28,8 @@ UNSEEN = 1e-6  # of the largest displacement: a component that is left out
 
 
 def draw_modes(png: Path, lines: Mapping[str, LineMoved], titles: Sequence[str]) -> Path:
-    """By the lines at rest and how they move, side by side for each mode; seen from above where they move out of plane.
+    """Draw modes: the lines at rest and how they move, side by side for each mode; seen from above where they move out
+    of plane.
 
     lines: by name, "" the only one; their displacements are at most 1.
     """
@@ -37,7 +38,7 @@ def draw_modes(png: Path, lines: Mapping[str, LineMoved], titles: Sequence[str])
 
 
 def mode_sheet(lines: Mapping[str, LineMoved], titles: Sequence[str]) -> Figure:
-    """The same as a figure."""
+    """A figure of the lines at rest and how they move, side by side for each mode; arguments as of `draw_modes`."""
     figure, panels = sheet(len(titles), 2, width=PAGE, height=1.8)
     position = np.concatenate([place for _, place, _ in lines.values()])
     horizontal = _horizontal(position)

@@ -98,7 +98,7 @@ class _Frame:
 
 
 def draw(folder: Path, png: Path, magnify: float | None = None) -> None:
-    """Writes the picture; see `riser_soil.plots.picture`."""
+    """Draw the picture of the touchdown zone into a file; arguments as of `riser_soil.plots.picture`."""
     still = _read(Run(folder))
     figure = Figure(figsize=_SIZE, dpi=_DPI)
     if still.soil is None:

@@ -91,7 +91,7 @@ def without_nothing(value: Any) -> Any:
 
 
 def pruned(value: Any) -> Any:
-    """The same, with the last name alone of absolute paths."""
+    """Plain data without nulls and empty parts, and of absolute paths the last name alone."""
     return _named(without_nothing(value))
 
 

@@ -96,7 +96,7 @@ class HungReader:
         return found
 
     def warnings(self, found: Mapping[str, Any]) -> list[str]:
-        """Of rigid joints that gape, by what is known of the stage, see `HungExtremes`."""
+        """Warnings of rigid joints that gape, by the extremes of a stage."""
         joints = () if self._joints is None else self._joints.joints
         given = self._assembly.scene.joints
         told = []

@@ -54,7 +54,9 @@ class BoundaryStress(NamedTuple):
 
 
 def boundary_stress(soil: Soil, across: int) -> BoundaryStress:
-    """Of the committed state; across: the axis, x (0) or y (1), more nearly square to the riser (collective)."""
+    """Change of stress at the soil's boundaries in the committed state, beside that at the riser; collective. across:
+    the axis, x (0) or y (1), more nearly square to the riser.
+    """
     from mpi4py import MPI
 
     grid, change = soil.grid, soil.stress_change()
@@ -324,9 +326,10 @@ class Plausibility:
 def largest_strains(
     tension: Array, EA: Array, curvature: Array, radius: Array, moment: Array
 ) -> tuple[float, int, float, int, float]:
-    """Of the nodes at many instants (nt, nn): the largest size of tension over EA and its place, the largest curvature
-    times radius and its place, the largest moment; of equal ones the first. Places are counted along all instants; EA
-    and radius (nn,).
+    """Largest strains of nodes at many instants (nt, nn), and where they are.
+
+    The largest size of tension over EA and its place, the largest curvature times radius and its place, and the largest
+    moment; of equal ones the first. Places are counted along all instants; EA and radius (nn,).
     """
     axial, bending, largest = -1.0, -1.0, 0.0
     at = bent_at = 0

@@ -63,7 +63,9 @@ def split(line: Line, attachments: Sequence[PointAttachment]) -> tuple[list[Poin
 
 
 class Masses(NamedTuple):
-    """Of what sits along the line, sums of m N N^T by element (ne, 4, 4); of what sits at its ends, masses (2,); kg."""
+    """Masses of attachments [kg]. along: sums of m N N^T by element (ne, 4, 4); ends: of what sits at the line's ends
+    (2,).
+    """
 
     along: Array
     ends: Array
@@ -134,7 +136,7 @@ class Attachments(CompiledPart):
 
 @njit
 def add_given(F: Array, nodal: Array, out: LineForces) -> None:
-    """Add given residuals, see `GivenForces`."""
+    """Add given residuals of elements F (ne, 4, d) and nodes, as of `GivenForces`."""
     for e in range(F.shape[0]):
         for k in range(4):
             for i in range(F.shape[2]):

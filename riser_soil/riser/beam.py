@@ -37,7 +37,7 @@ def in_space(line: Line, frames: SpatialFrames, elements: Elements) -> Spatial:
 
 
 def _ends(orientation: Array) -> tuple[Array, Array]:
-    """Of both ends, from (ne, 2, ...)."""
+    """Orientations of both ends of elements, from (ne, 2, ...)."""
     return np.ascontiguousarray(orientation[:, 0]), np.ascontiguousarray(orientation[:, 1])
 
 

@@ -165,7 +165,7 @@ def _straight(chain: BarChain) -> CableBalance:
 
 
 def _hardened(found: CableBalance, goal: SpanCondition | None = None) -> CableBalance:
-    """The same with the final mu; unchanged where H falls far below the least H of the span condition."""
+    """The balance at the final mu; unchanged where H falls far below the least H of the span condition."""
     while found.mu > found.chain.hardest and not _is_slack(found, goal):
         found = _solved(found, replace(found, mu=max(HARDER * found.mu, found.chain.hardest)), goal)
     return found

@@ -150,7 +150,7 @@ def _in_space(
 
 
 def curvature(w: Array, H: float, T: Array) -> Array:
-    """Of a cable of a weight w >= 0 [N/m] where its tension is T [N]: k = w H/T^2 [1/m]."""
+    """Curvature k = w H/T^2 [1/m] of a cable of a weight w >= 0 [N/m] where its tension is T [N]."""
     return np.asarray(w * H / T**2)
 
 

@@ -156,7 +156,7 @@ def write_rates(at: Configuration, v: Array, a: Array) -> None:
 
 @bound_by_type
 def write_magnitudes(at: Configuration, out: Array) -> None:
-    """Write the sizes (nn, ndof) of a configuration's coordinates, see `Field.magnitudes`."""
+    """Write the sizes (nn, ndof) of a configuration's coordinates, from which round-off follows."""
 
 
 @bound_by_type

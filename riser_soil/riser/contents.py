@@ -87,8 +87,8 @@ class Flow:
 
 
 class FlowMatrices(NamedTuple):
-    """Of the elements, conjugate to q: mass [kg], coriolis [kg/s] and centrifugal [kg/s2], each (ne, 4, 4), and weight
-    (ne, 4) [N].
+    """Matrices of contents in the elements, conjugate to q: mass [kg], coriolis [kg/s] and centrifugal [kg/s2], each
+    (ne, 4, 4), and weight (ne, 4) [N].
     """
 
     mass: Array

@@ -97,7 +97,7 @@ class Line(MovingNodes):
         return self._ends.prescribed
 
     def held(self) -> AbstractContextManager[None]:
-        """As long as this lasts all dofs are prescribed not to move."""
+        """While the context lasts all dofs are prescribed not to move."""
         return self._ends.held()
 
     @cached_property
@@ -134,7 +134,7 @@ class Line(MovingNodes):
         self._ends.turn_support(node % self.nodes, rotation)
 
     def support(self, node: int, t: float) -> Array:
-        """Orientation of the support of the first or last node, see `LineEnds`."""
+        """Orientation (3, 3) of the support of the first or last node."""
         return self._ends.support(node, t)
 
     def predict(self, guess: State) -> Array:
@@ -154,7 +154,7 @@ class Line(MovingNodes):
         return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
 
     def free_turns(self, state: State) -> Array:
-        """Rigid motions (k, size) that the supports leave free, see `free_turns`."""
+        """Rigid motions (k, size) that the supports leave free, their largest displacement the line's length."""
         trial, prescribed = self.trial(state), self.prescribed.reshape(self.nodes, self.ndof)
         return free_turns(trial.x, trial.turn, prescribed, float(self.arc[-1])).reshape(-1, self.size)
 

@@ -97,7 +97,7 @@ class LineEnds:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """As long as this lasts all dofs are prescribed not to move."""
+        """While the context lasts all dofs are prescribed not to move."""
         free = self.prescribed, self._dofs
         self.prescribed, self._dofs = np.ones(free[0].size, dtype=bool), np.arange(free[0].size)
         try:

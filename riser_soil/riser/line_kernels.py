@@ -76,7 +76,7 @@ def _write_unit(vector: Array, out: Array) -> None:
 
 @njit
 def _cosine_of_swing(chord0: Array, tangent0: Array, chord: Array, tangent: Array) -> float:
-    """Of the angle between a tangent and another one that goes along as the chord turns; all are unit vectors."""
+    """Cosine of the angle between a tangent and one that turned along with the chord; all are unit vectors."""
     between, tangents, along0, along, both0, both = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(chord.size):
         between += chord0[i] * chord[i]
@@ -95,13 +95,15 @@ BENT_DOUBLE = 1.2  # rad from its chord, beyond which an end was on its way to b
 
 
 def swinging(arc: float) -> str:
-    """Of the element at an arc length [m]."""
+    """Reason why a step is refused: the element at an arc length [m] bends too far in it."""
     return f"the element at arc {arc:.6g} m bends by more than {MOST_SWING:g} rad in the step"
 
 
 def folded(arc: float, length: float, diameter: float, ends: Array, chord: Array) -> str:
-    """Of the element at an arc length, of a length and diameter [m], where it is accepted: with tangents (2, d) at its
-    ends, and chord (d,). Of one that was bent double before, its bend is told, which no shorter step prevents.
+    """Reason why a state is refused: the element at an arc length is folded. length, diameter [m].
+
+    Tangents (2, d) at its ends and chord (d,) as accepted: where the element was bent double before, the reason gives
+    its bend, which no shorter step prevents.
     """
     found = (
         f"the riser is folded at arc {arc:.6g} m, where an element's end turns by more than 90 degrees from its chord"

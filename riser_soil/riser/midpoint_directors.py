@@ -52,9 +52,11 @@ class Secant(NamedTuple):
 
 
 class DirectorsInStep(NamedTuple):
-    """Of m directors at element ends in a step. fixed: as in the sections, (m, ne, 2, 3) in space, in a plane (m, 1)
-    how far ahead of the tangent they turn [rad]; rate (m, ne, 2, d): where the step begins; elapsed (1,): since then
-    [s]. secant, turning (ne, 2, r, r): workspace for one of them.
+    """m directors at element ends in a step.
+
+    fixed: as in the sections, (m, ne, 2, 3) in space, in a plane (m, 1) how far ahead of the tangent they turn [rad];
+    rate (m, ne, 2, d): where the step begins; elapsed (1,): since then [s]. secant, turning (ne, 2, r, r): workspace
+    for one of them.
     """
 
     fixed: Array
@@ -146,7 +148,7 @@ class DirectorMotion:
         return [by * each.secant(0.5 * end).change - rate for each, rate in pairs]
 
     def spins(self, v: Array) -> list[tuple[Array, Array]]:
-        """Of each director once accepted: P (ne, 2, d, r), and its rate beyond that of angular velocities v."""
+        """For each director once accepted: P (ne, 2, d, r), and its rate beyond that of angular velocities v."""
         pairs = zip(self._moving, self.data.rate, strict=True)
         return [(each.secant(np.zeros_like(v)).P, rate - each.rates(v)) for each, rate in pairs]
 

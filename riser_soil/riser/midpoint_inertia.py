@@ -100,7 +100,7 @@ class MidpointPart(CompiledPart):
         self._motion.go_to(end)
 
     def rates(self, state: State) -> list[Array]:
-        """Of the directors, each (ne, 2, d), at the end of a step, as the midpoint rule has them."""
+        """Rates of the directors, each (ne, 2, d), at the end of a step by the midpoint rule."""
         return self._motion.rates(state.t, self._turning(state.u))
 
     def commit(self, state: State) -> None:

@@ -204,7 +204,7 @@ def after_increments(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
 
 @njit
 def write_moved(x: Array, chord: Array, u: Array, place: Array, along: Array) -> None:
-    """Write what `after_increments` returns; chords add theirs, see `MovingNodes.commit`."""
+    """Write positions (nn, d) and chords (ne, d) after the increments u (nn, ndof)."""
     for n in range(x.shape[0]):
         for i in range(x.shape[1]):
             place[n, i] = x[n, i] + u[n, i]

@@ -69,7 +69,7 @@ def section_forces(
 def section_vector(
     line: Line, elements: Elements, state: State, residual: Array, viscous: Array | None = None
 ) -> Array:
-    """The same as one vector, see `SectionForces.within`."""
+    """Section forces at the nodes in one vector, in the order of `SectionForces`; arguments as of `section_forces`."""
     return line.once(_SectionsAtTrials).found(elements, state, residual, viscous)
 
 
@@ -112,7 +112,7 @@ class BoundSections:
         )
 
     def found(self) -> Array:
-        """See `SectionForces.within`."""
+        """Section forces at the nodes in one vector, in the order of `SectionForces`; a copy."""
         self._put()
         return self._out.copy()
 

@@ -78,12 +78,12 @@ class SectionForces(NamedTuple):
 
     @classmethod
     def within(cls, vector: Array, nodes: int) -> SectionForces:
-        """As views of the numbers (..., n) of a line with so many nodes; see `size_of`."""
+        """The section forces of a line as views of one vector of packed numbers (..., n), n from `size_of`."""
         return cls(*views(vector, _shapes(nodes)))
 
 
 def _shapes(nn: int) -> list[tuple[int, ...]]:
-    """Of the arrays of `SectionForces`."""
+    """Shapes of the arrays of `SectionForces`."""
     ne = nn - 1
     at_nodes: list[tuple[int, ...]] = [(nn, 3), (nn, 3), (nn, 3), (nn,), (nn,), (nn,)]
     return [*at_nodes, (ne, 2), (ne, 2), (ne, 2), (ne, 2, 3), (nn, 3), (2, 3), (2, 3), (3, 2)]
@@ -227,7 +227,9 @@ def _write_about_axes(given: SectionInput, moment: Array, out: Array) -> None:
 
 @njit
 def write_end_forces(residual: Array, basis: Array, maps: Array, force: Array, moment: Array) -> None:
-    """basis (3, d): the line's axes; maps: see `SectionInput`."""
+    """Write force and moment (ne, 2, 3) at the ends of elements from residuals (ne, 2 ndof). basis (3, d): the line's
+    axes; maps (nn, 3, r): from rotations to moments.
+    """
     d, r = basis.shape[1], maps.shape[2]
     for e in range(len(force)):
         for end in range(2):

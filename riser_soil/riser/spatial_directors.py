@@ -33,7 +33,7 @@ from riser_soil.riser.vectors import add as plus
 
 
 class SpatialOrientation:
-    """Trial orientation of a line in space; see `SpatialFrames` for the arguments."""
+    """Trial orientation of a line in space; arguments as of `SpatialFrames`."""
 
     def __init__(self, Rn: Array, Theta: Array, T0: Array) -> None:
         self.Rn, self.Theta, self.T0 = Rn, Theta, T0

@@ -91,7 +91,7 @@ def _planar_energy(part: PlanarSpring, at: PlanarConfiguration, energy: Array) -
 
 @add_work.of(PlanarSpring)
 def _planar_work(part: PlanarSpring, first: PlanarConfiguration, last: PlanarConfiguration, work: Array) -> None:
-    """Of the support's rotation against the mean moment."""
+    """Add the work of the support's rotation against the mean moment [J]."""
     before, after = first.angle[part.node] - part.before[0], last.angle[part.node] - part.support[0]
     work[1] -= 0.5 * part.stiffness * (before + after) * (part.support[0] - part.before[0])
 
@@ -126,7 +126,7 @@ def _spatial_energy(part: SpatialSpring, at: SpatialConfiguration, energy: Array
 
 @add_work.of(SpatialSpring)
 def _spatial_work(part: SpatialSpring, first: SpatialConfiguration, last: SpatialConfiguration, work: Array) -> None:
-    """Of the support's rotation against the mean moment."""
+    """Add the work of the support's rotation against the mean moment [J]."""
     both = add(_turned(first, part.node, part.before), _turned(last, part.node, part.support))
     rotation = rotations.log(matmul(matrix(part.support), transpose(matrix(part.before))))
     work[1] -= 0.5 * part.stiffness * dot(both, rotation)

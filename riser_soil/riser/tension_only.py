@@ -232,7 +232,7 @@ def blended(at: Heaped, bowed: float, spring: float) -> float:
 
 @njit
 def spring_energy(at: Heaped, chord: Array) -> float:
-    """Of the chord alone [J]."""
+    """Energy of the chord's stretch alone [J]."""
     return 0.5 * at.stiffness * _square_of(chord)
 
 

@@ -95,7 +95,7 @@ class TouchdownBend:
         return np.real(f), np.real(r * f + steeper * fading * np.exp(2.0 * c * s))
 
     def _roots(self) -> tuple[complex, complex]:
-        """c and r, see `_lying`."""
+        """The constants c and r [1/m] of the exponentials in `_lying`."""
         half = 0.5 * self._p
         c = np.emath.sqrt(half**2 - self._q) or half * APART
         return c, self._q / (half + c)

@@ -190,7 +190,7 @@ Dry = Callable[[FlowAtStations, bool], DryPipeData | DryStationData]
 
 
 def dry_stations(span: Array, displaced: Array) -> Dry:
-    """By the dry share at the stations of a pipe, see `DryStationData`."""
+    """Buoyancy by the dry share at the stations of a pipe."""
 
     def data(water: FlowAtStations, flat: bool) -> DryStationData:
         line = water.pipe.line

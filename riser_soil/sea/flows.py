@@ -119,7 +119,7 @@ class Sea:
 
     @property
     def kernel_data(self) -> SeaData:
-        """The same for compiled code."""
+        """The sea as kernels read it."""
         return SeaData(self._level, tuple(flow.kernel_data for flow in self.flows))
 
 

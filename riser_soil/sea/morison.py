@@ -63,7 +63,7 @@ class WaterLoads:
     dissipative: bool = True
 
     def kernel_data(self) -> StillWaterData | MovingWaterData:
-        """See `LinePart.kernel_data`."""
+        """The loads as kernels read them: in still water, or in water that moves."""
         if self.water is None and not self.pipe.points_alone:
             return still_water(self.pipe, self.drag, self.mass)
         stream = (self.water or FlowAtStations(self.pipe)).stream
@@ -74,7 +74,7 @@ class WaterLoads:
 
 
 def through(water: FlowAtStations, span: Array | None = None, dissipative: bool = False) -> WaterLoads:
-    """Of what moves through the water without drag and added mass of its own, see `through_kernels`."""
+    """Loads of a law of its own on what moves through the water, without Morison's drag and added mass."""
     nothing = np.zeros((len(water.pipe.share), 2))
     return WaterLoads(water.pipe, nothing, nothing, water, None, span, dissipative)
 
@@ -134,7 +134,9 @@ class Batch(NamedTuple):
 
 
 class StepBatch(NamedTuple):
-    """The same where a step starts and where it ends; places there (d, LANES)."""
+    """Velocities and what else resistance depends on at LANES stations, where a step starts and where it ends; places
+    there (d, LANES).
+    """
 
     first: Batch
     last: Batch
@@ -253,7 +255,7 @@ def _add_whole_tangent(
 
 @njit
 def _terms(part: StillWaterData, maps: Maps, e: int, g: int) -> tuple[Array, tuple[Term, Term, Term]]:
-    """Weights of a station and what its force follows from, see `add_weighed`."""
+    """Weights (4,) of a station and the terms of its force's derivative, as of `add_weighed`."""
     N, workspace = part.at.N[e, g], part.workspace
     slope = part.at.dN[e, g], workspace.by_slope[g], maps.place_rows[e]
     moved = (N, workspace.by_v[g], maps.rate_rows[e]), (N, workspace.by_a[g], maps.acceleration_rows[e])

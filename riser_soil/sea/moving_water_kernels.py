@@ -237,7 +237,7 @@ def _energy(part: MovingWaterData, at: Configuration, energy: Array) -> None:
 
 @add_work.of(MovingWaterData)
 def _work(part: MovingWaterData, first: Configuration, last: Configuration, work: Array) -> None:
-    """See `Morison`."""
+    """Write the work of Morison's forces over a step [J]."""
     see_start(part.stream, first.q)
     resisted, changed, seen = 0.0, 0.0, part.stream.seen
     for m in range(part.stream.element.size):

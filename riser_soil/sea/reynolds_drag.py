@@ -39,7 +39,7 @@ class ReynoldsTables(NamedTuple):
 
 
 def tables_of(rho: float, nu: float, diameter: Array, rows: Sequence[Rows]) -> ReynoldsTables:
-    """Of tables (ne) of rows (Re, Cd), Re increasing; nu [m2/s], diameter (ne,) [m]."""
+    """Drag tables of elements from rows (Re, Cd) of each, Re increasing. rho [kg/m3], nu [m2/s], diameter (ne,) [m]."""
     longest = max(map(len, rows))
     filled = np.array([[*given, *[given[-1]] * (longest - len(given))] for given in rows])
     drag = 0.5 * rho * diameter[:, None] * filled[..., 1]
@@ -47,7 +47,7 @@ def tables_of(rho: float, nu: float, diameter: Array, rows: Sequence[Rows]) -> R
 
 
 class ReynoldsData(NamedTuple):
-    """See `ThroughData`."""
+    """Drag by Reynolds's number along a pipe, as kernels read it."""
 
     flow: MovingWaterData
     law: ReynoldsTables
@@ -95,7 +95,7 @@ def _write_derivatives(
     law: ReynoldsTables, m: int, g: int, v: Array, tau: Array, stretch: float, weight: float,
     by_v: Array, by_slope: Array, D: Size,
 ) -> None:
-    """As of a constant coefficient, and by its change."""
+    """Write derivatives of the resistance: those of a constant coefficient, and by the coefficient's change."""
     n, pair = np.empty(len(D)), np.zeros(2)
     speed, along = _across(v, tau, n, D)
     pair[0], change = coefficient(law, m, speed)

@@ -103,7 +103,7 @@ def choose(H: float, h: float) -> str:
 
 
 def linear_length(h: float) -> float:
-    """Of small waves in depth h, both over g T^2/2 pi."""
+    """Length of small waves in depth h, both over g T^2/2 pi."""
     return 2.0 * math.pi / float(wave_number(np.array([2.0 * math.pi]), 2.0 * math.pi, h)[0])
 
 
@@ -174,13 +174,13 @@ def _of_stream(wave: Any, h: float) -> tuple[float, Array, Array]:
 
 
 def _last_term(k: float, speed: Array, rise: Array) -> float:
-    """Of the velocity in the crest, over all of it."""
+    """Share of the series' last term in the velocity at the crest."""
     terms = speed * np.exp(np.arange(1, speed.size + 1) * k * rise.sum())
     return float(abs(terms[-1] / terms.sum()))
 
 
 def _cosines(eta: Array) -> Array:
-    """Of the surface (m + 1,) at even steps from crest to trough: its harmonics but the mean (m,)."""
+    """Harmonics (m,), without the mean, of a surface (m + 1,) at even steps from crest to trough."""
     m = eta.size - 1
     ends = np.where((np.arange(m + 1) % m) == 0, 0.5, 1.0)
     turns = np.cos(np.outer(np.arange(m + 1), np.arange(m + 1)) * math.pi / m)

@@ -123,7 +123,7 @@ def _energy(part: ThroughData, at: Configuration, energy: Array) -> None:
 
 
 def _work(part: ThroughData, first: Configuration, last: Configuration, work: Array) -> None:
-    """See `Morison`."""
+    """Write the work of a force on what moves through the water over a step [J]."""
     flow, seen, resisted = part.flow, part.flow.stream.seen, 0.0
     see_start(flow.stream, first.q)
     for m in range(flow.stream.element.size):

@@ -39,7 +39,7 @@ class Push(NamedTuple):
 
 
 class VortexData(NamedTuple):
-    """Vortices behind a pipe in space, see `ThroughData`."""
+    """Forces of vortices behind a pipe in space, as kernels read them."""
 
     flow: MovingWaterData
     law: Push

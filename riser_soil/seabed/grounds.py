@@ -70,7 +70,7 @@ def _distances(ground: Any, x: Array, value: Array, gradient: Array, hessian: Ar
 
 
 class PlaneData(NamedTuple):
-    """As of `Plane`."""
+    """A `Plane` as kernels read it."""
 
     point: Vec
     normal: Vec

@@ -17,7 +17,8 @@ Weights = tuple[float, float, float, float]
 
 
 class HeightFieldData(NamedTuple):
-    """As of `HeightField`; nodal (nx, ny, 2, 2): the spline's derivatives at the points, [i, j, 0, 1] that by y.
+    """A `HeightField` as kernels read it. nodal (nx, ny, 2, 2): the spline's derivatives at the points, [i, j, 0, 1]
+    that by y.
 
     along: direction of the section that counts, (0, 0) where the whole surface does.
     """
@@ -140,7 +141,9 @@ def _slopes(at: Array, values: Array) -> Array:
 
 
 class ProfileData(NamedTuple):
-    """As of `Profile`; spline (4, n - 1): of the powers 3 to 0 of the distance from each point but the last."""
+    """A `Profile` as kernels read it. spline (4, n - 1): coefficients of powers 3 to 0 of the distance from each point
+    but the last.
+    """
 
     origin: tuple[float, float]
     direction: tuple[float, float]

@@ -85,7 +85,7 @@ class SeabedLaw(BaseModel, ABC):
 
     @property
     def undrained_strength(self) -> Strength | None:
-        """Of the clay, by depth; None where the law knows of none."""
+        """Undrained shear strength of the clay by depth; None where the law knows of none."""
         return None
 
     @abstractmethod

@@ -57,7 +57,7 @@ class UndrainedClay(SoilLaw, ABC):
         return None if self.rate is None else self.rate.reference
 
     def surface_modulus(self, width: float) -> float:
-        """Of clay without strength at the seabed, that at half the width below it."""
+        """Young's modulus at the seabed [Pa]; of clay without strength there, that at half the width below it."""
         return self._modulus(self._strength.at(0.0 if self.su > 0.0 else 0.5 * width))
 
     @property

@@ -207,7 +207,9 @@ class KeptColumns:
         return columns
 
     def keep(self, group: int, columns: Array) -> Array:
-        """The same columns: those in the file, which take no memory, where they could be written."""
+        """Write columns to the file where possible; the columns in the file, which take no memory, or else the ones
+        given.
+        """
         if self._writes:
             try:
                 self._write(group, columns)

@@ -101,7 +101,7 @@ class CondensedTop:
         return self._at(state).forces
 
     def displacement(self, state: State) -> Array:
-        """Of the whole top (np, 3) since the geostatic start [m]."""
+        """Displacement of the whole top (np, 3) since the geostatic start [m]."""
         return self._at(state).displacement
 
     def _at(self, state: State) -> SurfaceAnswer:

@@ -36,7 +36,7 @@ class Clay(NamedTuple):
 
 
 class _Point(NamedTuple):
-    """Of a point that yields: q0, C and 2G [Pa], γ [-], and the step's gain by its rate."""
+    """A point that yields: q0, C and 2G [Pa], γ [-], and the step's gain by its rate."""
 
     first: float
     hardening: float

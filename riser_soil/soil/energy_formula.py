@@ -22,7 +22,7 @@ NONE = 1e-9  # of the moduli, which is no stress
 
 
 class EnergyFormula(OwnFormula):
-    """Of a class with an energy density psi(eps) or psi(eps, depth) [J/m3]. History: stress and strain."""
+    """Law by a user's class with an energy density psi(eps) or psi(eps, depth) [J/m3]. History: stress and strain."""
 
     columns = (*STRESS, *STRAIN)
     symmetric = True

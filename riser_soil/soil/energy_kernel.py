@@ -18,7 +18,9 @@ GIVEN = 7  # numbers of a point: strain in Mandel's notation, and depth
 
 
 class EnergyKernel:
-    """Of psi(eps, depth), eps a symmetric tensor (3, 3) and depth a number [m] of UFL; at depths (n,) [m]."""
+    """Energy, stress and tangent by an energy density psi(eps, depth) in UFL, eps a symmetric tensor (3, 3); at depths
+    (n,) [m].
+    """
 
     def __init__(self, psi: Callable[[Any, Any], Any], depth: Array) -> None:
         mesh = create_interval(MPI.COMM_SELF, max(len(depth), 1), [0.0, 1.0])

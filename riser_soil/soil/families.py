@@ -127,7 +127,7 @@ def point_volumes(family: Family, points: Array, cells: IntArray) -> Array:
 
 
 def _determinants(family: Family, at: Array) -> Array:
-    """Of the maps (nc, nq) from the reference cell, nodes at (nc, nn, 3)."""
+    """Determinants (nc, nq) of the maps from the reference cell to cells with nodes at (nc, nn, 3)."""
     out = np.empty((len(at), len(family.derivatives)))
     kernels.write_determinants(at, np.array(family.axes), family.derivatives, out)
     return out

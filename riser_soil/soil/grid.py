@@ -61,7 +61,9 @@ class DistributedMesh:
         return np.arange(len(points)) if self.mirror is None else self.mirror.twins(points)
 
     def signs(self) -> Array:
-        """Of the components (n, 3) of a node's displacement, over its twin's."""
+        """Signs (n, 3) of the components of each node's displacement, relative to its twin's across the plane of
+        symmetry.
+        """
         out = np.ones((len(self.nodes.points), 3))
         if self.mirror is not None:
             out[self.mirror.behind(self.nodes.points)] = self.mirror.signs

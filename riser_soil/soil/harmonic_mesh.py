@@ -86,7 +86,7 @@ class HarmonicMesh:
 
     @classmethod
     def of(cls, grid: DistributedMesh, mesh: GatheredMesh, top: SoilTop) -> HarmonicMesh:
-        """Of a whole mesh, gathered, and its top."""
+        """The mesh motion of a whole mesh, gathered, and its top."""
         facets = (top.global_index[::3] // 3)[top.facets]
         return cls(grid.family, mesh.points, mesh.cells, facets, grid.supported(mesh.points))
 
@@ -213,7 +213,7 @@ def _harmonic(at: Array, values: Array, pieces: IntArray, free: BoolArray) -> Ar
 
 
 def _laplacian(at: Array, pieces: IntArray) -> csr_matrix:
-    """Of fields that are linear in simplices (m, d + 1) of nodes at (n, 3)."""
+    """Laplace matrix (n, n) of fields that are linear in simplices (m, d + 1) of nodes at (n, 3)."""
     edges = at[pieces[:, 1:]] - at[pieces[:, :1]]
     metric = np.einsum("mai,mbi->mab", edges, edges)
     size = np.sqrt(np.linalg.det(metric)) / factorial(edges.shape[1])

@@ -159,8 +159,10 @@ class Overlay:
         return StressUpdate(stress, tangent, after, stored, elastic)
 
     def _returned(self, elements: Array, q: Array, shrink: Array, slope: Array) -> tuple[Array, Array, Array]:
-        """Of trials (n, 6N), which become what stays of them: deviator (n, 6), energy of all (n,), and the tangent
-        K 1⊗1 + Σ 2 Gi (θi P - (θi - slope) n⊗n where it yields).
+        """Deviator (n, 6) [Pa], elastic energy (n,) [J/m3] and tangent (n, 6, 6) [Pa] after the return of trials (n,
+        6N), which are written over.
+
+        The tangent is K 1⊗1 + Σ 2 Gi (θi P - (θi - slope) n⊗n where it yields).
         """
         tangent = mandel.stiffness(self.bulk, np.einsum("nk,nk->n", self.moduli, shrink))
         yields = shrink < 1.0

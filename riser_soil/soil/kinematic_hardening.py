@@ -107,7 +107,9 @@ class CyclicClay:
 
     @cached_property
     def _first_backstress(self) -> Array:
-        """As if the clay had been loaded to its initial stress: the elastic range lies around it."""
+        """Backstress (n, 6) [Pa] as if the clay had been loaded to its initial stress: the elastic range lies around
+        it.
+        """
         first = mandel.deviator(self.initial)
         cyclic_return.bring_within(self.limit - self.elastic_limit, first)
         return first

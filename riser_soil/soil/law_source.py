@@ -189,7 +189,7 @@ def asked(law: type[Any], values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _parameters(law: type[Any]) -> dict[str, inspect.Parameter] | None:
-    """Of the constructor; None where nobody knows."""
+    """Parameters of a law's constructor by name; None where Python doesn't know them."""
     try:
         return dict(inspect.signature(law).parameters)
     except (ValueError, TypeError):

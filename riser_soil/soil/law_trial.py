@@ -99,7 +99,7 @@ def _follow(law: OwnFormula, direction: Array, dt: float) -> None:
 
 
 def _answered(law: OwnFormula, increments: Array, history: Array, dt: float) -> Sequence[Array]:
-    """Of inputs that it must leave as they are."""
+    """The law's answer to increments and history; LawError where it fails, changes these inputs, or is not finite."""
     strain, before = increments.copy(), history.copy()
     try:
         found = law.answer(strain, before, dt)

@@ -33,7 +33,7 @@ def mean(a: Array) -> Array:
 
 
 def plus_mean(a: Array, values: Array) -> Array:
-    """The same tensors (..., 6), with values (...,) added in place to each of their normal components."""
+    """Add values (...,) in place to each normal component of tensors (..., 6); returns the tensors."""
     for i in range(3):
         a[..., i] += values
     return a

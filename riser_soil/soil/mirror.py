@@ -35,7 +35,7 @@ class Mirror:
 
     @property
     def signs(self) -> Array:
-        """Of the components (3,) of a vector's image."""
+        """Signs (3,) of the components of a vector's image."""
         return np.where(np.arange(3) == self.axis, -1.0, 1.0)
 
     def images(self, points: Array) -> Array:
@@ -89,7 +89,7 @@ class Unfolding:
 
     @classmethod
     def of(cls, mirror: Mirror | None, points: Array, cells: IntArray) -> Unfolding:
-        """Of nodes at points (n, 3) and their cells (nc, nn)."""
+        """The unfolding of nodes at points (n, 3) and their cells (nc, nn)."""
         own, signs = np.arange(len(points)), np.ones((len(points), 3))
         if mirror is None:
             return cls(None, own[:0], own[:0], own, signs)

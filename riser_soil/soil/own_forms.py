@@ -141,7 +141,8 @@ class SoilForms:
         return Energy()
 
     def work(self, before: State, after: State) -> Work:
-        """Of what the terms put in: by their force at the end of the step, with inertia by their mean."""
+        """Work of the terms over a step [J]: by their force at its end, of terms with inertia by the mean of both ends.
+        """
         force = self._force(after)
         if self._inert:
             force = 0.5 * (force + self._force(before))
@@ -203,7 +204,7 @@ def _is_linear(form: Any) -> bool:
 
 
 def _number(integral: Any) -> Any:
-    """Of its boundary; None where it has none."""
+    """Number of an integral's boundary; None where it has none."""
     found = integral.subdomain_id()
     found = found[0] if isinstance(found, tuple) else found
     return None if isinstance(found, str) else int(found)

@@ -145,7 +145,7 @@ def as_array(values: Any, shape: tuple[int, ...], name: str) -> Array:
 
 
 class UpdateFormula(OwnFormula):
-    """Of a class with this program's `update`."""
+    """Law by a user's class with this program's `update`."""
 
     def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
         super().__init__(law, depth, initial, label)
@@ -192,7 +192,8 @@ def _checked_columns(given: Any) -> tuple[str, ...]:
 
 
 class ConstitutiveFormula(OwnFormula):
-    """Of a class with fenics-constitutive's `evaluate`. A history of six numbers is a tensor, which turns."""
+    """Law by a user's class with fenics-constitutive's `evaluate`. A history of six numbers is a tensor, which turns.
+    """
 
     def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
         super().__init__(law, depth, initial, label)

@@ -51,7 +51,7 @@ def quality_of(grid: DistributedMesh) -> MeshQuality:
 
 
 def _of_cells(corners: Array, of_kind: Callable[[Array], tuple[Array, Array, Array]]) -> MeshQuality:
-    """Of cells (nc, 4 or 8, 3)."""
+    """Quality of cells with corners (nc, 4 or 8, 3) [m]."""
     edges, aspect, jacobian = of_kind(corners)
     worst, least = int(aspect.argmax()), int(jacobian.argmin())
     middle = corners.mean(axis=1)

@@ -87,7 +87,7 @@ class Gain(NamedTuple):
         return slip
 
     def radial_return(self, q: Array, limit: Array, stiff: Array) -> Return:
-        """Of elastic trials q to a limit of slow shear L, with stiff = 3G [Pa]; all of one shape."""
+        """Return of elastic trials q [Pa] to a limit of slow shear [Pa], with stiff = 3G [Pa]; all of one shape."""
         left = limit / np.maximum(q, limit)
         slope = np.where(left < 1.0, 0.0, 1.0)
         fast = q - limit > stiff * self.slow

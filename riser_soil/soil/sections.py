@@ -107,7 +107,9 @@ class Sections:
 
 
 def sections_of(points: Array, along: int) -> Sections | None:
-    """Of nodes at points (n, 3), the riser along x (0) or y (1); None where they form no grid along x, y and z."""
+    """Sections of nodes at points (n, 3), the riser along x (0) or y (1); None where they form no grid along x, y and
+    z.
+    """
     near = SAME * float(np.ptp(points, axis=0).max())
     place = [_planes(points[:, axis], near) for axis in (along, 1 - along, 2)]
     counts = [int(planes.max()) + 1 for planes in place]
@@ -143,7 +145,9 @@ def spread(line: Array, places: Array, beside: Array) -> tuple[Array, Array]:
 
 
 def at_columns(line: Array, places: Array, beside: Array, across: int) -> tuple[Array, Array]:
-    """The same for nodes that go back to their places (nc,) across, where a lip leans over: it is cut off there."""
+    """Nodes (nc, 3) of a surface line (nc, 3) put back to their places (nc,) across, and values (nc,) there; where a
+    lip leans over it is cut off.
+    """
     x = np.maximum.accumulate(line[:, across])
     top = np.stack([np.interp(places, x, each) for each in line.T], axis=1)
     top[:, across] = places

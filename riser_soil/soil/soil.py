@@ -292,8 +292,10 @@ class Soil:
         return self.cells.mean(mandel.von_mises(self._found.stress - self._initial))
 
     def _invariants(self) -> tuple[Array, Array, Array, Array]:
-        """Of the stress in balance, (n,) each, in the order of `SoilSnapshot`. What the law answers to cells that moved
-        lacks balance in the square of the step over the cell, in the mean stress of clay many times its strength.
+        """Invariants (n,) of the stress in balance, each in the order of `SoilSnapshot`.
+
+        The stress that the law gives to cells that moved is out of balance by the square of the step over the cell, in
+        the mean stress of clay by many times its strength.
         """
         stress = self._in_balance
         strength_used = self.law.overstress(stress)
@@ -353,7 +355,9 @@ class Soil:
 
 
 class _Answer(NamedTuple):
-    """Of the soil to its increments u within dt [s]: strain increment (n, 6), the law's answer, and residual [N]."""
+    """Answer of the soil to its increments u within dt [s]: strain increment (n, 6), the law's answer, and residual
+    [N].
+    """
 
     u: Array
     dt: float
@@ -373,7 +377,7 @@ class _Ground:
 
     @property
     def ratios(self) -> Array:
-        """Of the initial stress to its vertical component (6,)."""
+        """Ratios (6,) of the initial stress to its vertical component."""
         return np.array([self.K0, self.K0, 1.0, 0.0, 0.0, 0.0]) * float(self.geostatic)
 
     def stress(self, depth: Array) -> Array:

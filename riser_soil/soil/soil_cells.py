@@ -40,7 +40,7 @@ class SoilCells:
         self._stiffness: _Stiffness | None = None  # there from the first tangent on
 
     def _volumes_of(self, at: Array, cells: IntArray | slice = slice(None)) -> Array:
-        """Of some cells, all by default, with their nodes at (nc, nn, 3)."""
+        """Volumes of integration points of some cells, all by default, with their nodes at (nc, nn, 3) [m3]."""
         nc, nn, _ = at.shape
         found = point_volumes(self._family, at.reshape(-1, 3), np.arange(nc * nn).reshape(nc, nn))
         return found * (self._shares[cells] / self._family.thickness)[:, None]
@@ -161,7 +161,7 @@ class SoilCells:
         return out.reshape(-1, 3)
 
     def integral(self, a: Array, b: Array) -> float:
-        """Of the product of two fields (n, 6)."""
+        """Integral over the soil of the product of two fields (n, 6)."""
         return float(np.einsum("n,ni,ni->", self.volumes.ravel(), a, b))
 
     def mean(self, values: Array) -> Array:

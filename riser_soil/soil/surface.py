@@ -40,7 +40,7 @@ class SoilTop:
         self.owned: BoolArray = np.zeros(self.size, dtype=bool)
 
     def displacement(self, state: State) -> Array:
-        """Of the whole top (np, 3) since the geostatic start [m]."""
+        """Displacement of the whole top (np, 3) since the geostatic start [m]."""
         return np.asarray(self.committed + state.u[self.offset : self.offset + self.size].reshape(-1, 3))
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:

@@ -56,10 +56,11 @@ class Wanted:
 
 
 class PlaceStatistics:
-    """Of values x (n,) of each run, in the output's unit, and step [s] between them.
+    """Statistics of one output at one place, from values x (n,) of each run, in the output's unit, and the step [s]
+    between them.
 
-    Peaks are the largest values between up-crossings of the mean of all runs; with `minima` all that is extreme is that
-    of -x, told as of x: the smallest values between down-crossings.
+    Peaks are the largest values between up-crossings of the mean of all runs. With `minima` they are the smallest
+    values between down-crossings: extremes of -x, given as values of x.
     """
 
     def __init__(self, runs: Sequence[Array], step: float, wanted: Wanted) -> None:

@@ -35,7 +35,7 @@ class Records(NamedTuple):
 
     @property
     def duration(self) -> float:
-        """Of all runs together [s]."""
+        """Simulated time of all runs together [s]."""
         return self.step * sum(len(values) - 1 for values in self.values)
 
 
@@ -82,7 +82,9 @@ class _Output(NamedTuple):
 
 
 def _output(runs: Sequence[Run], name: str) -> _Output:
-    """Of a riser or line; of bodies, joints and clearances, whose names have a slash, as all runs have it."""
+    """Unit and kind of an output of a riser or line, or, with a slash in its name, of bodies, joints and clearances
+    that all runs have.
+    """
     known = {
         output.name: _Output(output.units, output.vector, output.where == "nodes")
         for output in outputs.of_instant()

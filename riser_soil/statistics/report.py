@@ -177,7 +177,7 @@ def _warnings(places: Sequence[Place]) -> Iterator[str]:
 
 
 def write_histories(histories: Sequence[Records], file: TextIO) -> None:
-    """Of one run and stage, which time counts from."""
+    """Write histories of one run and stage as CSV; time counts from the stage's begin."""
     first = histories[0]
     time = first.begin + first.step * np.arange(len(first.values[0]))
     table = np.column_stack([time, *(each.values[0] for each in histories)])
@@ -187,7 +187,7 @@ def write_histories(histories: Sequence[Records], file: TextIO) -> None:
 
 
 def _names(history: Records) -> list[str]:
-    """Of an output at its places, with its unit: effective_tension_at_150m_N."""
+    """Names of an output's columns, one a place, with its unit: effective_tension_at_150m_N."""
     places = ["" if np.isnan(arc) else f"_at_{arc:.10g}m" for arc in history.arc]
     unit = "_" + history.units.replace(" ", "") if history.units not in ("", "1") else ""
     return [f"{history.name}{place}{unit}" for place in places]

@@ -31,9 +31,10 @@ Job = Callable[[], int]
 
 @dataclass(frozen=True)
 class Limits:
-    """Of one process. cpu, wall: s; wall is for one that waits for ever. memory: bytes of address space.
+    """Limits of one process. cpu, wall: s; wall is for one that waits for ever. memory: bytes of address space.
 
-    reported_long: CPU time [s] of one whose computation is long, as the program itself says; None: as for all others.
+    reported_long: CPU time [s] of one that says itself that its computation is long; None: the same limit as of all
+    others.
     """
 
     cpu: int = 60

@@ -75,7 +75,7 @@ def _materials(scene: Scene) -> Iterator[ExtremeScene]:
 
 
 def _motions(scene: Scene) -> Iterator[ExtremeScene]:
-    """Of the ends. Without any a riser in still water stays where statics left it."""
+    """Scenes with extreme motions of the ends; without any, a riser in still water stays where statics left it."""
     for factor in (10.0, 0.1):
         yield ExtremeScene(f"harmonic motion times {factor:g}", _moved(scene, amplitude=factor))
     yield ExtremeScene("harmonic motion in a tenth of its period", _moved(scene, period=0.1))
