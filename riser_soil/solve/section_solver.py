@@ -1,18 +1,21 @@
 """Direct solver for soil in sections: each is eliminated by itself, on the rank that has it, down to what it touches.
 
-Sections are coupled with each other and with the riser by contact alone. What is left of them are the few unknowns of
-their surface that touch now; these and the riser are one small sparse system, which the first rank solves. A section
-whose tangent stays as it was, as far from the touchdown zone, keeps its factors.
+Sections are coupled with each other and with the riser by contact alone. Static condensation leaves the few unknowns of
+their surface that touch now, their borders. The Schur complements on these and the riser are one small sparse system,
+which the first rank solves. A section whose tangent stays as it was, as far from the touchdown zone, keeps its factors.
 
-One section's matrix is a band with a border of those few unknowns that touch the riser.
+One section's matrix is a band, of its interior, with a border of those few unknowns that touch the riser.
 
     [B  U] [x]   [f]
     [V  D] [y] = [g]
 
-Elimination in B = L R leaves L⁻¹ U in the place of U, V R⁻¹ in that of V, and takes their product off D, which is a
-share of the system of all borders and the riser. Nothing is exchanged: soil that bears its weight has positive pivots
-in any order. A pivot that has lost all its digits is told, and a solver that exchanges rows has to do. Numbers that are
-left of the first coupled row stay zero and are passed over. Source: Golub & Van Loan, Matrix Computations (2013), 4.3.
+Elimination in B = L R puts L⁻¹ U in the place of U and V R⁻¹ in that of V. Their product is subtracted from D: that is
+the Schur complement, the section's share in the system of all borders and the riser. A load is solved for in three
+steps: forward elimination in each section, the system of the borders and the riser, back substitution in each section.
+
+Rows are not exchanged: soil that bears its weight has positive pivots in any order. Where a pivot loses all its digits,
+factorisation fails and a solver that exchanges rows is used instead. Columns of U and V are zero before the first
+coupled row, and skipped there. Source: Golub & Van Loan, Matrix Computations (2013), 4.3.
 """
 
 from __future__ import annotations
@@ -42,20 +45,20 @@ if TYPE_CHECKING:
 
 Csr = tuple[IntArray, IntArray, Array]
 Entries = Csr  # rows, columns, values
-Place = tuple[IntArray, IntArray, Array, int, int, int]  # of a section: CSR, rows before the rank's, its first and last
+Place = tuple[IntArray, IntArray, Array, int, int, int]  # of a section: CSR, rows before the rank's, first and last row
 
 LOST = 1e-12  # of an entry on the diagonal: a pivot below that
 AT_ONCE = fixed(8)  # numbers of a row; rows are filled up with zeros to a multiple of it
 
 
 class Bands(NamedTuple):
-    """Of ns sections of n rows at most, each with b entries beside its diagonal and m rows in its border at most.
+    """Matrices of ns sections: at most n rows each, b entries beside the diagonal and m rows in the border.
 
-    first (ns,): each section's first row among its rank's. number (rows,): of the rank's rows, within the section's
-    interior, or -1 less that within its border. counts (ns, 4): rows in all, in the interior, in the border, and of the
-    interior before the first that is coupled with it. renewed (ns,): those that the last tangent has changed.
-    band (ns, n + b, w), right, below (ns, n + b, m), schur (ns, m, m): see `_eliminate`, the last what the interior
-    takes off the border's matrix.
+    first (ns,): each section's first row among its rank's. number (rows,): number of each of the rank's rows within its
+    section's interior, or -1 less its number within the border. counts (ns, 4): rows in all, in the interior, in the
+    border, and in the interior before the first row coupled with the border. renewed (ns,): whether the last tangent
+    changed the section. band (ns, n + b, w), right, below (ns, n + b, m): factors, see `_eliminate`. schur (ns, m, m):
+    the product V B⁻¹ U, which is subtracted from the border's matrix.
     """
 
     first: IntArray
@@ -69,7 +72,10 @@ class Bands(NamedTuple):
 
 
 class SectionFactors:
-    """Of sections with rows `at` some places among the rank's `rows`; before: rows of the ranks before it."""
+    """Factors of the matrices of a rank's sections, which are kept from tangent to tangent.
+
+    at: rows of each section among the rank's `rows`; before: rows of the ranks before it.
+    """
 
     def __init__(self, at: Sequence[slice], rows: int, before: int) -> None:
         ns, none = len(at), np.empty((len(at), 0, 0))
@@ -78,32 +84,33 @@ class SectionFactors:
         first, number = np.array([each.start for each in at], dtype=np.int64), np.zeros(rows, dtype=np.int64)
         self.bands = Bands(first, number, counts, np.zeros(ns, dtype=bool), none, none, none, none)
         self._rows, self._before, self._width = int(counts[:, 0].max(initial=0)), before, 0
-        self._known, self._coupled = np.empty(0), np.zeros(rows, dtype=bool)  # of the tangent before
+        self._factorised, self._coupled = np.empty(0), np.zeros(rows, dtype=bool)  # values and coupled rows before
 
-    def take(self, csr: Csr, coupled: BoolArray) -> bool:
-        """Factorise matrices of the values in these rows, where they have changed; whether that can be done. coupled:
-        which of the rank's rows are so with others than their section's.
+    def factorise(self, csr: Csr, coupled: BoolArray) -> bool:
+        """Factorise the sections whose entries in the rank's rows have changed; whether all pivots are sound.
+
+        coupled (rows,): whether a row is coupled with others than its section's.
         """
-        known = self._known if self._known.size else np.full_like(csr[2], np.nan)
-        width, border = renumber(*csr, self._before, known, self._coupled, coupled, self.bands)
+        before = self._factorised if self._factorised.size else np.full_like(csr[2], np.nan)
+        width, border = renumber(*csr, self._before, before, self._coupled, coupled, self.bands)
         if width > self._width or border > self.bands.right.shape[2]:
             self._make_room(width, border)
-        self._known, self._coupled = np.empty(0), coupled.copy()
+        self._factorised, self._coupled = np.empty(0), coupled.copy()
         if not factorise_sections(*csr, self._before, self._width, self.bands):
             return False
-        self._known = csr[2].copy()
+        self._factorised = csr[2].copy()
         return True
 
     def _make_room(self, width: int, border: int) -> None:
-        """For so many entries beside the diagonal and rows in a border, or as many as there was room for."""
+        """Allocate for so many entries beside the diagonal and rows in a border, or as many as there was room for."""
         ns, m = len(self.bands.counts), max(_filled_up(border), self.bands.right.shape[2])
         self._width = b = max(width, self._width)
         band, right, below = (np.zeros((ns, self._rows + b, size)) for size in (1 + b + _filled_up(b), m, m))
         self.bands = self.bands._replace(band=band, right=right, below=below, schur=np.zeros((ns, m, m)))
         self.bands.renewed[:] = True
 
-    def taken(self, number: IntArray) -> list[Entries]:
-        """What the interiors take off the borders' matrix, by the numbers (rows,) of the rank's rows there."""
+    def schur_entries(self, number: IntArray) -> list[Entries]:
+        """Entries of -V B⁻¹ U of each section: its Schur complement less D. number (rows,): of rows in that system."""
         found, (first, inside, counts) = [], self.bands[:3]
         for s in np.flatnonzero(counts[:, 2]):
             rows = slice(first[s], first[s] + counts[s, 0])
@@ -111,13 +118,13 @@ class SectionFactors:
             found.append((np.repeat(border, m), np.tile(border, m), -self.bands.schur[s, :m, :m].ravel()))
         return found
 
-    def eliminate(self, x: Array) -> None:
-        """Take a load (owned,) of the rank's rows on, the interiors' share off their borders."""
-        take_on(self.bands, self._width, x)
+    def forward_eliminate(self, x: Array) -> None:
+        """Condense a load x (rows,) of each section onto its border, in place."""
+        forward_eliminate(self.bands, self._width, x)
 
-    def insert(self, x: Array) -> None:
-        """Solve for the interiors, as the borders are solved for."""
-        insert(self.bands, self._width, x)
+    def back_substitute(self, x: Array) -> None:
+        """Solve for the interiors, in place, when the borders' part of x (rows,) is solved for."""
+        back_substitute(self.bands, self._width, x)
 
 
 def _filled_up(count: int) -> int:
@@ -126,8 +133,9 @@ def _filled_up(count: int) -> int:
 
 @njit
 def coupled_apart(indptr: IntArray, indices: IntArray, values: Array, first: int, section: IntArray) -> IntArray:
-    """1 for rows of the system (n,) that one of this rank's entries, which is not zero, couples with another section's
-    or with none's; else 0. first: of this rank's rows; section (n,): of each row, -1 for none.
+    """1 for rows of the system (n,) that a non-zero entry of this rank couples with a row outside their section, else 0.
+
+    first: first of this rank's rows; section (n,): section of each row, -1 for none.
     """
     found = np.zeros(section.size, np.int64)
     for i in range(indptr.size - 1):
@@ -145,19 +153,20 @@ def renumber(
     indices: IntArray,
     values: Array,
     before: int,
-    known: Array,
-    outside: BoolArray,
+    old_values: Array,
+    old_coupled: BoolArray,
     coupled: BoolArray,
     bands: Bands,
 ) -> tuple[int, int]:
-    """Find which sections have changed, and number their rows; the most entries beside the diagonal and rows in a
-    border of these. known, outside: values and coupled rows of the tangent before.
+    """Find the sections that have changed and number their rows; their largest half bandwidth and rows in a border.
+
+    old_values, old_coupled: values and coupled rows of the tangent before.
     """
     width, border = 0, 0
     for s in range(bands.first.size):
         first, last = bands.first[s], bands.first[s] + bands.counts[s, 0]
         place = indptr, indices, values, before, first, last
-        bands.renewed[s] = not _same(place, known, outside, coupled)
+        bands.renewed[s] = not _same(place, old_values, old_coupled, coupled)
         if bands.renewed[s]:
             inner = outer = 0
             for i in range(first, last):
@@ -169,22 +178,22 @@ def renumber(
 
 
 @njit
-def _same(place: Place, known: Array, outside: BoolArray, coupled: BoolArray) -> bool:
-    """Whether the interior's entries, and those between it and the border, are the ones that are known."""
+def _same(place: Place, old_values: Array, old_coupled: BoolArray, coupled: BoolArray) -> bool:
+    """Whether a section's entries are as they were, but for those between rows of its border."""
     indptr, indices, values, before, first, last = place
     for i in range(first, last):
-        if outside[i] != coupled[i]:
+        if old_coupled[i] != coupled[i]:
             return False
         for k in range(indptr[i], indptr[i + 1]):
             j = indices[k] - before
-            if values[k] != known[k] and first <= j < last and not (coupled[i] and coupled[j]):
+            if values[k] != old_values[k] and first <= j < last and not (coupled[i] and coupled[j]):
                 return False
     return True
 
 
 @njit
 def _bandwidth(place: Place, number: IntArray) -> int:
-    """Of the interior's entries that are not zero: contact has places for more."""
+    """Half bandwidth of the interior's non-zero entries: contact has places for more entries."""
     (indptr, indices, values, before, first, last), b = place, 0
     for i in range(first, last):
         for k in range(indptr[i], indptr[i + 1]):
@@ -198,13 +207,13 @@ def _bandwidth(place: Place, number: IntArray) -> int:
 def factorise_sections(
     indptr: IntArray, indices: IntArray, values: Array, before: int, b: int, bands: Bands
 ) -> bool:
-    """Factorise the sections that are to be renewed; whether all can be."""
+    """Factorise the sections whose matrices have changed; whether all pivots are sound."""
     for s in np.flatnonzero(bands.renewed):
         first, n = bands.first[s], bands.counts[s, 1]
         place = indptr, indices, values, before, first, first + bands.counts[s, 0]
         band, right, below = bands.band[s], bands.right[s], bands.below[s]
         band[...], right[...], below[...] = 0.0, 0.0, 0.0
-        _spread(place, bands.number, b, band, right, below)
+        _write_blocks(place, bands.number, b, band, right, below)
         bands.counts[s, 3] = start = _first_coupled(right, below, n)
         if not _eliminate(band, right, below, n, b, start):
             return False
@@ -216,8 +225,8 @@ def factorise_sections(
 
 
 @njit
-def _spread(place: Place, number: IntArray, b: int, band: Array, right: Array, below: Array) -> None:
-    """Write a section's entries that are not zero to its parts."""
+def _write_blocks(place: Place, number: IntArray, b: int, band: Array, right: Array, below: Array) -> None:
+    """Write a section's non-zero entries to its blocks: B to the band, U to the right, V below, turned over."""
     indptr, indices, values, before, first, last = place
     for i in range(first, last):
         for k in range(indptr[i], indptr[i + 1]):
@@ -279,8 +288,8 @@ def _eliminate(band: Array, right: Array, below: Array, n: int, b: int, start: i
 
 
 @njit
-def take_on(bands: Bands, b: int, x: Array) -> None:
-    """Take loads (rows,) on, in the order of elimination: what the interiors bear goes off their borders' loads."""
+def forward_eliminate(bands: Bands, b: int, x: Array) -> None:
+    """Condense the load x (rows,) of each section onto its border: f becomes L⁻¹ f, and g becomes g - V B⁻¹ f."""
     inner, border = np.empty(bands.band.shape[1]), np.empty(bands.right.shape[2])
     for s in range(bands.first.size):
         n, start, band, below = bands.counts[s, 1], bands.counts[s, 3], bands.band[s], bands.below[s]
@@ -290,12 +299,12 @@ def take_on(bands: Bands, b: int, x: Array) -> None:
         for k in range(start, n):
             for j in range(border.size):
                 border[j] -= below[k, j] * inner[k]
-        _put_back(bands, s, inner, border, x)
+        _scatter(bands, s, inner, border, x)
 
 
 @njit
-def insert(bands: Bands, b: int, x: Array) -> None:
-    """Solve for the interiors, with what the borders are found to be."""
+def back_substitute(bands: Bands, b: int, x: Array) -> None:
+    """Solve for the interiors, R x = L⁻¹ f - L⁻¹ U y, when the borders' unknowns y are in x (rows,)."""
     inner, border = np.empty(bands.band.shape[1]), np.empty(bands.right.shape[2])
     for s in range(bands.first.size):
         n, start, band, right = bands.counts[s, 1], bands.counts[s, 3], bands.band[s], bands.right[s]
@@ -305,12 +314,12 @@ def insert(bands: Bands, b: int, x: Array) -> None:
             for j in range(border.size):
                 inner[k] -= right[k, j] * border[j]
         _backward(band, inner[:n], b)
-        _put_back(bands, s, inner, border, x)
+        _scatter(bands, s, inner, border, x)
 
 
 @njit
 def _gather(bands: Bands, s: int, x: Array, inner: Array, border: Array) -> bool:
-    """Take a section's numbers from those of the rank's rows; whether there is anything to solve."""
+    """Read a section's numbers from those of the rank's rows; whether any is not zero."""
     border[:] = 0.0
     some = False
     for i in range(bands.first[s], bands.first[s] + bands.counts[s, 0]):
@@ -324,7 +333,8 @@ def _gather(bands: Bands, s: int, x: Array, inner: Array, border: Array) -> bool
 
 
 @njit
-def _put_back(bands: Bands, s: int, inner: Array, border: Array, x: Array) -> None:
+def _scatter(bands: Bands, s: int, inner: Array, border: Array, x: Array) -> None:
+    """Write a section's numbers back to those of the rank's rows."""
     for i in range(bands.first[s], bands.first[s] + bands.counts[s, 0]):
         row = bands.number[i]
         x[i] = inner[row] if row >= 0 else border[-1 - row]
@@ -332,7 +342,7 @@ def _put_back(bands: Bands, s: int, inner: Array, border: Array, x: Array) -> No
 
 @njit
 def _forward(band: Array, x: Array, b: int) -> None:
-    """Solve with the left factor, in place."""
+    """Solve with the left factor L, in place."""
     for k in range(x.size):
         first = max(b - k, 0)
         x[k] -= _product(band, k, first, x, k - b + first, b - first)
@@ -340,14 +350,14 @@ def _forward(band: Array, x: Array, b: int) -> None:
 
 @njit
 def _backward(band: Array, x: Array, b: int) -> None:
-    """Solve with the right factor, in place."""
+    """Solve with the right factor R, in place."""
     for k in range(x.size - 1, -1, -1):
         x[k] = (x[k] - _product(band, k, b + 1, x, k + 1, min(b, x.size - 1 - k))) * band[k, b]
 
 
 @njit
 def _product(band: Array, k: int, first: int, x: Array, start: int, count: int) -> float:
-    """Of so many numbers of a row with those of x, from a place on each, in four sums that needn't wait for another."""
+    """Scalar product of `count` entries of row k and of x, in four sums that a processor adds up side by side."""
     s0 = s1 = s2 = s3 = 0.0
     j = 0
     while j + 4 <= count:
@@ -364,8 +374,9 @@ def _product(band: Array, k: int, first: int, x: Array, start: int, count: int) 
 
 @njit
 def entries_between(indptr: IntArray, indices: IntArray, values: Array, first: int, number: IntArray) -> Entries:
-    """Entries, those that are not zero, of this rank's rows in some rows and columns of the system, by the numbers (n,)
-    of these; -1 of the others.
+    """Non-zero entries of this rank's rows in the rows and columns of a smaller system.
+
+    number (n,): of the system's rows in the smaller one, -1 of the others.
     """
     own = number[first : first + indptr.size - 1]
     count = np.sum(np.diff(indptr)[own >= 0])
@@ -383,7 +394,7 @@ THRESHOLD = 0.1  # of the largest entry of its column, that a pivot on the diago
 
 
 def sections_of(system: System) -> SoilField | None:
-    """The soil, where it is solved for as a whole and falls apart into sections."""
+    """The soil, where its unknowns are the system's and it consists of sections; else None."""
     soil = system.whole_soil
     return None if getattr(soil, "section", None) is None else cast("SoilField", soil)
 
@@ -396,7 +407,7 @@ class SectionSolver(PythonContext, LinearSystems):
         self._by_rows_exchanged = False
         self._section: IntArray | None = None  # of each row of the system, on all ranks or none
         self._factors = SectionFactors((), 0, 0)
-        self._rest: _Rest | None = None
+        self._borders: _BorderSystem | None = None
 
     @property
     def reads_mat(self) -> bool:
@@ -410,32 +421,32 @@ class SectionSolver(PythonContext, LinearSystems):
             self.work_for(ksp.getPC())
 
     def setUp(self, pc: PETSc.PC) -> None:
-        """Called by PETSc for each new tangent; SingularError where pivots want exchange."""
+        """Factorise a new tangent, called by PETSc; SingularError where rows would have to be exchanged."""
         comm, csr, first = self._system.comm, self._system.matrix.stored.csr(), self._system.numbering.first
         mine = slice(first, first + len(csr[0]) - 1)
         if self._section is None:
             self._section = _section_of_rows(self._system, self._soil)
             self._factors = SectionFactors(_runs(self._section[mine]), len(csr[0]) - 1, first)
         coupled = largest_of(comm, coupled_apart(*csr, first, self._section)) > 0
-        if not all_of(comm, self._factors.take(csr, coupled[mine])):
+        if not all_of(comm, self._factors.factorise(csr, coupled[mine])):
             raise SingularError
-        left = coupled | (self._section < 0)
-        number = np.where(left, np.cumsum(left) - 1, -1)
-        self._left = np.flatnonzero(left[mine])
-        parts = [entries_between(*csr, first, number), *self._factors.taken(number[mine])]
-        self._rest = _Rest(comm, _joined(parts), int(np.count_nonzero(left)))
+        kept = coupled | (self._section < 0)  # rows of the borders and the riser
+        number = np.where(kept, np.cumsum(kept) - 1, -1)
+        self._border_rows = np.flatnonzero(kept[mine])
+        parts = [entries_between(*csr, first, number), *self._factors.schur_entries(number[mine])]
+        self._borders = _BorderSystem(comm, _joined(parts), int(np.count_nonzero(kept)))
 
     def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
-        """Solve."""
-        assert self._rest is not None
+        """Solve for a load: forward elimination, the system of the borders and the riser, back substitution."""
+        assert self._borders is not None
         x = np.array(load.array_r)
-        self._factors.eliminate(x)
-        x[self._left] = self._rest.solve(x[self._left])
-        self._factors.insert(x)
+        self._factors.forward_eliminate(x)
+        x[self._border_rows] = self._borders.solve(x[self._border_rows])
+        self._factors.back_substitute(x)
         found.array_w[:] = x
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        """A solver that exchanges rows tries next, as long as the pattern stays."""
+        """No message, and whether another try may do: a solver that exchanges rows comes next, until the pattern changes."""
         again = not self._by_rows_exchanged or self._workspace.grows_after(ksp.getPC())
         self._by_rows_exchanged = True
         return "", again
@@ -447,13 +458,14 @@ class SectionSolver(PythonContext, LinearSystems):
 
     def forget(self) -> None:
         """Drop all factors."""
-        self._section, self._rest = None, None
+        self._section, self._borders = None, None
         self._factors = SectionFactors((), 0, 0)
 
 
-class _Rest:
-    """The system of n rows that is left, of the entries that the ranks have of it: those of one place are summed. The
-    first rank solves it. SingularError on all ranks where that can't be done; collective.
+class _BorderSystem:
+    """The system of n rows of all borders and the riser, which the first rank factorises and solves; collective.
+
+    mine: this rank's entries; those in one place are summed. SingularError on all ranks where it can't be factorised.
     """
 
     def __init__(self, comm: Communicator, mine: Entries, n: int) -> None:
@@ -466,7 +478,7 @@ class _Rest:
             raise SingularError
 
     def solve(self, mine: Array) -> Array:
-        """Of loads of this rank's rows, which come one rank after the other; collective."""
+        """Solution in this rank's rows by their load; rows are numbered one rank after the other; collective."""
         loads = self._comm.gather(mine)
         if self._factors is None:
             return self._comm.scatter(None)
@@ -475,7 +487,7 @@ class _Rest:
 
 
 def _factorised(matrix: coo_matrix) -> SuperLU | None:
-    """None where it is singular."""
+    """Factors of a matrix, None where it is singular."""
     try:
         return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=THRESHOLD)
     except RuntimeError:
@@ -483,7 +495,7 @@ def _factorised(matrix: coo_matrix) -> SuperLU | None:
 
 
 def _section_of_rows(system: System, soil: SoilField) -> IntArray:
-    """Number (n,) of the section of each row of the system, one after the other; -1 for the others; collective."""
+    """Number (n,) of the section that each row of the system belongs to, -1 for the others; collective."""
     numbering = system.numbering
     assert soil.section is not None
     index, found = numbering.index[local(soil)], np.full(numbering.free, -1)
@@ -493,7 +505,7 @@ def _section_of_rows(system: System, soil: SoilField) -> IntArray:
 
 
 def _runs(section: IntArray) -> list[slice]:
-    """Rows of each section, of rows (n,) of which these are the numbers."""
+    """Rows of each section, from the sections' numbers of rows (n,)."""
     starts = np.flatnonzero(np.diff(section, prepend=-1, append=-1))
     return [slice(int(a), int(b)) for a, b in pairwise(starts) if section[a] >= 0]
 

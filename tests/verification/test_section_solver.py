@@ -69,7 +69,7 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
     Its backward error is that of a direct solver: clay that yields all through has tangents so nearly singular that
     two exact solvers find steps that differ by 1e-4.
     """
-    errors, made, usual, factorise = list[float](), list[int](), SectionSolver.apply, SectionFactors.take
+    errors, made, usual, factorise = list[float](), list[int](), SectionSolver.apply, SectionFactors.factorise
 
     def judge(solver: SectionSolver, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
         usual(solver, pc, load, found)
@@ -81,7 +81,7 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
         return sound
 
     monkeypatch.setattr(SectionSolver, "apply", judge)
-    monkeypatch.setattr(SectionFactors, "take", taken)
+    monkeypatch.setattr(SectionFactors, "factorise", taken)
     steps(on_sections("auto", tolerance=1e-7, **contact))
     assert max(errors) < 1e-11
     assert len(errors) > 20
@@ -91,8 +91,8 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
 @pytest.mark.verify
 def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: pytest.MonkeyPatch) -> None:
     """A step of 0.1 um has the round-off of those of 9 mm before it."""
-    expected, usual, calls = steps(on_sections("direct")), SectionFactors.take, count()
-    monkeypatch.setattr(SectionFactors, "take", lambda *given: usual(*given) and next(calls) % 7 != 6)
+    expected, usual, calls = steps(on_sections("direct")), SectionFactors.factorise, count()
+    monkeypatch.setattr(SectionFactors, "factorise", lambda *given: usual(*given) and next(calls) % 7 != 6)
     largest = max(np.abs(step).max() for step in expected)
     for mine, other in zip(steps(on_sections("auto")), expected, strict=True):
         np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-7 * largest)
