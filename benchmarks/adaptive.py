@@ -48,7 +48,7 @@ class StepHistory(StatelessObserver):
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
-        seen = instants_at(self._instants.reported([self._instants.look(stepper)]), 0)
+        seen = instants_at(self._instants.instant_of([self._instants.look(stepper)]), 0)
         self.tension.append(float(seen.riser.effective_tension[-1]))
         self.touchdown.append(float(seen.touch.touchdown_arc))
         self.cuts += step.cuts

@@ -22,11 +22,11 @@ def main() -> None:
     gc.set_threshold(ALLOCATIONS)
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # sought among all packages that are installed
     os.environ["PETSC_OPTIONS"] = f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"
-    with failsafe_output() as reported:
+    with failsafe_output() as output:
         status = _status()
-    if reported.failure is not None:
+    if output.failure is not None:
         with failsafe_output():
-            print(f"standard output: cannot be written: {reported.failure.strerror}", file=sys.stderr)
+            print(f"standard output: cannot be written: {output.failure.strerror}", file=sys.stderr)
         status = status or WriteError.exit_status
     gc.freeze()  # the process ends: nothing is gained by the last looks, which Python takes all the same
     sys.exit(status)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.assembly.hang_off import HungEnd, by_cable, first_value, hung_ends, reported, settled, with_values
+from riser_soil.assembly.hang_off import HungEnd, by_cable, first_value, hung_ends, in_words, settled, with_values
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
@@ -43,13 +43,13 @@ class FoundEnd:
     reached: float
 
     @property
-    def reported(self) -> str:
-        """In words."""
-        return f"{reported(self.hung, self.value)} gives {self.reached:.7g} {self.hung.asked.unit}"
+    def in_words(self) -> str:
+        """The request and what was reached, in words."""
+        return f"{in_words(self.hung, self.value)} gives {self.reached:.7g} {self.hung.asked.unit}"
 
     @property
     def summary(self) -> dict[str, Any]:
-        """In block `hang_off` of summary.json."""
+        """This end in block `hang_off` of summary.json."""
         asked = self.hung.asked
         quantity = {"angle_deg": asked.angle} if asked.angle is not None else {"tension": asked.tension}
         known = {"end": self.hung.name, "asked": quantity, "reached": self.reached}
@@ -65,9 +65,9 @@ class HungScene:
     solves: int
 
     @property
-    def reported(self) -> str:
-        """In words, a line each."""
-        return "\n".join(f"{each.reported} ({self.solves} static solves)" for each in self.ends)
+    def in_words(self) -> str:
+        """What was found for each end, a line each."""
+        return "\n".join(f"{each.in_words} ({self.solves} static solves)" for each in self.ends)
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -161,7 +161,7 @@ class _HangOffSearch:
         worst = int(np.argmax(np.abs(off)))
         missing, missed = self._ends[worst], off[worst] * self._close[worst]
         return SolveError(
-            f"{missing.path}: {missing.reported} was not reached in {len(self._tried)} static solves: with "
+            f"{missing.path}: {missing.request} was not reached in {len(self._tried)} static solves: with "
             f"{values[worst]:.6g} m it is off by {missed:.3g} {missing.asked.unit}; take finer elements or a stiffer "
             "solver.tolerance"
         )

@@ -57,8 +57,8 @@ def friction(axial: float, lateral: float) -> tuple[dict[str, Any], str]:
     """The part `contact` of a scene with these coefficients along and across, and a remark where it can't have them."""
     if axial and lateral:
         return {"contact": {"friction": {"axial": axial, "lateral": lateral}}}, ""
-    reported = f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"
-    return {}, reported if axial or lateral else ""
+    remark = f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"
+    return {}, remark if axial or lateral else ""
 
 
 def twisting_stiffness(EI: float, EA: float, diameter: float) -> float:

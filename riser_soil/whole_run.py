@@ -55,8 +55,8 @@ def run(
             refuse_unfit_runs(assembly)
         clock.add("build", since)
         if comm.rank == 0:
-            for reported in (*reported_waves(assembly), *resolution(assembly)):
-                print(reported)
+            for line in (*reported_waves(assembly), *resolution(assembly)):
+                print(line)
         warnings = [*physical_warnings(assembly), *of_size]
         for warning in warnings if comm.rank == 0 else ():
             print(f"warning: {warning}")

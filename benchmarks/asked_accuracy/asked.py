@@ -15,7 +15,7 @@ from benchmarks.asked_accuracy.by_hand import HandSetting, turned
 from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, taken, true_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
-from riser_soil.accuracy.settings import settings_reported
+from riser_soil.accuracy.settings import settings_in_words
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SCENE
@@ -88,7 +88,7 @@ def asked(
         if not (folder / SCENE).exists():
             return AskedScene(name, None, said, "none", None, everything)
         errors, scene = true_errors(folder, reference, accuracy), read_scene(folder / SCENE)
-        setting = settings_reported(scene)
+        setting = settings_in_words(scene)
         if hand is None or said:
             return AskedScene(name, errors, said, setting, None, everything)
         _, chosen = run_errors(scene, beside, reference)

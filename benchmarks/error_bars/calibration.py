@@ -64,7 +64,7 @@ def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
     peaks = peaks_of(scene, MPI.COMM_WORLD)
     done = seconds_of_work()
     chain = comparison_runs(scene, MPI.COMM_WORLD)
-    run = run_values(key_results(peaks.reported("sampled")), peaks)
+    run = run_values(key_results(peaks.as_summary("sampled")), peaks)
     found = bars_of(scene, run, chain)
     seconds = done - began, seconds_of_work() - done
     judged = [_judged(name, bar, *reference.get(bar.key_result.key, UNKNOWN)) for bar in found if bar.bar is not None]

@@ -76,7 +76,7 @@ def assess(refinements: Refinements, outcomes: Outcomes) -> dict[str, AssessedQu
     return {key: _assessed(each, refinements, outcomes) for key, each in base.key_results.items()}
 
 
-def reported(quantities: Mapping[str, AssessedQuantity]) -> dict[str, AssessedQuantity]:
+def with_known_error(quantities: Mapping[str, AssessedQuantity]) -> dict[str, AssessedQuantity]:
     """The quantities whose reference is known well enough to tell errors."""
     return {key: each for key, each in quantities.items() if each.doubt <= TELLING}
 

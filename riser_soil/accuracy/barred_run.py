@@ -60,17 +60,17 @@ def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:
 
 
 def write_bars(folder: Path, bars: list[ErrorBar], seconds: dict[str, float], **more: Any) -> None:
-    """Into the summary of a finished run. more: blocks of the summary beside them."""
-    reported = {"seconds": seconds, "quantities": [_reported(bar) for bar in bars]}
-    add_to_summary(folder, {"error_bars": reported} | more)
+    """Write error bars into the summary of a finished run. more: blocks of the summary beside them."""
+    error_bars = {"seconds": seconds, "quantities": [_as_entry(bar) for bar in bars]}
+    add_to_summary(folder, {"error_bars": error_bars} | more)
 
 
-def _reported(bar: ErrorBar) -> dict[str, Any]:
+def _as_entry(bar: ErrorBar) -> dict[str, Any]:
     key_result = bar.key_result
-    reported: dict[str, Any] = {"stage": key_result.stage, "name": key_result.name, "unit": key_result.unit}
-    reported |= {"value": key_result.value, "bar": bar.bar, "by_source": dict(bar.by_source)}
-    reported |= {"reason": bar.reason} if bar.reason else {}
-    return reported | ({"of": key_result.of} if key_result.of else {})
+    entry: dict[str, Any] = {"stage": key_result.stage, "name": key_result.name, "unit": key_result.unit}
+    entry |= {"value": key_result.value, "bar": bar.bar, "by_source": dict(bar.by_source)}
+    entry |= {"reason": bar.reason} if bar.reason else {}
+    return entry | ({"of": key_result.of} if key_result.of else {})
 
 
 def print_bars(bars: list[ErrorBar], share: float, console: Console | None = None, what: str = "error bars") -> None:

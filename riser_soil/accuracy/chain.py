@@ -133,7 +133,7 @@ def bars_of(scene: Scene, run: RunValues, chain: Sequence[ComparisonRun]) -> lis
 def _cells(scene: Scene, run: RunValues) -> SoilOfRun:
     if not has_many_slices(scene):
         return SoilOfRun(scene.has_path_dependent_soil)
-    settled = {key: each.value for key, each in run.reported.items() if each.name == SETTLEMENT}
+    settled = {key: each.value for key, each in run.key_results.items() if each.name == SETTLEMENT}
     try:
         fine = settlements_on_fine_cells(scene, list(settled.values()))
     except (*OF_ALL, *OF_ONE):
@@ -142,19 +142,19 @@ def _cells(scene: Scene, run: RunValues) -> SoilOfRun:
     return SoilOfRun(scene.has_path_dependent_soil, dict(zip(settled, fine or (), strict=fine is not None)), moving)
 
 
-def run_values(reported: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:
+def run_values(recorded: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:
     """Values of a run whose peaks were gathered on the way. Peaks of the soil may be missing: the recorded values stand
     for them.
     """
-    known = {key: key_result.value for key, key_result in reported.items()}
+    known = {key: key_result.value for key, key_result in recorded.items()}
     of_nodes, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "smooth"))
     followed = {key: alone(value) for key, value in known.items()} | extremes_of(peaks)
-    return RunValues(reported, of_nodes, followed, smooth)
+    return RunValues(recorded, of_nodes, followed, smooth)
 
 
 def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
     """Values of key results by their keys; which: sampled, of_nodes, peaks or smooth."""
-    return {key: key_result.value for key, key_result in key_results(peaks.reported(which)).items()}
+    return {key: key_result.value for key, key_result in key_results(peaks.as_summary(which)).items()}
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> NextScene 
         return NextScene(source, factors[first.name], None, str(err))
     reached = first.fineness(other) / first.fineness(scene)
     if max(reached, 1.0 / reached) < LEAST_RATIO:
-        return NextScene(source, reached, None, f"{first.reported(scene)} can't be varied")
+        return NextScene(source, reached, None, f"{first.in_words(scene)} can't be varied")
     return NextScene(source, reached, other)
 
 
@@ -251,6 +251,6 @@ class PeakObserver(StatelessObserver):
         pass
 
     def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Instants:
-        seen = {line: reader.reported([reader.look(stepper)]) for line, reader in self._instants.items()}
+        seen = {line: reader.instant_of([reader.look(stepper)]) for line, reader in self._instants.items()}
         self.peaks.record([t], seen, soil, looked_at(self._hung, stepper.now))
         return seen

@@ -97,7 +97,7 @@ def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
 
     displaced = displacement(scene)
     if communicator_of(scene).rank == 0:
-        print(displaced.reported)
+        print(displaced.in_words)
     return at_offset(scene), more | {"vessel": displaced.summary}
 
 
@@ -112,5 +112,5 @@ def _hung(scene: Scene) -> tuple[Scene, dict[str, Any]]:
         found = hung(scene)
     assert found is not None
     if communicator_of(scene).rank == 0:
-        print(found.reported)
+        print(found.in_words)
     return found.scene, {"hang_off": found.summary}

@@ -81,7 +81,7 @@ class ComparisonRun:
 class RunValues:
     """The run's key results: as told, with peaks between nodes, between steps too, and without what rings."""
 
-    reported: Mapping[str, KeyResult]
+    key_results: Mapping[str, KeyResult]
     of_nodes: Values
     peaks: Extremes
     smooth: Values
@@ -119,7 +119,7 @@ def error_bars(
     run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, soil: SoilOfRun | None = None
 ) -> list[ErrorBar]:
     """Error bars of all key results. rigid: whether the ground is a rigid floor."""
-    return [_bar(each, run, chain, orders(each.name, rigid), soil) for each in run.reported.values()]
+    return [_bar(each, run, chain, orders(each.name, rigid), soil) for each in run.key_results.values()]
 
 
 def _safety(soil: SoilOfRun | None) -> Mapping[str, float]:
@@ -156,7 +156,7 @@ def _by_slice(
     """The soil's share, from a slice and a coarser run."""
     assert soil.fine is not None
     off = _of_sources(key_result, run, chain, order)[0]["soil"]
-    settled = run.reported.get(f"{key_result.stage}: {SETTLEMENT}")
+    settled = run.key_results.get(f"{key_result.stage}: {SETTLEMENT}")
     if settled is None or settled.key not in soil.fine:
         return BY_SLICE["soil"] * MOST_SEEN * off
     finer = abs(soil.fine[settled.key] - settled.value)
@@ -233,7 +233,7 @@ def extremes_of(peaks: RunPeaks) -> dict[str, Extreme]:
     stages = {(own.name, line): own for of_lines in peaks.stages for line, own in of_lines.items()}
     return {
         key: alone(each.value) if not each.figure else _followed(each, stages[each.stage, each.of])
-        for key, each in key_results(peaks.reported("peaks")).items()
+        for key, each in key_results(peaks.as_summary("peaks")).items()
     }
 
 

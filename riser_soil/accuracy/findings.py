@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
 
-from riser_soil.accuracy.assessment import AssessedQuantity, Outcomes, assess, reported, worst
+from riser_soil.accuracy.assessment import AssessedQuantity, Outcomes, assess, with_known_error, worst
 from riser_soil.accuracy.refinements import RATIOS, Refinements
 from riser_soil.accuracy.study_points import POINTS, Factors, PointOutcome, StudyPoint, compute
 
@@ -145,7 +145,7 @@ class Study:
 
     def _tell(self, outcome: PointOutcome, before: bool) -> None:
         how = f"{outcome.cpu:.3g} s" if outcome.done else f"failed: {outcome.reason}"
-        self.says(f"{self.refinements.reported(outcome.factors)}: {how}{', computed before' if before else ''}")
+        self.says(f"{self.refinements.in_words(outcome.factors)}: {how}{', computed before' if before else ''}")
 
     @property
     def scene(self) -> PointOutcome:
@@ -157,7 +157,7 @@ class Study:
 
     def judged(self) -> dict[str, AssessedQuantity]:
         """Those whose errors can be told."""
-        return reported(self.quantities())
+        return with_known_error(self.quantities())
 
     def foretold(self, target: float) -> CostAndError:
         return CostAndError(self.refinements, self.outcomes, self.judged(), target)

@@ -29,7 +29,7 @@ MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
 
 SETTLEMENT, TOUCHDOWN = "soil settlement", "touchdown arc"  # the latter least or largest in stages that move
 
-Reported = Mapping[str, Any]
+SummaryPart = Mapping[str, Any]
 Known = tuple[str, str, float, str, str]
 
 
@@ -72,12 +72,12 @@ class KeyResult:
         return abs(difference) / self.scale if self.scale > 0.0 else math.inf
 
 
-def key_results(summary: Reported) -> dict[str, KeyResult]:
+def key_results(summary: SummaryPart) -> dict[str, KeyResult]:
     """Key results by their keys, stage by stage, of a summary.json's content; those that it has."""
     return {each.key: each for stage in summary["stages"] for each in _of_whole_stage(stage)}
 
 
-def _of_whole_stage(stage: Reported) -> Iterator[KeyResult]:
+def _of_whole_stage(stage: SummaryPart) -> Iterator[KeyResult]:
     lines = {line: own for line, own in _by_line(stage).items() if own["final"] is not None}
     least = OF_ALL_LINES * max((_largest_force(list(_values(own))) for own in lines.values()), default=0.0)
     for line, own in lines.items():
@@ -87,7 +87,7 @@ def _of_whole_stage(stage: Reported) -> Iterator[KeyResult]:
         yield from _of_body(stage, name, body["position"], length)
 
 
-def _of_body(stage: Reported, body: str, position: Reported, length: float) -> Iterator[KeyResult]:
+def _of_body(stage: SummaryPart, body: str, position: SummaryPart, length: float) -> Iterator[KeyResult]:
     """Where it is, at the end of a static stage, else at most and at least; length: of the floor [m]."""
     sides = {"": "final"} if stage["kind"] == "static" else {"least ": "min", "largest ": "max"}
     for words, key in sides.items():
@@ -95,12 +95,12 @@ def _of_body(stage: Reported, body: str, position: Reported, length: float) -> I
             yield KeyResult(stage["name"], f"{words}{axis}", "m", value, length, of=body)
 
 
-def _by_line(stage: Reported) -> dict[str, Reported]:
+def _by_line(stage: SummaryPart) -> dict[str, SummaryPart]:
     """A stage as each of several lines has it, by name; that of the only one by ""."""
     return {line: {**stage, **own} for line, own in stage.get("lines", {"": {}}).items()}
 
 
-def _of_stage(stage: Reported, line: str, least: float) -> list[KeyResult]:
+def _of_stage(stage: SummaryPart, line: str, least: float) -> list[KeyResult]:
     """least: what its largest force counts as, at least [N]."""
     values, length = list(_values(stage)), _span(stage["final"])
     force = max(_largest_force(values), least)
@@ -120,12 +120,12 @@ def _largest_force(values: Sequence[Known]) -> float:
     return max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
 
 
-def _span(final: Reported) -> float:
+def _span(final: SummaryPart) -> float:
     """Distance of a line's ends [m]."""
     return math.dist(final["start"]["position"], final["end"]["position"])
 
 
-def _values(stage: Reported) -> Iterator[Known]:
+def _values(stage: SummaryPart) -> Iterator[Known]:
     """Name, unit, value, figure, and min or max of the known ones."""
     upper = upper_end(stage["final"])
     for name, unit, path, which in (
@@ -140,7 +140,7 @@ def _values(stage: Reported) -> Iterator[Known]:
     yield from _contact(stage)
 
 
-def _contact(stage: Reported) -> Iterator[Known]:
+def _contact(stage: SummaryPart) -> Iterator[Known]:
     """Those of a riser that touches; one that never does has no touchdown point, and a contact force of 0."""
     if stage["kind"] == "static":
         yield from _known(TOUCHDOWN, "m", _value(stage, ("touchdown_arc",), "max"), "touchdown_arc", "max")
@@ -159,7 +159,7 @@ def _known(name: str, unit: str, value: float | None, figure: str, which: str) -
         yield name, unit, value, figure, which
 
 
-def _value(stage: Reported, path: tuple[str, ...], which: str) -> float | None:
+def _value(stage: SummaryPart, path: tuple[str, ...], which: str) -> float | None:
     """A figure at the end of a static stage, or an extreme, min or max, of another; None where there is none."""
     static = stage["kind"] == "static"
     found: Any = stage["final" if static else "extremes"]

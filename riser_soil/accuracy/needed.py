@@ -56,7 +56,7 @@ def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, fact
     runs may agree by chance, and sources hide one another, a part of each stays. Of the soil it is all.
     """
     known = {bar.key_result.key: bar for bar in bars}
-    return [_expected(known.get(key), before, found, factors, key) for key in found.reported]
+    return [_expected(known.get(key), before, found, factors, key) for key in found.key_results]
 
 
 def doubtful(
@@ -102,7 +102,7 @@ def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
 
 
 def _expected(bar: ErrorBar | None, before: RunValues, found: RunValues, factors: Factors, key: str) -> ErrorBar:
-    key_result = found.reported[key]
+    key_result = found.key_results[key]
     if bar is None or bar.bar is None or key not in before.peaks:
         return ErrorBar(key_result, None, {}, (bar and bar.reason) or "the run before does not have it")
     own = {source: SAFETY[source] * gap for source, gap in gaps(key_result, found).items()}
@@ -120,7 +120,7 @@ def _by_the_two_runs(
     shares, finer = {}, [source for source, ratio in factors.items() if ratio > 1.0]
     for source in finer:
         if source in left and source != "soil":
-            reported = SAFETY[source] * off / (factors[source] ** order[source] - 1.0)
-            reported = max(reported, BY_CHANCE * left[source])
-            shares[source] = reported if len(finer) == 1 else min(left[source], reported)
+            share = SAFETY[source] * off / (factors[source] ** order[source] - 1.0)
+            share = max(share, BY_CHANCE * left[source])
+            shares[source] = share if len(finer) == 1 else min(left[source], share)
     return shares

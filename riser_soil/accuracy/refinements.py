@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from riser_soil.accuracy.settings import Setting, settings_reported, varied
+from riser_soil.accuracy.settings import Setting, settings_in_words, varied
 from riser_soil.accuracy.study_points import Factors
 from riser_soil.scene.scene import Scene
 
@@ -59,9 +59,9 @@ class Refinements:
             scene = varied(scene, setting, factor)
         return scene
 
-    def reported(self, point: Factors) -> str:
+    def in_words(self, point: Factors) -> str:
         """The settings in words."""
-        return settings_reported(self.scene_at(point), self.settings)
+        return settings_in_words(self.scene_at(point), self.settings)
 
     def fineness(self, number: int, factor: float) -> float:
         """Fineness at a level over that of the scene, after counts are rounded."""

@@ -51,7 +51,7 @@ def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     scene, seen, peaks = _computed(scene, comm)
     if _excess(seen, accuracy, comm) > SETTLED:
         scene, _, peaks = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
-    values = run_values(key_results(peaks.reported("sampled")), peaks) if comm.rank == 0 else None
+    values = run_values(key_results(peaks.as_summary("sampled")), peaks) if comm.rank == 0 else None
     return TriedSetting(scene, values, measured(scene, values, comm, LONGER))
 
 

@@ -35,7 +35,7 @@ class Setting:
 
     there: whether a scene has it. turned: the scene with it finer by a factor. fineness: of the scene in it, in units
     of its own (elements, 1/s, 1/m, N/m2); its ratio between two scenes is what was reached where counts are rounded.
-    reported: the setting in words.
+    in_words: the setting in words.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Setting:
     there: Callable[[Scene], bool]
     turned: Callable[[Scene, float], Scene]
     fineness: Callable[[Scene], float]
-    reported: Callable[[Scene], str]
+    in_words: Callable[[Scene], str]
 
 
 def settings_of(scene: Scene) -> tuple[Setting, ...]:
@@ -64,9 +64,9 @@ def varied(scene: Scene, setting: Setting, factor: float) -> Scene:
     return turned
 
 
-def settings_reported(scene: Scene, settings: Iterable[Setting] | None = None) -> str:
+def settings_in_words(scene: Scene, settings: Iterable[Setting] | None = None) -> str:
     """Settings of the scene in words; settings: those to tell, all that it has by default."""
-    return ", ".join(setting.reported(scene) for setting in (settings_of(scene) if settings is None else settings))
+    return ", ".join(setting.in_words(scene) for setting in (settings_of(scene) if settings is None else settings))
 
 
 def resolved(scene: Scene) -> Scene:
@@ -252,7 +252,7 @@ def _steps_per_time(scene: Scene) -> float:
     return float(stage.tolerance ** (-1.0 / LOCAL_ORDER))
 
 
-def _steps_reported(scene: Scene) -> str:
+def _steps_in_words(scene: Scene) -> str:
     stage = _first_steps(scene)
     automatic = stage.time_step == "auto"
     return f"time_step auto, tolerance {stage.tolerance:.4g} m" if automatic else f"time_step {stage.time_step:.4g} s"
@@ -263,7 +263,7 @@ SETTINGS = (
         "elements", "elements of the riser", lambda scene: True, _finer_elements,
         lambda scene: float(_elements(scene)), lambda scene: f"{_elements(scene)} elements",
     ),
-    Setting("time_step", "time step", _has_steps, _shorter_steps, _steps_per_time, _steps_reported),
+    Setting("time_step", "time step", _has_steps, _shorter_steps, _steps_per_time, _steps_in_words),
     Setting(
         "soil_mesh", "mesh of the soil", _has_soil_mesh, _finer_soil,
         lambda scene: 1.0 / _across(scene), lambda scene: f"soil cells of {_across(scene):.4g} m across the riser",

@@ -26,11 +26,11 @@ TABLE, NUMBERS, PAGE = "study.csv", "study.json", "study.html"
 
 def write_files(study: Study) -> None:
     """All three together."""
-    reported = as_dict(study)
+    numbers = as_dict(study)
     with written_together(study.folder, (TABLE, NUMBERS, PAGE)) as made:
         _write_table(study, made / TABLE)
-        (made / NUMBERS).write_text(json.dumps(plain_json(reported), indent=1) + "\n", encoding="utf-8")
-        (made / PAGE).write_text(page(study, reported), encoding="utf-8")
+        (made / NUMBERS).write_text(json.dumps(plain_json(numbers), indent=1) + "\n", encoding="utf-8")
+        (made / PAGE).write_text(page(study, numbers), encoding="utf-8")
 
 
 def as_dict(study: Study) -> dict[str, Any]:
@@ -86,7 +86,7 @@ def _point(study: Study, outcome: PointOutcome, on_front: bool) -> dict[str, Any
     names = [setting.name for setting in study.refinements.settings]
     return {
         "factors": dict(zip(names, outcome.factors, strict=True)),
-        "settings": study.refinements.reported(outcome.factors),
+        "settings": study.refinements.in_words(outcome.factors),
         "status": outcome.status,
         "reason": outcome.reason,
         "cpu": outcome.cpu,
@@ -109,8 +109,8 @@ def _rows(study: Study) -> Iterator[list[str]]:
     quantities, front = study.quantities(), study.front()
     names = [f"{setting.name} [times as fine]" for setting in study.refinements.settings]
     values = [f"{key} [{each.scene.unit}]" for key, each in quantities.items()]
-    reported = ["settings", "status", "reason", "cpu [s]", "timed alone", "steps", "largest error [-]", "in", "pareto"]
-    yield [*names, *reported, *values, *(f"error of {key} [-]" for key in quantities)]
+    headings = ["settings", "status", "reason", "cpu [s]", "timed alone", "steps", "largest error [-]", "in", "pareto"]
+    yield [*names, *headings, *values, *(f"error of {key} [-]" for key in quantities)]
     for outcome in _in_order(study):
         point = _point(study, outcome, outcome in front)
         cells = [point[name] for name in ("settings", "status", "reason", "cpu", "timed_alone", "steps", "error", "in")]

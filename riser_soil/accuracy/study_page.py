@@ -24,29 +24,29 @@ img { max-width: 100% }
 Quantities = dict[str, AssessedQuantity]
 
 
-def page(study: Study, reported: Mapping[str, Any]) -> str:
-    """told: the numbers of study.json."""
-    machine = reported["machine"]
+def page(study: Study, content: Mapping[str, Any]) -> str:
+    """told: the content of study.json."""
+    machine = content["machine"]
     made = (
-        f"riser-soil {reported['version']}, {reported['date']}; {machine['cores']} cores ({machine['processor']}), "
+        f"riser-soil {content['version']}, {content['date']}; {machine['cores']} cores ({machine['processor']}), "
         "Python "
         f"{machine['python']}. Seconds are processor time of one core, without start-up."
     )
-    title = f"Accuracy and cost of “{reported['title']}”"
+    title = f"Accuracy and cost of “{content['title']}”"
     return "\n".join(
         [
             '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
             f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>",
             f"<h1>{escape(title)}</h1>",
-            *_list(reported["words"]),
-            _image(study, reported),
+            *_list(content["words"]),
+            _image(study, content),
             '<p class="note">Error: the largest relative error among the key results, each line with one setting '
             "turned and the others as in the scene. Below the dotted line errors are less than what the reference is "
             "known to. Hollow points ran beside others.</p>",
             "<h2>Key results</h2>",
-            _quantities(reported),
+            _quantities(content),
             "<h2>Points</h2>",
-            _points(reported),
+            _points(content),
             f'<p class="note">{escape(made)}</p></body></html>',
             "",
         ]
@@ -57,31 +57,31 @@ def _list(sentences: Iterable[str]) -> list[str]:
     return ["<ul>", *(f"<li>{escape(each[0].upper() + each[1:])}.</li>" for each in sentences), "</ul>"]
 
 
-def _image(study: Study, reported: Mapping[str, Any]) -> str:
+def _image(study: Study, content: Mapping[str, Any]) -> str:
     """Where no quantity can be judged, there are no errors to plot."""
-    if not any(each["judged"] for each in reported["quantities"].values()):
+    if not any(each["judged"] for each in content["quantities"].values()):
         return ""
-    svg = base64.b64encode(drawn_work_precision(plotted(study, reported)).encode()).decode()
+    svg = base64.b64encode(drawn_work_precision(plotted(study, content)).encode()).decode()
     return f'<img alt="Error against processor time" src="data:image/svg+xml;base64,{svg}">'
 
 
-def plotted(study: Study, reported: Mapping[str, Any]) -> WorkPrecision:
+def plotted(study: Study, content: Mapping[str, Any]) -> WorkPrecision:
     """What the plot shows; failed points have no place in it."""
     refinements = study.refinements
-    places = {tuple(each["factors"].values()): each for each in reported["points"] if each["status"] == 0}
+    places = {tuple(each["factors"].values()): each for each in content["points"] if each["status"] == 0}
     lines, seen = [], set()
     for number, setting in enumerate(refinements.settings):
         points = [point for point in refinements.along(number) if point in places]
         seen.update(points)
         found = [places[point] for point in points]
-        orders = [each["knobs"][setting.name]["order"] for each in reported["quantities"].values() if each["judged"]]
+        orders = [each["knobs"][setting.name]["order"] for each in content["quantities"].values() if each["judged"]]
         lines.append(
             SettingLine(setting.words, _order_s([each for each in orders if each is not None]), *_places(found))
         )
     others = [each for point, each in places.items() if point not in seen]
-    front = [places[tuple(point)] for point in reported["pareto_front"]]
+    front = [places[tuple(point)] for point in content["pareto_front"]]
     scene = places[refinements.base]
-    doubts = [each["uncertainty"] / each["scale"] for each in reported["quantities"].values() if each["judged"]]
+    doubts = [each["uncertainty"] / each["scale"] for each in content["quantities"].values() if each["judged"]]
     here, doubt = (scene["cpu"], scene["error"]), max(doubts, default=0.0)
     return WorkPrecision(lines, *_places(others)[:2], *_places(front)[:2], here, doubt, TARGETS)
 
@@ -98,7 +98,7 @@ def _order_s(orders: Sequence[float]) -> str:
     return f"order {low:.1f}" if high - low < 0.1 else f"order {low:.1f} to {high:.1f}"
 
 
-def _quantities(reported: Mapping[str, Any]) -> str:
+def _quantities(content: Mapping[str, Any]) -> str:
     head = [
         "quantity",
         "scene",
@@ -106,10 +106,10 @@ def _quantities(reported: Mapping[str, Any]) -> str:
         "±",
         "unit",
         "error",
-        *(f"by {name}, order" for name in reported["knobs"]),
+        *(f"by {name}, order" for name in content["knobs"]),
     ]
     rows = []
-    for key, each in reported["quantities"].items():
+    for key, each in content["quantities"].items():
         shares = (f"{percent(setting['share'])}, {_order(setting['order'])}" for setting in each["knobs"].values())
         error = percent(each["error"]) if each["judged"] else "unknown"
         numbers = (f"{each[name]:.5g}" for name in ("value", "reference"))
@@ -121,7 +121,7 @@ def _order(order: float | None) -> str:
     return "–" if order is None else f"{order:.1f}"
 
 
-def _points(reported: Mapping[str, Any]) -> str:
+def _points(content: Mapping[str, Any]) -> str:
     head = ["settings", "seconds", "steps", "largest error", "in", "Pareto front", "failed"]
     rows = [
         [
@@ -133,7 +133,7 @@ def _points(reported: Mapping[str, Any]) -> str:
             "yes" if each["pareto"] else "",
             each["reason"],
         ]
-        for each in reported["points"]
+        for each in content["points"]
     ]
     return _table(head, rows)
 
@@ -159,7 +159,7 @@ def words(study: Study) -> list[str]:
 
 def _moved(study: Study) -> Iterator[str]:
     if study.failure:
-        settings = study.refinements.reported(study.refinements.base)
+        settings = study.refinements.in_words(study.refinements.base)
         yield f"the scene itself fails: {study.failure}; the study is around finer settings: {settings}"
 
 
@@ -216,7 +216,7 @@ def _cheapest(study: Study, target: float) -> Iterator[str]:
         return
     best = found if found is not None else study.front()[-1]
     error, key = study.error(best)
-    settings, off = study.refinements.reported(best.factors), _off(quantities, error, key)
+    settings, off = study.refinements.in_words(best.factors), _off(quantities, error, key)
     where = "" if len(quantities) == len(study.quantities()) else f" in {len(quantities)} quantities"
     if found is None:
         yield f"{percent(target)} is reached{where} by no setting that was run; the best, {settings}, is {off}"

@@ -79,14 +79,14 @@ class StudyPoint:
     def found(self) -> PointOutcome | None:
         """What became of it in an earlier study; None where it has not come to an end."""
         try:
-            reported: dict[str, Any] = json.loads((self.folder / OUTCOME).read_text(encoding="utf-8"))
+            outcome: dict[str, Any] = json.loads((self.folder / OUTCOME).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
-        if reported["status"] not in LASTING:
+        if outcome["status"] not in LASTING:
             return None
-        known = {key: KeyResult(**each) for key, each in reported.pop("headlines").items()}
-        given = {"factors": self.factors, "key_results": known, "cpu": _number(reported["cpu"])}
-        return PointOutcome(**reported | given)
+        known = {key: KeyResult(**each) for key, each in outcome.pop("headlines").items()}
+        given = {"factors": self.factors, "key_results": known, "cpu": _number(outcome["cpu"])}
+        return PointOutcome(**outcome | given)
 
     def start(self) -> subprocess.Popen[bytes]:
         """The process that computes it; what it says goes to a file in its folder."""
@@ -109,15 +109,15 @@ class StudyPoint:
         outcome = PointOutcome(self.factors, status, _line(cost["reason"]), cost["cpu"], alone, steps, known)
         for name in set(NAMES) - {SUMMARY, RESOLVED}:
             (self.folder / name).unlink(missing_ok=True)
-        reported = asdict(outcome) | {"cpu": None if math.isnan(outcome.cpu) else outcome.cpu}
-        reported["headlines"] = reported.pop("key_results")  # as the file has it
-        (self.folder / OUTCOME).write_text(json.dumps(reported, indent=1), encoding="utf-8")
+        content = asdict(outcome) | {"cpu": None if math.isnan(outcome.cpu) else outcome.cpu}
+        content["headlines"] = content.pop("key_results")  # as the file has it
+        (self.folder / OUTCOME).write_text(json.dumps(content, indent=1), encoding="utf-8")
         return outcome
 
     def _cost(self, status: int) -> dict[str, Any]:
         try:
-            reported: dict[str, Any] = json.loads((self.folder / COST).read_text(encoding="utf-8"))
-            return reported
+            cost: dict[str, Any] = json.loads((self.folder / COST).read_text(encoding="utf-8"))
+            return cost
         except (OSError, ValueError):
             return {"reason": self._last_words(status), "cpu": math.nan}
 
@@ -129,8 +129,8 @@ class StudyPoint:
 
     def _summary(self) -> dict[str, Any]:
         try:
-            reported: dict[str, Any] = json.loads((self.folder / SUMMARY).read_text(encoding="utf-8"))
-            return reported
+            summary: dict[str, Any] = json.loads((self.folder / SUMMARY).read_text(encoding="utf-8"))
+            return summary
         except (OSError, ValueError):
             return {"stages": []}
 
@@ -149,15 +149,13 @@ def _number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-Reported = Callable[[PointOutcome, bool], None]
+OnEnd = Callable[[PointOutcome, bool], None]
+"""Called as each point ends, with its outcome and whether that was there before."""
 
 
-"""Is told of each point as it ends, and whether it was there before."""
-
-
-def compute(points: Sequence[StudyPoint], jobs: int, reported: Reported) -> list[PointOutcome]:
+def compute(points: Sequence[StudyPoint], jobs: int, on_end: OnEnd) -> list[PointOutcome]:
     """What became of the points, `jobs` of them at a time. No process outlives the call, however it ends."""
-    workers = _Workers(jobs, reported)
+    workers = _Workers(jobs, on_end)
     pool = ThreadPoolExecutor(max_workers=jobs)
     try:
         return list(pool.map(workers.outcome, points))
@@ -169,15 +167,15 @@ def compute(points: Sequence[StudyPoint], jobs: int, reported: Reported) -> list
 class _Workers:
     """Processes that are computing points."""
 
-    def __init__(self, jobs: int, reported: Reported) -> None:
-        self._alone, self._reported = jobs == 1, reported
+    def __init__(self, jobs: int, on_end: OnEnd) -> None:
+        self._alone, self._on_end = jobs == 1, on_end
         self._running: set[subprocess.Popen[bytes]] = set()
         self._lock, self._stopped = threading.Lock(), False
 
     def outcome(self, point: StudyPoint) -> PointOutcome:
         known = point.found()
         outcome = known if known is not None else self._computed(point)
-        self._reported(outcome, known is not None)
+        self._on_end(outcome, known is not None)
         return outcome
 
     def stop(self) -> None:

@@ -15,7 +15,7 @@ from riser_soil.accuracy.barred_run import LEFT, print_bars, values_of_run, writ
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, times_as_long, too_dear
 from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measured, trial
-from riser_soil.accuracy.settings import settings_of, settings_reported
+from riser_soil.accuracy.settings import settings_in_words, settings_of
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
 from riser_soil.core import compiled
@@ -145,16 +145,16 @@ def _measured(scene: Scene, values: RunValues | None, folder: Path, comm: Any) -
 def _tell(last: TriedSetting, accuracy: float, comm: Any) -> None:
     if comm.rank == 0:
         off, key = largest(last.bars)
-        print(f"accuracy {accuracy:.2%}: with {settings_reported(last.scene)} it is {off:.2%} ({key})")
+        print(f"accuracy {accuracy:.2%}: with {settings_in_words(last.scene)} it is {off:.2%} ({key})")
 
 
 def _report(last: TriedSetting, accuracy: float, folder: Path, seconds: float) -> None:
     """seconds: of everything."""
     off, key = largest(last.bars)
-    reported = {"asked": accuracy, "reached": off <= accuracy, "largest_error": off, "of": key}
-    settings = {setting.name: setting.reported(last.scene) for setting in settings_of(last.scene)}
+    outcome = {"asked": accuracy, "reached": off <= accuracy, "largest_error": off, "of": key}
+    settings = {setting.name: setting.in_words(last.scene) for setting in settings_of(last.scene)}
     taken = {"run": last.seconds, "search": seconds - last.seconds}
-    write_bars(folder, last.bars, taken, accuracy=reported | {"settings": settings})
+    write_bars(folder, last.bars, taken, accuracy=outcome | {"settings": settings})
     print_bars(last.bars, taken["search"] / taken["run"], what="the search for the accuracy")
 
 
@@ -162,7 +162,7 @@ def _missed(last: TriedSetting, accuracy: float, folder: Path, limit: str) -> st
     off, key = largest(last.bars)
     bar = next(bar for bar in last.bars if bar.key_result.key == key)
     return (
-        f"accuracy: {accuracy:.2%} was not reached: with {settings_reported(last.scene)}, {_limits(bar)} leaves {key} "
+        f"accuracy: {accuracy:.2%} was not reached: with {settings_in_words(last.scene)}, {_limits(bar)} leaves {key} "
         "at "
         f"{off:.2%}{limit}; {folder} has that run, with its error bars: ask for less"
     )

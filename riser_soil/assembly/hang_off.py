@@ -95,20 +95,20 @@ class HungEnd:
         return (NEAREST * low, math.inf) if getattr(self.riser, self.other).jointed else (low, high)
 
     @property
-    def reported(self) -> str:
+    def request(self) -> str:
         """What is asked for, in words."""
         what = "a hang-off angle" if self.asked.angle is not None else "a top tension"
         return f"{self.line + ': ' if self.line else ''}{what} of {self.asked.asked:g} {self.asked.unit}"
 
 
-def reported(hung: HungEnd, value: float) -> str:
+def in_words(hung: HungEnd, value: float) -> str:
     """What is asked for, and the value [m] with its place, in words."""
     if hung.asked.by == "length":
-        return f"{hung.reported}: a length of {value:.6g} m of segments.{hung.segment}"
+        return f"{hung.request}: a length of {value:.6g} m of segments.{hung.segment}"
     name = hung.name if hung.asked.by == "layback" else hung.other
     riser = _riser(with_values([hung], [value]), hung.line)
     place = ", ".join(f"{x:.6g}" for x in _position(riser, name))
-    return f"{hung.reported}: a layback of {value:.6g} m, the {name} at [{place}],"
+    return f"{hung.request}: a layback of {value:.6g} m, the {name} at [{place}],"
 
 
 def hung_ends(scene: Scene) -> list[HungEnd]:
@@ -157,7 +157,7 @@ def settled(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
     scene = with_values(ends, values)
     for problem in all_conflicts(scene):
         wrong = message(problem, scene.model_dump(by_alias=True))
-        found = " and ".join(reported(hung, value) for hung, value in zip(ends, values, strict=True))
+        found = " and ".join(in_words(hung, value) for hung, value in zip(ends, values, strict=True))
         raise SceneError(f"{ends[0].path}: {found} but then {wrong}")
     return scene
 
@@ -187,7 +187,7 @@ def by_cable(hung: HungEnd, asked: float) -> float:
             return float(brentq(lambda x: _seen(hung, x) - asked, *between, xtol=close, rtol=CLOSE))
     what = "length" if hung.asked.by == "length" else "layback"
     raise SceneError(
-        f"{hung.path}: {hung.reported} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
+        f"{hung.path}: {hung.request} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
         f"{max(values):.4g} m, it has {min(seen):.4g} to {max(seen):.4g} {hung.asked.unit}; ask for what lies between, "
         "or change the segments or the height"
     )

@@ -79,17 +79,16 @@ def fit(
     model: Model,
     data: Array,
     parameters: tuple[FitParameter, ...],
-    reported: Callable[[int, float, Mapping[str, float]], None] = lambda *_: None,
+    on_run: Callable[[int, float, Mapping[str, float]], None] = lambda *_: None,
     *,
     relative: bool = False,
 ) -> Fit:
-    """The parameters whose model is nearest to data (n,). reported: of runs so far, misfit and parameters, at each
-    step.
+    """The parameters whose model is nearest to data (n,).
 
-    relative: errors grow with the data, those below LEAST_SHARE of the largest excepted; else they are of one size.
+    on_run: called at each step with the number of runs so far, the misfit and the parameters. relative: errors grow with the data, those below LEAST_SHARE of the largest excepted; else they are of one size.
     """
     sizes = error_sizes(data) if relative else np.full(len(data), np.sqrt(np.mean(data**2)))
-    search = _Search(model, data, sizes, parameters, reported)
+    search = _Search(model, data, sizes, parameters, on_run)
     first = np.array([p.scaled(p.guess) for p in parameters])
     low, high = np.array([p.scaled(p.low) for p in parameters]), np.array([p.scaled(p.high) for p in parameters])
     found = least_squares(
@@ -144,14 +143,14 @@ class _Search:
         data: Array,
         sizes: Array,
         parameters: tuple[FitParameter, ...],
-        reported: Callable[[int, float, Mapping[str, float]], None],
+        on_run: Callable[[int, float, Mapping[str, float]], None],
     ) -> None:
-        self._model, self._data, self._sizes, self._parameters, self._reported = (
+        self._model, self._data, self._sizes, self._parameters, self._on_run = (
             model,
             data,
             sizes,
             parameters,
-            reported,
+            on_run,
         )
         self.runs = 0
         self._last: tuple[Array, Array] | None = None
@@ -170,7 +169,7 @@ class _Search:
 
     def jacobian(self, x: Array) -> Array:
         here = self.residual(x)
-        self._reported(self.runs, float(np.sqrt(np.mean((self._sizes * here) ** 2))), self._named(x))
+        self._on_run(self.runs, float(np.sqrt(np.mean((self._sizes * here) ** 2))), self._named(x))
         columns = []
         for n, p in enumerate(self._parameters):
             inwards = 1.0 if x[n] + DIFFERENCE <= p.scaled(p.high) else -1.0

@@ -34,8 +34,8 @@ def refuse_folder(folder: Path, force: bool) -> None:
 
 def printed(runs: int, misfit: float, parameters: Mapping[str, float]) -> None:
     """A step of the search."""
-    reported = ", ".join(f"{name} = {value:.5g}" for name, value in parameters.items())
-    print(f"{runs:3d} runs, misfit {misfit:.4g} N/m: {reported}", flush=True)
+    values = ", ".join(f"{name} = {value:.5g}" for name, value in parameters.items())
+    print(f"{runs:3d} runs, misfit {misfit:.4g} N/m: {values}", flush=True)
 
 
 def result_lines(fit: Fit) -> list[str]:

@@ -61,18 +61,18 @@ def is_seed(path: str) -> bool:
     return path.rpartition(".")[2] == SEED
 
 
-def axes_of(file: Path, reported: Cases, base: Document) -> list[CaseAxis]:
+def axes_of(file: Path, case_file: Cases, base: Document) -> list[CaseAxis]:
     """In their order, the last one's values changing first. base: the scene's, with what all cases have.
 
     Raises SceneError for what the base scene can't have, and for a path that two axes set.
     """
-    short = _short_names([*reported.product, *(path for row in reported.table for path in row.values)])
-    found = [*_of_table(reported, short), *_of_waves(file, reported, base)]
-    if reported.offsets is not None:
-        found.append(_of_offsets(file, reported.offsets, base))
-    if reported.soil:
-        found.append(CaseAxis("soil", [Point(name, name, values) for name, values in reported.soil.items()]))
-    found += [CaseAxis(path, _points(path, values, short)) for path, values in reported.product.items()]
+    short = _short_names([*case_file.product, *(path for row in case_file.table for path in row.values)])
+    found = [*_of_table(case_file, short), *_of_waves(file, case_file, base)]
+    if case_file.offsets is not None:
+        found.append(_of_offsets(file, case_file.offsets, base))
+    if case_file.soil:
+        found.append(CaseAxis("soil", [Point(name, name, values) for name, values in case_file.soil.items()]))
+    found += [CaseAxis(path, _points(path, values, short)) for path, values in case_file.product.items()]
     found.sort(key=lambda axis: axis.name == SEED)  # it changes first
     _refuse_twice(file, found)
     return found
@@ -84,9 +84,9 @@ def _refuse_twice(file: Path, axes: Sequence[CaseAxis]) -> None:
             raise SceneError(f"{file}: {path}: is set {times} times in one case; let one key alone set it")
 
 
-def _of_table(reported: Cases, short: Mapping[str, str]) -> list[CaseAxis]:
+def _of_table(case_file: Cases, short: Mapping[str, str]) -> list[CaseAxis]:
     points = []
-    for row in reported.table:
+    for row in case_file.table:
         name = row.name or _name(row.values, short)
         others = {path: value for path, value in row.values.items() if not is_seed(path)}
         in_common = name if len(others) == len(row.values) else _name(others, short)
@@ -94,17 +94,17 @@ def _of_table(reported: Cases, short: Mapping[str, str]) -> list[CaseAxis]:
     return [CaseAxis("table", points)] if points else []
 
 
-def _of_waves(file: Path, reported: Cases, base: Document) -> Iterator[CaseAxis]:
-    if reported.sea_states:
+def _of_waves(file: Path, case_file: Cases, base: Document) -> Iterator[CaseAxis]:
+    if case_file.sea_states:
         waves = _Waves(file, "sea_states", base)
-        states = {name: {waves.path(key): v for key, v in own.items()} for name, own in reported.sea_states.items()}
+        states = {name: {waves.path(key): v for key, v in own.items()} for name, own in case_file.sea_states.items()}
         yield CaseAxis("sea state", [Point(name, name, values) for name, values in states.items()])
-    if reported.directions:
+    if case_file.directions:
         path = _Waves(file, "directions", base).path("direction_deg")
-        yield CaseAxis("direction", [Point(f"direction={x:g}", f"{x:g}", {path: x}) for x in reported.directions])
-    if reported.seeds is not None:
+        yield CaseAxis("direction", [Point(f"direction={x:g}", f"{x:g}", {path: x}) for x in case_file.directions])
+    if case_file.seeds is not None:
         path = _Waves(file, "seeds", base).path(SEED)
-        numbers = range(1, reported.seeds + 1) if isinstance(reported.seeds, int) else reported.seeds
+        numbers = range(1, case_file.seeds + 1) if isinstance(case_file.seeds, int) else case_file.seeds
         yield CaseAxis(SEED, [Point(f"seed={n}", str(n), {path: n}) for n in numbers])
 
 

@@ -56,9 +56,9 @@ def _rows(table: CaseTable) -> Iterator[list[str]]:
     for n, case in enumerate(table.cases):
         outcome = table.outcomes[case.name]
         given = [_given(case.values[path]) if path in case.values else "" for path in table.paths]
-        reported = [str(outcome.status), outcome.reason, f"{outcome.seconds:.3g}", outcome.machine]
+        ending = [str(outcome.status), outcome.reason, f"{outcome.seconds:.3g}", outcome.machine]
         labels = [case.labels.get(axis, "") for axis in table.axes]
-        yield [case.name, *labels, *given, *reported, *(_number(column[n]) for column in columns)]
+        yield [case.name, *labels, *given, *ending, *(_number(column[n]) for column in columns)]
 
 
 def _extremes(table: CaseTable) -> Iterator[list[str]]:
@@ -106,9 +106,9 @@ def dataset(table: CaseTable) -> xarray.Dataset:
         given = _given_values([case.values.get(path) for case in table.cases])
         variables[_identifier(f"set_{path}")] = ("case", given, {"long_name": path})
     for key, value in table.quantities.items():
-        reported = {"units": value.unit.replace(".", " "), "long_name": value.name, "stage": value.stage}
-        reported |= {"sign_convention": value.sign} if value.sign else {}
-        variables[_identifier(key)] = ("case", table.column(key), reported)
+        attributes = {"units": value.unit.replace(".", " "), "long_name": value.name, "stage": value.stage}
+        attributes |= {"sign_convention": value.sign} if value.sign else {}
+        variables[_identifier(key)] = ("case", table.column(key), attributes)
     about = {"title": table.title, "source": f"riser_soil {__version__}", "Conventions": "CF-1.11"}
     return xarray.Dataset(variables, {"case": ("case", _texts(names), {"long_name": "name of the case"})}, about)
 

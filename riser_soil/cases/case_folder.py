@@ -47,8 +47,8 @@ class Outcome:
         return self.status == 0
 
     @classmethod
-    def of(cls, reported: Mapping[str, Any]) -> Self:
-        return cls(**{name: reported[name] for name in cls.__dataclass_fields__})
+    def of(cls, content: Mapping[str, Any]) -> Self:
+        return cls(**{name: content[name] for name in cls.__dataclass_fields__})
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -62,10 +62,10 @@ def place(folder: Path, name: str) -> Path:
 def found(folder: Path, name: str, key: str) -> Outcome | None:
     """The outcome of a case whose results are there; None where they are not, or those of another scene."""
     try:
-        reported = Outcome.of(json.loads((place(folder, name) / CASE).read_text(encoding="utf-8")))
+        outcome = Outcome.of(json.loads((place(folder, name) / CASE).read_text(encoding="utf-8")))
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return reported if reported.done and reported.key == key and is_finished(place(folder, name)) else None
+    return outcome if outcome.done and outcome.key == key and is_finished(place(folder, name)) else None
 
 
 def attempt(folder: Path, name: str, scene: str) -> Path:

@@ -53,16 +53,16 @@ class Case:
 
 def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[Case]]:
     """The cases of a file, all scenes checked; overrides: of the base scene. SceneError has one line per problem."""
-    reported = read_case_file(file)
-    base = read_document(reported.base)
-    _put(base, reported.values, f"{file}: set")
+    case_file = read_case_file(file)
+    base = read_document(case_file.base)
+    _put(base, case_file.values, f"{file}: set")
     override(base, overrides)
     cases, problems = [], dict[str, list[str]]()  # what is wrong, and of which cases
-    for case in named_cases(file, axes_of(file, reported, base)):
+    for case in named_cases(file, axes_of(file, case_file, base)):
         try:
             own = deepcopy(base)
             _put(own, case.values, _PLACE)
-            cases.append(_resolved(case, own, reported.base.parent))
+            cases.append(_resolved(case, own, case_file.base.parent))
         except SceneError as err:
             for line in str(err).splitlines():
                 problems.setdefault(line, []).append(case.name)
@@ -70,7 +70,7 @@ def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[C
         lines = [_problem(file, line, names) for line, names in problems.items()]
         more = len(problems) - MOST_LINES
         raise SceneError("\n".join([*lines[:MOST_LINES], *([f"… and {more} more"] if more > 0 else [])]))
-    return reported, cases
+    return case_file, cases
 
 
 def _problem(file: Path, line: str, names: Sequence[str]) -> str:
@@ -115,12 +115,12 @@ def _resolved(case: Case, document: Document, folder: Path) -> Case:
 
 
 def _key(scene: Scene, text: str) -> str:
-    reported = hashlib.sha256(f"{__version__}\n{text}".encode())
+    digest = hashlib.sha256(f"{__version__}\n{text}".encode())
     for _, at in paths_in(scene):
         file = at / CHECKPOINT if at.is_dir() else at  # of a run that the case begins with the end of
         if file.is_file():
-            reported.update(_digest(file, file.stat().st_mtime_ns))
-    return reported.hexdigest()
+            digest.update(_digest(file, file.stat().st_mtime_ns))
+    return digest.hexdigest()
 
 
 @cache

@@ -102,9 +102,9 @@ def _connected(address: str) -> Client:
     try:
         return Client(address, timeout=CONNECTING)
     except (OSError, ValueError) as err:
-        reported = " ".join(str(err).split())
+        reason = " ".join(str(err).split())
         raise SceneError(
-            f"--scheduler {address}: nobody answers there ({reported}); start one by: dask scheduler"
+            f"--scheduler {address}: nobody answers there ({reason}); start one by: dask scheduler"
         ) from err
 
 

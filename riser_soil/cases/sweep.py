@@ -41,15 +41,15 @@ def run_cases(
     SceneError before the first case is run; Interruption, and WriteError where the disk is full, leave what has ended,
     and a further call goes on.
     """
-    reported, cases = read_cases(file, overrides)
+    case_file, cases = read_cases(file, overrides)
     folder = folder.absolute()
     with _held(folder, cases):
         outcomes = {case.name: known for case in cases if (known := found(folder, case.name, case.key))}
         todo = [_task(case, folder, workers.limit) for case in cases if case.name not in outcomes]
         says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
         outcomes |= _computed(cases, todo, workers, folder) if todo else {}
-        table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, reported.statistics.since)
-        extremes = characteristic_extremes(table, reported.extremes)
+        table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, case_file.statistics.since)
+        extremes = characteristic_extremes(table, case_file.extremes)
         from riser_soil.cases.case_files import write_files
 
         write_files(table, extremes, folder)

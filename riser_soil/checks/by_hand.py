@@ -46,11 +46,11 @@ def _of_cable(assembly: Assembly, cable: Catenary) -> Iterator[str]:
         if z[at] - z[low] > near:
             terms = _by_weight(assembly.elements.weight[part], np.diff(z)[part] * (1.0 if name == "end" else -1.0))
             held = _held(assembly, cable, low, name == "end")
-            reported = [_kN(cable.H), *(f"{w / 1e3:.4g} * {h:.5g}" for w, h in terms), *([_kN(held)] if held else [])]
+            summands = [_kN(cable.H), *(f"{w / 1e3:.4g} * {h:.5g}" for w, h in terms), *([_kN(held)] if held else [])]
             total = cable.H + sum(w * h for w, h in terms) + held
             formula = "H + sum of w h" + (" + attachments" if held else "")
             where, tension = _end_words(name, z), _kN(cable.tension[at])
-            yield f"  {where}: effective tension {tension} kN; {formula} = {' + '.join(reported)} = {_kN(total)} kN"
+            yield f"  {where}: effective tension {tension} kN; {formula} = {' + '.join(summands)} = {_kN(total)} kN"
             yield from _touchdown(assembly, cable, name)
 
 

@@ -183,9 +183,9 @@ def resolution(assembly: Assembly) -> Iterator[str]:
         return
     from riser_soil.checks.mesh_plausibility import reported_resolution
 
-    reported = reported_resolution(lying)
-    if reported is not None:
-        yield reported
+    line = reported_resolution(lying)
+    if line is not None:
+        yield line
 
 
 def _memory_line(assembly: Assembly) -> str:

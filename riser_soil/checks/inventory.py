@@ -26,9 +26,9 @@ def built(scene: Scene) -> tuple[str, ...]:
 def left_out(scene: Scene) -> dict[str, str]:
     """Parts and results that the scene leaves out, each with its reason."""
     reasons = [no_wall_tension(view) for view in by_line(scene).values()]
-    reported = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": _why_all(reasons)}
-    reported["code check"] = "" if scene.code_check else "the scene has no code_check"
-    return {name: reason for name, reason in reported.items() if reason}
+    reasons_by_check = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": _why_all(reasons)}
+    reasons_by_check["code check"] = "" if scene.code_check else "the scene has no code_check"
+    return {name: reason for name, reason in reasons_by_check.items() if reason}
 
 
 def _reasons(scene: Scene) -> dict[str, str]:

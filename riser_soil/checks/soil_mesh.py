@@ -26,10 +26,10 @@ def mesh_report(assembly: Assembly) -> Iterator[str]:
     assert assembly.scene.soil is not None
     depths = boundaries(assembly.scene.soil.layers or ())
     if depths:
-        reported = ", ".join(f"{depth:g}" for depth in depths)
+        depths_listed = ", ".join(f"{depth:g}" for depth in depths)
         cells = _cells_across(assembly, depths)
         lie = f"{cells} cells lie across, each of whose points has the law of its depth" if cells else "cells end there"
-        yield f"soil layers meet at depths of {reported} m; {lie}"
+        yield f"soil layers meet at depths of {depths_listed} m; {lie}"
 
 
 def quality_warnings(assembly: Assembly) -> Iterator[str]:

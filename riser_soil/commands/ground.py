@@ -37,8 +37,8 @@ def material(
         from riser_soil.material.study import study
 
         with placed(scene, overrides):
-            reported = study(checked, output or Path(f"{Path(scene).stem}_material"), path, depth, force)
-        typer.echo(reported)
+            message = study(checked, output or Path(f"{Path(scene).stem}_material"), path, depth, force)
+        typer.echo(message)
 
 
 def calibrate(

@@ -122,10 +122,10 @@ class _Log:
         self.take(f"riser-soil {__version__}: {' '.join(sys.argv[1:])}")
 
     def take(self, line: str) -> None:
-        reported = _STYLE.sub("", _DRAWN.sub("", line)).rstrip()
-        if reported and self._file is not None:
+        text = _STYLE.sub("", _DRAWN.sub("", line)).rstrip()
+        if text and self._file is not None:
             try:
-                self._file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} {reported}\n")
+                self._file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} {text}\n")
             except OSError as err:
                 name, self._file = self._file.name, None
                 print(f"warning: --log-file {name}: ends here: {err.strerror}", file=sys.__stderr__)

@@ -53,7 +53,7 @@ def guessed(scene: "Scene") -> "Scene":
 
     found = _hung_as_cable(scene)
     if found.vessel is not None and rank() == 0:
-        print(displacement(found).reported)
+        print(displacement(found).in_words)
     return at_offset(found)
 
 
@@ -62,13 +62,13 @@ def _hung_as_cable(scene: "Scene") -> "Scene":
 
     if not any(line.hangs_off for line in risers(scene).values()):
         return scene
-    from riser_soil.assembly.hang_off import first_value, hung_ends, reported, settled
+    from riser_soil.assembly.hang_off import first_value, hung_ends, in_words, settled
 
     ends = hung_ends(scene)
     values = [first_value(hung) for hung in ends]
     found = settled(ends, values)
     for each in zip(ends, values, strict=True) if rank() == 0 else ():
-        print(f"{reported(*each)} by the cable without bending stiffness; a run solves it on the riser itself")
+        print(f"{in_words(*each)} by the cable without bending stiffness; a run solves it on the riser itself")
     return found
 
 

@@ -89,12 +89,12 @@ def statistics(
             for where, found in zip(records.arc, statistics_of(records, wanted), strict=True)
         ]
         levels = above or []
-        reported = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
+        lines = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
         if plot is not None:  # first: it refuses what it can't draw
             _draw(plot, places)
         if output is not None:
             write(output, places, levels, wanted)
-        typer.echo("\n".join(reported))
+        typer.echo("\n".join(lines))
 
 
 def histories(

@@ -94,9 +94,9 @@ def world(with_mpi: bool = False) -> Communicator:
 def _started_together() -> str:
     """What of the environment tells that there are several processes, or may be; "" where nothing does."""
     environment = os.environ
-    reported = [name for name in SIZES if environment.get(name, "").isdecimal()]
-    several = [name for name in reported if int(environment[name]) > 1]
-    among = [] if reported else [name for name in RANKS if name in environment]
+    sizes = [name for name in SIZES if environment.get(name, "").isdecimal()]
+    several = [name for name in sizes if int(environment[name]) > 1]
+    among = [] if sizes else [name for name in RANKS if name in environment]
     return next((f"{name}={environment[name]}" for name in (*several, *among)), "")
 
 

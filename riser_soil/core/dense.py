@@ -35,10 +35,10 @@ def _dgetrf(context: Any, size: Any, a: Any, pivots: Any, info: Any) -> Any:
     assert (a.dtype, a.layout) == (types.float64, "C")
 
     def call(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        n, matrix, exchanged, reported = (builder.bitcast(items(builder, array), ADDRESS) for array in given)
+        n, matrix, exchanged, info = (builder.bitcast(items(builder, array), ADDRESS) for array in given)
         known = builder.module.globals.get(SYMBOL)
         function = known or ir.Function(builder.module, ir.FunctionType(ir.VoidType(), [ADDRESS] * 6), SYMBOL)
-        builder.call(function, [n, n, matrix, n, exchanged, reported])
+        builder.call(function, [n, n, matrix, n, exchanged, info])
         return NOTHING
 
     return types.void(size, a, pivots, info), call

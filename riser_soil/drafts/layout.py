@@ -58,8 +58,8 @@ def layout_of(kind: Kind, pipe: CrossSection, depth: float) -> LineLayout:
     The start rests on the ground by half a diameter, as the scene has it.
     """
     if depth < SHALLOW * pipe.outer:
-        reported = f"too shallow for a line of {pipe.outer:.3g} m"
-        raise SceneError(f"--depth {depth:g}: {reported}: take {SHALLOW * pipe.outer:.3g} m or more")
+        problem = f"too shallow for a line of {pipe.outer:.3g} m"
+        raise SceneError(f"--depth {depth:g}: {problem}: take {SHALLOW * pipe.outer:.3g} m or more")
     return _hung(kind, pipe, depth) if kind.hangs else _upright(pipe, depth)
 
 

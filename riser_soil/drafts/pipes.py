@@ -65,8 +65,8 @@ def steel(diameter: float, wall: float | None, mass: float | None) -> CrossSecti
     area, second = 0.25 * math.pi * (diameter**2 - inner**2), math.pi / 64.0 * (diameter**4 - inner**4)
     stiffness = rounded(E_STEEL * area), rounded(E_STEEL * second)
     mass = rounded(STEEL * area) if mass is None else mass
-    reported = f"steel pipe, wall {500.0 * (diameter - inner):.4g} mm"
-    return CrossSection(diameter, inner, mass, *stiffness, (1.0, 0.0), 1.0, reported, yield_stress=YIELD)
+    source = f"steel pipe, wall {500.0 * (diameter - inner):.4g} mm"
+    return CrossSection(diameter, inner, mass, *stiffness, (1.0, 0.0), 1.0, source, yield_stress=YIELD)
 
 
 def _bore(diameter: float, wall: float | None, mass: float) -> float:
@@ -85,17 +85,17 @@ def flexible(diameter: float, wall: float | None, mass: float | None) -> CrossSe
     inner = rounded(BORE * diameter) if wall is None else diameter - 2.0 * wall
     mass = rounded(MASS * diameter**2) if mass is None else mass
     stiffness = rounded(AXIAL * diameter**2), rounded(BENDING * diameter**4)
-    reported = "flexible pipe, stiffness by rule of thumb: take its maker's numbers"
-    return CrossSection(diameter, inner, mass, *stiffness, (1.1, 0.05), 1.0, reported)
+    source = "flexible pipe, stiffness by rule of thumb: take its maker's numbers"
+    return CrossSection(diameter, inner, mass, *stiffness, (1.1, 0.05), 1.0, source)
 
 
 def buoyant(pipe: CrossSection) -> CrossSection:
     """A pipe inside buoyancy modules spread evenly, which lift it by its own submerged weight."""
     volume = (1.0 + LIFT) * pipe.weight / (GRAVITY * (WATER - FLOAT_DENSITY))
     outer = rounded(math.sqrt(pipe.outer**2 + 4.0 * volume / math.pi))
-    reported = "the same pipe inside buoyancy modules, spread evenly"
+    source = "the same pipe inside buoyancy modules, spread evenly"
     mass = rounded(pipe.mass + FLOAT_DENSITY * volume)
-    return replace(pipe, outer=outer, mass=mass, drag=(1.0, 0.1), source=reported)
+    return replace(pipe, outer=outer, mass=mass, drag=(1.0, 0.1), source=source)
 
 
 def chain(diameter: float, wall: float | None, mass: float | None) -> CrossSection:
@@ -104,5 +104,5 @@ def chain(diameter: float, wall: float | None, mass: float | None) -> CrossSecti
         raise SceneError(f"--wall {wall:g}: chain has none; leave it out")
     mass = rounded(19.9e3 * diameter**2) if mass is None else mass
     drag = round(2.4 / BAR, 3), round(1.15 / (math.pi * BAR), 3)
-    reported = f"studless chain, bar of {1e3 * diameter:.4g} mm; outer_diameter is that of a rod of its volume"
-    return CrossSection(BAR * diameter, 0.0, mass, rounded(8.54e10 * diameter**2), 0.0, drag, 1.0, reported)
+    source = f"studless chain, bar of {1e3 * diameter:.4g} mm; outer_diameter is that of a rod of its volume"
+    return CrossSection(BAR * diameter, 0.0, mass, rounded(8.54e10 * diameter**2), 0.0, drag, 1.0, source)

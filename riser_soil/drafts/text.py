@@ -33,16 +33,16 @@ def text(title: str, call: str, layout: LineLayout, sea: SeaState, wishes: Wishe
     )
     line = _line_types(layout), _riser(layout, wishes), _seabed(layout, wishes)
     parts = _water(sea), *line, _stages(layout, sea, wishes.rao)
-    lines = (f"{code:<{COMMENT - 2}}  # {reported}" if reported else code for part in parts for code, reported in part)
+    lines = (f"{code:<{COMMENT - 2}}  # {comment}" if comment else code for part in parts for code, comment in part)
     return "\n".join([*head, *lines]) + "\n"
 
 
 def number(value: float, figures: int = ALL) -> str:
     """A float in so many figures that every reader of YAML takes for one: it has a point, and its exponent a sign."""
-    reported = f"{value:.{figures}g}"
-    if "e" not in reported and abs(value) >= 1e5:
-        reported = f"{value:.{figures - 1}e}"
-    mantissa, _, exponent = reported.partition("e")
+    digits = f"{value:.{figures}g}"
+    if "e" not in digits and abs(value) >= 1e5:
+        digits = f"{value:.{figures - 1}e}"
+    mantissa, _, exponent = digits.partition("e")
     if exponent:
         mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
     whole = mantissa if "." in mantissa else f"{mantissa}.0"

@@ -173,9 +173,9 @@ def pipe_of(kind: Kind, wishes: Wishes) -> CrossSection:
         raise SceneError(f"--wall {wishes.wall:g}: must be less than half the diameter, {diameter:g} m")
     pipe = _allowed(kind, kind.pipe(diameter, wishes.wall, wishes.mass), wishes)
     if pipe.weight <= 0.0:
-        reported = f"in water, with its contents, this weighs {pipe.weight:.4g} N/m and floats"
+        problem = f"in water, with its contents, this weighs {pipe.weight:.4g} N/m and floats"
         raise SceneError(
-            f"--diameter {diameter:g}: {reported}; give more --mass or, to a pipe of steel, a thicker --wall"
+            f"--diameter {diameter:g}: {problem}; give more --mass or, to a pipe of steel, a thicker --wall"
         )
     return pipe
 

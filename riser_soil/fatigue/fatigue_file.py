@@ -63,8 +63,8 @@ class GivenCurve(BaseModel):
     @model_validator(mode="after")
     def _branches_fit(self) -> Self:
         if not len(self.log_a) == len(self.m) == len(self.change) + 1:
-            reported = f"{len(self.log_a)} log_a, {len(self.m)} m, {len(self.change)} change"
-            raise wrong("m", f"branches do not fit: {reported}", "give as many log_a as m, and one change fewer")
+            counts = f"{len(self.log_a)} log_a, {len(self.m)} m, {len(self.change)} change"
+            raise wrong("m", f"branches do not fit: {counts}", "give as many log_a as m, and one change fewer")
         if any(not second > first for first, second in pairwise(self.change)):
             raise wrong("change", "cycles must grow", "sort the branches from few to many cycles")
         branches = pairwise(zip(self.log_a, self.m, strict=True))
@@ -72,8 +72,8 @@ class GivenCurve(BaseModel):
             log_N = math.log10(N)
             after = next_log_a - next_m * (log_a - log_N) / m
             if abs(after - log_N) > APART:
-                reported = f"one ends with log10 N = {log_N:.4g}, there the next begins with {after:.4g}"
-                raise wrong("change", f"branches do not meet: {reported}", "correct log_a, m or change")
+                gap = f"one ends with log10 N = {log_N:.4g}, there the next begins with {after:.4g}"
+                raise wrong("change", f"branches do not meet: {gap}", "correct log_a, m or change")
         return self
 
     def curve(self) -> SNCurve:

@@ -88,7 +88,7 @@ def dnv_curve(name: CurveClass, environment: Environment) -> SNCurve:
     """A curve by its class."""
     table, few, change, exponents = _TABLES[environment]
     n = CLASSES.index(name)
-    reported = f"DNV {name}, {environment.replace('-', ' ')}", f"{SOURCE}, {table}"
+    name_and_source = f"DNV {name}, {environment.replace('-', ' ')}", f"{SOURCE}, {table}"
     if change is None:
-        return SNCurve(*reported, (few[n],), (3.0,), (), exponents[n])
-    return SNCurve(*reported, (few[n], _MANY[n]), (4.0 if n < 2 else 3.0, 5.0), (change,), exponents[n])
+        return SNCurve(*name_and_source, (few[n],), (3.0,), (), exponents[n])
+    return SNCurve(*name_and_source, (few[n], _MANY[n]), (4.0 if n < 2 else 3.0, 5.0), (change,), exponents[n])

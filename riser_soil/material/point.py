@@ -194,8 +194,8 @@ def _between(low: float, high: float) -> Iterator[float]:
     return chain((0.0, high), *repeat((low, high), CYCLES))
 
 
-def reported(found: Memory) -> list[str]:
-    """In words, a line each."""
+def in_words(found: Memory) -> list[str]:
+    """How a soil remembers cycles in words, a line each."""
     lines = [
         f"{CYCLES} cycles of shear strain up to {HELD:g}:",
         f"{'amplitude [-]':>15} {'first [kPa]':>12} {'last [kPa]':>12} {'of the mean lost a cycle [%]':>29}",

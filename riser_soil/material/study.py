@@ -11,7 +11,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SceneError
 from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
-from riser_soil.material.point import MaterialCurve, columns, drive, law_at, memory, point_at, reported
+from riser_soil.material.point import MaterialCurve, columns, drive, in_words, law_at, memory, point_at
 from riser_soil.results.whole_file import refuse_file, written_together
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
@@ -44,7 +44,7 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     remembered = memory(point)
     _leave(folder, heading, {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: columns(remembered)})
     return "\n".join(
-        [*_reported(soil, z, taken, curve, cycles), *reported(remembered), f"written: {_LEFT} in {folder}"]
+        [*_reported(soil, z, taken, curve, cycles), *in_words(remembered), f"written: {_LEFT} in {folder}"]
     )
 
 

@@ -25,17 +25,17 @@ def refuse_folder(folder: Path, force: bool) -> None:
 
 
 def table(modes: Modes, asked: int) -> list[str]:
-    """A line for each mode, and what to know of them all."""
-    shares, several = " ".join(f"{words:>12}" for words in DIRECTIONS), "" not in modes.lines
+    """Lines of a table, one a mode, with notes on all of them below."""
+    headings, several = " ".join(f"{words:>12}" for words in DIRECTIONS), "" not in modes.lines
     lines = [
         f'natural frequencies at rest after stage "{modes.stage}", without damping; shares of the squared '
         "displacement:",
-        f"{'mode':>4} {'f [Hz]':>12} {'T [s]':>10}  {'direction':<12} {shares}{'  most of' if several else ''}",
+        f"{'mode':>4} {'f [Hz]':>12} {'T [s]':>10}  {'direction':<12} {headings}{'  most of' if several else ''}",
     ]
     rows = zip(modes.frequency, modes.period, modes.direction, modes.share, modes.moving_most, strict=True)
     for n, (f, T, direction, share, name) in enumerate(rows, 1):
-        reported = " ".join(f"{100.0 * part:10.1f} %" if np.isfinite(part) else f"{'-':>12}" for part in share)
-        lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {reported}{f'  {name}' if several else ''}")
+        share_columns = " ".join(f"{100.0 * part:10.1f} %" if np.isfinite(part) else f"{'-':>12}" for part in share)
+        lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {share_columns}{f'  {name}' if several else ''}")
     if len(modes.frequency) < asked:
         lines.append(f"no more than {len(modes.frequency)} were found: the riser has so few unknowns with mass")
     if modes.asymmetry > 0.0:

@@ -48,8 +48,8 @@ def chain_with(deck: Deck, number: str | None) -> Chain:
     for node in chain.ends:
         others = [each for each in _at(every, node) if each not in chain.pieces]
         if is_free(deck, node) and others:
-            reported = f"{others[-1].name} is a third at {node.name}; a scene of one riser has no branches"
-            raise deck.error(others[-1].row.line, f"{reported}: --line all imports the whole deck")
+            problem = f"{others[-1].name} is a third at {node.name}; a scene of one riser has no branches"
+            raise deck.error(others[-1].row.line, f"{problem}: --line all imports the whole deck")
     return chain
 
 

@@ -166,15 +166,15 @@ def _read_table(deck: Deck, section: str, block: _Block) -> None:
     found = columns_of(section, headings)
     if found is None:
         order = " ".join(SECTIONS[section].orders[0])
-        reported = f"headings {' '.join(headings)} are not those of {section.upper()}"
-        raise deck.error(line, f"{reported}; correct them: MoorDyn has {order}")
+        problem = f"headings {' '.join(headings)} are not those of {section.upper()}"
+        raise deck.error(line, f"{problem}; correct them: MoorDyn has {order}")
     names, remarks = found
     deck.remarks.extend((line, remark) for remark in remarks)
     if [name for name in names if name] not in [[*order[: len(names)]] for order in SECTIONS[section].orders]:
         deck.remarks.append((line, f"the columns of {section.upper()} are in an order that no MoorDyn has"))
     if len(block.rows) > 1 and _is_data(names, block.rows[1][1]):
-        reported = f"an entry of {section.upper()} in the place of the units, which MoorDyn skips"
-        raise deck.error(block.rows[1][0], f"{reported}; write a row of units under the headings")
+        problem = f"an entry of {section.upper()} in the place of the units, which MoorDyn skips"
+        raise deck.error(block.rows[1][0], f"{problem}; write a row of units under the headings")
     rows = [*_words(block.rows[2:])]
     if section == "lines" and (other := _other_order(names, [words for _, words in rows])) is not None:
         names = [*other]
@@ -226,8 +226,8 @@ def _row(
         cells = dict(zip(newest, words, strict=True))  # what other columns would have is 0 anyway
     lacking = [name for name in names[len(words) :] if name is not None and name not in {*table.optional, *cells}]
     if lacking:
-        reported = f"{len(words)} entries, where a row of {section.upper()} has {len(names)}"
-        raise deck.error(line, f"{reported}; give {', '.join(lacking)}")
+        problem = f"{len(words)} entries, where a row of {section.upper()} has {len(names)}"
+        raise deck.error(line, f"{problem}; give {', '.join(lacking)}")
     for name, heading, word in zip(names, headings, words, strict=False):
         if name is None and as_number(word) != 0.0:
             deck.remarks.append((line, f"{word} under {heading}, which is no column of {section.upper()}"))
@@ -239,12 +239,12 @@ def _row(
 
 
 def _beyond_the_columns(deck: Deck, section: str, line: int, words: tuple[str, ...], beyond: tuple[str, ...]) -> None:
-    """Entries without a heading are reported; MoorDyn takes those of a point for forces."""
+    """Refuse entries without a heading; MoorDyn takes those of a point for forces."""
     first = len(words) - len(beyond)
     numbers = [value for word in words[7:] if (value := as_number(word))]
     if section == "points" and first == 9 and len(words) >= 12 and numbers and as_number(beyond[0]) is not None:
-        reported = f"{len(words)} entries under {first} headings, of which MoorDyn takes the 8th to 10th for forces"
-        raise deck.error(line, f"{reported}; name the columns FX FY FZ, or leave out what is too much")
+        problem = f"{len(words)} entries under {first} headings, of which MoorDyn takes the 8th to 10th for forces"
+        raise deck.error(line, f"{problem}; name the columns FX FY FZ, or leave out what is too much")
     deck.remarks.append((line, f"{' '.join(beyond)}: entries without a heading"))
 
 
@@ -260,6 +260,6 @@ def _refuse_twins(deck: Deck) -> None:
         seen = dict[str, int]()
         for row in deck.of(section):
             if row[key] in seen:
-                reported = f"{key} {row[key]} of {section.upper()} is that of line {seen[row[key]]}, too"
-                raise deck.error(row.line, f"{reported}; give it another")
+                problem = f"{key} {row[key]} of {section.upper()} is that of line {seen[row[key]]}, too"
+                raise deck.error(row.line, f"{problem}; give it another")
             seen[row[key]] = row.line

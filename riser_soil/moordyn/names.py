@@ -168,7 +168,7 @@ LISTS = {"options": ("OPTIONS",), "outputs": ("OUTPUT",)}
 """Sections without headings."""
 
 KNOWN = (*SECTIONS, *LISTS)
-"""Sections that are read; rows of all others are reported."""
+"""Sections that are read; rows of all others are listed as left out."""
 
 FREE, FIXED, COUPLED, PINNED, COUPLED_PINNED = "free", "fixed", "coupled", "pinned", "coupled pinned"
 BODY, TURBINE = "body", "turbine"  # by a number

@@ -76,8 +76,8 @@ def _end(deck: Deck, line: DeckRow, column: str) -> Node:
     section = next((name for name, words in ENDS.items() if letters in words and name != "bodies"), None)
     row = deck.numbered(section, str(int(number))) if section and number else None
     if row is None or section is None or (section == "rods" and end not in ("A", "B")):
-        reported = f"line {line['ID']} ends at {line[column]}, which the deck does not have"
-        raise deck.error(line.line, f"{reported}; correct it")
+        problem = f"line {line['ID']} ends at {line[column]}, which the deck does not have"
+        raise deck.error(line.line, f"{problem}; correct it")
     return node_at(deck, row, section, end)
 
 
@@ -99,8 +99,8 @@ def kind(deck: Deck, section: str, row: DeckRow) -> tuple[str, str]:
             on = str(int(number)) if name == BODY else ""
             return (PINNED if on and pinned in KINDS["rods"][PINNED] else name), on
     known = ", ".join(KINDS[section][name][0].capitalize() for name in KINDS[section])
-    reported = f"{row['Attachment']} is no attachment of {section}"
-    raise deck.error(row.line, f"{reported}; give one of {known}{' with a number' * (BODY in KINDS[section])}")
+    problem = f"{row['Attachment']} is no attachment of {section}"
+    raise deck.error(row.line, f"{problem}; give one of {known}{' with a number' * (BODY in KINDS[section])}")
 
 
 def body_of(deck: Deck, section: str, row: DeckRow) -> DeckRow | None:
@@ -185,8 +185,8 @@ def place(deck: Deck, node: Node, seabed: float | None = None) -> Vector:
 
 def _refuse_turbine(deck: Deck, row: DeckRow, section: str) -> None:
     if kind(deck, section, row)[0] == TURBINE:
-        reported = f"{section[:-1]} {row['ID']} is on {row['Attachment']}, whose place is in another file"
-        raise deck.error(row.line, f"{reported}; write Coupled, with its place in global axes")
+        problem = f"{section[:-1]} {row['ID']} is on {row['Attachment']}, whose place is in another file"
+        raise deck.error(row.line, f"{problem}; write Coupled, with its place in global axes")
 
 
 def turned(deck: Deck, body: DeckRow, arm: Vector) -> Vector:
@@ -194,8 +194,8 @@ def turned(deck: Deck, body: DeckRow, arm: Vector) -> Vector:
     angles = _own(deck, body, ("r0", "p0", "y0"))
     axes = [n for n, angle in enumerate(angles) if angle]
     if len(axes) > 1:
-        reported = f"body {body['ID']} is turned about {len(axes)} axes, in an order that MoorDyn's versions differ in"
-        raise deck.error(body.line, f"{reported}; give what sits on it as Coupled, in global axes")
+        problem = f"body {body['ID']} is turned about {len(axes)} axes, in an order that MoorDyn's versions differ in"
+        raise deck.error(body.line, f"{problem}; give what sits on it as Coupled, in global axes")
     out = [*arm]
     for n in axes:
         a, b = (n + 1) % 3, (n + 2) % 3

@@ -81,8 +81,8 @@ def _about_axes(deck: Deck, node: Node) -> list[Remark]:
     drag, added = (deck.numbers(node.row, *each) for each in (("CdA", (1, 2, 3, 6)), ("Ca", (1, 3))))
     if len({*(drag[:3] if len(drag) > 2 else drag[:1])}) == 1 == len({*added}):
         return []
-    reported = f"CdA {node.row['CdA']} and Ca {node.row['Ca']} of {node.name}"
-    return [(node.row.line, f"{reported}: the largest of each counts in all directions")]
+    coefficients = f"CdA {node.row['CdA']} and Ca {node.row['Ca']} of {node.name}"
+    return [(node.row.line, f"{coefficients}: the largest of each counts in all directions")]
 
 
 def about_held(deck: Deck, node: Node, line: int) -> list[Remark]:

@@ -21,7 +21,7 @@ IN_WATER = ("drag", "added_mass")
 
 def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
     """The scene of one of the deck's lines, with those that it is joined to by free nodes; by default the first's."""
-    options, reported = options_of(deck)
+    options, about_options = options_of(deck)
     chain = _upward(deck, chain_with(deck, line), options)
     seabed, about_seabed, bed_lines = seabed_of(deck, [chain], options)
     types, about_types, type_lines = line_types(deck, chain.pieces)
@@ -32,7 +32,7 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
     twisted = [stiffen_in_torsion(deck, types)] if riser.loads or aside else []
     stage = {"name": "hang", "kind": "static"} | ({"loads": riser.loads} if riser.loads else {})
     data = head_of(deck, options, types) | {"riser": riser.data} | seabed | {"stages": [stage]}
-    remarks = [*deck.remarks, *reported, *about_seabed, *about_types, *about_forces, *twisted, *riser.remarks]
+    remarks = [*deck.remarks, *about_options, *about_seabed, *about_types, *about_forces, *twisted, *riser.remarks]
     remarks += [*_left_out(deck, chain), *_unused(deck, chain, forces), *left_of_sections(deck)]
     own: dict[Path, int] = {("riser",): chain.lines[0].line}
     of_riser: dict[Path, int] = {("riser", *path): number for path, number in riser.origins.items()}

@@ -94,14 +94,14 @@ def seabed_of(
         "seabed": {"kind": "spring", "stiffness": stiffness, "level": level, "contact_at": "axis"}
     }
     if len(diameters) > 1:
-        reported = "kBot times the diameter differs along the riser; the seabed has that of"
-        remarks.append((lowest.line, f"{reported} line {lowest['ID']}, {stiffness:g} Pa"))
+        remark = "kBot times the diameter differs along the riser; the seabed has that of"
+        remarks.append((lowest.line, f"{remark} line {lowest['ID']}, {stiffness:g} Pa"))
     given = [name for name in ("mu_kA", "mu_kT") if name in options.lines]
     axial, lateral = (options[name] if given else options["FrictionCoefficient"] for name in ("mu_kA", "mu_kT"))
-    contact, reported = friction(axial, lateral)
+    contact, about_friction = friction(axial, lateral)
     rows = [options.lines[name] for name in (*given, "FrictionCoefficient") if name in options.lines]
-    if reported:
-        remarks.append((rows[0], reported))
+    if about_friction:
+        remarks.append((rows[0], about_friction))
     if given and "FrictionCoefficient" in options.lines:
         both = f"FrictionCoefficient {options['FrictionCoefficient']:g}: {' and '.join(given)} count"
         remarks.append((options.lines["FrictionCoefficient"], both))
@@ -127,8 +127,8 @@ def level_of(deck: Deck, options: Options) -> tuple[float | None, list[Remark]]:
         return None, [(line, "no WtrDpth in the options, and no anchor is deeper than all else: there is no seabed")]
     deepest = min(anchors, key=lambda node: anchors[node])
     level = anchors[deepest]
-    reported = "no WtrDpth in the options: the seabed is at the deepest anchor"
-    return level, [(line, f"{reported}, {deepest.name}, z = {level:g} m")]
+    remark = "no WtrDpth in the options: the seabed is at the deepest anchor"
+    return level, [(line, f"{remark}, {deepest.name}, z = {level:g} m")]
 
 
 def _anchors_below(deck: Deck, level: float) -> Iterator[Remark]:

@@ -43,7 +43,7 @@ def whole_scene_of(deck: Deck) -> ImportedScene:
     """The whole deck. Lines that free rods, or points without anything, join by twos are one line; other free points
     are joints, placed where they come to rest. SceneError for bodies that are turned.
     """
-    options, reported = options_of(deck)
+    options, about_options = options_of(deck)
     forces, about_forces = forces_of(deck)
     every, alone = all_chains(deck, forces), list[Remark]()
     alone += [(piece.row.line, f"{piece.name}: no line ends at it") for chain in every if not chain.lines
@@ -61,7 +61,7 @@ def whole_scene_of(deck: Deck) -> ImportedScene:
     data = head_of(deck, options, types) | {"lines": {name: riser.data for name, riser in risers.items()}}
     data |= ({"bodies": bodies} if bodies else {}) | ({"joints": joints} if joints else {}) | seabed
     data |= {"stages": [stage]}
-    remarks = {*deck.remarks, *reported, *about_seabed, *about_types, *about_forces, *about_bodies, twisted}
+    remarks = {*deck.remarks, *about_options, *about_seabed, *about_types, *about_forces, *about_bodies, twisted}
     remarks |= {*about_places, *alone} | {remark for riser in risers.values() for remark in riser.remarks}
     remarks |= {*_about_nodes(deck, ends, forces), *_unused(deck, chains), *left_of_sections(deck)}
     origins |= type_lines | body_lines
@@ -138,8 +138,8 @@ def _places(
     found = at_rest([cable_of(deck, chain, rho, g, level) for chain in joined], places, loads)
     if found is None:
         rows = {ends[name][0].row.line for name in loads}
-        reported = "its place at rest is not found; the search begins where the deck has it"
-        return places, [(line, reported) for line in rows]
+        remark = "its place at rest is not found; the search begins where the deck has it"
+        return places, [(line, remark) for line in rows]
     return places | found, []
 
 

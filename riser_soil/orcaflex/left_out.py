@@ -104,8 +104,8 @@ def _within(name: str, place: Path, value: Any) -> Iterator[tuple[Path, str, Any
         yield from (((*place, key), f"{name}: {key}", each) for key, each in value.items())
     elif isinstance(value, list):
         *front, last = name.split(": ")
-        for n, (reported, each) in enumerate(zip(_columns(last, value), value, strict=False)):
-            own = f"{reported} {name_of(each)}" if isinstance(each, dict) and name_of(each) else reported
+        for n, (column, each) in enumerate(zip(_columns(last, value), value, strict=False)):
+            own = f"{column} {name_of(each)}" if isinstance(each, dict) and name_of(each) else column
             yield (*place, n), ": ".join([*front, own]), each
 
 

@@ -31,9 +31,9 @@ _DENSITY = r"(saturated)?density"
 def ground_of(environment: Item, pipes: list[PipeOfType], g: float) -> dict[str, Any]:
     """Seabed and friction, by the lowest pipe, the first of them, where they differ. g: gravity [m/s2]."""
     first = pipes[0]
-    contact, reported = friction(*friction_of(first.item))
-    if reported:
-        first.item.left("SeabedAxialFrictionCoefficient", reported)
+    contact, remark = friction(*friction_of(first.item))
+    if remark:
+        first.item.left("SeabedAxialFrictionCoefficient", remark)
     as_first = (first.contact_diameter, friction_of(first.item))
     for each in pipes:
         if (each.contact_diameter, friction_of(each.item)) != as_first and each.item.name != first.item.name:

@@ -89,8 +89,8 @@ def _draw(command: list[str], tell: Tell = silent) -> None:
             raise ResultsError(_reason(child.returncode, errors.read()))
 
 
-def _reason(status: int, reported: str) -> str:
-    last = reported.strip().splitlines()[-1:] or ["no message"]
+def _reason(status: int, output: str) -> str:
+    last = output.strip().splitlines()[-1:] or ["no message"]
     if status > 0:
         return last[0]
     return f"drawing was killed by signal {-status}; is EGL there (Debian: libegl1 libgl1-mesa-dri)?"

@@ -61,8 +61,8 @@ def _draw_blocks(axes: Axes, found: PlaceStatistics, unit: str) -> None:
         k = np.linspace(-2.0, max(5.0, float(_reduced(exceeded)[0]) + 1.0), 60)
         within = np.array([fit.at(float(each), found.wanted.confidence) for each in k])
         axes.plot(k, sign * within[:, 0], "C3-", label="Gumbel, fitted")
-        reported = f"{100.0 * found.wanted.confidence:g} % confidence"
-        axes.fill_between(k, sign * within[:, 1], sign * within[:, 2], color="C3", alpha=0.2, label=reported)
+        label_of_band = f"{100.0 * found.wanted.confidence:g} % confidence"
+        axes.fill_between(k, sign * within[:, 1], sign * within[:, 2], color="C3", alpha=0.2, label=label_of_band)
     axes.set(xlabel="reduced variate -ln(-ln P) [-]", ylabel=f"extreme [{unit}]")
     axes.legend(fontsize=8)
 

@@ -43,11 +43,11 @@ class Damage:
         return int(self.largest.argmax())
 
 
-def draw_damage(png: Path, damage: Damage, reported: Sequence[str]) -> Path:
-    """Life along the pipe, damage in the touchdown zone and around the hotspot; reported: lines above."""
+def draw_damage(png: Path, damage: Damage, title_lines: Sequence[str]) -> Path:
+    """Life along the pipe, damage in the touchdown zone and around the hotspot. title_lines: above them."""
     with rc_context(STYLE):
         figure = life_sheet(damage)
-        figure.suptitle("\n".join(reported), x=0.02, ha="left", fontsize="small")
+        figure.suptitle("\n".join(title_lines), x=0.02, ha="left", fontsize="small")
         return save(figure, png)
 
 

@@ -66,11 +66,11 @@ def _draw(axes: Axes, panel: Panel) -> None:
     if failed.size:  # the layout fails where there is a line without points beyond the panel
         axes.plot(failed, np.zeros(failed.size), "x", color="C3", transform=axes.get_xaxis_transform(), clip_on=False)
     ends = [int(np.nanargmax(values)), int(np.nanargmin(values))]
-    reported = (
+    extremes = (
         f"{word} {values[n]:.4g} in {panel.names[n]}" for word, n in zip(("largest", "least"), ends, strict=True)
     )
     axes.plot(number[ends], values[ends], "o", color="k", fillstyle="none", markersize=8)
-    axes.set_title("; ".join(reported), fontsize=8, loc="left")
+    axes.set_title("; ".join(extremes), fontsize=8, loc="left")
     axes.set_ylabel(f"{panel.quantity}\n[{unit}]", fontsize=8)
     axes.set_xlim(0.5, len(number) + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))

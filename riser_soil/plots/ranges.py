@@ -156,17 +156,17 @@ def _place(stage: StageRecords, name: str, which: str, values: Array) -> str:
     known = _of_summary(stage, f"{which}_{name}", which)
     if known is not None:
         value, arc = ALONG_ARC[name][1] * known[0], known[1]
-    reported = value if abs(value) > _ROUND_OFF * np.nanmax(np.abs(values)) else 0.0
-    return f"{'largest' if which == 'max' else 'least'} {reported:.4g} at {arc:.4g} m"
+    shown = value if abs(value) > _ROUND_OFF * np.nanmax(np.abs(values)) else 0.0
+    return f"{'largest' if which == 'max' else 'least'} {shown:.4g} at {arc:.4g} m"
 
 
 def _of_summary(stage: StageRecords, figure: str, which: str) -> tuple[float, float] | None:
     """An extreme of the summary with its arc length [m]; None where it has none."""
     if stage.timed:
-        found = (stage.reported["extremes"] or {}).get(figure)
+        found = (stage.summary["extremes"] or {}).get(figure)
         value, arc = (found.get(which), found.get(f"arc_{which}")) if isinstance(found, dict) else (None, None)
     else:
-        found = (stage.reported["final"] or {}).get(figure)
+        found = (stage.summary["final"] or {}).get(figure)
         value, arc = (found.get("value"), found.get("arc")) if isinstance(found, dict) else (None, None)
     return None if value is None or arc is None else (value, arc)
 

@@ -97,9 +97,9 @@ def _write_mp4(file: Path, frames: Iterator[Array], shown: float) -> None:
     given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", f"{1.0 / shown:.6g}", "-i", "-"]
     call = [program, "-loglevel", "error", "-y", *given, "-pix_fmt", "yuv420p", str(file)]
     with subprocess.Popen(call, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as running:
-        reported = running.communicate(b"".join(frame.tobytes() for frame in (first, *frames)))[1]
+        messages = running.communicate(b"".join(frame.tobytes() for frame in (first, *frames)))[1]
     if running.returncode != 0:
-        reason = reported.decode(errors="replace").strip().splitlines()[-1:] or ["no message"]
+        reason = messages.decode(errors="replace").strip().splitlines()[-1:] or ["no message"]
         raise ResultsError(f"ffmpeg could not write the film: {reason[0]}; write a .gif instead")
 
 

@@ -17,13 +17,13 @@ Curve = tuple[Array, Array]
 """Penetration w (n,) [m] and resistance V (n,) [N/m]."""
 
 
-def draw_resistance(png: Path, measured: Curve, model: Curve, reported: Sequence[str], diameter: float) -> Path:
+def draw_resistance(png: Path, measured: Curve, model: Curve, title_lines: Sequence[str], diameter: float) -> Path:
     """Measured points, the model's curve, and what was found above them; diameter [m]: of the pipe."""
     figure, (axes,) = sheet(1, 1, width=7.0, height=5.0)
     axes.plot(measured[0] / diameter, 1e-3 * measured[1], "o", color="0.45", markersize=3.5, label="measured")
     axes.plot(model[0] / diameter, 1e-3 * model[1], color="C3", linewidth=1.4, label="fitted")
     axes.set(xlabel="penetration w/D [-]", ylabel="resistance V [kN/m], + pushes the pipe up")
-    axes.set_title("\n".join(reported), fontsize=8, loc="left")
+    axes.set_title("\n".join(title_lines), fontsize=8, loc="left")
     axes.legend()
     return save(figure, png)
 

@@ -62,8 +62,8 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
     axes.set_ylabel("largest relative error of a key result")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
-    reported = "123456789" if _span(shown) < 6.0 else "25" if _span(shown) < 30.0 else ""
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda s, _: f"{s:g}" if f"{s:.0e}"[0] in reported else ""))
+    labelled_digits = "123456789" if _span(shown) < 6.0 else "25" if _span(shown) < 30.0 else ""
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda s, _: f"{s:g}" if f"{s:.0e}"[0] in labelled_digits else ""))
     axes.legend(fontsize=9)
     text = io.StringIO()
     figure.savefig(text, format="svg")

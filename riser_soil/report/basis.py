@@ -110,13 +110,13 @@ def _at(model: BaseModel, path: str) -> Any:
 
 def _hang_off(run: Run) -> str:
     """The hang-off asked for, and by what it was met."""
-    reported = run.summary.get("hang_off")
-    if reported is None:
+    hang_off = run.summary.get("hang_off")
+    if hang_off is None:
         return ""
-    angle, tension = (reported["asked"].get(key) for key in ("angle_deg", "tension"))
+    angle, tension = (hang_off["asked"].get(key) for key in ("angle_deg", "tension"))
     asked = f"at {number(angle)}° from the vertical" if angle is not None else f"at {number(1e-3 * tension)} kN"
-    end = "A" if reported["end"] == "start" else "B"
-    return f"End {end} hangs off {asked} in the mean position, by a {reported['by']} of {number(reported['value'])} m."
+    end = "A" if hang_off["end"] == "start" else "B"
+    return f"End {end} hangs off {asked} in the mean position, by a {hang_off['by']} of {number(hang_off['value'])} m."
 
 
 def ends_in_words(scene: Scene) -> Iterator[str]:

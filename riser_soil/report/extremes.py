@@ -142,8 +142,8 @@ def _instant(t: Array) -> str:
 def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], float | None]:
     """Error bars of SI by figure and min or max; empty where none were asked for."""
     known = key_results(summary)
-    reported = found(summary, ("error_bars", "quantities")) or []
-    names = {f"{each['stage']}: {each['name']}": each["bar"] for each in reported if each["stage"] == stage}
+    bars = found(summary, ("error_bars", "quantities")) or []
+    names = {f"{each['stage']}: {each['name']}": each["bar"] for each in bars if each["stage"] == stage}
     return {(known[key].figure, known[key].which): bar for key, bar in names.items() if key in known}
 
 

@@ -206,7 +206,7 @@ def _governing(sources: Sources) -> Iterator[Block]:
         records = stage_records(case.run, stage)
     except ResultsError:
         return
-    reported = case.run.summary["stages"][records.number]
+    stage_summary = case.run.summary["stages"][records.number]
     several = len(sources.cases) > 1
     if several:
         yield Paragraph(
@@ -214,10 +214,10 @@ def _governing(sources: Sources) -> Iterator[Block]:
             f"load step {records.name}."
         )
     yield TableBlock(f"Results of the load step {records.name}", _results(case, records.name), key="governing")
-    reactions = reactions_table(reported)
+    reactions = reactions_table(stage_summary)
     if reactions:
         yield TableBlock("Support reactions", reactions, key="ends")
-    soil = health.soil_table(reported)
+    soil = health.soil_table(stage_summary)
     if soil:
         yield TableBlock("Soil", soil, key="soil")
     for each in pictures(records):

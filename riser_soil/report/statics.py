@@ -105,7 +105,7 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     drawn = {name: stage for name, stage in stages.items() if stage is not None}
     if len(drawn) == 1:
         (stage,) = drawn.values()
-        yield TableBlock("Support reactions, static", reactions_table(stage.reported), key="static reactions")
+        yield TableBlock("Support reactions, static", reactions_table(stage.summary), key="static reactions")
         for each in pictures(stage):
             if each.group == "shape" or each.name in ("range_effective_tension", "range_bending_moment"):
                 yield PictureBlock(f"{in_caption(each)}, static", Curves(each.bare))

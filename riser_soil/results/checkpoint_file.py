@@ -77,10 +77,10 @@ def is_checkpoint(path: Path) -> bool:
 
 
 def _about(array: AnyArray, path: Path) -> About:
-    reported = unpacked(array)
-    if reported["format"] != FORMAT:
+    content = unpacked(array)
+    if content["format"] != FORMAT:
         raise ResultsError(
-            f"{path}: was written by riser_soil {reported['version']} in format {reported['format']}, and this one "
+            f"{path}: was written by riser_soil {content['version']} in format {content['format']}, and this one "
             f"reads {FORMAT}; begin anew by --force"
         )
-    return About(**reported)
+    return About(**content)

@@ -56,9 +56,9 @@ def period_of(run: Run, stage: int) -> float:
     stages = run.scene.get("stages") or []
     found = {*_periods(stages[stage : stage + 1])} or {*_periods((run.scene.get("water") or {}).get("waves"))}
     if len(found) != 1:
-        reported = f"has the periods {', '.join(f'{T:g}' for T in sorted(found))} s" if found else "has no one period"
+        problem = f"has the periods {', '.join(f'{T:g}' for T in sorted(found))} s" if found else "has no one period"
         raise ResultsError(
-            f'{run.place}: stage "{run.stage_names[stage]}" {reported}; give the length of a cycle, period'
+            f'{run.place}: stage "{run.stage_names[stage]}" {problem}; give the length of a cycle, period'
         )
     return found.pop()
 

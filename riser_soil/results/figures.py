@@ -117,10 +117,10 @@ def final_state(seen: Instant) -> dict[str, Any]:
         found = _figure(figure, values[output.name])
         if figure.name in _SOMETIMES and not np.isfinite(found).all():
             continue
-        reported: Any = [float(x) for x in found] if figure.size > 1 else float(found)
+        value: Any = [float(x) for x in found] if figure.size > 1 else float(found)
         if figure.placed:
-            reported = {"value": reported, "arc": float(_arc(figure, values[output.name], seen.arc))}
-        _put(final, figure.path, reported)
+            value = {"value": value, "arc": float(_arc(figure, values[output.name], seen.arc))}
+        _put(final, figure.path, value)
     return final
 
 

@@ -132,11 +132,11 @@ class StageIndicators:
 
     def of_figures(self, dynamic: bool) -> dict[str, Any]:
         """Those that one of several lines has of its own."""
-        reported: dict[str, Any] = {"bending": self.bending} if self.bending else {}
+        indicators: dict[str, Any] = {"bending": self.bending} if self.bending else {}
         if dynamic:
             errors = zip(JUDGED, self.resolution.of_least, self.resolution.of_most, strict=True)
-            reported["time_step"] = {name: {"min": float(a), "max": float(b)} for name, a, b in errors}
-        return reported
+            indicators["time_step"] = {name: {"min": float(a), "max": float(b)} for name, a, b in errors}
+        return indicators
 
     def of_steps(self, dynamic: bool) -> dict[str, Any]:
         """Those of the whole step, which all lines share."""
@@ -192,13 +192,13 @@ class StageIndicators:
         )
 
     def state(self) -> Saved:
-        reported = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
+        records = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
         plain = {name: getattr(self, name) for name in ("diameter", "weight", "contact_period", "automatic")}
-        return gathered({"resolution": self.resolution}) | {"told": packed(reported | plain), "largest": self.largest}
+        return gathered({"resolution": self.resolution}) | {"told": packed(records | plain), "largest": self.largest}
 
     def restore(self, saved: Saved) -> None:
-        reported: Mapping[str, Any] = unpacked(saved["told"])
-        vars(self).update(reported)
+        values: Mapping[str, Any] = unpacked(saved["told"])
+        vars(self).update(values)
         self.largest = saved["largest"].copy()
-        self.step, self.impact = WorstStep(**reported["step"]), ImpactLoss(**reported["impact"])
+        self.step, self.impact = WorstStep(**values["step"]), ImpactLoss(**values["impact"])
         restore_all({"resolution": self.resolution}, saved)

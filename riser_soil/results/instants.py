@@ -91,7 +91,7 @@ class InstantReader:
             sections=self._sections.look(state) if self._sections is not None else None,
         )
 
-    def reported(self, looks: Sequence[Look]) -> Instant:
+    def instant_of(self, looks: Sequence[Look]) -> Instant:
         """All that is recorded of looks, each told once, in their order."""
         inside = self._inside(np.stack([each.inside for each in looks]))
         found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])

@@ -169,7 +169,7 @@ class Observer:
         """Records the state before all stages, which no static stage has brought about."""
         soil = self._soil()
         if self._recorder is not None:
-            seen = {name: reader.reported([reader.look(stepper)]) for name, reader in self._instants.items()}
+            seen = {name: reader.instant_of([reader.look(stepper)]) for name, reader in self._instants.items()}
             self._recorder.begin_at(seen, soil, looked_at(self._hung, stepper.now))
             if self._peaks is not None:
                 self._peaks.record([0.0], seen)
@@ -215,7 +215,7 @@ class Observer:
         if not seen or recorder is None or recorder.closed:
             return
         records, readers = [each.record for each in seen], self._instants.items()
-        instants = {name: reader.reported([each.looks[name] for each in seen]) for name, reader in readers}
+        instants = {name: reader.instant_of([each.looks[name] for each in seen]) for name, reader in readers}
         hung = joined([each.hung for each in seen])
         recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil, hung)
         if self._peaks is not None:
@@ -327,13 +327,13 @@ class Observer:
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        reported: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
-        reported |= {} if self._peaks is None else {"peaks": self._peaks}
-        reported |= {"schedule": self._schedule, "ledger": self._balance}
+        owners: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
+        owners |= {} if self._peaks is None else {"peaks": self._peaks}
+        owners |= {"schedule": self._schedule, "ledger": self._balance}
         for name, reader in self._instants.items():
             of_line: dict[str, Stateful] = {"instants": reader, "plausibility": self._plausibility[name]}
-            reported |= {f"{kind}/{name}" if name else kind: owner for kind, owner in of_line.items()}
-        return reported
+            owners |= {f"{kind}/{name}" if name else kind: owner for kind, owner in of_line.items()}
+        return owners
 
 
 def _asked(assembly: Assembly) -> Checkpoint | None:

@@ -157,7 +157,7 @@ class StagePeaks:
             return np.empty(0)
         return np.asarray(self._windows[("min", "max").index(which), :, places_of(figure).start])
 
-    def reported(self, which: str) -> dict[str, Any]:
+    def as_summary(self, which: str) -> dict[str, Any]:
         """The stage as the summary has it; which: sampled, of_nodes, peaks or smooth."""
         if self.final is None:
             return {"name": self.name, "kind": self.kind, "final": None}
@@ -171,16 +171,16 @@ class StagePeaks:
         }  # fmt: skip
 
     def state(self) -> Saved:
-        reported: dict[str, Any] = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil}
-        reported |= {"t": self._t, "duration": self._duration}
+        plain: dict[str, Any] = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil}
+        plain |= {"t": self._t, "duration": self._duration}
         vectors = {"latest": self._latest, "last": np.array(self._last), "windows": self._windows.copy()}
-        return gathered(self._extremes) | vectors | {"told": packed(reported)}
+        return gathered(self._extremes) | vectors | {"told": packed(plain)}
 
     def restore(self, saved: Saved) -> None:
-        reported = unpacked(saved["told"])
-        self.name, self.kind, self._final, self.soil = (reported[name] for name in ("name", "kind", "final", "soil"))
-        self._t, self._last, self._latest = reported["t"], list(saved["last"]), saved["latest"]
-        self._duration, self._windows = reported["duration"], saved["windows"].copy()
+        plain = unpacked(saved["told"])
+        self.name, self.kind, self._final, self.soil = (plain[name] for name in ("name", "kind", "final", "soil"))
+        self._t, self._last, self._latest = plain["t"], list(saved["last"]), saved["latest"]
+        self._duration, self._windows = plain["duration"], saved["windows"].copy()
         restore_all(self._extremes, saved)
 
     @property
@@ -226,10 +226,10 @@ class RunPeaks:
             if soil is not None and self._places is not None and line == self._on_soil:
                 stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
 
-    def reported(self, which: str) -> dict[str, Any]:
+    def as_summary(self, which: str) -> dict[str, Any]:
         """The share of a summary that key results are read from; which: sampled, of_nodes, peaks or smooth."""
         each = zip(self.stages, self._hung, strict=True)
-        return {"stages": [_stage_reported(of_lines, which) | hung.nested for of_lines, hung in each]}
+        return {"stages": [_stage_summary(of_lines, which) | hung.nested for of_lines, hung in each]}
 
     def state(self) -> Saved:
         return gathered(self._numbered)
@@ -247,8 +247,8 @@ class RunPeaks:
         return {f"{n}/{line}": own for n, of_lines in enumerate(self.stages) for line, own in of_lines.items()}
 
 
-def _stage_reported(of_lines: Mapping[str, StagePeaks], which: str) -> dict[str, Any]:
-    each = {line: own.reported(which) for line, own in of_lines.items()}
+def _stage_summary(of_lines: Mapping[str, StagePeaks], which: str) -> dict[str, Any]:
+    each = {line: own.as_summary(which) for line, own in of_lines.items()}
     if "" in each:
         return each[""]
     first = next(iter(each.values()))

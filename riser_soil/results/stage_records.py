@@ -21,19 +21,19 @@ class StageRecords:
     records: IntArray
 
     @property
-    def reported(self) -> dict[str, Any]:
-        """What the summary tells of the stage."""
+    def summary(self) -> dict[str, Any]:
+        """The stage in summary.json."""
         stage: dict[str, Any] = self.run.summary["stages"][self.number]
         return stage
 
     @property
     def name(self) -> str:
-        return str(self.reported["name"])
+        return str(self.summary["name"])
 
     @property
     def timed(self) -> bool:
         """Whether it goes along t, as quasi-static and dynamic stages do."""
-        return bool(self.reported["kind"] != "static")
+        return bool(self.summary["kind"] != "static")
 
     @property
     def time(self) -> Array:

@@ -186,13 +186,13 @@ class StageTally:
         self._finish()
         plain = {k: v for k, v in vars(self).items() if k not in _NOT_PLAIN}
         extremes = self.extremes.nested() if self.steps and not self.lines else None
-        reported = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
+        found = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
         indicators = self.indicators.of_steps if self.lines else self.indicators.as_dict
-        reported["indicators"] = indicators(self.kind == "dynamic")
+        found["indicators"] = indicators(self.kind == "dynamic")
         if self.lines:
-            reported["lines"] = {name: own._of_line(self.steps > 0) for name, own in self.lines.items()}
-            reported |= self.hung
-        return plain | reported | self._soil | self._code_check
+            found["lines"] = {name: own._of_line(self.steps > 0) for name, own in self.lines.items()}
+            found |= self.hung
+        return plain | found | self._soil | self._code_check
 
     @property
     def _code_check(self) -> dict[str, Any]:
@@ -207,9 +207,9 @@ class StageTally:
         """One of several."""
         self._finish()
         extremes = self.extremes.nested() if stepped else None
-        reported = {"final": self.final, "extremes": extremes, "warnings": self._own_warnings}
+        found = {"final": self.final, "extremes": extremes, "warnings": self._own_warnings}
         own = {"indicators": self.indicators.of_figures(self.kind == "dynamic")}
-        return reported | own | self._soil | self._code_check
+        return found | own | self._soil | self._code_check
 
     @property
     def _own_warnings(self) -> list[str]:
@@ -221,8 +221,8 @@ class StageTally:
     def _energy(self) -> dict[str, Any]:
         worst, t = self.worst_residual
         worst_residual = {"value": worst if self.kind == "dynamic" else math.nan, "time": t}
-        reported = {"made": self.energy.made, "relative_residual": self.energy.relative_residual}
-        return asdict(self.energy) | reported | {"worst_residual": worst_residual}
+        sums = {"made": self.energy.made, "relative_residual": self.energy.relative_residual}
+        return asdict(self.energy) | sums | {"worst_residual": worst_residual}
 
     @property
     def warnings(self) -> list[str]:
@@ -248,8 +248,8 @@ class StageTally:
         self._finish()
         own = ("seen", "extremes", "indicators", "code", "lines")
         plain = {name: value for name, value in vars(self).items() if name not in own}
-        reported = plain | {name: asdict(vars(self)[name]) for name in _RECORDS} | {"lines": [*self.lines]}
-        return gathered(self._followers) | {"told": packed(reported)}
+        kept = plain | {name: asdict(vars(self)[name]) for name in _RECORDS} | {"lines": [*self.lines]}
+        return gathered(self._followers) | {"told": packed(kept)}
 
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))

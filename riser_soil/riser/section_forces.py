@@ -43,13 +43,13 @@ def viscous_residual(line: Line, parts: Iterable[LinePart], state: State) -> Arr
 def nodal_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array | None:
     """Sum (nn, ndof) of what acts on nodes but isn't a support, if anything: contact with soil, point loads and masses.
     """
-    reported = [forces for part in parts if (forces := part.nodal_forces(state)) is not None]
-    return _total(reported, (line.nodes, line.ndof)) if reported else None
+    forces_of_parts = [forces for part in parts if (forces := part.nodal_forces(state)) is not None]
+    return _total(forces_of_parts, (line.nodes, line.ndof)) if forces_of_parts else None
 
 
-def _total(reported: Iterable[Array | None], shape: tuple[int, int]) -> Array:
+def _total(forces: Iterable[Array | None], shape: tuple[int, int]) -> Array:
     total = np.zeros(shape)
-    for values in reported:
+    for values in forces:
         if values is not None:
             total += values
     return total

@@ -58,8 +58,8 @@ class Attachment(BaseModel):
         if self.at is not None and len(missing) < len(row):
             raise wrong("at", "the places are given twice", "give either at, or from, to and spacing")
         if self.at is None and missing:
-            reported = "the place is missing" if len(missing) == len(row) else f"a row lacks {' and '.join(missing)}"
-            raise wrong("at", reported, "give at: an arc length [m] or a list of them, or from, to and spacing [m]")
+            problem = "the place is missing" if len(missing) == len(row) else f"a row lacks {' and '.join(missing)}"
+            raise wrong("at", problem, "give at: an arc length [m] or a list of them, or from, to and spacing [m]")
         return self
 
     @model_validator(mode="after")

@@ -16,7 +16,7 @@ def end_conflicts(scene: Scene) -> Iterator[Problem]:
         end = getattr(scene.line, name)
         if isinstance(end, Support) and end.bend_stiffener is not None:
             path: Path = ("riser", name, "bend_stiffener")
-            yield from (Problem((*path, *key), *reported) for key, reported in _wanting(scene, end, at))
+            yield from (Problem((*path, *key), *words) for key, words in _wanting(scene, end, at))
 
 
 def _tensioners(scene: Scene) -> Iterator[Problem]:
@@ -70,7 +70,7 @@ def hang_off_conflicts(scene: Scene) -> Iterator[Problem]:
         yield Problem(("riser", "end", "hang_off"), "both ends hang off", "leave hang_off out of one of them")
     for name in asking[:1]:
         path: Path = ("riser", name, "hang_off")
-        yield from (Problem(path, *reported) for reported in _wanting_of_hang_off(scene, name))
+        yield from (Problem(path, *words) for words in _wanting_of_hang_off(scene, name))
 
 
 def _wanting_of_hang_off(scene: Scene, name: str) -> Iterator[tuple[str, str]]:

@@ -148,8 +148,8 @@ def problems_in(error: ValidationError, data: Any, root: type[BaseModel] = Scene
         Failure(d["loc"], data, {"type": d["type"], "text": d["msg"], **d.get("ctx", {})}, root) for d in details
     ]
     meant = {_meant(f) for f in failures if f.context["type"] == "extra_forbidden"}
-    reported = [f for f in failures if f.context["type"] != "missing" or f.path not in meant]
-    return [_EXPLAIN.get(f.context["type"], _as_it_is)(f) for f in reported]
+    explained = [f for f in failures if f.context["type"] != "missing" or f.path not in meant]
+    return [_EXPLAIN.get(f.context["type"], _as_it_is)(f) for f in explained]
 
 
 def _follows_from_items(detail: ErrorDetails) -> bool:

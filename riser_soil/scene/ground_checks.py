@@ -81,7 +81,7 @@ def _ground_has_a_strength(scene: Scene) -> Iterator[Problem]:
     friction = scene.contact.friction if scene.contact is not None else None
     if friction is None or friction.adhesion is None:
         return
-    without = [reported for reported, strength in _strengths(scene) if strength is None]
+    without = [name for name, strength in _strengths(scene) if strength is None]
     path = ("contact", "friction", "adhesion")
     if without and len(without) == len([*_strengths(scene)]):
         text = f"is a share of the undrained shear strength su, and {' and '.join(without)} has none"

@@ -25,20 +25,20 @@ def _override(document: Document, assignment: str) -> None:
     put_once(document, dots.strip(), _value(text, assignment), f"--set {assignment}", again=True)
 
 
-def put_once(document: Document, dots: str, value: Any, reported: str, again: bool = False) -> None:
+def put_once(document: Document, dots: str, value: Any, place: str, again: bool = False) -> None:
     """Put a value as `put` does; SceneError where it would undo another override. again: the same path may be."""
     words = dots.split(".")
     for path, earlier in document.overrides.items():
         if [str(item) for item in path[: len(words)]] == words and not (again and len(path) == len(words)):
-            raise SceneError(f"{reported}: {dots}: undoes {earlier}; leave one of the two out")
-    put(document, dots, value, reported)
+            raise SceneError(f"{place}: {dots}: undoes {earlier}; leave one of the two out")
+    put(document, dots, value, place)
 
 
-def put(document: Document, dots: str, value: Any, reported: str) -> None:
-    """Replace the value at a dotted path by plain data. reported: the override, as messages name its place."""
-    path = _store(document, dots.split("."), value, reported)
+def put(document: Document, dots: str, value: Any, place: str) -> None:
+    """Replace the value at a dotted path by plain data. place: the override, as messages name its place."""
+    path = _store(document, dots.split("."), value, place)
     _forget_places_below(document, path)
-    document.overrides[path] = reported
+    document.overrides[path] = place
 
 
 def _value(text: str, assignment: str) -> Any:
@@ -50,30 +50,30 @@ def _value(text: str, assignment: str) -> Any:
         ) from err
 
 
-def _store(document: Document, words: list[str], value: Any, reported: str) -> Path:
+def _store(document: Document, words: list[str], value: Any, place: str) -> Path:
     """Put the value at its path, making the mappings that are not there yet; give the path."""
     data = document.data
     path: Path = ()
     for n, word in enumerate(words):
-        key = _key(data, word, path, reported)
+        key = _key(data, word, path, place)
         path = (*path, key)
         if n == len(words) - 1:
             document.replaced.setdefault(path, deepcopy(value_at(document.data, path)))
             data[key] = value
         elif isinstance(data, dict) and data.get(key) is None:
             data[key] = {}
-            document.overrides[path] = reported
+            document.overrides[path] = place
         data = data[key]
     return path
 
 
-def _key(data: Any, word: str, path: Path, reported: str) -> str | int:
+def _key(data: Any, word: str, path: Path, place: str) -> str | int:
     """The word as key of a mapping or as index of a list."""
     if isinstance(data, dict):
         return word
     if not isinstance(data, list):
         raise SceneError(
-            f"{reported}: {dotted(path)}: value {shown(data)}: has no parts; shorten the path"
+            f"{place}: {dotted(path)}: value {shown(data)}: has no parts; shorten the path"
         )
     if not word.isdecimal() or int(word) >= len(data):
         allowed = (
@@ -81,7 +81,7 @@ def _key(data: Any, word: str, path: Path, reported: str) -> str | int:
             if data
             else "the list is empty"
         )
-        raise SceneError(f"{reported}: {dotted(path)}: {allowed}; correct the path")
+        raise SceneError(f"{place}: {dotted(path)}: {allowed}; correct the path")
     return int(word)
 
 

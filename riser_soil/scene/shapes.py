@@ -123,10 +123,10 @@ class HangOff(BaseModel):
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
         if (self.angle is None) == (self.tension is None):
-            reported = (
+            problem = (
                 "neither angle nor tension is given" if self.angle is None else "angle and tension are both given"
             )
-            raise wrong("angle", reported, "give one of them: angle [deg] or tension [N]")
+            raise wrong("angle", problem, "give one of them: angle [deg] or tension [N]")
         return self
 
     @property

@@ -74,16 +74,16 @@ def _wrong_depths(layers: Sequence[Layer], depth: float | None) -> PydanticCusto
         return wrong("layers", f"layer {bottoms.index(None)} lacks to, its bottom", "only the last may leave it out")
     known = [*boundaries(layers), *([layers[-1].to] if layers[-1].to is not None else [])]
     if any(b <= a for a, b in pairwise(known)):
-        reported = ", ".join(f"{to:g}" for to in known)
-        return wrong("layers", f"to must grow from layer to layer, and is {reported} m", "order the layers downwards")
+        depths = ", ".join(f"{to:g}" for to in known)
+        return wrong("layers", f"to must grow from layer to layer, and is {depths} m", "order the layers downwards")
     if depth is None:
         return None
     below = [to for to in boundaries(layers) if to >= depth]
     if below:
         return wrong("layers", f"a layer begins at {below[0]:g} m, below the block's {depth:g} m", "leave it out")
     if layers[-1].to is not None and layers[-1].to < depth:
-        reported = f"the last layer ends at {layers[-1].to:g} m, above the block's bottom at {depth:g} m"
-        return wrong("layers", reported, "leave its to out, or add a layer")
+        problem = f"the last layer ends at {layers[-1].to:g} m, above the block's bottom at {depth:g} m"
+        return wrong("layers", problem, "leave its to out, or add a layer")
     return None
 
 

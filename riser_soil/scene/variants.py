@@ -96,14 +96,14 @@ class Displacement(NamedTuple):
     ends: dict[str, tuple[Vector, Vector]]
 
     @property
-    def reported(self) -> str:
-        """In words."""
+    def in_words(self) -> str:
+        """The offset and the displaced ends in words."""
         moved = (f"{name} from {_shown(before)} to {_shown(after)}" for name, (before, after) in self.ends.items())
         return f"vessel at the offset {_shown(self.offset)} m: {', '.join(moved)} m"
 
     @property
     def summary(self) -> dict[str, Any]:
-        """In block `vessel` of summary.json."""
+        """Block `vessel` of summary.json."""
         ends = {name: {"from": before, "to": after} for name, (before, after) in self.ends.items()}
         return {"offset": self.offset, "ends": ends}
 

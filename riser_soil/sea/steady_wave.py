@@ -125,10 +125,10 @@ class _NoWaveError(Exception):
 
 def _refuse_long(H: float, h: float) -> None:
     if (found := ursell(H, linear_length(h), h)) > LONGEST_STOKES:
-        reported = (
+        problem = (
             f"Ursell's number H L^2/h^3 = {found:.3g} is above {LONGEST_STOKES:g}: the water is too shallow for it"
         )
-        raise SceneError(f"theory: stokes: {reported}; take stream-function or auto")
+        raise SceneError(f"theory: stokes: {problem}; take stream-function or auto")
 
 
 def _airy(H: float, h: float) -> tuple[float, Array, Array]:

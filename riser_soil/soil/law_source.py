@@ -60,7 +60,7 @@ def _module(name: str, file: Path | None) -> ModuleType:
         assert file is not None
         return run_file(file)
     except (Exception, SystemExit) as err:
-        raise LawError(reported(err)) from err
+        raise LawError(failure_in_words(err)) from err
 
 
 def run_file(file: Path) -> ModuleType:
@@ -102,7 +102,7 @@ def near(word: str, known: list[str]) -> str:
     return f' (did you mean "{found[0]}"?)' if found else ""
 
 
-def reported(error: BaseException) -> str:
+def failure_in_words(error: BaseException) -> str:
     """An error of the user's code in one line: file, line, kind and text."""
     if isinstance(error, SyntaxError) and error.filename:
         place = f"{Path(error.filename).name}:{error.lineno}: "

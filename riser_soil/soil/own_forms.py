@@ -26,7 +26,7 @@ from riser_soil.errors import SceneError
 from riser_soil.soil.ffcx_compat import cell_kernel, constant, facet_kernel, lagrange
 from riser_soil.soil.field import components
 from riser_soil.soil.inertia import outer_facets
-from riser_soil.soil.law_source import reported, run_file
+from riser_soil.soil.law_source import failure_in_words, run_file
 from riser_soil.soil.soil import Soil
 
 BOUNDARIES = ("bottom", "sides")
@@ -237,4 +237,4 @@ def _asked(file: Path, ask: Callable[[], Any]) -> Any:
     except SceneError:
         raise
     except (Exception, ArityMismatch, SystemExit) as err:
-        raise SceneError(f"soil.forms: {file.name}: {reported(err)}; correct the terms") from err
+        raise SceneError(f"soil.forms: {file.name}: {failure_in_words(err)}; correct the terms") from err

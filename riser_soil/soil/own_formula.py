@@ -28,11 +28,11 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.soil import mandel
 from riser_soil.soil.law import PLACES, STRESS, StressUpdate
-from riser_soil.soil.law_source import LawError, reported
+from riser_soil.soil.law_source import LawError, failure_in_words
 
 SHORTEST, LONGEST = 1e-9, 1e12  # s; what stands for "at once" and "slow" where a law divides by the time
 PROBE = 1e-6  # strain
-_TOLD = WeakSet[type]()  # classes of which a failure has been reported
+_WARNED = WeakSet[type]()  # classes of which a failure has been reported
 
 
 def asked_of_user(call: Callable[[], Any]) -> Any:
@@ -42,7 +42,7 @@ def asked_of_user(call: Callable[[], Any]) -> Any:
     except LawError:
         raise
     except Exception as err:
-        raise LawError(reported(err)) from err
+        raise LawError(failure_in_words(err)) from err
 
 
 class OwnFormula(ABC):
@@ -109,9 +109,9 @@ class OwnFormula(ABC):
 
     def _tell(self, text: str) -> None:
         """Once of a class: what follows is likely to be the same."""
-        if type(self.law) not in _TOLD:
+        if type(self.law) not in _WARNED:
             print(f"warning: {self.label}: {text}", file=sys.stderr)
-        _TOLD.add(type(self.law))
+        _WARNED.add(type(self.law))
 
     def overstress(self, stress: Array) -> Array:
         own = getattr(self.law, "overstress", None)

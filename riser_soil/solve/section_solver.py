@@ -133,7 +133,7 @@ def _filled_up(count: int) -> int:
 
 @njit
 def coupled_apart(indptr: IntArray, indices: IntArray, values: Array, first: int, section: IntArray) -> IntArray:
-    """1 for rows of the system (n,) that a non-zero entry of this rank couples with a row outside their section, else 0.
+    """1 for rows of the system (n,) that a non-zero entry of this rank couples to rows outside their section, else 0.
 
     first: first of this rank's rows; section (n,): section of each row, -1 for none.
     """
@@ -446,7 +446,7 @@ class SectionSolver(PythonContext, LinearSystems):
         found.array_w[:] = x
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        """No message, and whether another try may do: a solver that exchanges rows comes next, until the pattern changes."""
+        """No message, and whether another try may do: one that exchanges rows, until the pattern changes."""
         again = not self._by_rows_exchanged or self._workspace.grows_after(ksp.getPC())
         self._by_rows_exchanged = True
         return "", again

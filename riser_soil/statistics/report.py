@@ -51,10 +51,10 @@ def table(places: Sequence[Place], wanted: Wanted) -> list[str]:
     for place in places:
         x = place.found
         numbers = (x.mean, x.deviation, x.least, x.largest, x.period, x.rayleigh)
-        reported = [f"{_reported(value):>10}" for value in numbers] + [
+        columns = [f"{_reported(value):>10}" for value in numbers] + [
             f"{_within(fit):>32}" for fit in (x.weibull, x.gumbel)
         ]
-        lines.append(f"{place.words:{wide}} {place.records.units:>5} " + " ".join(reported))
+        lines.append(f"{place.words:{wide}} {place.records.units:>5} " + " ".join(columns))
     return lines + list(_warnings(places))
 
 

@@ -495,7 +495,7 @@ def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
     assert {of for _, of, _ in bars} == {*NAMES, "buoy"}
     for setting, factor in zip(settings_of(scene), (3.0, 4.0), strict=True):
         scene = varied(scene, setting, factor)
-    true = key_results(peaks_of(scene, MPI.COMM_SELF).reported("peaks")).values()
+    true = key_results(peaks_of(scene, MPI.COMM_SELF).as_summary("peaks")).values()
     off = [(abs(bars[each.stage, each.of, each.name]["value"] - each.value), each) for each in true]
     inside = [error <= bars[each.stage, each.of, each.name]["bar"] for error, each in off]
     assert len(inside) == len(bars) == 45
@@ -545,7 +545,7 @@ def test_an_accuracy_asked_of_several_lines_is_reached(tmp_path: Path) -> None:
     chosen = found.read_scene()
     assert len({line.element_count for line in chosen.lines.values()}) > 1
     finer = varied(varied(chosen, ELEMENTS, 2.0), TIME_STEP, 2.0)
-    true = key_results(peaks_of(finer, MPI.COMM_SELF).reported("peaks"))
+    true = key_results(peaks_of(finer, MPI.COMM_SELF).as_summary("peaks"))
     off = [each.relative(each.value - true[key].value) for key, each in key_results(found.summary).items()]
     assert max(off) < 0.05
 
@@ -588,7 +588,7 @@ def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
                 assert np.array_equal(one[name][...], other[name][...], equal_nan=True), name
     alone, left = (json.loads((tmp_path / name / "summary.json").read_text())["stages"] for name in ("alone", "left"))
     assert alone == left
-    assert json.dumps(peaks.reported("smooth")) == json.dumps(whole.reported("smooth"))
+    assert json.dumps(peaks.as_summary("smooth")) == json.dumps(whole.as_summary("smooth"))
     assert len(names) > 100
 
 

@@ -37,7 +37,7 @@ def test_references_hold_what_a_much_finer_run_finds(tmp_path: Path) -> None:
             for key, found in reached.key_results.items()
         }
         print(
-            f"{target:.1%} by {made.refinements.reported(reached.factors)}: {max(true.values()):.4%} off the fine run"
+            f"{target:.1%} by {made.refinements.in_words(reached.factors)}: {max(true.values()):.4%} off the fine run"
         )
         assert max(true.values()) <= 1.2 * target
     assert made.error(made.scene)[0] < 0.002

@@ -26,7 +26,7 @@ from riser_soil.whole_run import run
 from tests.robustness.limited_process import Ending, Job, Limits, ended, import_all
 from tests.robustness.stress.bounds import Answer, between, bounds
 from tests.robustness.stress.extremes import ExtremeScene, extremes, is_at_rest
-from tests.robustness.stress.outcome import PASSED, REPORTED, StressOutcome, as_json, markdown, outcome, reported
+from tests.robustness.stress.outcome import PASSED, REPORTED, StressOutcome, as_json, line_of, markdown, outcome
 
 AT_REST = 1e-3  # of a key_result: what time steps without motion may change
 
@@ -56,7 +56,7 @@ def stress(
         done = list(pool.map(lambda item: _run(item[0], item[1], limits), places))
     rows = [_judged(each, done) for each in done]
     for row in rows:
-        says(reported(row))
+        says(line_of(row))
     write_atomically(folder / "stress.json", as_json(rows, command))
     write_atomically(folder / "stress.md", markdown(rows) + "\n")
     return rows

@@ -48,13 +48,13 @@ def _energy(stage: dict[str, Any]) -> Iterator[Answer]:
     yield between(f"{stage['name']}: {ENERGY} [-]", worst_residual(stage), 0.0, DOUBTFUL)
 
 
-def _balance(scene: Scene, stage: Stage, reported: dict[str, Any], line: str) -> Iterator[Answer]:
+def _balance(scene: Scene, stage: Stage, stage_summary: dict[str, Any], line: str) -> Iterator[Answer]:
     """Vertical forces on a line at the stage's end: what holds its ends, contact, loads and weight; and no tension
     beyond their sum. line: its name, "" of the only one.
     """
     if not _still_and_submerged(scene):
         return
-    final, weight, load = reported["final"], _weight(scene), _loads(scene, stage)
+    final, weight, load = stage_summary["final"], _weight(scene), _loads(scene, stage)
     up = [final["start"]["force"][2], final["end"]["force"][2], final["contact_force"], float(load[2]), -weight]
     forces = [*final["start"]["force"], *final["end"]["force"], *up]
     bending = final["max_bending_moment"]["value"] / scene.line.length

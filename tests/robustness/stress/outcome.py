@@ -119,8 +119,8 @@ def runs_in(place: Path, names: Iterable[str]) -> list[Run]:
     return [Run(place / name) for name in names if (place / name / "summary.json").is_file()]
 
 
-def reported(row: StressOutcome) -> str:
-    """One row on the screen, and what was told beneath it."""
+def line_of(row: StressOutcome) -> str:
+    """One row on the screen, with its messages beneath it."""
     figures = f"{_number(row.error)} | {_number(row.residual)} | {row.iterations} | {row.cuts} | {row.seconds:.1f} s"
     mark = "" if row.as_hoped else " (!)"
     below = "".join(f"\n    {text}" for text in (row.answer, row.message) if text)
@@ -163,5 +163,5 @@ def _memory() -> float:
 
 def as_json(rows: Iterable[StressOutcome], command: str) -> str:
     """Circumstances and all rows."""
-    reported = {"made": circumstances(command), "cases": [row.as_json() for row in rows]}
-    return json.dumps(reported, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    content = {"made": circumstances(command), "cases": [row.as_json() for row in rows]}
+    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

@@ -22,7 +22,7 @@ from tests.robustness.limited_process import FORKING, Limits, ended, import_all
 from tests.robustness.stress.around import running
 from tests.robustness.stress.bounds import Answer, bounds
 from tests.robustness.stress.case import CASES, StressCase, Trial
-from tests.robustness.stress.outcome import StressOutcome, outcome, reported, runs_in
+from tests.robustness.stress.outcome import StressOutcome, line_of, outcome, runs_in
 from tests.robustness.stress.page import publish
 
 SUBJECTS = ("hanging", "lying", "beams", "moving", "falling", "at_sea", "in_soil")
@@ -83,7 +83,7 @@ def main(arguments: list[str] | None = None) -> int:
         found = []
         for row in outcomes(chosen(asked.names, asked.quick), asked.keep or Path(folder), asked.workers):
             found.append(row)
-            print(reported(row), flush=True)
+            print(line_of(row), flush=True)
     if asked.page:
         publish(found)
     missed = [row.name for row in found if not row.as_hoped]
