@@ -71,7 +71,7 @@ def _stretches(segment: Segment, begin: float, arc: Array, lengths: Array) -> li
     at = np.concatenate([[begin], inner, [end]])
     h = np.minimum(np.interp(at, arc, lengths), 0.5 * segment.length)
     corners = _long_enough(at, h, _corners(at, np.log(h)))
-    return [_stretch(segment, float(at[j] - at[i]), (_reported(h[i]), _reported(h[j]))) for i, j in pairwise(corners)]
+    return [_stretch(segment, float(at[j] - at[i]), (_to_four_figures(h[i]), _to_four_figures(h[j]))) for i, j in pairwise(corners)]
 
 
 def _stretch(segment: Segment, length: float, elements: tuple[float, float]) -> Segment:
@@ -100,6 +100,6 @@ def _long_enough(x: Array, h: Array, corners: list[int]) -> list[int]:
     return [*kept, corners[-1]]
 
 
-def _reported(length: float) -> float:
-    """To four figures."""
+def _to_four_figures(length: float) -> float:
+    """A length rounded to four figures."""
     return float(f"{length:.4g}")

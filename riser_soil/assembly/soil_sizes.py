@@ -110,12 +110,12 @@ class SoilSizes:
         across = min(self.width / ACROSS, self.scales.diameter / ROUND)
         strip = max(STRIP * across, BESIDE * self.width)
         sizes = CellSizes(
-            along=_reported(max(self.along, across)),
-            across=_reported(across),
-            strip=_reported(strip),
+            along=_to_four_figures(max(self.along, across)),
+            across=_to_four_figures(across),
+            strip=_to_four_figures(strip),
             touchdown=self.touchdown_zone(block) if self.soil.model == "block" else None,
         )
-        return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=_reported(max(FAR * block.depth, across)))
+        return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=_to_four_figures(max(FAR * block.depth, across)))
 
     def touchdown_zone(self, block: Block) -> tuple[float, float] | None:
         """Range along the riser in which it may touch down, as far as the block has it [m]; None where that is not
@@ -128,7 +128,7 @@ class SoilSizes:
         before = BEFORE * max(self.bending_length, self.along)
         reached = np.concatenate((points - before * ahead, points + self.along * ahead))[:, axis]
         low, high = (block.x, block.y)[axis]
-        first, last = (_reported(each) for each in _rounded(np.clip([reached.min(), reached.max()], low, high)))
+        first, last = (_to_four_figures(each) for each in _rounded(np.clip([reached.min(), reached.max()], low, high)))
         return (first, last) if low < last and first < high and (first, last) != (low, high) else None
 
     @property
@@ -179,6 +179,6 @@ def _rounded(values: Array) -> Array:
     return np.asarray(np.round(values / unit) * unit)
 
 
-def _reported(size: float) -> float:
-    """To four figures."""
+def _to_four_figures(size: float) -> float:
+    """A length rounded to four figures."""
     return float(f"{size:.4g}")

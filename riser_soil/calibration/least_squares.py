@@ -85,7 +85,8 @@ def fit(
 ) -> Fit:
     """The parameters whose model is nearest to data (n,).
 
-    on_run: called at each step with the number of runs so far, the misfit and the parameters. relative: errors grow with the data, those below LEAST_SHARE of the largest excepted; else they are of one size.
+    on_run: called at each step with the number of runs so far, the misfit and the parameters. relative: errors grow
+    with the data, those below LEAST_SHARE of the largest excepted; else they are of one size.
     """
     sizes = error_sizes(data) if relative else np.full(len(data), np.sqrt(np.mean(data**2)))
     search = _Search(model, data, sizes, parameters, on_run)

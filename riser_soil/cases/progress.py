@@ -64,7 +64,7 @@ class CaseProgress:
         """One more has ended."""
         self._outcomes[outcome.name] = outcome
         if not (outcome.done and self._on_terminal):
-            print(f"{self.ended} of {self.count}: {outcome.name}: {_reported(outcome)}", flush=True)
+            print(f"{self.ended} of {self.count}: {outcome.name}: {_ending_in_words(outcome)}", flush=True)
 
     def table(self) -> Table:
         """A row for each group, and one for all of them with the time left."""
@@ -108,7 +108,7 @@ def _rows(groups: Mapping[str, Labels], most: int) -> dict[str, set[str]]:
     return found
 
 
-def _reported(outcome: Outcome) -> str:
+def _ending_in_words(outcome: Outcome) -> str:
     if outcome.done:
         return f"done in {outcome.seconds:.3g} s"
     return f"failed with status {outcome.status}: {outcome.reason}"

@@ -143,7 +143,7 @@ def proposal(assembly: Assembly, path: str) -> str:
         f"elements graded as the riser's bend asks for, for {SHARE:.0%} of the largest moment at rest: {few} in place "
         f"of {many}; {path}.segments:"
     )
-    return "\n".join([head, *(f"  - {_reported(segment)}" for segment in segments)])
+    return "\n".join([head, *(f"  - {_as_in_scene(segment)}" for segment in segments)])
 
 
 def asked_lengths(assembly: Assembly) -> tuple[Array, Array] | None:
@@ -227,7 +227,7 @@ def _layers(scene: Scene, hanging: Sequence[BoolArray]) -> BoolArray:
     return beside | (np.any(hanging, axis=0) & ~np.all(hanging, axis=0))
 
 
-def _reported(segment: Segment) -> str:
+def _as_in_scene(segment: Segment) -> str:
     """A segment in the words of a scene file."""
     first, last = segment.element_lengths[0], segment.element_lengths[-1]
     size = f"{first:.3g}" if abs(first - last) < 0.01 * first else f"[{first:.3g}, {last:.3g}]"

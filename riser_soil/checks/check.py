@@ -232,12 +232,12 @@ def _rows(assembly: Assembly) -> list[tuple[str, ...]]:
         mass, end = float(elements.mass[e]), begin + segment.length
         numbers = (begin, end, line.outer_diameter, line.inner_diameter, line.mass, mass or None)
         weights = (scene.gravity * mass if mass else None, float(elements.weight[e]))
-        rows.append((segment.line_type, *map(_reported, (*numbers, *weights, line.EA, max(line.bending_stiffness)))))
+        rows.append((segment.line_type, *map(_shown, (*numbers, *weights, line.EA, max(line.bending_stiffness)))))
         begin = end
     return rows
 
 
-def _reported(value: float | None) -> str:
+def _shown(value: float | None) -> str:
     return "-" if value is None else f"{value:.4g}"
 
 

@@ -178,10 +178,10 @@ def _course(end: End, times: Array, turns: bool) -> VelocitiesByEnd:
     spins = None
     if end.turning is not None and turns:
         spins = np.degrees([end.turning(t).angular_velocity for t in times])
-    return {"m/s": _reported(velocities), "deg/s": _reported(spins)}
+    return {"m/s": _end_velocities(velocities), "deg/s": _end_velocities(spins)}
 
 
-def _reported(velocities: Array | None) -> EndVelocities:
+def _end_velocities(velocities: Array | None) -> EndVelocities:
     if velocities is None:
         return STILL
     return EndVelocities(True, velocities[0], velocities[-1], float(np.linalg.norm(velocities, axis=1).max()))

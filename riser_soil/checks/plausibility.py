@@ -172,7 +172,7 @@ def _ends(path: str, numbered: tuple[int, VaryingLoad], after: Stage, what: str)
     m, load = numbered
     back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
     return (
-        f"{path}.{m}: {_reported(load)} ends with its stage; {after.name} is without it, and {what} {back}: give it "
+        f"{path}.{m}: {_load_in_words(load)} ends with its stage; {after.name} is without it, and {what} {back}: give it "
         "keep: true if it stays"
     )
 
@@ -190,7 +190,7 @@ def _acting(load: VaryingLoad) -> dict[str, object]:
     return load.model_dump(exclude={"history", "keep"})
 
 
-def _reported(load: VaryingLoad) -> str:
+def _load_in_words(load: VaryingLoad) -> str:
     units = {"force": "N", "moment": "N.m", "distributed": "N/m"}
     given = {key: getattr(load, key, None) for key in units}
     parts = [f"{key} {[float(f'{x:.4g}') for x in v]} {units[key]}" for key, v in given.items() if v is not None]

@@ -34,7 +34,7 @@ def logged(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def with_options(*, quiet: bool, log_file: Path | None, **given: Any) -> None:
-        with _reported(quiet, log_file):
+        with _with_log_file(quiet, log_file):
             command(**given)
 
     own = inspect.signature(command, eval_str=True)
@@ -46,7 +46,7 @@ def logged(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @contextmanager
-def _reported(quiet: bool, log_file: Path | None) -> Iterator[None]:
+def _with_log_file(quiet: bool, log_file: Path | None) -> Iterator[None]:
     """Standard output and error as the options want them; as they were afterwards."""
     with expected_errors():
         log = None if log_file is None or rank() > 0 else _Log(log_file)

@@ -77,7 +77,7 @@ class SeabedContact(CompiledPart, RiserContact):
         roles = Predictor, Stateful
         self.traits = Traits("E", symmetric=True, path_dependent=True, gradual=law.gradual, roles=roles)
         self._covered_from: Array | None = None  # the line's places as they were when the cover was renewed
-        self._reported = -1  # count of the trial whose results were written last
+        self._written_trial = -1  # count of the trial whose results were written last
 
     def make_kernel_data(self) -> SeabedData:
         stations = self.at, self.share, self._radius, self.memory, self._nodes
@@ -114,9 +114,9 @@ class SeabedContact(CompiledPart, RiserContact):
         """Results at an accepted state in one vector, in the order of `ContactResults`."""
         if self.active:
             found = self._found(state).found
-            if self._reported != found:
+            if self._written_trial != found:
                 self._write_results()
-                self._reported = found
+                self._written_trial = found
         return self._results_vector.copy()
 
     def _results(self, state: State) -> ContactResults:

@@ -42,10 +42,10 @@ class Bounds:
         """The value, or PydanticCustomError."""
         if value == 0.0 or self.least <= abs(value) <= self.most:
             return value
-        raise PydanticCustomError("size", "{text}", {"text": self._reported})
+        raise PydanticCustomError("size", "{text}", {"text": self._in_words})
 
     @property
-    def _reported(self) -> str:
+    def _in_words(self) -> str:
         if self.least == 0.0:
             return f"must be at most {self.most:g} {self.unit} in size"
         return f"must be {'0, or ' if self.zero else ''}from {self.least:g} to {self.most:g} {self.unit} in size"

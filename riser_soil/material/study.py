@@ -44,7 +44,7 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     remembered = memory(point)
     _leave(folder, heading, {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: columns(remembered)})
     return "\n".join(
-        [*_reported(soil, z, taken, curve, cycles), *in_words(remembered), f"written: {_LEFT} in {folder}"]
+        [*_summary_lines(soil, z, taken, curve, cycles), *in_words(remembered), f"written: {_LEFT} in {folder}"]
     )
 
 
@@ -116,7 +116,7 @@ def _cycle_columns(cycles: list[ClosedCycle]) -> dict[str, Array]:
     return dict(zip((*names, "damping_ratio [-]"), columns, strict=True))
 
 
-def _reported(
+def _summary_lines(
     soil: SoilScene, z: float, path: MaterialPath, curve: MaterialCurve, cycles: list[ClosedCycle]
 ) -> list[str]:
     k = path.driven

@@ -186,10 +186,10 @@ class Plausibility:
         """With numbers and a remedy."""
         basis = (*self._largest_values, self._boundary, self._largest, self._tension, self._lowest, self._touched)
         if self._warned is None or any(a is not b for a, b in zip(basis, self._warned[0], strict=True)):
-            self._warned = basis, tuple(self._reported())
+            self._warned = basis, tuple(self._found_warnings())
         return self._warned[1]
 
-    def _reported(self) -> Iterator[str]:
+    def _found_warnings(self) -> Iterator[str]:
         yield from self._strains()
         yield from self._blurred()
         yield from self._compressed()

@@ -39,7 +39,7 @@ def first_difference(
 ) -> Difference | None:
     """Between what `identity_of` gave then and now. but: keys that may differ, with all below them."""
     for key, before, after in _differences(then["values"], now["values"], but):
-        return Difference(dotted(key), _reported(before), _reported(after))
+        return Difference(dotted(key), _value_in_words(before), _value_in_words(after))
     for key in sorted({*then["files"], *now["files"]}):
         free = any(_below(tuple(key.split(".")), each) for each in but)
         if not free and then["files"].get(key) != now["files"].get(key):
@@ -64,7 +64,7 @@ def _below(key: KeyPath, above: KeyPath) -> bool:
     return key[: len(above)] == above
 
 
-def _reported(value: Any) -> str:
+def _value_in_words(value: Any) -> str:
     return "missing" if value is NOTHING else shown(value)
 
 

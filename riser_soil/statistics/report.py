@@ -51,7 +51,7 @@ def table(places: Sequence[Place], wanted: Wanted) -> list[str]:
     for place in places:
         x = place.found
         numbers = (x.mean, x.deviation, x.least, x.largest, x.period, x.rayleigh)
-        columns = [f"{_reported(value):>10}" for value in numbers] + [
+        columns = [f"{_shown(value):>10}" for value in numbers] + [
             f"{_within(fit):>32}" for fit in (x.weibull, x.gumbel)
         ]
         lines.append(f"{place.words:{wide}} {place.records.units:>5} " + " ".join(columns))
@@ -72,7 +72,7 @@ def exceedance_table(places: Sequence[Place], levels: Sequence[float], wanted: W
         for level in levels:
             found = (level, *place.found.exceeded(level).values())
             lines.append(
-                f"{place.words:{wide}} {place.records.units:>5} " + " ".join(f"{_reported(x):>12}" for x in found)
+                f"{place.words:{wide}} {place.records.units:>5} " + " ".join(f"{_shown(x):>12}" for x in found)
             )
     return lines
 
@@ -156,7 +156,7 @@ def _cell(value: Any) -> Any:
     return (f"{value:.8g}" if np.isfinite(value) else "") if isinstance(value, float) else value
 
 
-def _reported(value: float) -> str:
+def _shown(value: float) -> str:
     return f"{value:.5g}" if np.isfinite(value) else "-"
 
 
