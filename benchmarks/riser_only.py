@@ -74,7 +74,7 @@ def measure(scene: Path, *overrides: str) -> dict[str, float]:
         for stage in (compiled, snes):
             stage.walk(1)
         compiled.tell(seen)
-        seen.hand_over()  # which reads kernels
+        seen.flush()  # which reads kernels
         began = compiled.stepper.now.t
         for _ in range(STEPS):
             step = compiled.stepper.next_step(compiled.control)
@@ -85,7 +85,7 @@ def measure(scene: Path, *overrides: str) -> dict[str, float]:
             taken["iterations"].append(compiled.iterations)
             taken["snes"].append(1e6 * timed(lambda: snes.walk(1)))
             taken["told"].append(1e6 * timed(lambda: compiled.tell(seen)))
-        taken["told"][-1] += 1e6 * timed(seen.hand_over)
+        taken["told"][-1] += 1e6 * timed(seen.flush)
     found = {name: median(values) for name, values in taken.items()} | {"iterations": mean(taken["iterations"])}
     found["time step"] = (compiled.stepper.now.t - began) / STEPS
     for stage in (compiled, snes):

@@ -1,6 +1,6 @@
 """Analysis of one stage, from its assembled system to its end, with dynamic relaxation where statics need it.
 
-A riser on soil first comes to rest on its cushion, before the soil is there to bear it.
+A riser on soil first comes to rest on a cushion, without the soil.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.step_control import AutoSteps, PathSteps, StepControl, from_last_to_first
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
-MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step on soil moves an end; presses it in, on clay
+MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step moves an end on soil; presses it into clay
 ROUND_OFF = 1e-9  # of a load step
-AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
-MOST_STEPS = 64  # of a stage, but for those that the scene asks for
-MOST_RELAXED = 1  # times in a static stage on clay
+AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage's duration if they are automatic
+MOST_STEPS = 64  # load steps of a stage, unless the scene asks for more
+MOST_RELAXED = 1  # dynamic relaxations in a static stage on clay
 MOST_SUNK = 1 / 40  # diameters by which the riser may sink in a static step on soil that moves
-MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
+MOST_CUTS = 4  # of a static step, before dynamic relaxation is tried at its last size
 
 
 CheckpointWriter = Callable[[Callable[[], Saved], bool, bool], None]
@@ -50,7 +50,7 @@ the stage's last step; and whether the run ends here before its time.
 
 
 class StageObserver(Stateful, Protocol):
-    """Observer of a stage: is notified of its beginning, of accepted steps and of dynamic relaxation."""
+    """Observer of a stage: its methods are called at its beginning, after accepted steps and after relaxation."""
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None: ...
 
@@ -60,7 +60,7 @@ class StageObserver(Stateful, Protocol):
 
 
 class StatelessObserver:
-    """A counter that has nothing to go on with in a stage that is resumed."""
+    """An observer without state to resume from."""
 
     def state(self) -> Saved:
         return {}
@@ -87,8 +87,9 @@ class LayingCounter(StatelessObserver):
 
 
 def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
-    """Before all stages: take up the end of another run; or move the end of a slack riser's initial shape to its
-    prescribed position.
+    """State before all stages: at rest, or the end of another run; a slack riser's end is moved to its position first.
+
+    The counter is that of the steps of laying, None where nothing was laid.
     """
     if assembly.scene.initial is not None:
         from riser_soil.results.end_of_run import take_up_end_of_run
@@ -102,23 +103,23 @@ def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
         raise SolveError(slackest.too_soft)
     counter = LayingCounter()
     try:
-        _take(assembly, assembly.begin_laying(stage), stage, None, counter, clock)
+        _solve_stage(assembly, assembly.begin_laying(stage), stage, None, counter, clock)
     except SolveError as err:
         raise SolveError(f"{slackest.too_slack}: {err}" if slackest.slack else f"joints do not close: {err}") from err
     if assembly.lets_go:
-        _let_go(assembly, counter, clock)
+        _release_bodies(assembly, counter, clock)
     return rest, counter
 
 
-def _let_go(assembly: Assembly, counter: LayingCounter, clock: Timer) -> None:
-    """Bodies that were held go to their own equilibrium, as what held them grows less."""
+def _release_bodies(assembly: Assembly, counter: LayingCounter, clock: Timer) -> None:
+    """Solve for the equilibrium of bodies that were supported during laying, as their supports' forces fade out."""
     assert assembly.hung is not None
     stage = StaticStage(name=LETTING_GO, kind="static")
-    held = System(assembly.comm, assembly.begin_laying(stage), clock)
-    with destroyed_together(assembly.comm, held.destroy):
-        met = total(held.forces(State.at_rest(1.0, held.numbering.size)))
-    reactions = {name: met[body.part] for name, body in assembly.hung.bodies.items()}
-    _take(assembly, assembly.begin_letting_go(stage, reactions), stage, None, counter, clock)
+    supported = System(assembly.comm, assembly.begin_laying(stage), clock)
+    with destroyed_together(assembly.comm, supported.destroy):
+        residual = total(supported.forces(State.at_rest(1.0, supported.numbering.size)))
+    reactions = {name: residual[body.part] for name, body in assembly.hung.bodies.items()}
+    _solve_stage(assembly, assembly.begin_letting_go(stage, reactions), stage, None, counter, clock)
 
 
 def run_stage(
@@ -129,23 +130,23 @@ def run_stage(
     clock: Timer,
     checkpoint: CheckpointWriter | None = None,
 ) -> State:
-    """Take one stage to its end; the state that it leaves, increments zero."""
-    return _take(assembly, assembly.begin(stage), stage, before, observer, clock, checkpoint)
+    """Solve one stage from an accepted state; the state at its end, increments zero."""
+    return _solve_stage(assembly, assembly.begin(stage), stage, before, observer, clock, checkpoint)
 
 
 def resume_stage(
     assembly: Assembly, saved: Saved, observer: StageObserver, clock: Timer, checkpoint: CheckpointWriter | None = None
 ) -> tuple[Stage, State]:
-    """Take the stage that was saved on its way to its end; the stage, and the state that it leaves.
+    """Solve the rest of a stage that was saved on its way; the stage, and the state at its end.
 
-    assembly, observer: built anew from the scene. The stages before were taken in the run that was saved.
+    assembly, observer: built anew from the scene. The stages before were solved in the run that was saved.
     """
     assembly.restore(within(saved, "assembly"))
     stage, model = assembly.resume()
-    return stage, _take(assembly, model, stage, saved, observer, clock, checkpoint)
+    return stage, _solve_stage(assembly, model, stage, saved, observer, clock, checkpoint)
 
 
-def _take(
+def _solve_stage(
     assembly: Assembly,
     model: Model,
     stage: Stage,
@@ -154,7 +155,7 @@ def _take(
     clock: Timer,
     checkpoint: CheckpointWriter | None = None,
 ) -> State:
-    """From the state that the stage begins with, None where all is at rest, or from where it was saved."""
+    """Solve one stage. begin: initial state, saved state to resume from, or None for rest."""
     if isinstance(begin, State | None) and assembly.cushion is not None and assembly.is_laid_in(stage):
         seat(assembly, model, settings_of(assembly), clock)
     system = System(assembly.comm, model, clock)
@@ -166,7 +167,7 @@ def _take(
     with destroyed_together(assembly.comm, newton.destroy, system.destroy):
         try:
             run = _begin_run(assembly, stage, system, newton, begin, observer)
-            return _walk(run, checkpoint)
+            return _step_to_end(run, checkpoint)
         except SolveError as err:
             raise SolveError(f"{err}{_overload(assembly)}") from err
 
@@ -179,7 +180,7 @@ def _restore(system: System, saved: Saved) -> None:
 
 @dataclass(eq=False)
 class StageRun:
-    """A stage in progress: its time stepper, step control and observer; how often relaxation has been tried."""
+    """A stage in progress. relaxed: how often dynamic relaxation has been tried."""
 
     assembly: Assembly
     stage: Stage
@@ -203,6 +204,7 @@ class StageRun:
 def _begin_run(
     assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: StageObserver
 ) -> StageRun:
+    """The stage at its beginning, or as it was saved; collective."""
     if isinstance(begin, State):
         guess = assembly.first_guess(stage)
         stepper = TimeStepper(system, newton, scheme_of(stage), replace(begin, t=0.0), first_guess=guess)
@@ -216,7 +218,7 @@ def _begin_run(
 
 
 def _overload(assembly: Assembly) -> str:
-    """The bearing capacity check of a failed solve."""
+    """Words on bearing capacity where a solve failed; empty where the ground bears the riser."""
     if not assembly.contacts:
         return ""
     from riser_soil.checks.overload import overload
@@ -224,7 +226,8 @@ def _overload(assembly: Assembly) -> str:
     return overload(assembly)
 
 
-def _walk(run: StageRun, checkpoint: CheckpointWriter | None) -> State:
+def _step_to_end(run: StageRun, checkpoint: CheckpointWriter | None) -> State:
+    """Advance step by step to the end of the stage; a checkpoint after each step, and the run's end where asked for."""
     stepper, control = run.stepper, run.control
     while not control.finished:
         dynamic = isinstance(run.stage, DynamicStage)
@@ -241,12 +244,11 @@ def _walk(run: StageRun, checkpoint: CheckpointWriter | None) -> State:
 
 
 def _static_step(run: StageRun) -> AcceptedStep:
-    """By Newton's method, on soil that moves else by settling, else in load steps that are halved a few times, else by
-    dynamic relaxation.
+    """Solve a static step by Newton's method, with its fallbacks.
 
-    Where relaxation does not get to the load factor that was missed, it all begins again with half the step. On clay,
-    soil or a hysteretic seabed, it is tried MOST_RELAXED times: at the end of its strength it creeps on in ever shorter
-    steps.
+    The fallbacks in turn: settling, on soil that moves; load steps that are halved a few times; dynamic relaxation.
+    Where relaxation fails at the load factor wanted, all begins again with half the step. On clay, soil or a hysteretic
+    seabed, it is tried MOST_RELAXED times: at the end of its strength clay creeps on in ever shorter steps.
     """
     assembly, stepper, control = run.assembly, run.stepper, run.control
     seabed = assembly.scene.seabed
@@ -261,7 +263,7 @@ def _static_step(run: StageRun) -> AcceptedStep:
             if on_clay and run.relaxed > MOST_RELAXED:
                 raise
         try:
-            _bring_to_rest(run, _relaxed)
+            _bring_to_rest(run, _by_relaxation)
         except SolveError:
             if not stepper.depends_on(control) or not control.cut():
                 raise
@@ -270,8 +272,9 @@ def _static_step(run: StageRun) -> AcceptedStep:
 
 
 def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
-    """A step in which the riser sinks no farther than soil follows, cut where supports press it in, and by settling
-    where there is no other; None where that finds no step that converges.
+    """A static step in which the riser sinks by MOST_SUNK diameters at most; None where none converges.
+
+    The step is cut where supports press the riser in. Where it sinks farther or none converges, settling is tried.
     """
     stepper, on_soil = run.stepper, _on_soil(run.assembly)
     longest = MOST_SUNK * on_soil.scales.diameter
@@ -282,7 +285,7 @@ def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
     except SolveError:
         pass
     try:
-        _bring_to_rest(run, _settled)
+        _bring_to_rest(run, _by_settling)
         return stepper.advance(run.control, 0)
     except SinkingError:
         raise
@@ -298,7 +301,7 @@ def _sunk(assembly: Assembly, before: State, after: State) -> float:
 
 
 def _on_soil(assembly: Assembly) -> Assembly:
-    """The line that lies on the soil, of a scene that has some."""
+    """The line that lies on the soil, in a scene with soil."""
     found = assembly.line_on_soil
     assert found is not None
     return found
@@ -312,15 +315,16 @@ def _pressing(assembly: Assembly, state: State) -> Array:
 
 
 def _bring_to_rest(run: StageRun, seek: Callable[[StageRun], RelaxationResult]) -> None:
-    """Find an equilibrium at the load factor that Newton's method missed; SolveError with all as the last step left it
-    where there is none.
+    """Find an equilibrium at the load factor where Newton's method failed, and commit it.
+
+    SolveError where there is none; then all is as after the last step.
     """
     stepper = run.stepper
-    left = gathered(owners(stepper.system.model))
+    before = gathered(owners(stepper.system.model))
     try:
         found = seek(run)
     except SolveError:
-        restore_all(owners(stepper.system.model), left)
+        restore_all(owners(stepper.system.model), before)
         stepper.newton.renew()
         raise
     stepper.newton.renew()  # the search has chosen patterns of its own
@@ -329,14 +333,16 @@ def _bring_to_rest(run: StageRun, seek: Callable[[StageRun], RelaxationResult]) 
     stepper.newton.at_equilibrium = True
 
 
-def _relaxed(run: StageRun) -> RelaxationResult:
+def _by_relaxation(run: StageRun) -> RelaxationResult:
+    """Equilibrium at the load factor of the step, by dynamic relaxation."""
     assembly, system = run.assembly, run.stepper.system
     settings, weight = settings_of(assembly), assembly.scales.weight
     loads = {} if assembly.hung is None else assembly.hung.loads
     return relax(assembly.comm, system.model, weight, settings, system.clock, run.control.target, loads)
 
 
-def _settled(run: StageRun) -> RelaxationResult:
+def _by_settling(run: StageRun) -> RelaxationResult:
+    """Equilibrium at the load factor of the step, by letting the riser settle into the soil."""
     assembly, system, lying = run.assembly, run.stepper.system, _on_soil(run.assembly)
     pressed = Pressed(lying.line, lambda state: _pressing(lying, state), lying.scales.weight, lying.scales.diameter)
     return settle(assembly.comm, system.model, pressed, settings_of(assembly), system.clock, run.control.target)
@@ -360,8 +366,10 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
 
 
 def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
-    """Newton's settings in a stage: in statics on a ground, steps are cut short where contact opens and closes; there,
-    and in motion of a riser that was laid on soil, they start linearly. What falls onto soil continues its motion.
+    """Newton's settings in a stage: line search in statics on a ground, where contact opens and closes.
+
+    Steps start linearly in statics on a ground once something lies there, and in motion of a riser that was laid on
+    soil. A riser that falls onto soil starts from its motion.
     """
     settings, lies = settings_of(assembly), bool(assembly.contacts) and isinstance(stage, StaticStage)
     at_rest = not assembly.is_first(stage) or (assembly.cushion is not None and assembly.is_laid_in(stage))
@@ -370,8 +378,8 @@ def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
 
 
 def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
-    """Load steps from t0 to t1 of a stage without inertia: as many as the scene asks for; more where soil is to follow
-    a riser that is laid on it or moved.
+    """Number of load steps from t0 to t1 of a stage without inertia: the scene's, or more where soil must follow the
+    riser that is laid on it or moved.
     """
     asked, lying = assembly.scene.solver.load_steps, assembly.line_on_soil
     if lying is None or not assembly.soil_bears:
@@ -384,15 +392,15 @@ def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
 
 
 def _path_steps(assembly: Assembly, stage: QuasiStaticStage) -> PathSteps:
-    """From corner to corner of a quasi-static stage, as long as asked at most, or as load steps would be."""
-    seen = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, QuasiStaticStage)]
-    ends = (t for own, each in seen for t in corners(own.scene, each))
-    met, longest = [0.0, *from_last_to_first(stage.duration, ends)[::-1]], stage.time_step
+    """Steps from corner to corner of a quasi-static stage: at most as long as asked for, or as many as load steps."""
+    by_line = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, QuasiStaticStage)]
+    ends = (t for own, each in by_line for t in corners(own.scene, each))
+    times, longest = [0.0, *from_last_to_first(stage.duration, ends)[::-1]], stage.time_step
     if longest == "auto":
-        counts = [_load_steps(assembly, stage, a, b) for a, b in pairwise(met)]
+        counts = [_load_steps(assembly, stage, a, b) for a, b in pairwise(times)]
     else:
-        counts = [math.ceil((b - a) / longest - ROUND_OFF) for a, b in pairwise(met)]
-    return PathSteps(met, counts, assembly.scene.solver.min_load_step)
+        counts = [math.ceil((b - a) / longest - ROUND_OFF) for a, b in pairwise(times)]
+    return PathSteps(times, counts, assembly.scene.solver.min_load_step)
 
 
 def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepControl | PathSteps | AutoSteps:
@@ -406,14 +414,14 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)
         first = first_step(stepper.system, stepper.now, tolerance)
-        seen = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, DynamicStage)]
-        hit = [t for own, each in seen for t in times_to_hit(own.scene, each)]
+        by_line = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, DynamicStage)]
+        hit = [t for own, each in by_line for t in times_to_hit(own.scene, each)]
         return AutoSteps(stage.duration, tolerance, smallest, first, hit)
     return StepControl(stage.duration, stage.time_step, smallest)
 
 
 def _smallest_step(assembly: Assembly, stage: DynamicStage) -> float:
-    """Down to which time steps are cut [s]."""
+    """Least time step [s], down to which steps are cut."""
     given = assembly.scene.solver.min_time_step
     if given != "auto":
         return float(given)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from riser_soil.accuracy.findings import TARGETS, Says, Study, next_setting
+from riser_soil.accuracy.cheapest_setting import next_setting
+from riser_soil.accuracy.findings import TARGETS, Says, Study
 from riser_soil.accuracy.refinements import RATIOS, Refinements
 from riser_soil.accuracy.settings import Setting, resolved, settings_of
 from riser_soil.accuracy.study_files import write_files
@@ -108,7 +109,7 @@ def _try_settings(made: Study) -> None:
     """Run what should reach the targets at less cost than what has been run."""
     for target in TARGETS:
         for _ in range(TRIES):
-            point = next_setting(made.foretold(target))
+            point = next_setting(made.predicted(target))
             if point is None:
                 break
             made.says(f"expected to reach {target:.1%}:")

@@ -71,7 +71,8 @@ def _stretches(segment: Segment, begin: float, arc: Array, lengths: Array) -> li
     at = np.concatenate([[begin], inner, [end]])
     h = np.minimum(np.interp(at, arc, lengths), 0.5 * segment.length)
     corners = _long_enough(at, h, _corners(at, np.log(h)))
-    return [_stretch(segment, float(at[j] - at[i]), (_to_four_figures(h[i]), _to_four_figures(h[j]))) for i, j in pairwise(corners)]
+    sizes = [_to_four_figures(each) for each in h]
+    return [_stretch(segment, float(at[j] - at[i]), (sizes[i], sizes[j])) for i, j in pairwise(corners)]
 
 
 def _stretch(segment: Segment, length: float, elements: tuple[float, float]) -> Segment:

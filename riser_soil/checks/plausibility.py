@@ -172,8 +172,8 @@ def _ends(path: str, numbered: tuple[int, VaryingLoad], after: Stage, what: str)
     m, load = numbered
     back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
     return (
-        f"{path}.{m}: {_load_in_words(load)} ends with its stage; {after.name} is without it, and {what} {back}: give it "
-        "keep: true if it stays"
+        f"{path}.{m}: {_load_in_words(load)} ends with its stage; {after.name} is without it, and {what} {back}: "
+        "give it keep: true if it stays"
     )
 
 

@@ -1,11 +1,11 @@
 """Kernels bound to their arguments: compiled functions that are called by address, from compiled code or Python.
 
-A loop that calls them knows neither their arguments nor these' types. So it is compiled once, not once for each set of
-parts; and each kernel once, whatever others there are. A call takes some 10 ns, from Python 0.2 us.
+The caller needs neither the arguments nor their types. So a loop over kernels is compiled once, not once for each set
+of parts, and each kernel is compiled once, whatever others there are. A call takes some 10 ns, from Python 0.2 us.
 
-Arguments are arrays and tuples of them in memory, laid out as by numba, which compiled functions find by an address. As
-an argument of an ordinary call numba would read each array of a tuple anew, in about 0.3 us, as long as an element
-takes. The arrays are those that were packed, so what is written to them is seen on both sides.
+Arguments are arrays and tuples of them, packed into memory in numba's layout; compiled functions get their address. In
+an ordinary call numba would unpack each array of a tuple anew, in about 0.3 us, as long as an element takes. Packing
+copies no numbers: what a kernel writes to an array is seen in Python, and the other way round.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ _entries: dict[tuple[Any, ...], Any] = {}
 
 
 class Bound:
-    """A kernel and its arguments, which are kept; what it returns is lost. Called without arguments."""
+    """A kernel with its arguments, called without any; keeps the arguments alive and returns nothing."""
 
     def __init__(self, kernel: Any, *arguments: Packed) -> None:
         entry = _entry(kernel, *(each.kind for each in arguments))
@@ -142,7 +142,7 @@ def _entry(kernel: Any, *kinds: Any) -> Any:
 
 
 def _compiled(kernel: Any, kinds: Any) -> Any:
-    """Its name tells it apart from all others, on disk and in the machine code."""
+    """Compile the entry of a kernel, under a name that is unique on disk and in the machine code."""
 
     source, name = kernel.py_func.__code__, f"{kernel.py_func.__name__}_{mark(kinds)}"
     code = _calling.__code__.replace(co_filename=source.co_filename, co_firstlineno=source.co_firstlineno)
@@ -157,7 +157,7 @@ _kinds: Any = None
 
 
 def _calling(row: int) -> None:
-    """What an entry does, whose globals are its own: what a closure holds would be part of its key on disk."""
+    """Body of an entry. It has globals of its own, as variables of a closure would be part of its key on disk."""
     _kernel(*_arguments(row, _kinds))
 
 

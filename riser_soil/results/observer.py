@@ -1,6 +1,6 @@
-"""Observer of a run: looks at the parts' states on all ranks, and hands what it has seen to the recorder.
+"""Observer of a run: reads the parts' states on all ranks after each step, and passes them to the recorder.
 
-Riser and contact are looked at after each step, and told of for many steps together, see `instants`.
+Steps are buffered, as the values of riser and contact are computed for many steps together, see `instants`.
 """
 
 from __future__ import annotations
@@ -60,13 +60,13 @@ _CHECKED: tuple[Need, ...] = (  # fields of `CodeSnapshot`
     *("bursting", "hoop buckling", "propagating buckling", "combined loading"),
     *("bend radius", "tension limit", "compression", "crushing", "capacity curve"),
 )
-MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # that are looked at before they are told of
+MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # in the buffer, before it is written
 
 
-class Seen(NamedTuple):
-    """A step that has been looked at, its state, and the soil there where that is due.
+class BufferedStep(NamedTuple):
+    """An accepted step as it waits in the buffer: its record, what is due to be written of it, and its state.
 
-    looks: at each line, by name; hung: at bodies and joints.
+    looks: state of each line, by name; hung: values of bodies and joints; soil: its fields where these are due.
     """
 
     record: StepRecord
@@ -78,7 +78,7 @@ class Seen(NamedTuple):
 
 
 class Observer:
-    """Follows a run: progress bar, energy ledger, files, peaks where they are wanted. recorder is None off rank 0."""
+    """Observer of a run: progress bar, energy ledger, files, and peaks where wanted. recorder: None off rank 0."""
 
     def __init__(
         self,
@@ -96,10 +96,10 @@ class Observer:
         checks = {name: line_checks(line, name) for name, line in lines.items()} if recorder is not None else {}
         self._instants = {name: InstantReader(line, fields[name], checks.get(name)) for name, line in lines.items()}
         self._hung = hung_reader(assembly)
-        self._seen: list[Seen] = []  # since they were handed over
+        self._buffer: list[BufferedStep] = []  # steps not yet written
         self._plausibility = {name: Plausibility(line) for name, line in lines.items()}
-        self._checkpoints = CheckpointSchedule(_asked(assembly), assembly.comm)
-        self._about = about(assembly) if recorder is not None and _asked(assembly) is not None else None
+        self._checkpoints = CheckpointSchedule(_checkpoint_settings(assembly), assembly.comm)
+        self._about = about(assembly) if recorder is not None and _checkpoint_settings(assembly) is not None else None
 
     @classmethod
     @contextmanager
@@ -113,10 +113,10 @@ class Observer:
         goes_on: bool = False,
         warnings: Sequence[str] = (),
     ) -> Iterator[Observer]:
-        """Take the run's folder over; collective. What was written stays when the block is left early.
+        """Open the run's folder for its results; collective. What was written stays when the block is left early.
 
-        goes_on: with the files that are there, up to what is restored. warnings: told before the first step, for the
-        summary.
+        goes_on: whether to append to the files that are there, after what is restored. warnings: those printed before
+        the first step, for the summary.
         """
         mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
         known = facts(assembly, warnings)
@@ -124,8 +124,9 @@ class Observer:
             recorder = None
             with _on_all_ranks(assembly.comm), uninterrupted():
                 if assembly.comm.rank == 0:
-                    text, fields, asked = dump_scene(assembly.scene), _known_fields(assembly), _asked(assembly)
-                    keeping = Keeping(goes_on, end=asked is not None and asked.keep)
+                    text, fields = dump_scene(assembly.scene), _known_fields(assembly)
+                    settings = _checkpoint_settings(assembly)
+                    keeping = Keeping(goes_on, end=settings is not None and settings.keep)
                     arcs = {name: line.line.arc for name, line in assembly.by_line.items()}
                     reader = hung_reader(assembly)
                     hung = {} if reader is None else reader.variables
@@ -136,10 +137,10 @@ class Observer:
                     yield observer
                 finally:
                     with uninterrupted():
-                        observer.hand_over()
+                        observer.flush()
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        """stepper: at the stage's beginning; collective."""
+        """Begin a stage; collective. stepper: at its beginning."""
         self._enter(stage, stepper.energy)
         if self._recorder is not None:
             automatic = isinstance(stage, DynamicStage) and stage.time_step == "auto"
@@ -147,11 +148,11 @@ class Observer:
         if self._peaks is not None:
             self._peaks.begin_stage(stage.name, stage.kind, stage.end, self._instants)
         if stage is self._assembly.scene.stages[0] and not isinstance(stage, StaticStage):
-            self._begin_at(stepper)
-        self._show(stage)
+            self._record_start(stepper)
+        self._show_progress(stage)
 
     def _enter(self, stage: Stage, start: Energy) -> None:
-        """begun: energy stored as the stage begins."""
+        """Prepare ledger, readers and checks for a stage. start: energy stored at its beginning."""
         scene, static = self._assembly.scene, not isinstance(stage, DynamicStage)
         self._stage = stage
         self._schedule.begin_stage(stage.kind)
@@ -162,20 +163,20 @@ class Observer:
         for each in self._plausibility.values():
             each.begin_stage(stage)
 
-    def _show(self, stage: Stage) -> None:
+    def _show_progress(self, stage: Stage) -> None:
         self._progress.begin_stage(stage.name, stage.kind, stage.end)
 
-    def _begin_at(self, stepper: TimeStepper) -> None:
-        """Records the state before all stages, which no static stage has brought about."""
+    def _record_start(self, stepper: TimeStepper) -> None:
+        """Record the state before all stages, where no static stage comes first."""
         soil = self._soil()
         if self._recorder is not None:
-            seen = {name: reader.instant_of([reader.look(stepper)]) for name, reader in self._instants.items()}
-            self._recorder.begin_at(seen, soil, looked_at(self._hung, stepper.now))
+            instants = {name: reader.instant_of([reader.look(stepper)]) for name, reader in self._instants.items()}
+            self._recorder.begin_at(instants, soil, looked_at(self._hung, stepper.now))
             if self._peaks is not None:
-                self._peaks.record([0.0], seen)
+                self._peaks.record([0.0], instants)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
-        """Tell the recorder of a step that has been committed; collective."""
+        """Put an accepted step into the buffer, and write the buffer where it is full; collective."""
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
         # Relaxation, in statics, commits states that are no steps: the soil must be known before it.
@@ -190,48 +191,49 @@ class Observer:
             record = StepRecord(step.t, health, self._balance.ledger)
             at_rest = due.series and isinstance(self._stage, StaticStage)
             looks = {name: reader.look(stepper, at_rest) for name, reader in self._instants.items()}
-            self._seen.append(Seen(record, due, looks, looked_at(self._hung, stepper.now), stepper.now, soil))
+            hung = looked_at(self._hung, stepper.now)
+            self._buffer.append(BufferedStep(record, due, looks, hung, stepper.now, soil))
             if due.pictures:  # which cost more than to look closely
                 time_of_run = self._recorder.time_at(step.t)
                 for name, line in self._assembly.by_line.items():
                     elastic = elastic_residual(line, stepper)
                     self._plausibility[name].look_closely(time_of_run, stepper.now, elastic)
-            if last or len(self._seen) >= self._most or self._recorder.flush_is_due:
-                self.hand_over()
+            if last or len(self._buffer) >= self._buffer_size or self._recorder.flush_is_due:
+                self.flush()
         self._relaxed = 0
         self._clock.add("output", since)
 
     @property
-    def _most(self) -> int:
-        """Steps to look at before they are told of: one where the soil is to be known then."""
+    def _buffer_size(self) -> int:
+        """Number of steps to buffer before they are written; 1 with soil, whose state is read at each."""
         if self._assembly.soil is not None or isinstance(self._stage, StaticStage):
             return 1
-        numbers = sum(look.inside.size for look in self._seen[0].looks.values())
+        numbers = sum(look.inside.size for look in self._buffer[0].looks.values())
         return max(1, min(MOST_STEPS, MOST_NUMBERS // numbers))
 
-    def hand_over(self) -> None:
-        """Tell the recorder of all steps that it has not been told of."""
-        seen, self._seen, recorder = self._seen, [], self._recorder
-        if not seen or recorder is None or recorder.closed:
+    def flush(self) -> None:
+        """Pass all buffered steps to the recorder, the peaks and the checks of plausibility."""
+        steps, self._buffer, recorder = self._buffer, [], self._recorder
+        if not steps or recorder is None or recorder.closed:
             return
-        records, readers = [each.record for each in seen], self._instants.items()
-        instants = {name: reader.instant_of([each.looks[name] for each in seen]) for name, reader in readers}
-        hung = joined([each.hung for each in seen])
-        recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil, hung)
+        records, readers = [each.record for each in steps], self._instants.items()
+        instants = {name: reader.instant_of([each.looks[name] for each in steps]) for name, reader in readers}
+        hung = joined([each.hung for each in steps])
+        recorder.accept(records, [each.due for each in steps], instants, steps[-1].soil, hung)
         if self._peaks is not None:
             self._peaks.record([record.t for record in records], instants)
-        self._judge(recorder, seen, instants)
+        self._check_plausibility(recorder, steps, instants)
 
-    def _judge(self, recorder: Recorder, seen: Sequence[Seen], instants: Instants) -> None:
-        """Look whether what was recorded is plausible."""
-        recorded = [n for n, each in enumerate(seen) if each.due.series]
+    def _check_plausibility(self, recorder: Recorder, steps: Sequence[BufferedStep], instants: Instants) -> None:
+        """Check whether what was recorded is plausible, for the summary's warnings."""
+        recorded = [n for n, each in enumerate(steps) if each.due.series]
         if not recorded:
             return
-        times = [recorder.time_at(seen[n].record.t) for n in recorded]
+        times = [recorder.time_at(steps[n].record.t) for n in recorded]
         for name, plausibility in self._plausibility.items():
             plausibility.look(times, instants_at(instants[name], recorded).riser)
             if self._assembly.by_line[name].soil is not None:
-                plausibility.look_at_soil(times[-1], seen[-1].state, instants_at(instants[name], -1))
+                plausibility.look_at_soil(times[-1], steps[-1].state, instants_at(instants[name], -1))
             stage = recorder.summary.stages[-1].of(name)
             stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
         if self._hung is not None:
@@ -239,9 +241,9 @@ class Observer:
             whole.implausible = tuple(self._hung.warnings(whole.hung))
 
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
-        """After a step, recorded: write the state, where it is due; collective. See `stages.CheckpointWriter`."""
+        """Write the state after a recorded step, where it is due; collective. Arguments as of `CheckpointWriter`."""
         ends_run = last and self._stage is self._assembly.scene.stages[-1]
-        if _asked(self._assembly) is not None:
+        if _checkpoint_settings(self._assembly) is not None:
             leave_between_steps()
         if not self._checkpoints.due(last, ends_run, leaving):
             return
@@ -256,10 +258,10 @@ class Observer:
         self._clock.add("checkpoints", since)
 
     def record_last(self, end: SolveError | MemoryShortageError | Interruption) -> None:
-        """The run ends before its time: write the last accepted step; collective where the ranks end together."""
+        """Write the last accepted step of a run that ends before its time; collective where the ranks end together."""
         together = self._assembly.comm.size == 1 or not isinstance(end, Interruption) or end.together
         with uninterrupted():
-            self.hand_over()
+            self.flush()
             soil = self._soil() if together else None
             if self._recorder is not None:
                 self._recorder.record_last(soil)
@@ -267,19 +269,19 @@ class Observer:
                     end.place = self._recorder.reached
 
     def _soil(self) -> SoilSnapshot | None:
-        """Collective where there is soil."""
+        """Fields of the soil; collective where there is soil."""
         soil = self._assembly.recovered_soil()
         return None if soil is None else soil.output_fields()
 
     def _boundary(self) -> BoundaryStress | None:
-        """Collective where there is soil."""
+        """Change of stress at the soil's boundaries; collective where there is soil."""
         lying, soil = self._assembly.line_on_soil, self._assembly.recovered_soil()
         if lying is None or soil is None:
             return None
         return boundary_stress(soil, int(np.abs(lying.line.direction[:2]).argmin()))
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
-        """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""
+        """Record that a slack or steep riser's end was moved to its place, from `slack` [m] beyond it."""
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
@@ -289,7 +291,7 @@ class Observer:
             print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
-        """Dynamic relaxation, or settling, was needed; its Newton iterations count with the next step."""
+        """Record that dynamic relaxation, or settling, was needed; its Newton iterations count with the next step."""
         self._relaxed += relaxed.iterations
         if self._recorder is None:
             return
@@ -311,17 +313,17 @@ class Observer:
             print_summary(self._recorder.summary.as_dict())
 
     def state(self) -> Saved:
-        """Once the recorder knows all steps."""
-        self.hand_over()
+        """What the observer resumes from, after the buffer is written."""
+        self.flush()
         stage = self._assembly.scene.stages.index(self._stage)
         return gathered(self._owners) | {"stage": np.array(stage), "relaxed": np.array(self._relaxed)}
 
     def restore(self, saved: Saved) -> None:
-        """Follow the stage on from where it was saved."""
+        """Resume the stage from where it was saved."""
         self._enter(self._assembly.scene.stages[int(saved["stage"])], Energy())
         restore_all(self._owners, saved)
         self._relaxed = int(saved["relaxed"])
-        self._show(self._stage)
+        self._show_progress(self._stage)
         if self._recorder is not None:
             print(f"the run goes on {self._recorder.place}")
 
@@ -336,25 +338,25 @@ class Observer:
         return owners
 
 
-def _asked(assembly: Assembly) -> Checkpoint | None:
+def _checkpoint_settings(assembly: Assembly) -> Checkpoint | None:
     return assembly.scene.output.checkpoint
 
 
 @contextmanager
 def _on_all_ranks(comm: Communicator) -> Iterator[None]:
-    """An error on one rank in the block is raised on all."""
+    """Raise an error of one rank in the block on all ranks."""
     failure: RiserSoilError | None = None
     try:
         yield
     except RiserSoilError as err:
         failure = err
-    for met in comm.allgather(failure):
-        if met is not None:
-            raise met
+    for error in comm.allgather(failure):
+        if error is not None:
+            raise error
 
 
 def _known_fields(assembly: Assembly) -> dict[str, tuple[str, ...]]:
-    """Fields that the scene requests, as far as they can be computed, of each line."""
+    """Fields of each line that the scene requests, as far as they can be computed."""
     asked = assembly.scene.output.fields
     return {name: outputs.known(asked, _known_of_line(line)) for name, line in assembly.by_line.items()}
 
@@ -378,7 +380,7 @@ def _known_of_line(assembly: Assembly) -> list[Need]:
 
 
 def _code_checks(assembly: Assembly) -> dict[str, tuple[CodeCheckFacts, ...]]:
-    """By line."""
+    """The code checks of lines that have some, by the line's name."""
     checks = {name: line.code_checks() for name, line in assembly.by_line.items()}
     return {name: each.facts for name, each in checks.items() if each is not None}
 

@@ -1,12 +1,8 @@
 """YAML file as plain data, with the line number of every value.
 
-Fast reading of long lists of numbers in YAML: a YAML reader takes 0.1 ms for every number.
-
-Such a list is cut out of the text and replaced by an empty one with as many lines. What the YAML reader finds there
-shows whether it was a list at all, and not part of a comment or of a quoted text.
+Long lists of numbers are read apart from the rest, see `number_lists`: a YAML reader takes 0.1 ms for every number.
 """
 
-import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -19,6 +15,7 @@ from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from riser_soil.errors import SceneError
 from riser_soil.scene.files import content
+from riser_soil.scene.number_lists import NumberList, without_lists
 from riser_soil.scene.problem import Path, dotted
 
 _TAG = "tag:yaml.org,2002:"
@@ -26,11 +23,6 @@ _SCALARS = {_TAG + name for name in ("str", "int", "float", "bool", "null", "tim
 _MOST_VALUES = 1_000_000
 _MOST_BYTES = 64_000_000
 _MOST_LETTERS = 2_000_000  # beside long lists of numbers: some 20 s for the YAML reader
-_LONG = 2000  # characters; shorter lists are left to the YAML reader
-_NUMBER = r"-?[0-9][0-9.eE+-]*"
-_ROW = rf"- +(?:{_NUMBER}|\[ *{_NUMBER}(?: *, *{_NUMBER})* *\])(?: +#.*)?[ \r]*(?:\n|\Z)"
-_ROWS = rf"(?P<indent>^ *){_ROW}(?:(?P=indent){_ROW}){{49,}}"
-_LIST = re.compile(rf"{_ROWS}|\[[\[\s]*{_NUMBER}[-+.,\[\]\s0-9eE]{{{_LONG},}}", re.MULTILINE)
 _EXCERPT = 80  # characters of a line that a message shows
 TAB = re.compile(r" *\t\s*\S")
 UNSPACED = re.compile(r"([A-Za-z_]\w*):(?=[^\s/:\\])")  # a key with its value right after the colon
@@ -47,93 +39,6 @@ READERS = {
     "report file": "riser-soil report reads",
     "case file": "riser-soil cases reads",
 }
-_OPEN_POINT = re.compile(r"(?<=[0-9])\.(?![0-9])")
-_TOKEN = re.compile(r"[\[\],\n]|[^\[\],\s]+")
-
-
-@dataclass(frozen=True)
-class KernelData:
-    """A list of numbers, or of such lists, as JSON."""
-
-    text: str
-
-    @property
-    def count(self) -> int:
-        return self.text.count(",") + self.text.count("[")
-
-    def values(self) -> list[Any]:
-        """The list, a new one each time."""
-        values: list[Any] = json.loads(self.text)
-        return values
-
-    def lines(self) -> Iterator[tuple[tuple[int, ...], int]]:
-        """Indices of each item and its line, counted from 0 where the list begins."""
-        path: list[int] = []
-        line = 0
-        for token in _TOKEN.findall(self.text):
-            if token == "\n":
-                line += 1
-            elif token == ",":
-                path[-1] += 1
-            elif token == "]":
-                path.pop()
-            else:
-                if path:
-                    yield tuple(path), line
-                if token == "[":
-                    path.append(0)
-
-
-def cut_out(text: str) -> tuple[str, dict[int, KernelData]]:
-    """The text with its long lists emptied, and the lists by where they begin in it."""
-    parts: list[str] = []
-    found: dict[int, KernelData] = {}
-    size = done = 0
-    while match := _LIST.search(text, done):
-        numbers, end = _rows(match) if match["indent"] is not None else _brackets(match)
-        left = _emptied(match, numbers) if numbers else text[match.start() : end]
-        parts += [text[done : match.start()], left]
-        if numbers:
-            found[size + match.start() - done + left.index("[")] = numbers
-        size += match.start() - done + len(left)
-        done = end
-    return "".join([*parts, text[done:]]), found
-
-
-def _rows(match: re.Match[str]) -> tuple[KernelData | None, int]:
-    """A list with an item a line, after dashes."""
-    items = [row.partition("#")[0].strip()[1:] for row in match[0].splitlines()]
-    return _plain("[" + ",\n".join(items) + "\n]"), match.end()
-
-
-def _brackets(match: re.Match[str]) -> tuple[KernelData | None, int]:
-    """A list in brackets; what follows it may look like its items."""
-    depth = 0
-    for bracket in re.finditer(r"[\[\]]", match[0]):
-        depth += 1 if bracket[0] == "[" else -1
-        if depth == 0:
-            end = bracket.end()
-            return _plain(match[0][:end]) if end >= _LONG else None, match.start() + end
-    return None, match.end()
-
-
-def _plain(text: str) -> KernelData | None:
-    """None for what isn't JSON, or has a number too large for Python: the YAML reader tells what it is."""
-    text = _OPEN_POINT.sub(".0", text)
-    try:
-        json.loads(text)
-    except ValueError:
-        return None
-    return KernelData(text)
-
-
-def _emptied(match: re.Match[str], numbers: KernelData) -> str:
-    """An empty list with as many lines, its last one as far indented."""
-    if match["indent"] is not None:
-        return f"{match['indent']} []" + "\n" * match[0].count("\n")
-    lines = numbers.text.count("\n")
-    last = numbers.text.rpartition("\n")[2]
-    return "[" + "\n" * lines + " " * (len(last) - len(last.lstrip())) * bool(lines) + "]"
 
 
 @dataclass
@@ -191,7 +96,7 @@ def parse(text: str, name: str, needs: str = NEEDS) -> Document:
     """The document in a YAML text; SceneError with the line when the text is not plain YAML, or with its needs when it
     is empty.
     """
-    short, lists = cut_out(text)
+    short, lists = without_lists(text)
     if len(short) > _MOST_LETTERS:
         what = f"{len(short)} letters beside lists of plain numbers, more than {_MOST_LETTERS}"
         raise SceneError(f"{name}: {what}; take tables from CSV files, or write [numbers] without comments")
@@ -249,7 +154,7 @@ def refuse_others(document: Document, wanted: str) -> Document:
 class _Builder:
     """Turns YAML nodes into plain data; allows no tags, so that no object is ever built from a scene."""
 
-    def __init__(self, yaml: YAML, name: str, lists: dict[int, KernelData]) -> None:
+    def __init__(self, yaml: YAML, name: str, lists: dict[int, NumberList]) -> None:
         self._yaml = yaml
         self._constructor = yaml.constructor
         self._lists, self._found = lists, set[int]()

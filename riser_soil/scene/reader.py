@@ -1,14 +1,7 @@
-"""Reader: from a scene file to a checked scene.
+"""Reader: from a scene file, or data as a file would give it, to a checked scene."""
 
-Keys and values of the scene language that are not supported yet.
-
-They are named as such instead of being called unknown. A value that switches the thing off is dropped.
-"""
-
-import copy
 import re
-import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,17 +12,13 @@ from riser_soil.scene.document import Document, parse, read_text, refuse_others
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.line_checks import all_conflicts
 from riser_soil.scene.overrides import override
-from riser_soil.scene.problem import Path as KeyPath
-from riser_soil.scene.problem import Problem, dotted, matching, message, shown, value_at
+from riser_soil.scene.problem import Problem, dotted, message, shown
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.sizes import doubts
+from riser_soil.scene.unsupported import without_unsupported
 from riser_soil.scene.void_overrides import void_overrides
 
 _MOST_LINES = 20
-# key -> values that mean "off"; the key itself is not part of the models. `*` stands for any name or number.
-KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
-    ("stages", "*", "initial_velocity"): (None,),
-}
 
 
 def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
@@ -65,7 +54,7 @@ def with_place_in(document: Document, message: str) -> str:
 
 def checked(document: Document, folder: Path) -> Scene:
     """The scene of a document; files that it names are sought in the folder."""
-    data, unsupported = taken_out(document.data)
+    data, unsupported = without_unsupported(document.data)
     try:
         scene = Scene.model_validate(data, context={"folder": folder})
     except ValidationError as err:
@@ -111,36 +100,3 @@ def _with_line(problem: Problem, document: Document) -> str:
     """The problem in words, with the line of the file where that makes it plain."""
     line = document.line_of(problem.path) if problem.shows_line else ""
     return message(problem, document.data) + (f'; the line is "{line}"' if line else "")
-
-
-def taken_out(data: Any) -> tuple[Any, list[Problem]]:
-    """A copy of the data without the keys of KEYS, and problems for what this version does not support, and for
-    characters that results can't have.
-    """
-    rest = copy.deepcopy(data)
-    return rest, [*_keys(rest), *_unwritable(rest)]
-
-
-def _keys(data: Any) -> Iterator[Problem]:
-    for pattern, off in KEYS.items():
-        for path, value in matching(data, pattern):
-            del value_at(data, path[:-1])[path[-1]]
-            if not _among(value, off):
-                yield Problem(path, "not supported yet", "leave the key out")
-
-
-def _unwritable(data: Any, path: KeyPath = ()) -> Iterator[Problem]:
-    """Texts and keys with characters that no result's file takes: NUL, other control characters, half a surrogate."""
-    entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-    for key, value in entries:
-        texts = "".join(text for text in (key, value) if isinstance(text, str))
-        found = {c for c in texts if unicodedata.category(c) in ("Cc", "Cs")} - {*"\t\n\r"}
-        if found:
-            named = ", ".join(f"U+{ord(c):04X}" for c in sorted(found))
-            yield Problem((*path, key), f"a text has no control characters, which {named} is", "leave them out")
-        yield from _unwritable(value, (*path, key))
-
-
-def _among(value: Any, values: tuple[Any, ...]) -> bool:
-    """Membership that tells true from 1."""
-    return any(type(value) is type(other) and value == other for other in values)

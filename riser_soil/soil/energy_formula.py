@@ -18,7 +18,7 @@ from riser_soil.soil.law_source import LawError
 from riser_soil.soil.own_formula import OwnFormula, asked_of_user
 
 STRAIN = tuple(f"strain_{place}" for place in PLACES)
-NONE = 1e-9  # of the moduli, which is no stress
+ZERO_STRESS = 1e-9  # stresses below this share of the moduli count as zero
 
 
 class EnergyFormula(OwnFormula):
@@ -36,7 +36,7 @@ class EnergyFormula(OwnFormula):
         psi = law.psi if arguments == 2 else lambda eps, depth: law.psi(eps)
         self._energy = asked_of_user(lambda: energy_kernel.EnergyKernel(psi, depth))
         _, stress, moduli = self._energy.at(np.zeros((len(depth), 6)))
-        if depth.size and not np.abs(stress).max() <= NONE * np.abs(moduli).max():
+        if depth.size and not np.abs(stress).max() <= ZERO_STRESS * np.abs(moduli).max():
             raise LawError(f"psi has a stress of {np.abs(stress).max():.4g} Pa where there is no strain; it must be 0")
 
     def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:

@@ -23,7 +23,7 @@ POINTS = 6
 SIZES = (1e-5, 1e-4, 1e-3, 1e-2)  # of the strain
 STEPS = (1e-3, 1e-5)  # of differences, over the increment: at a kink of the stress one of them may lie across it
 OFF, UNSYMMETRIC, SAME = 1e-4, 1e-6, 1e-6
-NONE = 1e-12  # of the moduli
+ZERO_MODULUS = 1e-12  # a modulus below this share of their sum counts as zero
 SECOND = 1.0
 DIRECTIONS = (  # compression of the volume; simple shear; compression along z and shear at constant volume
     -mandel.UNIT / np.sqrt(3.0),
@@ -64,7 +64,7 @@ def _begins_at_rest(law: OwnFormula) -> None:
     scale = np.abs(law.initial).max(axis=1) + 1e-9 * np.abs(law.shear)
     _same(start[:, :6], law, scale, "start() begins with another stress than the initial one")
     for name, values in (("bulk", law.bulk), ("shear", law.shear)):
-        wrong = np.flatnonzero(~((values > NONE * (law.bulk + law.shear)) & np.isfinite(values)))
+        wrong = np.flatnonzero(~((values > ZERO_MODULUS * (law.bulk + law.shear)) & np.isfinite(values)))
         if wrong.size:
             where = f"at a depth of {law.depth[wrong[0]]:.4g} m"
             raise LawError(f"{where} its {name} modulus at rest is {values[wrong[0]]:.4g} Pa, and must be above 0")

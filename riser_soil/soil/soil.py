@@ -26,7 +26,7 @@ from riser_soil.soil.layered import LayeredWeight
 from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.soil_cells import SoilCells
 
-NONE = 1e-9  # of the box' height: depth, or movement of a node, that is none
+ZERO_DEPTH = 1e-9  # depths and movements below this share of the block's height count as zero
 
 
 class Soil:
@@ -67,8 +67,8 @@ class Soil:
         self.cells = SoilCells(grid)
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
         self._ground = _Ground(fields.kept_by(law), weight, K0, start == "geostatic")
-        depth, self._none = level - grid.nodes.points[:, 2], NONE * float(grid.high[2] - grid.low[2])
-        self._depth = np.where(depth > self._none, depth, 0.0)  # of the nodes, before anything moved
+        depth, self._zero_depth = level - grid.nodes.points[:, 2], ZERO_DEPTH * float(grid.high[2] - grid.low[2])
+        self._depth = np.where(depth > self._zero_depth, depth, 0.0)  # of the nodes, before anything moved
         self._initial, self._unit_weight, self.law = on_all_ranks(grid.nodes.comm, self._material)
         self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=(Limited, Stateful, Yielding))
         self._asked = fields.of_law(self.law.columns)
@@ -228,7 +228,7 @@ class Soil:
         new = made[self.cells.nodes].any(axis=1)
         here, new_points = self.cells.at_points(before), np.repeat(new, self.cells.shape[1])
         there = self.cells.at_points(after)[new_points]
-        self._depth = carried_depths(self.grid, self.cells, self._depth, before, after, self._none)
+        self._depth = carried_depths(self.grid, self.cells, self._depth, before, after, self._zero_depth)
         history = self._history_beyond_weight(before)
         history[new_points] = carried_rows(self.grid, here, there, history, self.law.columns)
         self._mesh_at[new] = after[self.cells.nodes[new]]
