@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from riser_soil.assembly.condensation import condensed_of
 from riser_soil.assembly.hang_off import hung_ends
 from riser_soil.assembly.line_assembly import LineAssembly, add_seabed, line_assembly
 from riser_soil.assembly.scales import Scales, of_several
-from riser_soil.assembly.soil_block import condensed_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field, LineField, Model, Part, State

@@ -1,21 +1,9 @@
-"""Assembly of the soil block: its extent, the sizes of its cells, and whether elastic soil is condensed.
-
-Whether linear elastic soil is condensed to the part of its top that the riser reaches.
-
-What condensation costs are the solves for the columns of the compliance, some 3e-9 n^(4/3) s for each of the r dofs
-that are reached, of n in all, and the dense block in each factorisation, some 5e-11 r^3 s. What it saves are
-factorisations of the whole, some 2e-9 n^2 s each. With r = 2 n^(2/3) the former is paid for by three of the latter,
-and the dense block is a fifth of one: below that condensation pays, as any scene on soil has tens of iterations.
-"""
+"""Assembly of the soil block: its extent and the sizes of its cells."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-import numpy as np
-
-from riser_soil.errors import SceneError
-from riser_soil.riser.line import Line
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed_features import Groove, Trench
@@ -25,9 +13,9 @@ from riser_soil.soil.grading import BlockSpec, Point
 from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec, TrenchSpec
 
 if TYPE_CHECKING:
-    from riser_soil.soil.condensed import CondensedSoil
-    from riser_soil.soil.soil import Soil
-    from riser_soil.soil.surface import SoilTop
+    pass
+
+
 
 NONE = 1e-9  # slope in plan, and part of the block's width, that is none
 MOST = 2.0  # dofs that are reached, over n^(2/3) of n in all
@@ -92,51 +80,3 @@ def _feature_of(scene: Scene, block: Block) -> FeatureSpec | None:
             return None
         case _:
             assert_never(block.feature)
-
-
-def condensed_of(scene: Scene, soil: Soil, line: Line, diameter: float) -> CondensedSoil | None:
-    """The condensed soil in the place of the whole one, where it is condensed; SceneError where that is asked for and
-    can't be.
-    """
-    reason = why_whole(scene, soil, line, diameter)
-    if reason and scene.solver.soil == "condensed":
-        raise SceneError(f"solver.soil: the soil can't be condensed: {reason}; write auto")
-    if reason:
-        return None
-    from riser_soil.soil.condensed import CondensedSoil, CondensedTop
-
-    return CondensedSoil(soil, CondensedTop(soil))
-
-
-def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
-    """Why the soil is solved for as a whole; empty where it is condensed. diameter: of the riser [m]."""
-    assert scene.soil is not None
-    ranks = soil.grid.nodes.comm.size
-    if not scene.soil.is_linear:
-        return f"it is not linear, its law is {' and '.join(sorted({law.kind for law in scene.soil.laws}))}"
-    if scene.soil.inertia:
-        return "it has inertia"
-    if scene.soil.forms is not None:
-        return "terms of soil.forms are added to it"
-    if scene.soil.model == "sections":
-        return "it is made of sections"
-    if ranks > 1:
-        return f"the run is on {ranks} ranks"
-    if scene.solver.soil != "auto":
-        return "solver.soil is whole" if scene.solver.soil == "whole" else ""
-    reached, most = 3 * _under(line, soil.surface, diameter), MOST * soil.field.size ** (2.0 / 3.0)
-    if reached > most:
-        return f"{reached} unknowns of its surface lie under the riser; with more than {most:.0f} condensing costs more"
-    return ""
-
-
-def _under(line: Line, surface: SoilTop, diameter: float) -> int:
-    """How many points of the top belong to facets under the riser's width in plan, where it begins."""
-    from riser_soil.contact.ground import touching_boxes
-
-    axis = line.to_global(line.x)
-    axis[:, 2] = 0.0
-    wide = np.array([0.5 * diameter, 0.5 * diameter, np.inf])
-    low, high = np.minimum(axis[:-1], axis[1:]) - wide, np.maximum(axis[:-1], axis[1:]) + wide
-    _, facets = touching_boxes(low, high, surface.points, surface.facets)
-    return len(np.unique(surface.facets[facets]))

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from riser_soil.assembly import Assembly, build, sized
+from riser_soil.assembly.condensation import why_whole
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.seabed_reach import why_apart
-from riser_soil.assembly.soil_block import why_all, why_whole
+from riser_soil.assembly.soil_block import why_all
 from riser_soil.checks.bending_plausibility import proposal
 from riser_soil.checks.by_hand import by_hand
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth

@@ -114,8 +114,8 @@ def histories(
             return
         from riser_soil.results.read import Run
         from riser_soil.results.whole_file import written_whole
+        from riser_soil.statistics.history_file import write_histories
         from riser_soil.statistics.records import records_of
-        from riser_soil.statistics.report import write_histories
 
         run = Run(folder)
         found = [records_of([run], name, _arcs([run], arc or [], at or []), stage, since) for name in of]

@@ -1,9 +1,4 @@
-"""What `riser-soil statistics` tells and leaves: tables on the screen, CSV or JSON.
-
-Histories of outputs as CSV: time in the first column, names without blanks or commas in the first row.
-
-So qats reads them (github.com/dnvgl/qats, time series of .csv files), and pandas with its defaults.
-"""
+"""Tables of `riser-soil statistics` on the screen, and its CSV and JSON files."""
 
 from __future__ import annotations
 
@@ -11,7 +6,7 @@ import csv
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, TextIO
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -174,20 +169,3 @@ def _warnings(places: Sequence[Place]) -> Iterator[str]:
         )
     if all(len(place.found.maxima) < 3 for place in places):
         yield "Gumbel's distribution needs three maxima or more: give more runs (seeds), or --block SECONDS"
-
-
-def write_histories(histories: Sequence[Records], file: TextIO) -> None:
-    """Write histories of one run and stage as CSV; time counts from the stage's begin."""
-    first = histories[0]
-    time = first.begin + first.step * np.arange(len(first.values[0]))
-    table = np.column_stack([time, *(each.values[0] for each in histories)])
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(["time_s", *(name for each in histories for name in _names(each))])
-    writer.writerows([repr(float(value)) for value in row] for row in table)
-
-
-def _names(history: Records) -> list[str]:
-    """Names of an output's columns, one a place, with its unit: effective_tension_at_150m_N."""
-    places = ["" if np.isnan(arc) else f"_at_{arc:.10g}m" for arc in history.arc]
-    unit = "_" + history.units.replace(" ", "") if history.units not in ("", "1") else ""
-    return [f"{history.name}{place}{unit}" for place in places]

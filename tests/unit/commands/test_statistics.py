@@ -17,9 +17,10 @@ from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
-from riser_soil.statistics.analysis import PlaceStatistics, Wanted, block_maxima, cycles, spectrum
+from riser_soil.statistics.analysis import PlaceStatistics, Wanted
 from riser_soil.statistics.extremes import fit_gumbel, fit_weibull, plotting_positions, rayleigh_height
 from riser_soil.statistics.records import records_of
+from riser_soil.statistics.series import block_maxima, cycles, spectrum
 from tests.support.said import line_with, telling
 
 STEP, PERIOD, AMPLITUDE, MEAN = 0.25, 8.0, 3.0, 10.0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.soil_block import why_whole
+from riser_soil.assembly.condensation import why_whole
 from riser_soil.checks.check import describe
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
