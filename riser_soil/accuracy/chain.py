@@ -17,15 +17,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from riser_soil.accuracy.element_sizes import CurveEnvelope
-from riser_soil.accuracy.error_bars import (
-    ComparisonRun,
-    ErrorBar,
-    RunValues,
-    SoilOfRun,
-    alone,
-    error_bars,
-    extremes_of,
-)
+from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, error_bars
+from riser_soil.accuracy.extreme_differences import alone, extremes_of
 from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.accuracy.settings import is_firm, settings_of, varied

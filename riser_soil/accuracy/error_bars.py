@@ -23,11 +23,6 @@ that of the longer ones, as errors on soil that yields fall more slowly than by 
 share is by the slice, and by a part of the coarser run's difference, as a slice knows nothing of what lies along the
 riser. Others are uncertain by that difference, or by more, in so far as the settlement changes by more on fine cells
 than on coarse ones. Soil of a few slices has no slice that is cheaper than the run: there cells are coarsened twice.
-
-Extremes of key results over a stage and in windows of its time, and how far two runs are apart in them.
-
-Two runs may agree in one extreme by chance, where their difference changes its sign. So what counts is the mean square
-of the differences in the extreme itself and in the windows in which the quantity comes near it.
 """
 
 from __future__ import annotations
@@ -35,13 +30,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
-import numpy as np
-
-from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
-from riser_soil.core.arrays import Array
-from riser_soil.results.peaks import RunPeaks, StagePeaks
+from riser_soil.accuracy.extreme_differences import Extremes, apart
+from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
 
 SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalty": "penalty"}
 SMALLEST, SMALLEST_ON_SOIL = 5e-5, 1e-4  # bar told, over the quantity's scale
@@ -59,9 +50,7 @@ BY_SLICE = {"soil": 1.2}  # where a slice tells the settlement's error
 SLICE, AT_REST, IN_MOTION = 1.4, 0.35, 1.8
 MOST_SEEN = 2.0  # times at most that a difference counts by what the slice tells; where it fails, always
 LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
-
 Values = Mapping[str, float]  # of key results by their keys, in their units
-NEAR = 0.2  # of a quantity's range over the windows, from its extreme
 
 
 @dataclass(frozen=True)
@@ -212,52 +201,3 @@ def gaps(key_result: KeyResult, run: RunValues) -> dict[str, float]:
     peak = run.peaks[key].value if key in run.peaks else nodes
     steps = abs(peak - nodes) + abs(run.smooth.get(key, nodes) - nodes)
     return {"mesh": abs(nodes - value)} | ({"time": steps} if steps else {})
-
-
-class Extreme(NamedTuple):
-    """An extreme of a stage, between nodes and steps.
-
-    windows (W,): extremes in windows of a dynamic stage's time, nan where unknown; empty for a static stage. least:
-    whether it is the least value, not the largest.
-    """
-
-    value: float
-    windows: Array
-    least: bool = False
-
-
-Extremes = Mapping[str, Extreme]  # of key results by their keys, in their units
-
-
-def extremes_of(peaks: RunPeaks) -> dict[str, Extreme]:
-    stages = {(own.name, line): own for of_lines in peaks.stages for line, own in of_lines.items()}
-    return {
-        key: alone(each.value) if not each.figure else _followed(each, stages[each.stage, each.of])
-        for key, each in key_results(peaks.as_summary("peaks")).items()
-    }
-
-
-def _followed(each: KeyResult, stage: StagePeaks) -> Extreme:
-    return Extreme(each.value, stage.in_windows(each.figure, each.which), each.which == "min")
-
-
-def alone(value: float) -> Extreme:
-    """Extreme of a quantity that was not followed in time."""
-    return Extreme(value, np.empty(0))
-
-
-def apart(run: Extreme, other: Extreme) -> float:
-    """How far two runs are apart, in the quantity's unit. run: the one that tells which windows count."""
-    off = run.value - other.value
-    if run.windows.size == 0 or other.windows.size == 0:
-        return abs(off)
-    between = (run.windows - other.windows)[_near(run)]
-    known = between[np.isfinite(between)]
-    return math.sqrt(0.5 * (off**2 + float(np.mean(known**2)))) if known.size else abs(off)
-
-
-def _near(run: Extreme) -> Array:
-    """Whether a window (W,) comes near the extreme; one that is unknown does not."""
-    height = -run.windows if run.least else run.windows
-    top, bottom = np.nanmax(height), np.nanmin(height)
-    return np.asarray(height >= top - NEAR * (top - bottom))

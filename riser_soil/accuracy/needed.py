@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, apart, gaps
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps
+from riser_soil.accuracy.extreme_differences import apart
 
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # what fineness costs, as a power
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to

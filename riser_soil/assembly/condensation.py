@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.soil_block import MOST
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.scene.scene import Scene
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
     from riser_soil.soil.surface import SoilTop
 
+MOST_REACHED = 2.0  # dofs that the riser reaches, over n^(2/3) of n in all
 
 
 def condensed_of(scene: Scene, soil: Soil, line: Line, diameter: float) -> CondensedSoil | None:
@@ -54,7 +54,7 @@ def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
         return f"the run is on {ranks} ranks"
     if scene.solver.soil != "auto":
         return "solver.soil is whole" if scene.solver.soil == "whole" else ""
-    reached, most = 3 * _under(line, soil.surface, diameter), MOST * soil.field.size ** (2.0 / 3.0)
+    reached, most = 3 * _under(line, soil.surface, diameter), MOST_REACHED * soil.field.size ** (2.0 / 3.0)
     if reached > most:
         return f"{reached} unknowns of its surface lie under the riser; with more than {most:.0f} condensing costs more"
     return ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.scene import Scene
@@ -12,13 +12,7 @@ from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.grading import BlockSpec, Point
 from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec, TrenchSpec
 
-if TYPE_CHECKING:
-    pass
-
-
-
-NONE = 1e-9  # slope in plan, and part of the block's width, that is none
-MOST = 2.0  # dofs that are reached, over n^(2/3) of n in all
+ZERO = 1e-9  # slopes in plan, and distances over the block's width, below which they count as zero
 
 
 def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> BlockSpec:
@@ -59,11 +53,11 @@ def why_all(scene: Scene, soil: SoilScene) -> str:
         return "it is linear, and may be condensed"
     if resolved_dimension(scene) == 3 and scene.line.across is None:
         return "the riser moves in three dimensions"
-    if abs(plane.direction[across]) > NONE:
+    if abs(plane.direction[across]) > ZERO:
         return "the riser runs across x and y"
     assert isinstance(soil.block, Block)
     low, high = (soil.block.x, soil.block.y)[across]
-    if abs(0.5 * (low + high) - plane.origin[across]) > NONE * (high - low):
+    if abs(0.5 * (low + high) - plane.origin[across]) > ZERO * (high - low):
         return f"the riser does not lie in the middle of soil.block.{'xy'[across]}"
     return ""
 

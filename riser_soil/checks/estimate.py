@@ -2,18 +2,11 @@
 
 Memory and disk are those of `check`'s report within some tens of per cent, the time within a factor of three or so, and
 of blocks of soil within 1.5. The memory of scenes with soil is the largest that a run takes, within 30 %.
-
-Fill of the soil's factor, foretold from the block's grid of nodes, before there is a matrix.
-
-Nested dissection (George, SIAM J. Numer. Anal. 10 (1973), 345-363, from memory): a plane of nodes across the longest
-side parts the block, another one each half, and so on; planes are eliminated after what they part. A plane of s
-unknowns, on whose piece b unknowns of earlier planes border, has s²/2 + s b entries in a symmetric matrix' factor.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -22,6 +15,7 @@ import numpy as np
 from riser_soil.assembly import sized
 from riser_soil.assembly.assembly import LAID_IN
 from riser_soil.assembly.motions import corner_count
+from riser_soil.checks.factor_fill import factor_memory, nodes_of, operations
 from riser_soil.checks.inventory import built
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
 from riser_soil.scene.lines import by_line, on_soil
@@ -34,6 +28,7 @@ from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage
 if TYPE_CHECKING:
     from riser_soil.soil.grading import BlockSpec
 
+
 # Bytes of: a process with the packages that every scene needs, what dolfinx and gmsh add, element and matrix arrays of
 # an unknown of the riser, all that a cell has for one entry of its matrix (mesh, value, place, matrix entry, tangent,
 # histories), a time at which output is due, an element in a wave component.
@@ -42,21 +37,18 @@ PER_UNKNOWN = 1.5e3  # bytes of multigrid and of GMRES' vectors
 PLANE = 3  # times as much has a cell in plane strain for an entry, as its law knows all components
 PER_LAYER = 60.0  # bytes of the factors of an unknown in a section, whose band is as wide as two nodes of each layer
 WITHIN = 1.3  # memory is, times or over this, what it is foretold to be
-
 # Parts whose tangents are not symmetric, so that the soil's factor is twice as large.
 UNSYMMETRIC = {
     *("inertia", "rotary inertia", "structural damping", "contents", "morison"),
     *("vortices", "vortices in line"),
     *("friction", "soil friction"),
 }
-
 # Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes,
 # somewhat more than one.
 PER_NODE = PER_PICTURE = sum(output.numbers for output in ALONG_RISER)
 PER_STEP, PER_CELL = 60, 1 + sum(output.numbers for output in OF_SOIL)
 TENSOR = 9  # numbers, row by row
 COPIES = 2.0  # of each file while it grows
-
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
 # cell in a section; of a step on condensed soil, and once of a cell and of the factor by unknowns squared.
 BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED, ON_CONDENSED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9, 2e-2
@@ -67,14 +59,8 @@ YIELDING, ELASTIC = 7.3, 2.3
 ITERATION, LAW, SOLVED, OPERATION, MOVED = 1.5e-2, 9e-6, 2.5e-6, 5e-11, 2.5e-5
 LONGEST_AUTO = 0.05  # of a stage: the longest automatic step
 SAME = 1e-6  # steps
-
 BYTES_OF_A_CELL = 60.0  # in a mesh file, with its nodes
 TETRAHEDRA, NODES_OF_TETRAHEDRA = 6.0, 1.8  # in a cube of the size asked for; quadratic nodes for each
-# Entries by PORD, MUMPS' ordering, over those of planes: 1.29 to 1.59 on grids of 4,600 to 140,000 unknowns, cubes,
-# slabs and strips. Bytes that MUMPS works in for each of them: 9 to 11.
-AS_ORDERED, PER_ENTRY = 1.4, 10.0
-UNPARTED = 8.0  # nodes of a piece that is eliminated at once
-AT_A_NODE = 3  # unknowns
 
 
 @dataclass(frozen=True)
@@ -215,7 +201,7 @@ def _soil_seconds(scene: Scene, soil: SoilScene, cells: float, unknowns: float, 
         return cells * CELL + FACTORED * unknowns**2 + ON_CONDENSED * steps
     if soil.model == "sections":
         return cells * CELL * steps
-    x, y, z = _nodes(_sides(scene, soil), unknowns)
+    x, y, z = nodes_of(_sides(scene, soil), unknowns)
     each = ITERATION + LAW * cells + SOLVED * unknowns + OPERATION * operations(x, y, z)
     steps += LAID_IN - 1 if scene.initial is None else 0
     return steps * (ELASTIC * each if soil.is_linear else YIELDING * each + MOVED * cells)
@@ -266,46 +252,3 @@ def _block(scene: Scene, soil: SoilScene) -> BlockSpec:
     assert own is not None
     start, end = initial_ends(own.line)
     return block_of(own, soil, ((start[0], start[1]), (end[0], end[1])))
-
-
-def factor_memory(sides: tuple[float, float, float], unknowns: float, symmetric: bool) -> float:
-    """Bytes of a factorisation, all ranks; sides: in proportion to the nodes along x, y and z."""
-    if unknowns <= 0.0:
-        return 0.0
-    return PER_ENTRY * AS_ORDERED * entries(*_nodes(sides, unknowns)) * (1.0 if symmetric else 2.0)
-
-
-def _nodes(sides: tuple[float, float, float], unknowns: float) -> tuple[float, float, float]:
-    """Nodes along sides in that proportion, with so many unknowns in all."""
-    per_unit = (unknowns / (AT_A_NODE * math.prod(sides))) ** (1.0 / 3.0)
-    x, y, z = (side * per_unit for side in sides)
-    return x, y, z
-
-
-def entries(x: float, y: float, z: float) -> float:
-    """Entries of a symmetric factor on a grid of so many nodes along its sides, by nested dissection."""
-    return AT_A_NODE**2 * sum(n * s * (0.5 * s + b) for n, s, b in _eliminated(x, y, z))
-
-
-def operations(x: float, y: float, z: float) -> float:
-    """Multiplications and additions that make it, as many of each."""
-    return AT_A_NODE**3 * sum(n * s * (s**2 / 3.0 + s * b + b**2) for n, s, b in _eliminated(x, y, z))
-
-
-def _eliminated(x: float, y: float, z: float) -> Iterator[tuple[float, float, float]]:
-    """What nested dissection eliminates at once on a grid of so many nodes: how many of them, and the nodes of each and
-    on its border.
-    """
-    sides, borders, pieces = [x, y, z], [0.0, 0.0, 0.0], 1.0
-    while (nodes := math.prod(sides)) > UNPARTED:
-        across = max(range(3), key=lambda axis: sides[axis])
-        yield pieces, nodes / sides[across], _beside(sides, borders)
-        sides[across] = 0.5 * (sides[across] - 1.0)
-        borders[across] = 1.0 + 0.5 * borders[across]
-        pieces *= 2.0
-    yield pieces, nodes, _beside(sides, borders)
-
-
-def _beside(sides: list[float], borders: list[float]) -> float:
-    """Nodes on the border of a piece with these sides and so many borders across each."""
-    return sum(border * math.prod(sides) / side for border, side in zip(borders, sides, strict=True))

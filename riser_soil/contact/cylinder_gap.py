@@ -11,10 +11,8 @@ so four linear forms hold everything. At an end of the element s stays, and δ²
 the sum over two directions square to n. A point that has come through to above the axis is taken to lie below it, with
 rho < 0: the pipe pushes it down all the same.
 
-Sliding of the riser over points of the soil's surface in a step, with exact derivatives.
-
-The axis c(s) of a beam element lies nearest to the soil's point p at the place s. With c0, p0 those of the start of the
-step and e the slide of the riser over the soil,
+For friction the slide in a step is needed. The axis c(s) of a beam element lies nearest to the soil's point p at the
+place s. With c0, p0 those of the start of the step and e the slide of the riser over the soil,
 
     e  = (c - c0) - (p - p0),                      de = N δq - δp + (c' - c0') δs,
 

@@ -1,4 +1,4 @@
-"""Facets of the soil's surface: shape functions with derivatives, and the normal gap of a point above one.
+"""Facets of the soil's surface: shape functions, and the normal gap of a point above one, with exact derivatives.
 
 quad4: ξ, η in [−1, 1]; corners counter-clockwise from (−1, −1).
 tri6: ξ, η ≥ 0, ξ + η ≤ 1; corners (0, 0), (1, 0), (0, 1), then the middles of the sides 12, 23, 31.
@@ -8,11 +8,9 @@ beside them. It is linear in ξ, and in η the smooth curve through four nodes o
 node is half of what lies between its neighbours. A node that has no next one is its own.
 The number of nodes, 4, 6 or 8, tells the kind.
 
-Normal gap between a point and the deformed facet below it, with exact first and second derivatives.
-
-The facet point below the point x solves Σ N_a(ξ) p_a = x in the two horizontal directions; the ground there
-has the height Z = Σ N_a(ξ) z_a and the slopes s = J⁻ᵀ ∂Z/∂ξ, J_iα = Σ p_ai ∂N_a/∂ξ_α. With δ for a variation
-of point and facet:
+The gap is that between a point and the deformed facet below it. The facet point below the point x solves Σ N_a(ξ) p_a =
+x in the two horizontal directions; the ground there has the height Z = Σ N_a(ξ) z_a and the slopes s = J⁻ᵀ ∂Z/∂ξ, J_iα
+= Σ p_ai ∂N_a/∂ξ_α. With δ for a variation of point and facet:
 
     δξ_α = J⁻¹_αi (δx_i − Σ N_a δp_ai)
     δg   = δz − Σ N_a δz_a − s·(δx − Σ N_a δp_a)

@@ -1,4 +1,4 @@
-"""The deformed soil surface as a contact surface, and detection: gaps, forces, stiffness of candidate pairs.
+"""The deformed soil surface as a contact surface: gaps, forces and stiffness at candidate pairs of node and facet.
 
 Candidate pairs set the sparsity pattern of contact in the tangent.
 """

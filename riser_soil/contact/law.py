@@ -2,9 +2,8 @@
 
 Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart; f = dψ/dδ with the potential ψ [N].
 
-Penalty contact with suction: tension up to a cap on uplift, then softening and breakaway (cohesive law).
-
-With the opening w = -penetration > 0, the stiffness k of the penalty, the cap p and the reach r, the tension is
+Suction is tension up to a cap on uplift, then softening and breakaway (cohesive law). With the opening w = -penetration
+> 0, the stiffness k of the penalty, the cap p and the reach r, the tension is
 
     k w up to the cap, then p (r - w)/(r - p/k), 0 beyond r.
 

@@ -10,8 +10,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SceneError
+from riser_soil.material.memory import in_words, memory, table_columns
 from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
-from riser_soil.material.point import MaterialCurve, columns, drive, in_words, law_at, memory, point_at
+from riser_soil.material.point import MaterialCurve, drive, law_at, point_at
 from riser_soil.results.whole_file import refuse_file, written_together
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
@@ -42,7 +43,8 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     kind = law_at(soil, z)[0].kind
     heading = f"{SIGNED}{kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
     remembered = memory(point)
-    _leave(folder, heading, {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: columns(remembered)})
+    tables = {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: table_columns(remembered)}
+    _leave(folder, heading, tables)
     return "\n".join(
         [*_summary_lines(soil, z, taken, curve, cycles), *in_words(remembered), f"written: {_LEFT} in {folder}"]
     )

@@ -17,7 +17,7 @@ from riser_soil.bodies.body import MovingBody
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
-from riser_soil.results.netcdf import Variable
+from riser_soil.results.netcdf_layout import Variable
 from riser_soil.riser import rotations
 from riser_soil.riser.vectors import add, dot, matrix, norm, scale, sub, vector
 from riser_soil.scene.bathymetry import ground_height

@@ -19,7 +19,8 @@ from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
 from riser_soil.results.folder import FolderLock
-from riser_soil.results.netcdf import SeriesFile, Variable, ledger_variables
+from riser_soil.results.netcdf import SeriesFile, ledger_variables
+from riser_soil.results.netcdf_layout import Variable
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.run_frames import RunFrames, series_rows, step_rows
 from riser_soil.results.schedule import DueOutputs

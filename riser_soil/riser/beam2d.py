@@ -1,8 +1,8 @@
 """Two-node corotational Euler-Bernoulli elements in a vertical plane: forces and tangent from one energy.
 
-`beam3d` in a plane, at less than half of its cost (`benchmarks.twins`), with in-plane coordinates (p, z) and angles
-positive from p to z. An element sees its chord x2 - x1 (m) and the directions of the section tangents at its ends
-(rad). The chord's length l and the angles theta_i from the chord to the tangents store
+They are those of `beam3d` in a plane, at less than half of its cost (`benchmarks.twins`), with in-plane coordinates (p,
+z) and angles positive from p to z. An element sees its chord x2 - x1 (m) and the directions of the section tangents at
+its ends (rad). The chord's length l and the angles theta_i from the chord to the tangents store
 
     U = EA L strain^2 / 2 + bending,
 
@@ -10,20 +10,17 @@ with the shallow-arch strain of `bending_energy`. Forces (N) and moments (N m) a
 z2, moment2; they are internal, and the tangent is the symmetric Hessian of U. Nodes may turn without
 limit; only theta_i must stay below pi.
 
-Strain energy of a two-node Euler-Bernoulli element in one bending plane.
-
-The end rotations a and b (rad) are measured from the chord. Bending follows from the cubic deflection;
-half its square slope, averaged over the element, is the shallow-arch term of the axial strain
+In the strain energy the end rotations a and b (rad) are measured from the chord. Bending follows from the cubic
+deflection; half its square slope, averaged over the element, is the shallow-arch term of the axial strain
 
     strain = (l - l0)/L + bow(a, b) - bow(a0, b0),    bow(a, b) = (2 a^2 - a b + 2 b^2)/30,
 
 which makes the two-node element fourth-order accurate on curved lines. Elements without bending stiffness go slack
 instead of bearing compression: their axial energy is that of `tension_only`.
-Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), chapter
-7.
+Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), chapter 7.
 
-Uniform load w per unstressed length L. As the element bows from its chord by the cubic with theta_1 and theta_2, the
-load has, with its component w.n across the chord, the potential
+A uniform load w per unstressed length L has an energy, too. As the element bows from its chord by the cubic with
+theta_1 and theta_2, the load has, with its component w.n across the chord, the potential
 
     V = -w.(x1 + x2) L/2 - (theta_1 - theta_2) w.n L^2/12
 

@@ -1,4 +1,4 @@
-"""Corotational frame of a two-node beam element in space, and swing-twist decomposition of its nodes' rotations.
+"""Corotational frame of a two-node beam element in space: swing and twist of its ends, nodal forces, uniform load.
 
 e1 lies along the chord; e2 is the second section axis of the first end, brought over by the shortest
 rotation of its tangent to e1. The strains of `strain3d` do not depend on how the frame is turned about
@@ -11,23 +11,19 @@ by components along (e1, e2, e3), as all vectors here; u is the displacement of 
 omega, w_i being the spins of the ends. Frames that are tied to the mean of both ends, as in Battini &
 Pacoste, Comput. Methods Appl. Mech. Engng 191 (2002), need further terms.
 
-Swing-twist decomposition of a rotation: A = exp[(0, y, z)] exp[(tau, 0, 0)].
-
-The swing turns e1 into t = A e1 by the shortest way; t alone fixes it:
+The rotation of an end from the frame is split into swing and twist: A = exp[(0, y, z)] exp[(tau, 0, 0)]. The swing
+turns e1 into t = A e1 by the shortest way; t alone fixes it:
 
     (y, z) = f (-t_z, t_y),   f = alpha/sin(alpha),   cos(alpha) = t_x.
 
 When A spins by w, t changes by w x t and the twist by dtau = w.(e1 + t)/(1 + t_x). Neither is defined at
 t = -e1. A `mu` is the generalised moment conjugate to (tau, y, z), m the moment conjugate to w.
 
-The function g = theta/sin(theta) and its derivatives by c = cos(theta), for angles from their sines.
+Angles follow from their sines by g = theta/sin(theta), which is differentiated by c = cos(theta). Near theta = 0 its
+closed form loses digits; there g is the sum of (2 n)!!/(2 n + 1)!! x^n, x = sin^2(theta/2).
 
-Near theta = 0 the closed form loses digits; there g is the sum of (2 n)!!/(2 n + 1)!! x^n, x = sin^2(theta/2).
-
-Uniform load per length on elements in space, seen from the element's frame: what it does to their bow.
-
-An element bows from its chord by a cubic with the swings (y_i, z_i) of its ends. So a load w per
-unstressed length L, of components (w_1, w_2, w_3) along the frame, has the potential
+A uniform load acts on the bow of an element. It bows from its chord by a cubic with the swings (y_i, z_i) of its ends.
+So a load w per unstressed length L, of components (w_1, w_2, w_3) along the frame, has the potential
 
     V = -w.(x1 + x2) L/2 - [w_2 (z_1 - z_2) - w_3 (y_1 - y_2)] L^2/12.
 

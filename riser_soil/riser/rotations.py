@@ -1,4 +1,4 @@
-"""Finite rotations: exponential, logarithm and the tangent maps of a rotation vector.
+"""Finite rotations: exponential, logarithm and tangent maps of a rotation vector, and element arrays by its changes.
 
 Rotation vectors Theta are in rad. With R = Rn exp[Theta], a change dTheta turns the frame by the spatial spin
 w = Rn T_L(Theta) dTheta, which is T_R(Theta) dTheta in the frame's own axes; T_R is the transpose of T_L.
@@ -11,11 +11,9 @@ Vectors are tuples (or arrays) of three numbers, matrices tuples of three rows: 
 Source: Cardona & Geradin, A beam finite element non-linear theory with finite rotations, Int. J. Numer. Meth.
 Engng 26 (1988).
 
-Change of variables from spatial spins to rotation vectors, for element forces and tangents.
-
-A node's frame is R = Rn exp[Theta]; its spin is w = H dTheta with H = Rn T_L(Theta). Element e joins
-nodes e and e + 1, its dofs are ordered displacement1, rotation1, displacement2, rotation2. Arrays are
-changed in place.
+Element forces and tangents by spatial spins are changed to those by rotation vectors. A node's frame is R = Rn
+exp[Theta]; its spin is w = H dTheta with H = Rn T_L(Theta). Element e joins nodes e and e + 1, its dofs are ordered
+displacement1, rotation1, displacement2, rotation2. Arrays are changed in place.
 """
 
 import math

@@ -15,7 +15,7 @@ together make the element fourth-order accurate; without any of them it is secon
 
 The strains do not change when the frame turns about the chord.
 
-Strain energy of a two-node element in space, its gradient and its Hessian by the strains of `strain3d`.
+The strain energy is
 
     U = EA L axial^2 / 2 + GJ twist^2 / (2 L) + L/4 (sum of k.D k over both stations) - h P^2 L^3 / (24 GJ)
 

@@ -1,10 +1,9 @@
 """Compliance of linear elastic soil: the displacements that forces on its top cause, from one factorisation at most.
 
-Columns of elastic soil's compliance, kept on disk from one run to the next, in the folder of the compiled kernels.
-
-A soil has a folder, named by a hash of all that decides its columns to the last bit, and each group of columns a file
-in it, which begins with a checksum: a damaged file counts as none. Files are written beside their place and moved
-there, so that runs at once don't meet half a file. With RISER_SOIL_COMPLIANCE=off nothing is kept or read.
+Its columns are kept on disk from one run to the next, in the folder of the compiled kernels. A soil has a folder, named
+by a hash of all that decides its columns to the last bit, and each group of columns a file in it, which begins with a
+checksum: a damaged file counts as none. Files are written beside their place and moved there, so that runs at once
+don't meet half a file. With RISER_SOIL_COMPLIANCE=off nothing is kept or read.
 """
 
 from __future__ import annotations

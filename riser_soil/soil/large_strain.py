@@ -1,4 +1,4 @@
-"""Large strain: stress and history of cells whose nodes a step has moved, and the geometry from there on.
+"""Large strain: stress and history of cells whose nodes a step has moved, and their transfer to a new mesh.
 
 Within a step strain is linear about the geometry at its start. Once the step is accepted the law is asked again, with
 its history turned along by the step's spin, for strain by gradients of the geometry half way: these vanish where cells
@@ -7,11 +7,9 @@ rotation effects in numerical integration of rate constitutive equations arising
 Int. J. Numer. Methods Eng. 15 (1980). What this stress lacks of balance, of second order in the step, the next step
 takes up.
 
-Transfer of what points of the soil hold to those of a new mesh.
-
-`carried_rows` is for histories, see `core.carried`; the law brings the states back to what it admits. The depth at
-which the material lay at first, on which its strength hangs, each node takes along from the node nearest, by its
-gradient nearby.
+Stress, history and depth of points are transferred to those of a new mesh. `carried_rows` is for histories, see
+`core.carried`; the law brings the states back to what it admits. Strength depends on the
+depth at which the material lay at first: each new node gets it from the nearest old one, by the gradient there.
 """
 
 from __future__ import annotations

@@ -21,18 +21,8 @@ from benchmarks.error_bars.random_soils import SOILS
 from benchmarks.error_bars.scenes import CLAY, SCENES
 from riser_soil.accuracy import chain, settings
 from riser_soil.accuracy.barred_run import run_with_error_bars
-from riser_soil.accuracy.error_bars import (
-    ComparisonRun,
-    ErrorBar,
-    Extreme,
-    RunValues,
-    SoilOfRun,
-    alone,
-    apart,
-    divisor,
-    error_bars,
-    orders,
-)
+from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, divisor, error_bars, orders
+from riser_soil.accuracy.extreme_differences import Extreme, alone, apart
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
 from riser_soil.accuracy.settings import SETTINGS, resolved, settings_reported, varied
 from riser_soil.commands.app import app

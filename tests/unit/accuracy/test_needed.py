@@ -8,7 +8,8 @@ from typing import Any, cast
 
 import pytest
 
-from riser_soil.accuracy.error_bars import ErrorBar, RunValues, alone
+from riser_soil.accuracy.error_bars import ErrorBar, RunValues
+from riser_soil.accuracy.extreme_differences import alone
 from riser_soil.accuracy.key_results import KeyResult
 from riser_soil.accuracy.needed import doubtful, expected, largest, needed, times_as_long, too_dear
 from riser_soil.accuracy.search import TriedSetting

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sparse
 from petsc4py import PETSc
 
-from riser_soil.checks.estimate import entries, factor_memory, operations
+from riser_soil.checks.factor_fill import entries, factor_memory, operations
 
 
 @pytest.mark.parametrize(

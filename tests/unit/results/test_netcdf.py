@@ -13,7 +13,8 @@ import xarray as xr
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.results import Run
-from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile, Variable, lay_out
+from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile
+from riser_soil.results.netcdf_layout import Variable, lay_out
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.line_scenes import with_line_named
 from tests.support.recorded_run import Catenary, record

@@ -1,0 +1,68 @@
+"""Extremes of key results over a stage and in windows of its time, and how far two runs are apart in them.
+
+Two runs may agree in one extreme by chance, where their difference changes its sign. So what counts is the mean square
+of the differences in the extreme itself and in the windows in which the quantity comes near it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.accuracy.key_results import KeyResult, key_results
+from riser_soil.core.arrays import Array
+from riser_soil.results.peaks import RunPeaks, StagePeaks
+
+NEAR = 0.2  # of a quantity's range over the windows, from its extreme
+
+
+class Extreme(NamedTuple):
+    """An extreme of a stage, between nodes and steps.
+
+    windows (W,): extremes in windows of a dynamic stage's time, nan where unknown; empty for a static stage. least:
+    whether it is the least value, not the largest.
+    """
+
+    value: float
+    windows: Array
+    least: bool = False
+
+
+Extremes = Mapping[str, Extreme]  # of key results by their keys, in their units
+
+
+def extremes_of(peaks: RunPeaks) -> dict[str, Extreme]:
+    stages = {(own.name, line): own for of_lines in peaks.stages for line, own in of_lines.items()}
+    return {
+        key: alone(each.value) if not each.figure else _followed(each, stages[each.stage, each.of])
+        for key, each in key_results(peaks.as_summary("peaks")).items()
+    }
+
+
+def _followed(each: KeyResult, stage: StagePeaks) -> Extreme:
+    return Extreme(each.value, stage.in_windows(each.figure, each.which), each.which == "min")
+
+
+def alone(value: float) -> Extreme:
+    """Extreme of a quantity that was not followed in time."""
+    return Extreme(value, np.empty(0))
+
+
+def apart(run: Extreme, other: Extreme) -> float:
+    """How far two runs are apart, in the quantity's unit. run: the one that tells which windows count."""
+    off = run.value - other.value
+    if run.windows.size == 0 or other.windows.size == 0:
+        return abs(off)
+    between = (run.windows - other.windows)[_near(run)]
+    known = between[np.isfinite(between)]
+    return math.sqrt(0.5 * (off**2 + float(np.mean(known**2)))) if known.size else abs(off)
+
+
+def _near(run: Extreme) -> Array:
+    """Whether a window (W,) comes near the extreme; one that is unknown does not."""
+    height = -run.windows if run.least else run.windows
+    top, bottom = np.nanmax(height), np.nanmin(height)
+    return np.asarray(height >= top - NEAR * (top - bottom))
