@@ -1,4 +1,4 @@
-"""Time that `check` foretells for blocks of soil beside what their runs take."""
+"""Time that `check` predicts for blocks of soil beside what their runs take."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ BLOCKS = {
     "all of it, not half": ("soil.symmetry=whole",),
     "elastic, not condensed": ("soil.law={kind: linear-elastic, E: 6.0e5, nu: 0.49}", "solver.soil=whole"),
 }
-HEAD = ("block", "unknowns", "foretold [s]", "took [s]", "took over foretold")
+HEAD = ("block", "unknowns", "forecast [s]", "took [s]", "took over forecast")
 
 
 def report(page: bool = False) -> None:
@@ -37,9 +37,9 @@ def rows() -> Iterator[list[str]]:
         for block, overrides in BLOCKS.items():
             compute(SCENE, Path(place) / "short", *overrides, SHORT)
             run, took = timed(SCENE, Path(place) / "run", *overrides, ANEW)
-            foretold = size_of(read_scene(SCENE, (*overrides, ANEW))).seconds
+            forecast = size_of(read_scene(SCENE, (*overrides, ANEW))).seconds
             unknowns = run.summary["dofs"]["soil"]
-            yield [block, f"{unknowns:,}", f"{foretold:.0f}", f"{took:.0f}", f"{took / foretold:.2f}"]
+            yield [block, f"{unknowns:,}", f"{forecast:.0f}", f"{took:.0f}", f"{took / forecast:.2f}"]
 
 
 if __name__ == "__main__":

@@ -99,9 +99,9 @@ sample.
 
 References ([references.py](../benchmarks/error_bars/references.py)) have 16 or 64 times the elements of static
 scenes, and 16 times those of moving ones with a tenth of the step; a quarter as many show how uncertain they are.
-Quantities are left out whose reference is too uncertain to tell on which side of its bar the error lies. The median of
-bar over true error leaves out errors that the reference does not tell to {certain:.0%}, and those below
-{smallest:g} of the scale, but none for its bar: wide bars would count more often. Beside it stands that of all.
+Quantities are excluded whose reference is too uncertain to tell on which side of its bar the error lies. The first median
+of bar over true error excludes errors that the reference does not give to {certain:.0%}, and those below {smallest:g} of the scale.
+No quantity is dropped because of the size of its bar, as that would favour wide bars. The second median is of all errors.
 
 <!-- {out_block} -->
 {out_figures}
@@ -207,7 +207,7 @@ def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
         [f"bar over true error, median, of the {len(ratio)} errors above {SMALLEST:g}", f"{median(ratio):.2f}"],
         [OF_ALL_ERRORS, f"{median(ratios(judged, math.inf)):.2f}"],
         ["not computed", _failed(scenes, of)],
-        ["left out, as the reference does not decide", str(len(judged) - len(reported))],
+        ["excluded, as the reference does not decide", str(len(judged) - len(reported))],
         ["bars not given, as a coarser run failed", str(sum(len(scene.not_known) for scene in scenes))],
         ["coarser runs' processor time over the scenes', without start-up",
          f"{seconds[1] / seconds[0]:.0%}"],

@@ -31,7 +31,7 @@ def soil_block(columns: Mapping[str, list[JudgedScene]], known: dict[str, Refere
     rows = [*zip(*(_cells(scenes) for scenes in columns.values()), strict=True)]
     figures = table(["on soil", *columns], _named(rows))
     return (
-        f"{figures}\n\nSettlement foretold over that of the reference, laid scenes: {spread}; {kept} of {len(factors)} "
+        f"{figures}\n\nPredicted settlement over that of the reference, laid scenes: {spread}; {kept} of {len(factors)} "
         f"within {WITHIN:g}."
     )
 
@@ -43,7 +43,7 @@ NAMES = (
     OF_ALL_ERRORS,
     "settlements inside",
     "their median",
-    "left out, as the reference does not decide",
+    "excluded, as the reference does not decide",
     "coarser runs' processor time over the scenes'",
 )
 
