@@ -99,9 +99,10 @@ sample.
 
 References ([references.py](../benchmarks/error_bars/references.py)) have 16 or 64 times the elements of static
 scenes, and 16 times those of moving ones with a tenth of the step; a quarter as many show how uncertain they are.
-Quantities are excluded whose reference is too uncertain to tell on which side of its bar the error lies. The first median
-of bar over true error excludes errors that the reference does not give to {certain:.0%}, and those below {smallest:g} of the scale.
-No quantity is dropped because of the size of its bar, as that would favour wide bars. The second median is of all errors.
+Quantities are excluded whose reference is too uncertain to tell on which side of its bar the error lies. The first
+median of bar over true error excludes errors that the reference does not give to {certain:.0%}, and those below
+{smallest:g} of the scale. No quantity is dropped because of the size of its bar, as that would favour wide bars. The
+second median is of all errors.
 
 <!-- {out_block} -->
 {out_figures}

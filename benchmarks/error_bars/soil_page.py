@@ -1,4 +1,4 @@
-"""The page's block on soil: error bars of the random scenes on soil, and the settlements foretold beside references."""
+"""The page's block on soil: error bars of the random scenes on soil, and predicted settlements beside references."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from benchmarks.error_bars.scenes import Mapping as SceneMapping
 from demos.page import table
 from riser_soil.accuracy.key_results import SETTLEMENT
 from riser_soil.assembly import build, sized
-from riser_soil.checks.settlement import foretold
+from riser_soil.checks.settlement import predicted_settlement
 from riser_soil.scene.reader import scene_from_mapping
 
 ON_SOIL = "error bars on soil"  # block of the page
 OF_ALL_ERRORS = "of all errors"
-WITHIN = 1.5  # factor that a settlement foretold is to keep to
+WITHIN = 1.5  # factor within which a predicted settlement is to be
 
 
 def soil_block(columns: Mapping[str, list[JudgedScene]], known: dict[str, Reference]) -> str:
@@ -31,8 +31,8 @@ def soil_block(columns: Mapping[str, list[JudgedScene]], known: dict[str, Refere
     rows = [*zip(*(_cells(scenes) for scenes in columns.values()), strict=True)]
     figures = table(["on soil", *columns], _named(rows))
     return (
-        f"{figures}\n\nPredicted settlement over that of the reference, laid scenes: {spread}; {kept} of {len(factors)} "
-        f"within {WITHIN:g}."
+        f"{figures}\n\nPredicted settlement over that of the reference, laid scenes: {spread}; {kept} of "
+        f"{len(factors)} within {WITHIN:g}."
     )
 
 
@@ -84,5 +84,5 @@ def forecast_factor(mapping: SceneMapping, reference: Reference) -> float | None
     settled = reference.get(f"{scene.stages[0].name}: {SETTLEMENT}")
     if settled is None or scene.line.initial == "straight":
         return None
-    expected = foretold(build(sized(scene), MPI.COMM_WORLD))
+    expected = predicted_settlement(build(sized(scene), MPI.COMM_WORLD))
     return None if expected is None else expected.deepest / settled[0]

@@ -1,7 +1,7 @@
 """Run to an accuracy: mesh, steps, soil and penalty are chosen so that all key results reach it.
 
 A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
-bars are left is foretold from the trial before, and measured by comparison runs of the run where that is doubtful
+bars are left is predicted from the trial before, and measured by comparison runs of the run where that is doubtful
 (`needed.doubtful`). Where they miss the accuracy, a finer run follows, unless the runs that are left would, too, or it
 would take too long. A run that fails is replaced by one that goes half the way to its setting.
 """
@@ -62,9 +62,9 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
     for number in range(RUNS):
         _tell(last, accuracy, comm)
         try:
-            factors, foretold = comm.bcast(_next_factors(last, accuracy, number))
-            if foretold > LONGEST:
-                return last, f"; a finer run would take some {in_words(foretold)}, more than {in_words(LONGEST)}"
+            factors, seconds = comm.bcast(_next_factors(last, accuracy, number))
+            if seconds > LONGEST:
+                return last, f"; a finer run would take some {in_words(seconds)}, more than {in_words(LONGEST)}"
             last = _next_run(last, factors, accuracy, folder, force or number > 0, comm)
         except (SceneError, MeshError) as err:
             if number == 0:
@@ -73,8 +73,8 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
         if largest(last.bars)[0] <= accuracy or number == RUNS - 1:
             break
         if times := too_dear(last.bars, accuracy, RUNS - 1 - number):
-            taken = in_words(times * last.seconds)
-            return last, f"; to reach it would take at least {times:.0f} times as long, {taken}"
+            duration = in_words(times * last.seconds)
+            return last, f"; to reach it would take at least {times:.0f} times as long, {duration}"
     return last, f"; after {RUNS} runs"
 
 
@@ -84,10 +84,10 @@ def _next_factors(last: TriedSetting, accuracy: float, number: int) -> tuple[Fac
     """
     for closer in range(number, -1, -1):
         factors = needed(last.bars, CLOSER**closer * accuracy)
-        foretold = last.seconds * times_as_long(factors)
-        if foretold <= LONGEST:
+        seconds = last.seconds * times_as_long(factors)
+        if seconds <= LONGEST:
             break
-    return factors, foretold
+    return factors, seconds
 
 
 def _next_run(
@@ -114,13 +114,13 @@ def _finer_run(
     run(scene, folder, force, peaks)
     taken = compiled.seconds_of_work() - since
     values = values_of_run(folder, peaks) if comm.rank == 0 else None
-    bars = comm.bcast(_foretold(last, values, factors, accuracy))
+    bars = comm.bcast(_predicted_bars(last, values, factors, accuracy))
     if bars is None:
         bars = _measured(scene, values, folder, comm)
     return TriedSetting(scene, values, bars, taken)
 
 
-def _foretold(
+def _predicted_bars(
     last: TriedSetting, values: RunValues | None, factors: Factors, accuracy: float
 ) -> list[ErrorBar] | None:
     """The run's bars, from those of the one before; None where that is doubtful, and on other ranks. Finer cells of

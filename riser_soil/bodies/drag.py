@@ -235,5 +235,5 @@ class BodyDrag(CompiledPart):
         self._data.t[0] = end
 
     def work(self, before: State, after: State) -> Work:
-        taken = self.taken(before, after)
-        return Work(dissipated=taken) if self._still else Work(external=-taken)
+        work = self.work_against(before, after)
+        return Work(dissipated=work) if self._still else Work(external=-work)

@@ -36,7 +36,7 @@ PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP, PER_WAVE = 0.24e
 PER_UNKNOWN = 1.5e3  # bytes of multigrid and of GMRES' vectors
 PLANE = 3  # times as much has a cell in plane strain for an entry, as its law knows all components
 PER_LAYER = 60.0  # bytes of the factors of an unknown in a section, whose band is as wide as two nodes of each layer
-WITHIN = 1.3  # memory is, times or over this, what it is foretold to be
+WITHIN = 1.3  # memory is at most this many times the forecast, or the forecast over this
 # Parts whose tangents are not symmetric, so that the soil's factor is twice as large.
 UNSYMMETRIC = {
     *("inertia", "rotary inertia", "structural damping", "contents", "morison"),

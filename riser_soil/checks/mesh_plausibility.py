@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
 from riser_soil.assembly.touchdown_forecast import TouchdownForecast, forecast
-from riser_soil.checks.settlement import Settled, foretold
+from riser_soil.checks.settlement import Settled, predicted_settlement
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.soil.grading import PARALLEL
@@ -29,7 +29,7 @@ def reported_resolution(assembly: Assembly) -> str | None:
     mesh, soil = _generated(assembly), assembly.scene.soil
     if mesh is None or soil is None or assembly.soil is None:
         return None
-    fine, found = foretold(assembly), foretold(assembly, mesh.across)
+    fine, found = predicted_settlement(assembly), predicted_settlement(assembly, mesh.across)
     if fine is None or found is None:
         return None
     width = touching_width(assembly.scales, soil.top_law)
@@ -93,7 +93,7 @@ def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     mesh, soil = _generated(assembly), assembly.scene.soil
     if mesh is None or soil is None:
         return
-    fine, found, size = foretold(assembly), foretold(assembly, mesh.across), mesh.across
+    fine, found, size = predicted_settlement(assembly), predicted_settlement(assembly, mesh.across), mesh.across
     if fine is not None and found is not None and missed(found, fine) > GRADED + MISSING:
         width = touching_width(assembly.scales, soil.top_law)
         yield (

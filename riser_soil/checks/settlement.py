@@ -1,4 +1,4 @@
-"""Settlement of the riser by its weight, foretold: by bearing on the chord that touches, and by the soil below it.
+"""Predicted settlement of the riser by its weight: by bearing on the chord that touches, and by the soil below it.
 
 Where clay yields, a pipe sinks until the chord of its circle is as wide as the strip that bears its load. The soil
 below is shortened as a half space without change of volume under that strip, from its surface down to a depth z by
@@ -51,7 +51,7 @@ class Settled(NamedTuple):
     overshoot: float
 
 
-def foretold(assembly: Assembly, across: float = 0.0) -> Settled | None:
+def predicted_settlement(assembly: Assembly, across: float = 0.0) -> Settled | None:
     """On cells of a size across the riser [m]; None without soil, and of a riser that has no weight."""
     soil = assembly.soil
     if soil is None:

@@ -146,9 +146,10 @@ Instants = Mapping[str, Instant]
 """Of each line by its name, "" of the only one."""
 
 
-def instants_at(seen: Instant, at: Any) -> Instant:
-    """Those of many instants that an index of their axis selects: one, by its number, without that axis."""
-    return Instant(seen.arc, *(mapped(lambda values: values[at], each) for each in (seen.riser, seen.touch)))
+def instants_at(instants: Instant, at: Any) -> Instant:
+    """The instants, of many, that an index of their axis selects; one, by its number, without that axis."""
+    both = instants.riser, instants.touch
+    return Instant(instants.arc, *(mapped(lambda values: values[at], each) for each in both))
 
 
 def mapped(change: Callable[..., Any], *values: Any) -> Any:

@@ -63,22 +63,22 @@ _PACKED = [
 ]
 
 
-def pack(seen: Instant) -> Array:
+def pack(instants: Instant) -> Array:
     """All figures of one instant as one vector, of many as rows, in the order of the summary, and behind them the arc
     lengths [m] of those that sit somewhere along the riser; nan for what is not known.
     """
-    vector = np.full((*seen.riser.position.shape[:-2], _SIZE + len(_PLACED)), np.nan)
+    vector = np.full((*instants.riser.position.shape[:-2], _SIZE + len(_PLACED)), np.nan)
     for get, figures, placed in _PACKED:
-        if (value := get(seen)) is not None:
+        if (value := get(instants)) is not None:
             for at, of in figures:
                 vector[..., at] = of(value)
             for n, figure in placed:
-                vector[..., n] = _arc(figure, value, seen.arc)
+                vector[..., n] = _arc(figure, value, instants.arc)
     return vector
 
 
-def _values(seen: Instant) -> dict[str, Any]:
-    return {name: get(seen) for name, get in _OUTPUTS}
+def _values(instant: Instant) -> dict[str, Any]:
+    return {name: get(instant) for name, get in _OUTPUTS}
 
 
 def _figure(figure: Figure, value: Any) -> Any:
@@ -109,9 +109,9 @@ def places_of(name: str) -> slice:
 _AT_PLACED = np.array([places_of(figure.name).start for _, figure in _PLACED])
 
 
-def final_state(seen: Instant) -> dict[str, Any]:
+def final_state(instant: Instant) -> dict[str, Any]:
     """The summary's `final`: one instant's figures, with the arc length [m] of those that sit along the riser."""
-    values = _values(seen)
+    values = _values(instant)
     final: dict[str, Any] = {}
     for output, figure in _FIGURES:
         found = _figure(figure, values[output.name])
@@ -119,7 +119,7 @@ def final_state(seen: Instant) -> dict[str, Any]:
             continue
         value: Any = [float(x) for x in found] if figure.size > 1 else float(found)
         if figure.placed:
-            value = {"value": value, "arc": float(_arc(figure, values[output.name], seen.arc))}
+            value = {"value": value, "arc": float(_arc(figure, values[output.name], instant.arc))}
         _put(final, figure.path, value)
     return final
 

@@ -46,10 +46,11 @@ def least_between_nodes(arc: Array, along: Array) -> float:
     return float(vertex(arc[at - 1 : at + 2], along[at - 1 : at + 2]))
 
 
-def pack_peaks(seen: Instant) -> Array:
+def pack_peaks(instants: Instant) -> Array:
     """Figures of many instants in rows, with the least tension between nodes in place of that at nodes."""
-    rows = pack(seen)
-    rows[:, places_of(_TENSION)] = [[least_between_nodes(seen.arc, along)] for along in seen.riser.effective_tension]
+    rows = pack(instants)
+    tension = instants.riser.effective_tension
+    rows[:, places_of(_TENSION)] = [[least_between_nodes(instants.arc, along)] for along in tension]
     return rows
 
 
@@ -63,18 +64,18 @@ class StagePeaks:
         self.name, self.kind, self._duration = name, kind, duration
         self._windows: Array = np.empty((2, WINDOWS, 0))  # least and largest figures in windows of time
         self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
-        self._seen: Instant | None = None
+        self._last_instant: Instant | None = None
         self._final: dict[str, Any] | None = None
         self._latest: Array = np.empty(0)
         self.soil: dict[str, Any] = {}
         self._t: list[float] = []
         self._last: list[Array] = []
 
-    def update(self, times: Sequence[float], seen: Instant) -> None:
+    def update(self, times: Sequence[float], instants: Instant) -> None:
         """Follow the state that a dynamic stage begins with, and accepted steps in turn; times: s or load factors."""
-        for t, sampled, peaked in zip(times, pack(seen), pack_peaks(seen), strict=True):
+        for t, sampled, peaked in zip(times, pack(instants), pack_peaks(instants), strict=True):
             self._follow(t, sampled, peaked)
-        self._seen = instants_at(seen, -1)
+        self._last_instant = instants_at(instants, -1)
 
     def begin(self, before: StagePeaks) -> None:
         """With the end of the stage before."""
@@ -123,8 +124,8 @@ class StagePeaks:
     @property
     def final(self) -> dict[str, Any] | None:
         """Figures of the last state that was followed, as the summary has them; None before there is one."""
-        if self._seen is not None:
-            self._final, self._seen = final_state(self._seen), None
+        if self._last_instant is not None:
+            self._final, self._last_instant = final_state(self._last_instant), None
         return self._final
 
     def _follow_smoothly(self) -> None:
@@ -212,7 +213,7 @@ class RunPeaks:
     def record(
         self,
         times: Sequence[float],
-        seen: Instants,
+        instants: Instants,
         soil: SoilSnapshot | None = None,
         hung: Mapping[str, Array] | None = None,
     ) -> None:
@@ -220,7 +221,7 @@ class RunPeaks:
         clearances by path, a row a step.
         """
         self._hung[-1].update(np.array(times), hung or {})
-        for line, instant in seen.items():
+        for line, instant in instants.items():
             stage = self.stages[-1][line]
             stage.update(times, instant)
             if soil is not None and self._places is not None and line == self._on_soil:

@@ -131,9 +131,9 @@ class Plausibility:
             at = int(beyond.argmax())
             self._pushed = self._pushed.or_this(float(beyond.flat[at]), arc, at % arc.size, times[at // arc.size])
 
-    def look_at_soil(self, t: float, state: State, seen: Instant) -> None:
-        """t: as above; seen: the instant of this state, where there is soil."""
-        arc, touch, contact = seen.arc, seen.touch, self._assembly.soil_contact
+    def look_at_soil(self, t: float, state: State, instant: Instant) -> None:
+        """t: as above; instant: the instant of this state, where there is soil."""
+        arc, touch, contact = instant.arc, instant.touch, self._assembly.soil_contact
         assert contact is not None
         force = contact.force_per_length(state)
         self._touched = self._touched or bool(force.any())
@@ -143,7 +143,7 @@ class Plausibility:
         self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
         if not self._assembly.scene.soil_moves:
             self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
-        self._look_for_ground(seen.riser, touch)
+        self._look_for_ground(instant.riser, touch)
 
     def _look_for_ground(self, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         down = not np.isnan(touch.touchdown_arc)
@@ -308,9 +308,9 @@ class Plausibility:
 
     def state(self) -> Saved:
         worst = [astuple(found) for found in self._largest_values]
-        seen = {"largest": np.array(self._largest), "touched": np.array(self._touched), "worst": np.array(worst)}
-        seen |= {"tension": np.array(self._tension)}
-        return seen | {"where": packed(self._where), "lowest": self._lowest}
+        kept = {"largest": np.array(self._largest), "touched": np.array(self._touched), "worst": np.array(worst)}
+        kept |= {"tension": np.array(self._tension)}
+        return kept | {"where": packed(self._where), "lowest": self._lowest}
 
     def restore(self, saved: Saved) -> None:
         """In the stage that has begun."""

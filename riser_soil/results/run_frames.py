@@ -21,12 +21,14 @@ from riser_soil.results.summary import StageTally
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 
-def series_rows(stamps: Sequence[float], seen: Instants, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
+def series_rows(stamps: Sequence[float], instants: Instants, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
     """Rows of many instants by the names of netcdf.SERIES behind those of the lines' groups, without outputs that are
     not among a line's fields.
     """
     along = {
-        f"{group(line)}{name}": get(instant) for line, instant in seen.items() for name, get in _wanted(fields[line])
+        f"{group(line)}{name}": get(instant)
+        for line, instant in instants.items()
+        for name, get in _wanted(fields[line])
     }
     return {"time": np.array(stamps)} | along
 

@@ -21,7 +21,10 @@ from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
 from riser_soil.results.indicators import StageIndicators
 
 _USED = ("tightest", "pulled", "stressed")
-_PARTS = ("lines", "hung", "seen", "extremes", "energy", "worst_residual", "implausible", "soil", "indicators", "code")
+_PARTS = (
+    *("lines", "hung", "last_instant", "extremes", "energy", "worst_residual"),
+    *("implausible", "soil", "indicators", "code"),
+)
 _NOT_PLAIN = (*_USED, *_PARTS)
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
@@ -105,7 +108,7 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
 class StageTally:
     """Statistics of one stage, gathered while it runs.
 
-    time: s simulated in it (static: 0); seen: its last step, until the summary of its `final` state is asked for.
+    time: s simulated in it (static: 0); last_instant: its last step, until the summary of its `final` state is made.
     lines: of several lines by name, what is each one's own. hung: figures of bodies, joints and clearances.
     """
 
@@ -119,7 +122,7 @@ class StageTally:
     relaxations: int = 0
     settlings: int = 0
     branch_switches: int = 0
-    seen: Instant | None = None
+    last_instant: Instant | None = None
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
@@ -179,8 +182,8 @@ class StageTally:
         return "load steps" if self.step_cuts else "newton"
 
     def _finish(self) -> None:
-        if self.seen is not None:
-            self.final, self.seen = final_state(self.seen), None
+        if self.last_instant is not None:
+            self.final, self.last_instant = final_state(self.last_instant), None
 
     def as_dict(self) -> dict[str, Any]:
         self._finish()
@@ -246,7 +249,7 @@ class StageTally:
 
     def state(self) -> Saved:
         self._finish()
-        own = ("seen", "extremes", "indicators", "code", "lines")
+        own = ("last_instant", "extremes", "indicators", "code", "lines")
         plain = {name: value for name, value in vars(self).items() if name not in own}
         kept = plain | {name: asdict(vars(self)[name]) for name in _RECORDS} | {"lines": [*self.lines]}
         return gathered(self._followers) | {"told": packed(kept)}

@@ -61,14 +61,14 @@ class Tallies:
             tally.extremes.update(self._time.now, latest)
             tally.indicators.begin(self._time.now, latest)
 
-    def begin_at(self, seen: Instants) -> float:
+    def begin_at(self, instants: Instants) -> float:
         """Count the state that the run begins with; when it is recorded [s]."""
-        self._latest = {line: pack(instant)[0] for line, instant in seen.items()}
+        self._latest = {line: pack(instant)[0] for line, instant in instants.items()}
         self._begin_from_latest()
         return self.stamp()
 
     def accept(
-        self, steps: Sequence[StepRecord], due: Sequence[DueOutputs], seen: Instants, hung: Mapping[str, Array]
+        self, steps: Sequence[StepRecord], due: Sequence[DueOutputs], instants: Instants, hung: Mapping[str, Array]
     ) -> tuple[list[float], list[float]]:
         """Count steps; their times in the run [s], and when those are recorded whose series is due."""
         times, stamps = list[float](), list[float]()
@@ -85,20 +85,20 @@ class Tallies:
         stage.balance(times, [step.ledger for step in steps])
         if stage.kind == "dynamic":
             stage.indicators.follow_steps(at, steps)
-        self._count_lines(at, seen)
+        self._count_lines(at, instants)
         if hung:
             self._hung.update(at, hung)
             stage.hung = self._hung.nested
         return times, stamps
 
-    def _count_lines(self, at: Array, seen: Instants) -> None:
-        for line, instant in seen.items():
+    def _count_lines(self, at: Array, instants: Instants) -> None:
+        for line, instant in instants.items():
             tally, rows = self.stage.of(line), pack(instant)
             self._latest[line] = rows[-1]
             tally.extremes.update(at, rows)
             if self.stage.kind == "dynamic":
                 tally.indicators.follow(at, rows)
-            tally.seen = instants_at(instant, -1)
+            tally.last_instant = instants_at(instant, -1)
             tally.bend(at, instant.riser)
             tally.pull(at, instant.arc, instant.riser)
             tally.code.update(at, instant.riser.code)

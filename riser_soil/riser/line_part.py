@@ -283,7 +283,7 @@ class CompiledPart(LinePart, ABC):
         if type(self.kernel_data()) in keep.kernels:
             self._found(state).keep()
 
-    def taken(self, before: State, after: State) -> float:
+    def work_against(self, before: State, after: State) -> float:
         """Work [J] against the mean of the forces at the ends of a step, over its increments."""
         forces, part = Forces.zeros(after.u.size), self.line.part
         for state in (before, after):

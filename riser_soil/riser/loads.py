@@ -126,7 +126,7 @@ class PointLoads(CompiledPart):
 
     def work(self, before: State, after: State) -> Work:
         """Work of the mean loads over the step."""
-        return Work(external=-self.taken(before, after))
+        return Work(external=-self.work_against(before, after))
 
 
 def _in_plane(moment: Array, line: MovingNodes) -> Array:

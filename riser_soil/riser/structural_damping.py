@@ -70,7 +70,7 @@ class StructuralDamping(CompiledPart):
 
     def work(self, before: State, after: State) -> Work:
         """Energy that the mean forces take out over the step."""
-        return Work(dissipated=self.taken(before, after))
+        return Work(dissipated=self.work_against(before, after))
 
 
 @njit

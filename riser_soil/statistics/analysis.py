@@ -30,7 +30,7 @@ FINE = 20  # values in a zero-crossing period, from which on peaks are hardly mi
 class Wanted:
     """What the extremes are those of.
 
-    duration: over which the largest value is foretold [s]. block: length of the blocks that Gumbel's distribution is
+    duration: for which the largest value is predicted [s]. block: length of the blocks that Gumbel's distribution is
     fitted to [s]; None for as long as the shortest run. minima: smallest values in the place of largest ones.
     confidence: of intervals. segment: length of the pieces that a spectrum is averaged over [s]; None for an eighth of
     the shortest run.
@@ -84,8 +84,8 @@ class PlaceStatistics:
         return found if found < FINE else 0.0
 
     @property
-    def foretold(self) -> float:
-        """Peaks in the time that the extremes are foretold for."""
+    def expected_peaks(self) -> float:
+        """Number of peaks in the time for which extremes are predicted."""
         return self.wanted.duration / self.period
 
     @cached_property
@@ -99,7 +99,7 @@ class PlaceStatistics:
     @property
     def rayleigh(self) -> float:
         """Most probable largest value, were the process Gaussian."""
-        return self._of_height(rayleigh_height(self.deviation, self.foretold))
+        return self._of_height(rayleigh_height(self.deviation, self.expected_peaks))
 
     @cached_property
     def weibull_fit(self) -> Weibull:
@@ -107,8 +107,8 @@ class PlaceStatistics:
 
     @property
     def weibull(self) -> Interval:
-        """Value that one of the peaks foretold exceeds."""
-        found = self.weibull_fit.largest(self.foretold, self.wanted.confidence)
+        """Value that one of the expected peaks exceeds."""
+        found = self.weibull_fit.largest(self.expected_peaks, self.wanted.confidence)
         return self._signed(Interval(*(self.wanted.sign * self.mean + h for h in found)))
 
     @cached_property
@@ -124,8 +124,8 @@ class PlaceStatistics:
 
     @property
     def gumbel(self) -> Interval:
-        """Most probable largest value over the time foretold."""
-        return self._signed(self.gumbel_fit.at(self._blocks_foretold, self.wanted.confidence))
+        """Most probable largest value over the time of prediction."""
+        return self._signed(self.gumbel_fit.at(self._log_blocks, self.wanted.confidence))
 
     @property
     def _block(self) -> float:
@@ -133,13 +133,13 @@ class PlaceStatistics:
         return self.step * min(len(x) for x in self.runs) if self.wanted.block is None else self.wanted.block
 
     @property
-    def _blocks_foretold(self) -> float:
-        """Logarithm of the time foretold over that of a block."""
+    def _log_blocks(self) -> float:
+        """Logarithm of the time of prediction over that of a block."""
         return float(np.log(self.wanted.duration / self._block))
 
     def exceeded(self, level: float) -> dict[str, float]:
         """Share of time beyond a level, and by each distribution the probability that it is exceeded in the time
-        foretold; nan where that has no fit.
+        of prediction; nan where that has no fit.
         """
         sign, height = self.wanted.sign, self.wanted.sign * (level - self.mean)
         of_peak = {
@@ -147,11 +147,11 @@ class PlaceStatistics:
             "weibull": float(self.weibull_fit.exceedance(np.array(height))),
         }
         fit = self.gumbel_fit
-        of_block = (sign * level - fit.location) / fit.scale - self._blocks_foretold
+        of_block = (sign * level - fit.location) / fit.scale - self._log_blocks
         beyond = np.concatenate([sign * x > sign * level for x in self.runs])
         return {
             "time": float(beyond.mean()),
-            **{name: float(-np.expm1(-self.foretold * p)) for name, p in of_peak.items()},
+            **{name: float(-np.expm1(-self.expected_peaks * p)) for name, p in of_peak.items()},
             "gumbel": float(stats.gumbel_r.sf(of_block)),
         }
 

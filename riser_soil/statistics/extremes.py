@@ -41,18 +41,18 @@ UNKNOWN = Interval(np.nan, np.nan, np.nan)
 
 
 class LocationScale(NamedTuple):
-    """A fit of Gumbel's distribution of largest (`left` False) or smallest values to samples."""
+    """A fit of Gumbel's distribution of largest (`smallest` False) or smallest values to samples."""
 
     location: float
     scale: float
     samples: int
-    left: bool = False
+    smallest: bool = False
 
     def at(self, k: float, confidence: float) -> Interval:
         """μ + k β, within its limits."""
         if not np.isfinite(self.scale):
             return UNKNOWN
-        location, scale = _draws(_fewer(self.samples), self.left).T
+        location, scale = _draws(_fewer(self.samples), self.smallest).T
         pivot = (location + k * scale - k) / scale
         beyond = 0.5 * (1.0 - confidence)
         low, high = np.quantile(pivot, [1.0 - beyond, beyond])
@@ -60,12 +60,12 @@ class LocationScale(NamedTuple):
         return Interval(value, value - self.scale * float(low), value - self.scale * float(high))
 
 
-def fit_gumbel(maxima: Array, left: bool = False) -> LocationScale:
+def fit_gumbel(maxima: Array, smallest: bool = False) -> LocationScale:
     """To largest values, or smallest ones; nan for fewer than three, or all of one value."""
     if _indistinct(maxima):
-        return LocationScale(np.nan, np.nan, len(maxima), left)
-    location, scale = _family(left).fit(maxima)
-    return LocationScale(float(location), float(scale), len(maxima), left)
+        return LocationScale(np.nan, np.nan, len(maxima), smallest)
+    location, scale = _family(smallest).fit(maxima)
+    return LocationScale(float(location), float(scale), len(maxima), smallest)
 
 
 class Weibull(NamedTuple):
@@ -95,8 +95,8 @@ class Weibull(NamedTuple):
 def fit_weibull(heights: Array) -> Weibull:
     """To heights of peaks (n,), all > 0; nan for fewer than three, or all of one height."""
     if _indistinct(heights):
-        return Weibull(LocationScale(np.nan, np.nan, len(heights), left=True))
-    return Weibull(fit_gumbel(np.log(heights), left=True))
+        return Weibull(LocationScale(np.nan, np.nan, len(heights), smallest=True))
+    return Weibull(fit_gumbel(np.log(heights), smallest=True))
 
 
 def rayleigh_height(deviation: float, peaks: float) -> float:
@@ -119,8 +119,8 @@ def _indistinct(samples: Array) -> bool:
     return len(samples) < FEWEST or bool(np.ptp(samples) <= SAME * np.abs(samples).max())
 
 
-def _family(left: bool) -> stats.rv_continuous:
-    return stats.gumbel_l if left else stats.gumbel_r
+def _family(smallest: bool) -> stats.rv_continuous:
+    return stats.gumbel_l if smallest else stats.gumbel_r
 
 
 def _fewer(count: int) -> int:
@@ -130,8 +130,8 @@ def _fewer(count: int) -> int:
 
 
 @lru_cache(maxsize=64)
-def _draws(count: int, left: bool) -> Array:
+def _draws(count: int, smallest: bool) -> Array:
     """Fits (DRAWS, 2) to samples of the standard distribution."""
-    family = _family(left)
+    family = _family(smallest)
     samples = family.rvs(size=(DRAWS, count), random_state=np.random.default_rng(SEED))
     return np.array([family.fit(sample) for sample in samples])

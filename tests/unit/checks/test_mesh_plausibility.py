@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, reported_resolution
-from riser_soil.checks.settlement import Settled, foretold
+from riser_soil.checks.settlement import Settled, predicted_settlement
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import GeneratedMesh
 from riser_soil.whole_run import run
@@ -65,7 +65,7 @@ def test_chain_on_soil_has_no_bend_to_be_resolved(mesh: Mapping | str) -> None:
     scene["line_types"]["flexible"] |= {"EI": 0.0}
     assembly = built(scene)
     assert list(mesh_warnings(assembly)) == []
-    found = foretold(assembly)
+    found = predicted_settlement(assembly)
     assert found is not None
     assert (found.overshoot, found.deepest) == (1.0, found.by_weight)
     assert assembly.scene.soil is not None

@@ -1,4 +1,4 @@
-"""Settlement foretold: closed forms of its parts, and what `check` says of a riser on clay."""
+"""Predicted settlement: closed forms of its parts, and what `check` says of a riser on clay."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly.scales import Scales
-from riser_soil.checks.settlement import chord_depth, foretold, secant_share, settlement
+from riser_soil.checks.settlement import chord_depth, predicted_settlement, secant_share, settlement
 from riser_soil.riser.touchdown_bend import TouchdownBend
 from riser_soil.scene.soil import SoilScene
 from riser_soil.soil.kinematic_hardening import KinematicHardening
@@ -88,7 +88,7 @@ def test_overshoot_of_the_touchdown_is_the_deepest_place(depth: float) -> None:
 
 
 def test_a_riser_settles_most_where_it_touches_down() -> None:
-    found = foretold(built(touchdown(LAY, su=6000.0) | {"contact": {"method": "surface"}}))
+    found = predicted_settlement(built(touchdown(LAY, su=6000.0) | {"contact": {"method": "surface"}}))
     assert found is not None
     assert found.overshoot > 1.05
     assert found.deepest > found.by_weight

@@ -161,7 +161,7 @@ def test_a_target_finer_than_the_reference_counts_what_can_be_reported(
     reached = made.reaching(0.001)
     assert reached is not None
     assert tension.error_of(reached.key_results["heave: top tension"]) <= tension.doubt
-    assert made.foretold(0.001).excess((0.25, 0.25)) > 1.0
+    assert made.predicted(0.001).excess((0.25, 0.25)) > 1.0
     *_, cannot, why = words(made)
     line_with([cannot], "0.1 % can't be judged", "reference", "least cost")
     line_with([why], "known less well", "0.1 %", "heave: top tension (±")

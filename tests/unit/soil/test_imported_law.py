@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from riser_soil.checks.settlement import foretold
+from riser_soil.checks.settlement import predicted_settlement
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.document import parse
@@ -394,7 +394,7 @@ def test_a_failure_on_the_way_is_told_once_and_answers_nothing(own: Write, capsy
 
 
 def test_forecasts_and_contact_take_the_stress_at_a_depth(own: Write, tmp_path: Path) -> None:
-    """A law as stiff as it is pressed: G = 40 p. The settlement foretold is that of layers of such stiffness."""
+    """A law as stiff as it is pressed: G = 40 p. The predicted settlement is that of layers of such stiffness."""
     text = HEAD + ELASTIC.replace("n = len(initial)", "E = E * -mandel.mean(initial)").replace("np.full(n, ", "(")
     (tmp_path / "own.py").write_text(text, encoding="utf-8")
     scene = touchdown(LAY)
@@ -403,6 +403,6 @@ def test_forecasts_and_contact_take_the_stress_at_a_depth(own: Write, tmp_path: 
     assert soil is not None
     law = soil.top_law
     assert law.surface_modulus(0.3) == pytest.approx(100.0 * 0.15 * 5.0e3 * (1.0 + 1.2) / 3.0, rel=1e-9)
-    found = foretold(built(scene))
+    found = predicted_settlement(built(scene))
     assert found is not None
     assert 0.0 < found.by_weight < 1.0
