@@ -24,7 +24,7 @@ from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, divisor, error_bars, orders
 from riser_soil.accuracy.extreme_differences import Extreme, alone, apart
 from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
-from riser_soil.accuracy.settings import SETTINGS, resolved, settings_reported, varied
+from riser_soil.accuracy.settings import SETTINGS, resolved, settings_in_words, varied
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
@@ -345,7 +345,7 @@ def test_cells_of_a_few_slices_are_coarsened_twice(looked_at: list[Scene]) -> No
     assert [each.source for each in found] == ["soil", "soil", "mesh"]
     assert [each.finer for each in found] == pytest.approx([0.6, 0.6, 2.0])
     coarse = [f"soil cells of {0.025 / share:.4g} m across the riser" for share in (0.6, 0.36, 0.36)]
-    assert [settings_reported(each, [SOIL_MESH]) for each in looked_at] == coarse
+    assert [settings_in_words(each, [SOIL_MESH]) for each in looked_at] == coarse
     assert PENALTY.fineness(looked_at[2]) == pytest.approx(4.0 * PENALTY.fineness(looked_at[1]))
 
 

@@ -82,7 +82,7 @@ def test_a_setting_turns_what_is_its_own_and_is_as_much_finer_as_asked(setting: 
         assert changed(given, turned) == paths
         assert setting.fineness(turned) / setting.fineness(given) == pytest.approx(factor)
         assert scene_from_mapping(turned.model_dump(by_alias=True)) == turned
-        assert setting.reported(turned) != setting.reported(given)
+        assert setting.in_words(turned) != setting.in_words(given)
     assert varied(given, setting, 1.0) is given
 
 

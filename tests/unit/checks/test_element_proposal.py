@@ -80,7 +80,7 @@ def test_a_third_of_the_elements_of_the_first_scene_keep_its_figures_to_one_per_
     assert segments is not None
     finer = tuple(s.model_copy(update={"element_length": tuple(x / 3 for x in ends(s))}) for s in segments)
     rough, fine = (
-        key_results(peaks_of(cut(scene, each), MPI.COMM_SELF).reported("peaks")) for each in (segments, finer)
+        key_results(peaks_of(cut(scene, each), MPI.COMM_SELF).as_summary("peaks")) for each in (segments, finer)
     )
     assert 3 * sum(each.element_count for each in segments) < scene.line.element_count
     for key, key_result in fine.items():

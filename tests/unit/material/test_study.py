@@ -182,7 +182,7 @@ def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest
     monkeypatch.setattr(findings, "compute", compute)
     made = study(scene(), tmp_path / "t", levels=3, says=lambda _: None)
     finer = "144 elements", "time_step 0.0025 s"
-    line_with(made.refinements.reported(made.refinements.base), *finer)
+    line_with(made.refinements.in_words(made.refinements.base), *finer)
     line_with(words(made)[:1], "scene itself fails:", "folded", "finer settings:", *finer)
     with (tmp_path / "t" / "study.csv").open(encoding="utf-8") as file:
         failed = [row["settings"] for row in csv.DictReader(file) if row["reason"] == "folded"]

@@ -63,7 +63,7 @@ def test_extremes_of_a_stage_three_ways() -> None:
     for t in np.arange(-1.0, 1.0, 0.3).tolist():
         peaks.record([t], {"": stacked([seen(t)])})
     largest = {
-        which: peaks.reported(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
+        which: peaks.as_summary(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
         for which in ("sampled", "of_nodes", "peaks")
     }
     top = pack_peaks(stacked([seen(0.0)]))[0][places_of("max_bending_moment")].item()
@@ -110,7 +110,7 @@ def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str
 
 def of_five(t: np.ndarray, moment: np.ndarray) -> float:
     """The largest moment of a stage without what rings; moment: at steps t."""
-    reported = followed(t, moment).reported("smooth")
+    reported = followed(t, moment).as_summary("smooth")
     largest: float = reported["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest
 

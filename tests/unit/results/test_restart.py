@@ -77,7 +77,7 @@ def test_a_run_left_twice_ends_as_if_it_had_not_been_left(alone: Alone, tmp_path
     leave_after(2, read_scene(left / "scene.yaml"), left, RunPeaks(), restart=True)
     run(scene_of(), left, peaks=peaks, restart=True)
     assert unlike(alone.folder, left) == []
-    assert json.dumps(peaks.reported("smooth")) == json.dumps(alone.peaks.reported("smooth"))
+    assert json.dumps(peaks.as_summary("smooth")) == json.dumps(alone.peaks.as_summary("smooth"))
     assert not (left / "checkpoint.npz").exists()
 
 

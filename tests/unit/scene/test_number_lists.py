@@ -9,7 +9,8 @@ import pytest
 
 from riser_soil.errors import SceneError
 from riser_soil.scene import document
-from riser_soil.scene.document import Document, cut_out, parse, read_text
+from riser_soil.scene.document import Document, parse, read_text
+from riser_soil.scene.number_lists import without_lists
 from tests.support.said import telling
 
 N = 250
@@ -39,7 +40,7 @@ LISTS = {
 def slowly(text: str, monkeypatch: pytest.MonkeyPatch) -> Document:
     """As the YAML reader reads it all."""
     with monkeypatch.context() as patch:
-        patch.setattr(document, "cut_out", lambda text: (text, {}))
+        patch.setattr(document, "without_lists", lambda text: (text, {}))
         return parse(text, "scene")
 
 
@@ -56,7 +57,7 @@ SHORTENED += ["lines of Windows", "deep", "two", "shared"]
 
 @pytest.mark.parametrize("name", SHORTENED)
 def test_long_lists_leave_the_text(name: str) -> None:
-    short, lists = cut_out(LISTS[name])
+    short, lists = without_lists(LISTS[name])
     assert len(short) < 100 + LISTS[name].count("\n")
     assert short.count("\n") == LISTS[name].count("\n")
     assert all(short[place] == "[" for place in lists)
