@@ -257,7 +257,7 @@ def test_the_export_tells_what_a_deck_lacks(tmp_path: Path) -> None:
     ("change", "reported"),
     [
         ({"water": {"density": 1000.0}}, "water.surface_level: is missing"),
-        ({"seabed": {"kind": "rigid", "level": -101.0}}, "seabed: only kind spring"),
+        ({"seabed": {"kind": "rigid", "level": -101.0}}, "seabed: a deck has no other ground than kind spring"),
     ],
 )
 def test_scenes_that_give_no_deck(change: Mapping, reported: str, tmp_path: Path) -> None:
