@@ -253,7 +253,7 @@ def test_they_grow_in_the_first_static_stage_but_not_after_another_run() -> None
 
 SLUG: Mapping = {"density": 900.0, "length": 5.0}
 WRONG: list[tuple[Mapping, str]] = [
-    ({"slugs": [SLUG]}, r"slugs\.0\.front.*stand still without a speed, and nothing says where; give front"),
+    ({"slugs": [SLUG]}, r"slugs\.0\.front.*without a speed do not move, and their place is not given; give front"),
     ({"speed": 1.0, "slugs": [SLUG | {"spacing": 5.0}]}, r"slugs\.0\.spacing.*longer than the slug \(5 m\)"),
     ({"speed": 1.0, "slugs": [SLUG | {"spacing": 9.0}, SLUG]}, "slugs that follow each other at a spacing are"),
     ({"speed": 1.0, "slugs": [SLUG, SLUG | {"front": 4.0}]}, "lies over another one, whose front is at 0 m"),
