@@ -21,23 +21,23 @@ CRAWLS, IN_A_ROW = 0.9, 4  # share left where it falls in vain; so many times
 class ElasticShare:
     """The share of the elastic tangent in that of parts that yield; see the module's text.
 
-    length: part of the last step that was taken; crawled: how often in a row all of the elastic tangent has left most
-    of the residual.
+    length: part of the last step that was taken; stagnant: consecutive iterations with the whole elastic
+    tangent that reduced the residual by less than a tenth.
     """
 
     def __init__(self, parts: Sequence[Yielding]) -> None:
-        self._parts, self._share, self.length, self.crawled = parts, 0.0, 1.0, 0
+        self._parts, self._share, self.length, self.stagnant = parts, 0.0, 1.0, 0
 
     def reset(self) -> None:
         """None, as where a step begins."""
-        self.length, self.crawled = 1.0, 0
+        self.length, self.stagnant = 1.0, 0
         self._give(0.0)
 
     def adapt(self, norm: float, before: float) -> None:
         """For the tangent after an iteration, by the norms of the residual then and before."""
         if not self._parts:
             return
-        self.crawled = self.crawled + 1 if self._share == 1.0 and CRAWLS * before < norm <= before else 0
+        self.stagnant = self.stagnant + 1 if self._share == 1.0 and CRAWLS * before < norm <= before else 0
         if self.length < SHORT or norm > before:
             self._give(min(1.0, max(MORE * self._share, FIRST_SHARE)))
         elif norm < FALLEN * before:
@@ -46,7 +46,7 @@ class ElasticShare:
     @property
     def in_vain(self) -> bool:
         """Whether no number of iterations would do."""
-        return self.crawled >= IN_A_ROW
+        return self.stagnant >= IN_A_ROW
 
     def _give(self, share: float) -> None:
         if share != self._share:

@@ -30,7 +30,7 @@ from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
 from riser_soil.solve.line_system import Coupling, LineSystem
 from riser_soil.solve.packed_line import KernelParts, PackedLine
 from riser_soil.solve.residual_norm import largest_at
-from riser_soil.solve.solver import Accepted, NewtonSettings, Solution, Step, limits_of, reported
+from riser_soil.solve.solver import NewtonSettings, Solution, Step, StepResults, limits_of, reported
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -93,7 +93,7 @@ def _couplings_of(system: System, parts: Sequence[Part]) -> Callable[[Sequence[P
     return make
 
 
-class LineSolver(Accepted):
+class LineSolver(StepResults):
     """Solver of time steps of lines and bodies, and what is known of them then. Create once a stage, by `line_solver`.
 
     iterations: of all its steps, those that failed included.
@@ -124,7 +124,7 @@ class LineSolver(Accepted):
         failure, norms = self._iterate(step, begun, self._limits(step, settings, at_equilibrium))
         solution = None if failure else Solution(self._state(step, begun), self._forces(), norms)
         # The last trial is the step's end, but of a scheme that balances forces elsewhere.
-        self._solved = solution.state if solution is not None and step.scheme.moves == 1.0 else None
+        self._solved = solution.state if solution is not None and step.scheme.step_over_trial == 1.0 else None
         if self._solved is not None:
             for results in self._results.values():
                 results.solved(self._solved)
@@ -141,10 +141,10 @@ class LineSolver(Accepted):
         scheme, still = step.scheme, step.scheme.trial(step.before, step.t, step.dt, self._nothing)
         begun = State(step.t, step.guess.copy(), still.v, still.a)
         self.system.prescribe(begun)
-        if scheme.moves == 1.0:
+        if scheme.step_over_trial == 1.0:
             return begun
         alone = replace(begun, u=np.where(self.system.prescribed, begun.u, 0.0))
-        return replace(scheme.balanced_at(step.before, alone, step.dt), u=begun.u / scheme.moves)
+        return replace(scheme.balanced_at(step.before, alone, step.dt), u=begun.u / scheme.step_over_trial)
 
     def _iterate(self, step: Step, begun: State, limits: StopLimits) -> tuple[str, list[float]]:
         """Why the step is not solved, "" where it is; norms of the residual on the way."""
@@ -168,15 +168,15 @@ class LineSolver(Accepted):
         """A smooth motion takes an iteration, which answers its load."""
         smooth, gradual = self.system.smooth, self.system.gradual and self.packed.all_couplings(attrgetter("gradual"))
         answers = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
-        limits, moves = limits_of(settings, smooth, gradual, answers), step.scheme.moves
-        if moves == 1.0:
+        limits, ratio = limits_of(settings, smooth, gradual, answers), step.scheme.step_over_trial
+        if ratio == 1.0:
             return limits
         # Newton's own norm is that of the balance by the increments of the whole step, see `balance_of`.
-        return limits._replace(tolerance=limits.tolerance / moves, floor=limits.floor / moves)
+        return limits._replace(tolerance=limits.tolerance / ratio, floor=limits.floor / ratio)
 
     def _tangle(self, step: Step, begun: State) -> str:
         """Why the solution is not an admissible state of a line; "" where it is."""
-        end = None if step.scheme.moves == 1.0 else self._state(step, begun)
+        end = None if step.scheme.step_over_trial == 1.0 else self._state(step, begun)
         for packed in self._lines:
             if isinstance(line := packed.line, Line):
                 reason = line.folding(*packed.folding) if end is None else line.inadmissible(end, step.before)
@@ -190,8 +190,8 @@ class LineSolver(Accepted):
         for packed in self._lines:
             at, found = packed.line.part, packed.step
             u[at], v[at], a[at] = found.u.ravel(), found.v.ravel(), found.a.ravel()
-        if step.scheme.moves != 1.0:
-            end = step.scheme.trial(step.before, step.t, step.dt, step.scheme.moves * u)
+        if step.scheme.step_over_trial != 1.0:
+            end = step.scheme.trial(step.before, step.t, step.dt, step.scheme.step_over_trial * u)
             self.system.prescribe(end)
             return end
         for each in self._couplings:

@@ -11,7 +11,7 @@ from riser_soil.core.matrix import Patterns
 from riser_soil.core.part import Forces, Model, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.solver import Accepted, NewtonSettings, NotConvergedError, Solution, Step, UnstableError
+from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step, StepResults, UnstableError
 from riser_soil.solve.step_iteration import StepIteration
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Newton:
     def __init__(self, system: System, settings: NewtonSettings, lines: LineSolver | None = None) -> None:
         self.system, self.settings, self.lines = system, settings, lines
         self.at_equilibrium = False
-        self.accepted: Accepted = Accepted(system) if lines is None else lines
+        self.accepted: StepResults = StepResults(system) if lines is None else lines
         self._by_parts = StepIteration(system, settings) if lines is None else None
 
     @property

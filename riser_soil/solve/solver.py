@@ -127,8 +127,9 @@ class Solution:
         return len(self.norms) - 1
 
 
-class Accepted:
-    """What is told of steps that are solved and of accepted states, by the parts of a system; collective."""
+class StepResults:
+    """Energy, work, mass and section forces of solved steps and accepted states, by the parts of a system; collective.
+    """
 
     def __init__(self, system: System) -> None:
         self.system = system
@@ -255,4 +256,4 @@ def balance_of(scheme: Scheme, weights: Weights, forces: Forces, past: Array) ->
     """
     out = np.empty_like(past)
     write_balance((forces.inertia, forces.force, forces.end), weights.inertia, weights.force, past, out)
-    return out if scheme.moves == 1.0 else scheme.moves * out
+    return out if scheme.step_over_trial == 1.0 else scheme.step_over_trial * out

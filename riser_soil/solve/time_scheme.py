@@ -86,12 +86,14 @@ class CommittedStep:
 
 
 class Scheme(Protocol):
-    """Interface of the time integration schemes. dynamic: whether there are rates and inertia. moves: how much a step's
-    increments are of those to the state that is balanced, by which the parts differentiate.
+    """Interface of the time integration schemes.
+
+    dynamic: whether there are rates and inertia. step_over_trial: increments of the step over those of the state where
+    forces are evaluated, by which the parts differentiate: 1 for generalised-alpha, 2 for the midpoint rule.
     """
 
     dynamic: bool
-    moves: float
+    step_over_trial: float
 
     @property
     def lag(self) -> float:
@@ -148,7 +150,7 @@ class Static:
     """Equilibrium: no rates, no inertia. seconds: that a step takes; 0 is an instant, in which nothing flows."""
 
     seconds: float = math.inf
-    dynamic, moves = False, 1.0
+    dynamic, step_over_trial = False, 1.0
     lag = stiff_lag = error_constant = 0.0
     start_share = 0.5
 
@@ -183,7 +185,7 @@ class GeneralizedAlpha:
     alpha_f: float
     beta: float
     gamma: float
-    dynamic, moves = True, 1.0
+    dynamic, step_over_trial = True, 1.0
     start_share = 0.5
 
     @classmethod
@@ -277,7 +279,7 @@ class Midpoint:
     quasi-static soil, whose forces belong to the end.
     """
 
-    dynamic, moves = True, 2.0
+    dynamic, step_over_trial = True, 2.0
     lag = stiff_lag = 0.0
     error_constant = 1.0 / 12.0
     start_share = 0.0

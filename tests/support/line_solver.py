@@ -27,7 +27,7 @@ from riser_soil.solve.line_solver import line_solver
 from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.packed_line import KernelParts, PackedLine
 from riser_soil.solve.riser_mass import RiserMass
-from riser_soil.solve.solver import Accepted
+from riser_soil.solve.solver import StepResults
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
@@ -178,7 +178,7 @@ def require_tangles(dimension: int) -> None:
     assert len(set(reported)) == {2: 4, 3: 5}[dimension]
 
 
-def require_element_residual(told: Accepted, line: Line, parts: list[Any], accepted: State) -> None:
+def require_element_residual(told: StepResults, line: Line, parts: list[Any], accepted: State) -> None:
     """What acts within the elements is what the parts' methods tell."""
     expected = element_residual(line, parts, accepted)
     found, scale = told.element_residual(line, accepted), np.abs(expected).max()
