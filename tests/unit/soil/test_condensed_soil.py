@@ -244,7 +244,7 @@ def test_check_tells_how_the_soil_is_solved_for() -> None:
 
 
 def test_it_is_not_condensed_where_that_costs_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("riser_soil.assembly.soil_block.MOST", 0.05)
+    monkeypatch.setattr("riser_soil.assembly.condensation.MOST_REACHED", 0.05)
     assert re.search(r"\d unknowns .*under the riser", reason(scene("node", "hex", 2, "auto")))
     assert reason(scene("node", "hex", 2, "condensed")) == ""
 
