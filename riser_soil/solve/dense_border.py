@@ -1,11 +1,8 @@
 """What couples lines and bodies beside their bands in the line solver: a dense border of further unknowns.
 
-    [B  U] [x]   [f]
-    [V  D] [y] = [g]
-
-B are the bands of all lines, each factorised on its own. U and V couple, zero but at few nodes, and D is dense, as in
-`linear_solver`. The soil's reached dofs come first among the unknowns y, see `soil_border`, then copies of the dofs at
-joints, see `joint_border`; these write U, V and D.
+Each line has a band, which is factorised on its own; all share the border, see `core.bordered`. The soil's reached dofs
+come first among the border's unknowns, see `soil_border`, then copies of the dofs at joints, see `joint_border`; these
+write the border's matrices.
 """
 
 from __future__ import annotations
@@ -15,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core import banded, dense
+from riser_soil.core import bordered, dense
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
@@ -49,7 +46,7 @@ def begin_schur(border: Border, factors: Factors) -> None:
 def eliminate(
     workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, failure: IntArray
 ) -> None:
-    """Take off what a line does as it follows the border, with its band factorised."""
+    """Condense a line, whose band is factorised, onto the border."""
     if failure[0] != NONE:
         return
     fixed, count, ndof = dofs.fixed, 0, dofs.fixed.shape[1]
@@ -59,30 +56,9 @@ def eliminate(
                 factors.rows[count] = n * ndof + i
                 count += 1
     factors.filled[0] = count
-    if count == 0:
-        return
-    rows, columns = factors.rows[:count], _coupled_columns(border, factors.rows[:count])
-    right, below = np.empty((count, columns.size)), np.empty((columns.size, count))
-    for i in range(count):
-        for j in range(columns.size):
-            right[i, j], below[j, i] = border.right[rows[i], columns[j]], border.below[rows[i], columns[j]]
-    follow = np.dot(below, np.dot(banded.inverse_at(workspace.ab, workspace.pivots, rows, workspace.band), right))
-    for i in range(columns.size):
-        for j in range(columns.size):
-            factors.schur[columns[i], columns[j]] -= follow[i, j]
-
-
-@njit
-def _coupled_columns(border: Border, rows: IntArray) -> IntArray:
-    """Unknowns of the border that a line's rows (r,) are coupled with."""
-    found, count = np.empty(border.u.size, dtype=np.int64), 0
-    for j in range(found.size):
-        for k in rows:
-            if border.right[k, j] != 0.0 or border.below[k, j] != 0.0:
-                found[count] = j
-                count += 1
-                break
-    return found[:count]
+    if count > 0:
+        ab, pivots, band = workspace.ab, workspace.pivots, workspace.band
+        bordered.condense(ab, pivots, band, factors.rows[:count], border.right, border.below, factors.schur)
 
 
 @njit
@@ -94,15 +70,12 @@ def factorise_schur(factors: Factors, failure: IntArray) -> None:
 
 @njit
 def load_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors) -> None:
-    """Take off the border's residual what a line alone answers to its own."""
-    rows, answer = factors.rows[: factors.filled[0]], border.residual
-    if rows.size == 0:
-        return
-    inner = dofs.residual.copy().reshape(dofs.residual.size)
-    banded.solve(workspace.ab, workspace.pivots, inner, workspace.band)
-    for k in rows:
-        for j in range(answer.size):
-            answer[j] -= border.below[k, j] * inner[k]
+    """Forward elimination: condense a line's residual onto that of the border."""
+    rows = factors.rows[: factors.filled[0]]
+    if rows.size > 0:
+        load = dofs.residual.reshape(dofs.residual.size)
+        ab, pivots, band = workspace.ab, workspace.pivots, workspace.band
+        bordered.forward_eliminate(ab, pivots, band, rows, border.below, load, border.residual)
 
 
 @njit
@@ -116,10 +89,9 @@ def improve_border(border: Border, factors: Factors) -> None:
 
 @njit
 def take_from_line(dofs: Dofs, border: Border, factors: Factors) -> None:
-    """Take what the border's answer moves off a line's residual."""
-    residual, answer = dofs.residual.reshape(dofs.residual.size), border.residual
-    for k in factors.rows[: factors.filled[0]]:
-        residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
+    """Back substitution: take what the border's answer does off a line's residual."""
+    rows, load = factors.rows[: factors.filled[0]], dofs.residual.reshape(dofs.residual.size)
+    bordered.back_substitute(rows, border.right, border.residual, load)
 
 
 class DenseBorder(Coupling):

@@ -19,8 +19,9 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import local
 from riser_soil.core.system import System
-from riser_soil.solve.linear_solver import LinearSystems, PythonContext
+from riser_soil.solve.linear_solver import LinearSystems
 from riser_soil.solve.petsc_options import PREFIX, defaults
+from riser_soil.solve.python_context import PythonContext
 
 if TYPE_CHECKING:
     from riser_soil.soil.field import SoilField

@@ -22,7 +22,8 @@ from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.saved_state import Saved
-from riser_soil.solve.linear_solver import LinearSystems, PythonContext, use_mumps
+from riser_soil.solve.linear_solver import LinearSystems, use_mumps
+from riser_soil.solve.python_context import PythonContext
 
 FEWEST = 10  # iterations that a solve may take in any case, where new factors want some, too
 SEEN = 3  # iterations of a solve before their rate says how many it will take

@@ -12,9 +12,10 @@ from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import System
 from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
-from riser_soil.solve.linear_solver import LinearSystems, RiserAboveSoil, factorise_directly, keeps_factors
+from riser_soil.solve.linear_solver import LinearSystems, factorise_directly, keeps_factors
 from riser_soil.solve.newton_loop import Balance
 from riser_soil.solve.petsc_options import Given
+from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.section_solver import SectionSolver, sections_of
 
 

@@ -37,7 +37,8 @@ from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.part import local
 from riser_soil.core.rows import add_multiple
 from riser_soil.core.system import System
-from riser_soil.solve.linear_solver import LinearSystems, PythonContext, factorise_directly
+from riser_soil.solve.linear_solver import LinearSystems, factorise_directly
+from riser_soil.solve.python_context import PythonContext
 
 if TYPE_CHECKING:
     from riser_soil.soil.field import SoilField

@@ -25,7 +25,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil.von_mises import PerfectlyPlastic
-from riser_soil.solve.linear_solver import RiserAboveSoil
+from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher

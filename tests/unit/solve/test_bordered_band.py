@@ -10,7 +10,9 @@ import pytest
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.solve.linear_solver import BorderedBand, SingularError, bandwidth, complaint
+from riser_soil.core.banded import SingularError
+from riser_soil.solve.bordered_band import BorderedBand, bandwidth
+from riser_soil.solve.linear_solver import complaint
 from tests.support.said import line_with
 
 
@@ -86,7 +88,7 @@ def test_a_singular_matrix_is_reported_where_petsc_makes_an_error_of_its_own() -
 LEFT_OVER = """
 import numpy as np
 from petsc4py import PETSc
-from riser_soil.solve.linear_solver import BorderedBand
+from riser_soil.solve.bordered_band import BorderedBand
 
 class Solver:
     def __init__(self):
