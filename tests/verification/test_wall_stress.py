@@ -61,15 +61,15 @@ def settled(scene: Mapping) -> tuple[RiserSnapshot, WallSnapshot]:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_full_pipe_that_hangs_in_water(dimension: int) -> None:
-    """Weight below, end caps and Lame's stresses; pressures act on the coating and the bore, steel bears it all."""
+    """Weight below, end caps and Lame's stresses; the coat is buoyant, and bears the water's pressure on its own area."""
     riser, wall = settled(hanging(dimension=dimension))
     z = riser.position[:, 2]
     inside, outside = P + OIL * G * (-10.0 - z), -RHO * G * z
     assert wall.internal_pressure == pytest.approx(inside, rel=1e-12)
     assert wall.external_pressure == pytest.approx(outside, rel=1e-12)
     below = L - np.linspace(0.0, L, 9)
-    A_i, A_o = 0.25 * np.pi * INNER**2, 0.25 * np.pi * COATED**2
-    axial = ((MASS + OIL * A_i - RHO * A_o) * G * below + inside * A_i - outside * A_o) / A
+    A_i, A_o, A_coated = (0.25 * np.pi * d**2 for d in (INNER, OUTER, COATED))
+    axial = ((MASS + OIL * A_i - RHO * A_coated) * G * below + inside * A_i - outside * A_o) / A
     assert wall.axial_stress == pytest.approx(axial, rel=1e-6)
     assert riser.wall_tension is not None
     assert riser.wall_tension / A == pytest.approx(wall.axial_stress, rel=1e-12)
