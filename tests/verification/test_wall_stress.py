@@ -61,7 +61,7 @@ def settled(scene: Mapping) -> tuple[RiserSnapshot, WallSnapshot]:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_full_pipe_that_hangs_in_water(dimension: int) -> None:
-    """Weight below, end caps and Lame's stresses; the coat is buoyant, and bears the water's pressure on its own area."""
+    """Weight below, end caps, Lame's stresses; the coat is buoyant, and bears the water's pressure on its own area."""
     riser, wall = settled(hanging(dimension=dimension))
     z = riser.position[:, 2]
     inside, outside = P + OIL * G * (-10.0 - z), -RHO * G * z
