@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,9 +28,7 @@ from riser_soil.seabed.law import NormalLaw
 if TYPE_CHECKING:
     from riser_soil.soil.condensed import SoilSurface
 
-Found = TypeVar("Found")
 SOIL = "contact.soil"
-PLACE = 1e-12  # m, and share of a place: what the accepted place may be off that of the solution
 SHARE = 0.25  # of the range around the pipe by which soil may move before what may touch is looked for anew
 
 
@@ -198,36 +195,6 @@ class SoilContact(RiserContact):
 @covered_by.of(Cover)
 def _by_surface(cover: Cover, x: Vec, known: int) -> int:
     return facet_below(cover, x[0], x[1], known)
-
-
-class LastSolution(Generic[Found]):
-    """What a part has found at the solution of the step committed last, for results at the accepted state.
-
-    On soil that moves a point's area is renewed between steps: forces that are found anew at the accepted state are
-    those with which the next step starts, and not in balance with the line's.
-    """
-
-    def __init__(self, line: Line) -> None:
-        self._line, self._t, self._end = line, math.nan, line.x
-        self._found: Found | None = None
-        self._accepted: Array | None = None  # the line's places, once they are those of the solution
-
-    def keep(self, state: State, found: Found) -> None:
-        """Keep what was found at a solution, just before it is accepted."""
-        moved = self._line.nodal(state.u)[:, : self._line.dimension]
-        self._t, self._end, self._found, self._accepted = state.t, self._line.x + moved, found, None
-
-    def at(self, state: State) -> Found | None:
-        """What was found if a state is the accepted one that the step has led to; None for others."""
-        if self._found is None or state.t != self._t or state.u.any():
-            return None
-        if self._accepted is None and np.allclose(self._line.x, self._end, rtol=PLACE, atol=PLACE):
-            self._accepted = self._line.x
-        return self._found if self._accepted is self._line.x else None
-
-    def forget(self) -> None:
-        """The accepted state is another one."""
-        self._found = None
 
 
 class LoopContact(ABC):

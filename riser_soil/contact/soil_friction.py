@@ -15,7 +15,6 @@ from riser_soil.contact.friction import components, read_along, resistance_by_mo
 from riser_soil.contact.integration_points import KeptRows, PointMemory, write_kept
 from riser_soil.contact.near_points import NearPoints, Surface, first_of
 from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
-from riser_soil.contact.soil_contact import LastSolution
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
 from riser_soil.contact.surface_loop import LoopFriction, TouchData, TouchWorkspace, add_pairs
 from riser_soil.core.arrays import Array, IntArray
@@ -98,7 +97,6 @@ class SoilFriction(LinePart):
         self._memory = PointMemory(np.zeros(AREA + 1))
         self._at_start: Start | None = None
         self._slid: Array = np.zeros(self.line.nodes)
-        self._solved = LastSolution[tuple[NearPoints, Array]](self.line)
 
     def stick(self) -> None:
         """From now on nothing slides, as in small vibrations about rest."""
@@ -166,7 +164,6 @@ class SoilFriction(LinePart):
     def anew(self) -> PointMemory:
         """The next step starts from a surface with other nodes: tractions of the points, to go over to them."""
         self._at_start = None
-        self._solved.forget()
         return self._memory
 
     def energy(self, state: State) -> Energy:
@@ -196,16 +193,6 @@ class SoilFriction(LinePart):
         self._slid = self._slid + self._nodal_slip(sliding)
         self._memory.keep(points.number, np.column_stack([sliding.points.traction, points.area]))
         self._at_start = None
-        self._solved.keep(state, (points, sliding.points.on_riser))
-
-    def _on_riser(self, state: State) -> tuple[NearPoints, Array]:
-        """Points that press and the friction on the riser there (n, 3) [N]: at the accepted state those of the step
-        that has led to it.
-        """
-        if (solved := self._solved.at(state)) is not None:
-            return solved
-        sliding = self.evaluate(state)
-        return sliding.found.pressed.points, sliding.points.on_riser
 
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
@@ -223,24 +210,24 @@ class SoilFriction(LinePart):
         """Sum of the friction on the riser (3,) [N], global axes."""
         if not self.line.active:
             return np.zeros(3)
-        return self.contact.within_line(self._on_riser(state)[1].sum(axis=0))
+        return self.contact.within_line(self.evaluate(state).points.on_riser.sum(axis=0))
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the friction on the soil (3,) [N], global axes."""
-        return np.asarray(-self._on_riser(state)[1].sum(axis=0)) if self.line.active else np.zeros(3)
+        return np.asarray(-self.evaluate(state).points.on_riser.sum(axis=0)) if self.line.active else np.zeros(3)
 
     def force_on_soil_per_length(self, state: State) -> Array:
         """The points' friction on the nodes of their facets (nn, 3) [N/m], shared by two nodes of the riser."""
         if not self.line.active:
             return np.zeros((self.line.nodes, 3))
-        return self.contact.soil_per_length(*self._on_riser(state))
+        sliding = self.evaluate(state)
+        return self.contact.soil_per_length(sliding.found.pressed.points, sliding.points.on_riser)
 
     def state(self) -> Saved:
         return {"slid": self._slid} | gathered({"points": self._memory})
 
     def restore(self, saved: Saved) -> None:
         self._slid, self._at_start = saved["slid"], None
-        self._solved.forget()
         self._memory.restore(within(saved, "points"))
 
 

@@ -25,7 +25,7 @@ from riser_soil.contact.near_points import (
     points_workspace,
 )
 from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, write_axis
-from riser_soil.contact.soil_contact import SOIL, CandidateRange, LastSolution, LoopContact, SoilContact
+from riser_soil.contact.soil_contact import SOIL, CandidateRange, LoopContact, SoilContact
 from riser_soil.contact.surface_loop import (
     LoopFriction,
     TouchData,
@@ -102,7 +102,6 @@ class SurfaceContact(SoilContact):
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts[:, :2].prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
-        self._solved = LastSolution[PressedPoints](line)
 
     def evaluate(self, state: State) -> SurfaceState:
         """Riser and soil at a state. What the trial keeps does not hold the trial: Python would find so large a cycle
@@ -246,16 +245,9 @@ class SurfaceContact(SoilContact):
     def commit(self, state: State) -> None:
         """Keep the history of the points."""
         super().commit(state)
-        if not self.active:
-            return
-        pressed = self.evaluate(state).pressed
-        self._solved.keep(state, pressed)
         if self.law.columns:
+            pressed = self.evaluate(state).pressed
             self._memory.keep(pressed.points.number, pressed.history)
-
-    def pressed(self, state: State) -> PressedPoints:
-        """The points that press at a state: at the accepted one those of the step that has led to it."""
-        return self._solved.at(state) or self.evaluate(state).pressed
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the size of the sum of the points' forces, shared linearly
@@ -263,7 +255,7 @@ class SurfaceContact(SoilContact):
         """
         if not self.active:
             return np.zeros(self.line.nodes)
-        pressed = self.pressed(state)
+        pressed = self.evaluate(state).pressed
         total = self.at_nodes(pressed.points, pressed.on_riser @ self._basis)
         size = np.linalg.norm(total, axis=1) / self.line.tributary_length
         return np.asarray(np.where(total[:, -1] < 0.0, -size, size))
@@ -277,7 +269,7 @@ class SurfaceContact(SoilContact):
 
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of the soil's surface into the pipe [m], >= 0: an error."""
-        return float(np.max(-self.pressed(state).points.gap, initial=0.0)) if self.active else 0.0
+        return float(np.max(-self.evaluate(state).pressed.points.gap, initial=0.0)) if self.active else 0.0
 
     def depth(self, state: State) -> Array:
         """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
@@ -287,7 +279,7 @@ class SurfaceContact(SoilContact):
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
-        return self.within_line(self.pressed(state).on_riser.sum(axis=0)) if self.active else np.zeros(3)
+        return self.within_line(self.evaluate(state).pressed.on_riser.sum(axis=0)) if self.active else np.zeros(3)
 
     def within_line(self, force: Array) -> Array:
         """The share of a force (3,) that a line in a plane feels."""
@@ -295,13 +287,13 @@ class SurfaceContact(SoilContact):
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the contact forces on the soil (3,) [N], global axes."""
-        return np.asarray(-self.pressed(state).on_riser.sum(axis=0)) if self.active else np.zeros(3)
+        return np.asarray(-self.evaluate(state).pressed.on_riser.sum(axis=0)) if self.active else np.zeros(3)
 
     def force_on_soil_per_length(self, state: State) -> Array:
         """The points' forces on the nodes of their facets (nn, 3) [N/m], shared linearly by two nodes of the riser."""
         if not self.active:
             return np.zeros((self.line.nodes, 3))
-        pressed = self.pressed(state)
+        pressed = self.evaluate(state).pressed
         return self.soil_per_length(pressed.points, pressed.on_riser)
 
     def soil_per_length(self, points: NearPoints, f: Array) -> Array:
@@ -335,7 +327,6 @@ class SurfaceContact(SoilContact):
         numbers, *places = points_of(self.surface(before), self.surface(settled), near)
         for memory in (self._memory, *memories):
             memory.go_over(numbers, *places)
-        self._solved.forget()
         self.line.forget()
 
     def clearance(self, state: State) -> Array:
@@ -370,7 +361,6 @@ class SurfaceContact(SoilContact):
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
-        self._solved.forget()
         if self.active:
             self._memory.restore(within(saved, "points"))
 

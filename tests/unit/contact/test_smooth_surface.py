@@ -99,31 +99,6 @@ def test_a_groove_that_fits_bears_the_pipe_evenly() -> None:
     assert np.max(-chords.contact.evaluate(chords.state()).pressed.points.gap) > depth + 0.9 * 0.3**2 / 8.0 * RADIUS
 
 
-def test_results_at_the_accepted_state_are_those_of_the_step_that_led_to_it() -> None:
-    """The surface is stretched along the pipe by a twentieth, and with it the areas of the next step: with them contact
-    would bear more than the line was in balance with.
-    """
-    made = grooved(True, 1e-3)
-    friction = SoilFriction(made.contact, 0.5, 0.3, 3e6)
-    u = np.zeros(made.size)
-    u[made.surface.offset :: 3] = 0.05 * made.surface.points[:, 0]
-
-    def found() -> list[Array]:
-        state = made.state(u)
-        of_contact = made.contact.force_on_riser(state), made.contact.force_per_length(state)
-        return [*of_contact, friction.force_on_soil(state), friction.force_on_soil_per_length(state)]
-
-    solved = found()
-    made.commit(u, friction)
-    u[:] = 0.0
-    for value, expected in zip(found(), solved, strict=True):
-        np.testing.assert_allclose(value, expected, rtol=1e-12, atol=1e-9)
-    anew = made.contact.evaluate(made.state()).pressed.on_riser.sum(axis=0)
-    assert anew[2] > 1.03 * solved[0][2] > 0.0
-    made.commit(u, friction)  # a step in which nothing moves has the new areas
-    assert found()[0][2] == pytest.approx(anew[2], rel=1e-9)
-
-
 def test_the_curve_goes_through_nodes_with_the_slope_between_their_neighbours() -> None:
     N, dN = shape(8, -1.0, -1.0)
     np.testing.assert_allclose(N, [1.0, 0, 0, 0, 0, 0, 0, 0])
