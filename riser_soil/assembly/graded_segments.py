@@ -71,7 +71,7 @@ def _stretches(segment: Segment, begin: float, arc: Array, lengths: Array) -> li
     at = np.concatenate([[begin], inner, [end]])
     h = np.minimum(np.interp(at, arc, lengths), 0.5 * segment.length)
     corners = _long_enough(at, h, _corners(at, np.log(h)))
-    sizes = [_to_four_figures(each) for each in h]
+    sizes = [to_four_figures(each) for each in h]
     return [_stretch(segment, float(at[j] - at[i]), (sizes[i], sizes[j])) for i, j in pairwise(corners)]
 
 
@@ -101,6 +101,6 @@ def _long_enough(x: Array, h: Array, corners: list[int]) -> list[int]:
     return [*kept, corners[-1]]
 
 
-def _to_four_figures(length: float) -> float:
+def to_four_figures(length: float) -> float:
     """A length rounded to four figures."""
     return float(f"{length:.4g}")

@@ -70,7 +70,7 @@ def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections
 def elements_along(
     riser: Riser, line_types: Mapping[str, LineType], around: sections.Surroundings
 ) -> sections.Elements:
-    """The same of a riser of these line types; what is around changes mass and weight alone."""
+    """Elements of a riser of these line types; what is around changes mass and weight alone."""
     types = {name: _line_type(t) for name, t in line_types.items()}
     segments = [sections.MeshedSegment(types[s.line_type], s.element_lengths) for s in riser.segments]
     return _stiffened(riser, sections.elements(segments, around), around)
@@ -87,7 +87,7 @@ def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surro
 
 
 def _line_type(given: LineType) -> sections.SectionProperties:
-    """As the elements take it: properties of the same name as they are given, or the elements' own default."""
+    """A line type as elements have it: properties of the same name as they are given, or the elements' own default."""
     EI_y, EI_z = given.bending_stiffness
     outer, inner = given.wall_diameters
     formed: dict[str, Any] = {

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from riser_soil.assembly.graded_segments import to_four_figures
 from riser_soil.assembly.ground import contact_width
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales, scales_of
@@ -110,12 +111,12 @@ class SoilSizes:
         across = min(self.width / ACROSS, self.scales.diameter / ROUND)
         strip = max(STRIP * across, BESIDE * self.width)
         sizes = CellSizes(
-            along=_to_four_figures(max(self.along, across)),
-            across=_to_four_figures(across),
-            strip=_to_four_figures(strip),
+            along=to_four_figures(max(self.along, across)),
+            across=to_four_figures(across),
+            strip=to_four_figures(strip),
             touchdown=self.touchdown_zone(block) if self.soil.model == "block" else None,
         )
-        return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=_to_four_figures(max(FAR * block.depth, across)))
+        return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=to_four_figures(max(FAR * block.depth, across)))
 
     def touchdown_zone(self, block: Block) -> tuple[float, float] | None:
         """Range along the riser in which it may touch down, as far as the block has it [m]; None where that is not
@@ -128,7 +129,7 @@ class SoilSizes:
         before = BEFORE * max(self.bending_length, self.along)
         reached = np.concatenate((points - before * ahead, points + self.along * ahead))[:, axis]
         low, high = (block.x, block.y)[axis]
-        first, last = (_to_four_figures(each) for each in _rounded(np.clip([reached.min(), reached.max()], low, high)))
+        first, last = (to_four_figures(each) for each in _rounded(np.clip([reached.min(), reached.max()], low, high)))
         return (first, last) if low < last and first < high and (first, last) != (low, high) else None
 
     @property
@@ -177,8 +178,3 @@ def _rounded(values: Array) -> Array:
     """To three figures of the largest, of several rows in that in which it is smallest: all alike."""
     unit = 10.0 ** (np.floor(np.log10(np.abs(values).max(axis=-1).min() or 1.0)) - 2.0)
     return np.asarray(np.round(values / unit) * unit)
-
-
-def _to_four_figures(size: float) -> float:
-    """A length rounded to four figures."""
-    return float(f"{size:.4g}")

@@ -143,7 +143,7 @@ class Instant(NamedTuple):
 
 
 Instants = Mapping[str, Instant]
-"""Of each line by its name, "" of the only one."""
+"""Instants of all lines by their names, "" of the only one."""
 
 
 def instants_at(instants: Instant, at: Any) -> Instant:

@@ -184,7 +184,7 @@ class InstantReader:
         return found if self._checks is None else found | {"code checks": self._checks}
 
 
-"""Of a contact: its points along the line; gaps and forces there, as in `ContactResults`."""
+"""A contact along the line: its points; gaps and forces there, as in `ContactResults`."""
 
 
 class TouchdownZone(NamedTuple):

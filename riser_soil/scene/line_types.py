@@ -334,7 +334,7 @@ class LineType(BaseModel):
 
     @property
     def in_line_vortices(self) -> tuple[float, float, float]:
-        """The same in line with the flow."""
+        """The force of shed vortices in line with the flow, as `vortices`."""
         return (0.0, 0.0, 0.0) if self.vortex_force is None else self._straked(self.vortex_force.of_in_line)
 
     def _straked(self, force: tuple[float, float, float]) -> tuple[float, float, float]:

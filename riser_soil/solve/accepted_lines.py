@@ -121,7 +121,7 @@ class CompiledMass:
         return out
 
     def state(self) -> Saved:
-        """As of `RiserMass`."""
+        """Projectors of each line's nodes, as `RiserMass` has them."""
         found = ((each.line.name, each.mass.moving) for each in self._lines)
         return {name: moving for name, moving in found if moving is not None}
 
@@ -150,7 +150,7 @@ class ElementForces:
         return self._residual
 
     def section_forces(self, elements: Elements, state: State) -> Array:
-        """Of the line whose elements these are, see `SectionForces.within`."""
+        """Section forces of the line whose elements these are, see `SectionForces.within`."""
         if elements not in self._sections:
             given = self._residual, self._viscous
             self._sections[elements] = BoundSections(self._line, elements, self._at, *given)
@@ -161,7 +161,7 @@ class ElementForces:
 
 
 class LineResults:
-    """Of one line; smooth: see `System`.
+    """Results of one line; smooth: see `System`.
 
     The loop's forces tell the same as those found anew where it has solved for a state: in the axes in which that step
     began, which parts with viscous forces don't know any more.
@@ -189,7 +189,7 @@ class LineResults:
         self._committed = self._line.x
 
     def element_residual(self, state: State) -> Array:
-        """Of the line's elements (ne, 2 ndof) at an accepted state; as solved where a step does not turn its axes."""
+        """Residual of the line's elements (ne, 2 ndof) at an accepted state; as solved where no step turns its axes."""
         known = self._has_solved(state) and not self._line.turns_axes
         return (self._at_solution if known else self._found_at(state)).residual()
 
@@ -199,11 +199,11 @@ class LineResults:
         return found.section_forces(elements, state)
 
     def nodal_residual(self, state: State) -> Array | None:
-        """Of what acts on the line's nodes (nn, ndof) without holding them."""
+        """Residual of what acts on the line's nodes (nn, ndof) without holding them."""
         return nodal_residual(self._line, self._on_nodes, state) if self._on_nodes else None
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:
-        """Of a contact at an accepted state: of the one committed last as the loop has found its forces."""
+        """Results of a contact at an accepted state: of the one committed last as the loop has found its forces."""
         if self._committed is not self._line.x:
             return contact.results(state)
         if contact not in self._contacts:

@@ -269,7 +269,7 @@ def _is_near(part: Relaxation, solution: Solution) -> bool:
 
 
 def _places(part: Relaxation) -> Array:
-    """Of all nodes (nn, d) [m]."""
+    """Places of all nodes (nn, d) [m]."""
     return np.concatenate([field.x for field in part.fields])
 
 

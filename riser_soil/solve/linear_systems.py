@@ -20,8 +20,8 @@ from riser_soil.solve.section_solver import SectionSolver, sections_of
 
 
 def linear_systems(system: System, asked: str, by_options: bool) -> LinearSystems:
-    """As asked: "direct", "kept", "iterative", or "auto", by which sections are solved one by one; what there is
-    nothing for is solved directly. by_options: PETSc's own, as the user's options name one.
+    """The solver that is asked for: "direct", "kept", "iterative", or "auto", by which sections are solved one by one;
+    what there is nothing for is solved directly. by_options: PETSc's own, as the user's options name one.
     """
     comm: Any = system.comm
     if by_options:

@@ -92,7 +92,7 @@ class Newton:
 
     @property
     def _solver(self) -> LineSolver | StepIteration:
-        """Of all steps that it can solve."""
+        """The solver of all steps that it can solve."""
         return self.by_parts if self.lines is None else self.lines
 
     def destroy(self) -> None:

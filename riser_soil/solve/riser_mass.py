@@ -104,7 +104,7 @@ class NodeMass:
 
 
 def mass_of(nodes: int, prescribed: BoolArray, levers: Array) -> LineMass | NodeMass:
-    """Of a field of some nodes; arguments as of both."""
+    """The mass of a field of some nodes; arguments as of `LineMass` and `NodeMass`."""
     return NodeMass(prescribed) if nodes == 1 else LineMass(nodes, prescribed, levers)
 
 

@@ -154,22 +154,22 @@ class StepResults:
         return self.system.forces(state, "IF")
 
     def element_residual(self, line: Line, state: State) -> Array:
-        """Of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has it, until
-        the next call.
+        """Residual of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has
+        it, until the next call.
         """
         return element_residual(line, acting_on(line, self.system.model.parts), state)
 
     def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
-        """Of a line at an accepted state, see `SectionForces.within`; on the rank that has it."""
+        """Section forces of a line at an accepted state, see `SectionForces.within`; on the rank that has it."""
         viscous = viscous_residual(line, acting_on(line, self.system.model.parts), state)
         return section_vector(line, elements, state, self.element_residual(line, state), viscous)
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:
-        """Of a contact at an accepted state, see `ContactResults.within`; on the rank that evaluates it."""
+        """Results of a contact at an accepted state, see `ContactResults.within`; on the rank that evaluates it."""
         return contact.results(state)
 
     def nodal_residual(self, line: Line, state: State) -> Array | None:
-        """Of what acts on a line's nodes (nn, ndof) without holding them, if anything, at an accepted state."""
+        """Residual (nn, ndof) at an accepted state of what acts on a line's nodes without holding them, if anything."""
         return nodal_residual(line, acting_on(line, self.system.model.parts), state)
 
 
