@@ -26,7 +26,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.seabed.grounds import Plane
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper

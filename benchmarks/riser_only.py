@@ -21,7 +21,7 @@ from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
 from riser_soil.results.record import Recorder
-from riser_soil.solve.solver import NotConvergedError
+from riser_soil.solve.step import NotConvergedError
 
 ROOT = Path(__file__).parent.parent
 SCENES, LINES = ROOT / "tests" / "scenes", ROOT / "demos" / "lines"

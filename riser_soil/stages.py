@@ -26,12 +26,14 @@ from riser_soil.core.system import System, Timer, total
 from riser_soil.errors import SolveError
 from riser_soil.interruption import asked_to_end, end_together, uninterrupted
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
+from riser_soil.solve.adaptive_steps import AutoSteps, from_last_to_first
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.newton import Newton, solver_of
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.settling import Pressed, SinkingError, settle
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
-from riser_soil.solve.step_control import AutoSteps, PathSteps, StepControl, from_last_to_first
+from riser_soil.solve.step import NotConvergedError, Step
+from riser_soil.solve.step_control import PathSteps, StepControl
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step moves an end on soil; presses it into clay

@@ -18,7 +18,7 @@ from riser_soil.scene.rao import TRANSLATIONS
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage, TimedStage, varying_in
-from riser_soil.solve.step_control import from_last_to_first
+from riser_soil.solve.adaptive_steps import from_last_to_first
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels

@@ -22,9 +22,10 @@ from riser_soil.core.saved_state import Stateful
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
+from riser_soil.solve.buckling_mode import buckling_mode, stabilising_drag
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
-from riser_soil.solve.stability import buckling_mode, stabilising_drag
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import NotConvergedError, Solution, Step, UnstableError
 
 if TYPE_CHECKING:
     from riser_soil.bodies.body import MovingBody

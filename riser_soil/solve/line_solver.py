@@ -28,9 +28,11 @@ from riser_soil.riser.sections import Elements
 from riser_soil.solve.accepted_lines import CompiledMass, LineResults
 from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
 from riser_soil.solve.line_system import Coupling, LineSystem
+from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.packed_line import KernelParts, PackedLine
 from riser_soil.solve.residual_norm import largest_at
-from riser_soil.solve.solver import NewtonSettings, Solution, Step, StepResults, limits_of, reported
+from riser_soil.solve.step import Solution, Step, reported
+from riser_soil.solve.step_results import StepResults
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact

@@ -1,4 +1,4 @@
-"""Predictor of a step's increments, estimate of its local error, and energy gain: what steps make out of nothing.
+"""Estimate of the local error of time steps, and what it corrects where steps change size.
 
 While the acceleration changes linearly, Newmark's displacement misses (beta - 1/6) dt^2 (a(n+1) - a(n)) of the Taylor
 series (Zienkiewicz & Xie, A simple error estimator and adaptive time stepping procedure for dynamic analysis,
@@ -14,14 +14,6 @@ next. The first keeps the second order; without the second, each change of size 
 from step to step (compare Brüls & Arnold, The generalized-alpha scheme as a linear multistep integrator, Journal of
 Computational and Nonlinear Dynamics 3, 2008, on the first). It changes velocities by no more than the error of the
 scheme.
-
-Energy gain: what the steps of a dynamic stage make out of nothing, and the steps that are rejected for it.
-
-A step that creates much energy at once is a root of the equations far from the motion that it continues, or too long.
-Steps that follow a line through buckling or a snap may each create a little and never give it back: in the end the
-line is torn by what the scheme has put in. So their sum counts, too, beside what has been turned over. Of a step there
-counts what may have gone into motion, at most the kinetic energy: what a slow pipe seems to gain that is pressed into
-soil in long steps is the error of its mean force, which moves nothing.
 """
 
 from __future__ import annotations
@@ -33,7 +25,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Energy, Forces, State
+from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.time_scheme import GeneralizedAlpha, InverseMass, Scheme
@@ -41,11 +33,6 @@ from riser_soil.solve.time_scheme import GeneralizedAlpha, InverseMass, Scheme
 CONTACT = GeneralizedAlpha.newmark(0.5, 1.0)
 FAR = 4.0  # times the last step: how far ahead its jerk is trusted
 SAME = 1e-9  # of a step: two steps that differ by round-off
-SMOOTH, GRADUAL, ROUGH = 4, 3, 1  # steps that a motion is continued from, at most
-PARABOLA = 2
-FALL = 0.5  # at most, of each term beyond the parabola to the one before
-LARGEST = 0.2  # of the energy in motion: what a step may make out of nothing
-SUM, SMALL = 0.25, 0.025  # of that share: of what was turned over, for the sum of steps; for a step that adds to it
 
 
 class LocalError:
@@ -149,115 +136,3 @@ def _longest(values: Array, dofs: IntArray) -> float:
         if not square <= largest:  # nor where it is not a number
             largest = square
     return math.sqrt(largest)
-
-
-class Extrapolation:
-    """Polynomial extrapolation through the ends of the last steps, by Newton's divided differences of the increments'
-    sums.
-
-    The first difference is the mean rate of the last step [1/s], the second half its change [1/s2]. Beyond them only
-    terms that fall fast are taken: those of what is rough, such as short waves in the riser or a gust, don't.
-
-    most: steps that it continues, which is SMOOTH without contact and GRADUAL on clay. An impact ends what went before:
-    with a penalty's contact the last rate alone is the better guess, ROUGH.
-    """
-
-    def __init__(self, size: int, most: int) -> None:
-        self._most = most
-        self._differences: Array = np.zeros((0, size))
-        self._steps: Array = np.zeros(0)
-
-    def increments(self, dt: float) -> Array:
-        """The increments of a step of dt to come; nothing moves before a first step was accepted."""
-        found: Array = _extrapolated(self._differences, self._steps, dt)
-        return found
-
-    def accept(self, increments: Array, dt: float) -> None:
-        """Continue from a step of dt that has been taken."""
-        self._differences, self._steps = _accepted(self._differences, self._steps, increments, dt, self._most)
-
-    def state(self) -> Saved:
-        return {"differences": self._differences, "steps": self._steps}
-
-    def restore(self, saved: Saved) -> None:
-        self._differences, self._steps = saved["differences"], saved["steps"]
-
-
-@njit
-def _extrapolated(differences: Array, steps: Array, dt: float) -> Array:
-    total, largest = np.zeros(differences.shape[1]), math.inf
-    factor = span = dt
-    for order in range(differences.shape[0]):
-        size = 0.0
-        for i in range(total.size):
-            size = max(size, abs(factor * differences[order, i]))
-        if order >= PARABOLA and size > FALL * largest:
-            break
-        for i in range(total.size):
-            total[i] += factor * differences[order, i]
-        largest, span = size, span + steps[order]
-        factor *= span
-    return total
-
-
-@njit
-def _accepted(differences: Array, steps: Array, increments: Array, dt: float, most: int) -> tuple[Array, Array]:
-    """Differences (k, n) and sizes of the steps (k,) with a further one, at most so many."""
-    kept = min(differences.shape[0] + 1, most)
-    found, sizes = np.empty((kept, increments.size)), np.empty(kept)
-    sizes[0], span = dt, dt
-    for i in range(increments.size):
-        found[0, i] = increments[i] / dt
-    for order in range(1, kept):
-        span += steps[order - 1]
-        sizes[order] = steps[order - 1]
-        for i in range(increments.size):
-            found[order, i] = (found[order - 1, i] - differences[order - 1, i]) / span
-    return found, sizes
-
-
-class EnergyGain:
-    """The sum of what steps have made out of nothing since it was last balanced [J]; start: energy at the start.
-
-    largest: share of the energy in motion that a step may make. turned: the most that was stored, or put in or
-    dissipated in all [J].
-    """
-
-    def __init__(self, start: Energy, largest: float = LARGEST) -> None:
-        self._largest = largest
-        self._sum = self._work = self._dissipated = 0.0
-        self._turned = max(start.kinetic, start.strain)
-
-    def rejection(self, was: Energy, now: Energy, dissipated: float, work: float, negligible: float) -> str:
-        """Why a step from one energy to another that makes as much as it does is not accepted; "" for a good one."""
-        appeared = _appeared(was, now, dissipated, work)
-        in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(work)
-        if appeared > self._largest * in_motion + negligible:
-            return f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
-        adds, turned = SMALL * self._largest * in_motion, max(self._turned, in_motion)
-        moving = _into_motion(was, now, appeared)
-        made = self._sum + moving
-        if moving > adds + negligible and made > SUM * self._largest * turned:
-            return f"the steps' solutions make {made:.3g} J out of nothing, beside {turned:.3g} J exchanged"
-        return ""
-
-    def accept(self, was: Energy, now: Energy, dissipated: float, work: float) -> None:
-        """Count an accepted step."""
-        self._sum = max(0.0, self._sum + _into_motion(was, now, _appeared(was, now, dissipated, work)))
-        self._work += work
-        self._dissipated += dissipated
-        self._turned = max(self._turned, now.kinetic, now.strain, abs(self._dissipated), abs(self._work))
-
-    def state(self) -> Saved:
-        return {"sums": np.array([self._sum, self._work, self._dissipated, self._turned])}
-
-    def restore(self, saved: Saved) -> None:
-        self._sum, self._work, self._dissipated, self._turned = map(float, saved["sums"])
-
-
-def _appeared(was: Energy, now: Energy, dissipated: float, work: float) -> float:
-    return now.total - was.total + dissipated - work
-
-
-def _into_motion(was: Energy, now: Energy, appeared: float) -> float:
-    return min(appeared, was.kinetic + now.kinetic)

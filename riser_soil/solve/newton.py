@@ -11,8 +11,10 @@ from riser_soil.core.matrix import Patterns
 from riser_soil.core.part import Forces, Model, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step, StepResults, UnstableError
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.step_iteration import StepIteration
+from riser_soil.solve.step_results import StepResults
 
 if TYPE_CHECKING:
     from riser_soil.solve.line_solver import LineSolver

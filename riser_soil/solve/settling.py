@@ -22,7 +22,8 @@ from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.solve.dynamic_relaxation import Relaxation, RelaxationResult, at_rest, step_against
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import NotConvergedError
 
 LONGEST, ALLOWED = 1 / 200, 1 / 130  # diameters by which a step is to move the riser, and may
 DEEPEST, LOOKED_AT = 2.0, 0.1  # diameters by which it settles at a load factor at most; between looks whether it will

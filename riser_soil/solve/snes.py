@@ -24,8 +24,8 @@ from riser_soil.solve.convergence import CONVERGED, DIVERGED, ITERATING, NOT_FIN
 from riser_soil.solve.linear_solver import complaint, raised
 from riser_soil.solve.linear_systems import TangentSolver
 from riser_soil.solve.newton_loop import Balance, Loop
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.petsc_options import PREFIX, Given, as_text, defaults, refuse_unread, set_from_options
-from riser_soil.solve.solver import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
 UNLIMITED = 10**6  # iterations: the balance says when there are too many

@@ -1,4 +1,4 @@
-"""Stability of equilibria: negative eigenvalues of the tangent, and the buckling mode in which a riser leaves one.
+"""Stability of equilibria: negative eigenvalues of the tangent.
 
 The negative pivots of a factorisation are counted. Entries of the tangent K and of its factors have a relative error of
 about eps. Such an error lies between -B and B, the diagonal matrix B_ii = eps d_i sum_j |K_ij|/d_j with any d > 0, as
@@ -11,20 +11,11 @@ n^4 of it, or by less than 4 eps (n/pi)^2 EA/P if that is more and the strut lie
 A turn t of the whole riser that its supports leave free has no stiffness where the loads don't tell one direction from
 another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, prescribing
 one dof that it moves takes it away and leaves all else as it is: v - c t, with that dof zero, has the energy of v.
-
-Buckling mode in which a riser leaves an unstable equilibrium.
-
-With the tangent K and the drag D of dynamic relaxation it is the mode of the most negative eigenvalue w of
-K m = w D m, the one that grows fastest. It is found by inverse iteration on K + s D, where s is the least power of two
-times any drag that makes this matrix positive definite: then w lies between -s and -s/2. The start vector is the same
-for all risers, and the largest displacement is positive, so that the direction does not depend on round-off.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -33,22 +24,11 @@ from riser_soil.core.communicator import all_of, any_of
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
-from riser_soil.errors import SolveError
-from riser_soil.riser.line import Line
 from riser_soil.solve import chain
-from riser_soil.solve.chain import ChainFactors
-
-if TYPE_CHECKING:
-    from riser_soil.bodies.body import MovingBody
 
 EPS = float(np.finfo(float).eps)
 NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
 SOFTEST = 1e-9  # of the stiffest: what takes a free turn away, such as a buoy's about the axis that it hangs on
-MOST_ITERATIONS = 200
-SETTLED = 1e-12  # change of a mode's direction in an iteration, squared
-AS_LARGE = 1.0 - 1e-6  # of the largest displacement
-LEAST_DRAG, MOST_DRAG = 1e-12, 1e12  # over the drag that the search starts from
-AXES = np.sqrt([1.0, 2.0, 3.0])  # of the start: no plane of symmetry holds it
 
 
 def judged_parts(system: System) -> Sequence[Part] | None:
@@ -192,73 +172,3 @@ def _one_dof_each(system: System, turns: Array) -> IntArray:
         rest[:, dof] = 0.0
         rows.append(int(system.numbering.index[dof]))
     return np.array(rows, dtype=np.int64)
-
-
-def stabilising_drag(drag: float, stable: Callable[[float], bool]) -> float:
-    """The least drag that is `drag` times a power of two and makes an unstable equilibrium stable."""
-    least, most = LEAST_DRAG * drag, MOST_DRAG * drag
-    while not stable(drag) and drag < most:
-        drag *= 2.0
-    while stable(0.5 * drag) and drag > least:
-        drag *= 0.5
-    return drag
-
-
-def buckling_mode(
-    system: System, part: Part, fields: Sequence[Line | MovingBody], state: State, weights: Weights
-) -> Array:
-    """Increments (size,) of the mode, its largest displacement of lines and bodies +1 m; `part` has the drag s.
-    Collective.
-    """
-    parts = judged_parts(system)
-    assert parts is not None
-    system.assemble(state, weights, [part])
-    drag, start = system.matrix.stored.diagonal(), _start(system, fields)
-    if system.sum([float(start @ (drag * start))])[0] == 0.0:
-        raise SolveError("the equilibrium found is unstable, and no node is free to leave it; take more elements")
-    system.assemble(state, weights, parts)
-    with _exact_solver(system) as solve:
-        mode = _iterate(system, solve, drag, start)
-    found = np.zeros(system.numbering.size)
-    system.numbering.to_local(mode, found)
-    return np.asarray(found / _largest(np.concatenate([found[field.translation_dofs] for field in fields])))
-
-
-def _exact_solver(system: System) -> AbstractContextManager[Callable[[Array], Array]]:
-    if system.is_chain:
-        return nullcontext(ChainFactors(system.matrix).solve)
-    from riser_soil.solve.linear_solver import exact_solver
-
-    return exact_solver(system)
-
-
-def _start(system: System, fields: Sequence[Line | MovingBody]) -> Array:
-    """Displacements that grow along the lines and share no symmetry with them."""
-    local = np.zeros(system.numbering.size)
-    for field in fields:
-        grows = field.arc / field.arc[-1] if isinstance(field, Line) else np.zeros(1)
-        local[field.translation_dofs] = (1.0 + grows)[:, None] * AXES[: field.dimension]
-    return system.numbering.to_global(local)
-
-
-def _iterate(system: System, solve: Callable[[Array], Array], drag: Array, x: Array) -> Array:
-    """Inverse iteration from x: the mode, of unit size in the drag's norm."""
-
-    def product(one: Array, other: Array) -> float:
-        return system.sum([float(one @ (drag * other))])[0]
-
-    for _ in range(MOST_ITERATIONS):
-        image = solve(drag * x)
-        turn = image - x * (product(image, x) / product(x, x))
-        turned, size = product(turn, turn), product(image, image)
-        x = image * size**-0.5
-        if turned < SETTLED * size:
-            break
-    return x
-
-
-def _largest(displacements: Array) -> float:
-    """The entry of largest size, with its sign; the first along the lines of those that are as large."""
-    entries = displacements.ravel()
-    sizes = np.abs(entries)
-    return float(entries[np.flatnonzero(sizes >= AS_LARGE * sizes.max())[0]])

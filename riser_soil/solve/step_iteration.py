@@ -20,17 +20,11 @@ from riser_soil.solve.convergence import CONVERGED, ITERATING, OUTGROWN, TOO_MAN
 from riser_soil.solve.elastic_share import ElasticShare
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.newton_loop import Loop, OutgrownError
+from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.residual_norm import ResidualNorm, above_round_off
-from riser_soil.solve.solver import (
-    NewtonSettings,
-    NotConvergedError,
-    Solution,
-    Step,
-    StepTrials,
-    limits_of,
-    reported,
-)
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
+from riser_soil.solve.step import NotConvergedError, Solution, Step, reported
+from riser_soil.solve.step_trial import StepTrials
 
 TIGHT, LOOSEST = 1e-10, 1e-2  # shares of the residual that a linear system solved by iterations may leave
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may

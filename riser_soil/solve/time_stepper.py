@@ -17,18 +17,11 @@ from riser_soil.core.roles import MomentumCorrecting, Predictor, Renewing, Start
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
-from riser_soil.solve.local_error import (
-    GRADUAL,
-    LARGEST,
-    ROUGH,
-    SMOOTH,
-    EnergyGain,
-    Extrapolation,
-    LocalError,
-    committed_error,
-)
+from riser_soil.solve.energy_gain import LARGEST, EnergyGain
+from riser_soil.solve.extrapolation import GRADUAL, ROUGH, SMOOTH, Extrapolation
+from riser_soil.solve.local_error import LocalError, committed_error
 from riser_soil.solve.newton import Newton, balance_held
-from riser_soil.solve.solver import NotConvergedError, Solution, Step
+from riser_soil.solve.step import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import CommittedStep, Scheme
 

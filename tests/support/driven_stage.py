@@ -22,8 +22,9 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, balance_of
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.step_control import Control
+from riser_soil.solve.step_trial import balance_of
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage

@@ -27,7 +27,7 @@ from riser_soil.solve.line_solver import line_solver
 from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.packed_line import KernelParts, PackedLine
 from riser_soil.solve.riser_mass import RiserMass
-from riser_soil.solve.solver import StepResults
+from riser_soil.solve.step_results import StepResults
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error

@@ -18,9 +18,9 @@ from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve.buckling_mode import _largest
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings
-from riser_soil.solve.stability import _largest
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.time_scheme import Static
 from riser_soil.whole_run import run
 from tests.support.on_ranks import mpirun

@@ -33,7 +33,7 @@ from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import Solution, Step
+from riser_soil.solve.step import Solution, Step
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.scenes import FALL, Mapping, flat, pinned, tilted

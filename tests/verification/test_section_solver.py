@@ -17,7 +17,8 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.system import System
 from riser_soil.results import Run
 from riser_soil.solve import newton
-from riser_soil.solve.section_solver import Csr, SectionFactors, SectionSolver
+from riser_soil.solve.section_factors import Csr, SectionFactors
+from riser_soil.solve.section_solver import SectionSolver
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take
 from tests.support.run_on_ranks import COMPARED, ran

@@ -23,9 +23,10 @@ from riser_soil.core.saved_state import (
 )
 from riser_soil.core.system import System, Timer
 from riser_soil.results.summary import MostUsed, StageTally, TightestBend
+from riser_soil.solve.adaptive_steps import AutoSteps
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings
-from riser_soil.solve.step_control import AutoSteps, Control, StepControl
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step_control import Control, StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper
 from tests.support.toy_chain import Chain, Inertia, Springs

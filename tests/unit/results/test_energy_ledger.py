@@ -14,7 +14,8 @@ from riser_soil.core.snapshot import Ledger
 from riser_soil.core.system import System, Timer
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, Solution
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import Solution
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper

@@ -19,7 +19,7 @@ from riser_soil.soil.remoulding import Remoulding
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
 from riser_soil.solve.newton import balance_held
-from riser_soil.solve.solver import NewtonSettings
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take
 from tests.support.scenes import LAY, Mapping, heave, touchdown

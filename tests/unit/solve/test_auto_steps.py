@@ -10,7 +10,7 @@ import pytest
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
-from riser_soil.solve.step_control import AutoSteps
+from riser_soil.solve.adaptive_steps import AutoSteps
 from tests.support.said import line_with
 from tests.support.scenes import dynamic, prescribed, riser_scene
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from riser_soil.core.part import Energy
-from riser_soil.solve.local_error import EnergyGain
+from riser_soil.solve.energy_gain import EnergyGain
 from tests.support.said import line_with
 
 STILL = Energy(kinetic=100.0, strain=0.0, potential=0.0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from riser_soil.solve.local_error import Extrapolation
+from riser_soil.solve.extrapolation import Extrapolation
 
 TIMES = np.array([0.0, 0.3, 0.5, 0.9])  # unequal steps
 

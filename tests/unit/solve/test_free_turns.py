@@ -15,7 +15,7 @@ from riser_soil.core.system import System, Timer
 from riser_soil.riser.line_ends import End
 from riser_soil.solve import stability
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.time_scheme import Static
 from tests.support.driven_stage import built, take
 from tests.support.sample_line import sample

@@ -15,7 +15,8 @@ from riser_soil.core.part import GROUPS, Forces, Model, State, Weights
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 

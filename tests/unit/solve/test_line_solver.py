@@ -20,7 +20,7 @@ from riser_soil.errors import SolveError
 from riser_soil.seabed.grounds import Plane
 from riser_soil.solve.convergence import Convergence, StopLimits
 from riser_soil.solve.packed_line import PackedLine
-from riser_soil.solve.solver import NotConvergedError
+from riser_soil.solve.step import NotConvergedError
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.line_solver import (

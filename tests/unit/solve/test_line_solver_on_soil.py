@@ -17,8 +17,9 @@ from riser_soil.solve.convergence import StopLimits
 from riser_soil.solve.line_solver import LineSolver, line_solver
 from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.newton import solver_of
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.soil_border import SoilBorder
-from riser_soil.solve.solver import NewtonSettings, Step
+from riser_soil.solve.step import Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage

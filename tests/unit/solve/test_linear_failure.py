@@ -13,7 +13,8 @@ from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.linear_solver import complaint
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.on_ranks import mpirun
 from tests.support.said import line_with
@@ -27,7 +28,8 @@ from petsc4py import PETSc
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 
@@ -84,7 +86,8 @@ from mpi4py import MPI
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, Step
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 

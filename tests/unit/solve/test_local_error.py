@@ -13,7 +13,7 @@ from riser_soil.core.part import Model, Part, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.local_error import LocalError, first_step
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper
 from tests.support.toy_chain import Chain, Floor, Inertia, Springs

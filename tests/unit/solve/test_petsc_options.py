@@ -17,9 +17,10 @@ from riser_soil.errors import SceneError
 from riser_soil.solve.linear_solver import raised
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_loop import OutgrownError
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.petsc_options import PREFIX, given
 from riser_soil.solve.snes import SnesLoop
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step
+from riser_soil.solve.step import NotConvergedError, Solution, Step
 from riser_soil.solve.step_iteration import StepIteration
 from riser_soil.solve.time_scheme import Static
 from tests.support.driven_stage import built, take
@@ -196,7 +197,8 @@ from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SceneError
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, Step
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 

@@ -12,7 +12,8 @@ from riser_soil.core.part import Model, State, Weights
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.convergence import stalled
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings, NotConvergedError, Solution, Step
+from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import NotConvergedError, Solution, Step
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take

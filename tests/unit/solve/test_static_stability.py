@@ -12,7 +12,8 @@ from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve.stability import PivotCounter, stabilising_drag, unstable_modes
+from riser_soil.solve.buckling_mode import stabilising_drag
+from riser_soil.solve.stability import PivotCounter, unstable_modes
 from riser_soil.solve.time_scheme import Static
 from riser_soil.whole_run import run
 from tests.support.toy_chain import Chain, Floor, Springs

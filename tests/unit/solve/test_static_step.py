@@ -13,8 +13,9 @@ from riser_soil.core.part import Forces, MatrixBlock, Model, State, Traits, Weig
 from riser_soil.core.roles import Adaptive
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.residual_norm import ResidualNorm
-from riser_soil.solve.solver import NewtonSettings, Solution, Step
+from riser_soil.solve.step import Solution, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor, Springs
 

@@ -14,7 +14,7 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.solver import NewtonSettings
+from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
