@@ -21,6 +21,7 @@ from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
 from riser_soil.results.record import Recorder
+from riser_soil.results.run_clock import RunClock
 from riser_soil.solve.step import NotConvergedError
 
 ROOT = Path(__file__).parent.parent
@@ -67,7 +68,7 @@ def measure(scene: Path, *overrides: str) -> dict[str, float]:
     """
     compiled, snes = (surging(scene, *overrides, f"solver.newton={kind}") for kind in ("compiled", "snes"))
     taken = defaultdict[str, list[float]](list)
-    opened = functools.partial(Observer.open, compiled.assembly, Timer.new(), force=True)
+    opened = functools.partial(Observer.open, compiled.assembly, RunClock(), force=True)
     unwritten = patch.multiple(Recorder, flush=lambda recorder: None, flush_is_due=False)
     with tempfile.TemporaryDirectory() as folder, opened(Path(folder)) as seen, unwritten:
         seen.begin_stage(compiled.stage, compiled.stepper)

@@ -13,7 +13,6 @@ from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, MemoryShortageError, SolveError
 from riser_soil.interruption import agreeing, check, handling_signals, uninterrupted, unmasked
 from riser_soil.results.checkpoint import last_checkpoint
@@ -22,6 +21,7 @@ from riser_soil.results.functional_run import refuse_unfit_runs
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
+from riser_soil.results.run_clock import RunClock
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage
 from riser_soil.stages import lay, resume_stage, run_stage
@@ -40,7 +40,7 @@ def run(
     """
     folder = Path(folder)
     with handling_signals():
-        comm, clock, since = communicator_of(scene), Timer.new(), time.perf_counter()
+        comm, clock, since = communicator_of(scene), RunClock(), time.perf_counter()
         refuse_together(folder, force, comm, goes_on=restart)
         saved = last_checkpoint(folder, scene, peaks is not None, comm) if restart else None
         scene = sized(scene)
@@ -65,7 +65,7 @@ def run(
             _take_all(assembly, observer, clock, saved)
 
 
-def _take_all(assembly: Assembly, observer: Observer, clock: Timer, saved: Saved | None) -> None:
+def _take_all(assembly: Assembly, observer: Observer, clock: RunClock, saved: Saved | None) -> None:
     stages: Sequence[Stage] = assembly.scene.stages
     try:
         with unmasked():
@@ -83,14 +83,14 @@ def _take_all(assembly: Assembly, observer: Observer, clock: Timer, saved: Saved
         raise
 
 
-def _begin(assembly: Assembly, observer: Observer, clock: Timer) -> State:
+def _begin(assembly: Assembly, observer: Observer, clock: RunClock) -> State:
     before, laid = lay(assembly, clock)
     if laid is not None:
         observer.laid(assembly.slack, laid.steps, laid.relaxations)
     return before
 
 
-def _go_on(assembly: Assembly, observer: Observer, clock: Timer, saved: Saved) -> tuple[Sequence[Stage], State]:
+def _go_on(assembly: Assembly, observer: Observer, clock: RunClock, saved: Saved) -> tuple[Sequence[Stage], State]:
     """Take the stage that was saved to its end; those that are left, and the state that they begin with."""
     stage, before = resume_stage(assembly, saved, observer, clock, observer.checkpoint)
     stages = assembly.scene.stages

@@ -15,11 +15,11 @@ from benchmarks.asked_accuracy.by_hand import HandSetting, turned
 from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, taken, true_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
-from riser_soil.accuracy.settings import settings_in_words
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SCENE
 from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.variants.settings import settings_in_words
 
 SOIL = {name: scene for name, scene in SCENES.items() if "soil" in scene}
 

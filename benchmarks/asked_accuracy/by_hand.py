@@ -18,9 +18,9 @@ from pathlib import Path
 from benchmarks.asked_accuracy.true_errors import run_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
-from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.settings import settings_of, varied
 
 FILE = Path(__file__).with_name("by_hand.json")
 ASKED = {name: scene for name, scene in SCENES.items() if "soil" not in scene}

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.error_bars.references import Reference
-from riser_soil.accuracy.key_results import key_results
 from riser_soil.core.compiled import seconds_of_work
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SUMMARY
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.key_results import key_results
 from riser_soil.whole_run import run
 
 ACCURACY, ON_SOIL = 0.01, 0.1  # asked; where there is soil

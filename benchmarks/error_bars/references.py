@@ -26,7 +26,6 @@ from benchmarks.error_bars.scenes import Mapping
 from riser_soil.accuracy.chain import peaks_of, values_of
 from riser_soil.accuracy.error_bars import Values
 from riser_soil.accuracy.search import first_statics
-from riser_soil.accuracy.settings import settings_of, varied
 from riser_soil.assembly import build, sized
 from riser_soil.errors import MemoryShortageError, MeshError, SolveError
 from riser_soil.scene.reader import scene_from_mapping
@@ -34,6 +33,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.stages import LAID_IN
+from riser_soil.variants.settings import settings_of, varied
 
 FILE, ON_SOIL = (Path(__file__).with_name(f"references{more}.json") for more in ("", "_on_soil"))
 LEFT, LEFT_ON_SOIL = 1.0 / 3.0, 1.0  # of the change between the two, in the finer one

@@ -13,10 +13,10 @@ from benchmarks.error_bars.random_soils import SOILS
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import Mapping as SceneMapping
 from demos.page import table
-from riser_soil.accuracy.key_results import SETTLEMENT
 from riser_soil.assembly import build, sized
 from riser_soil.checks.settlement import predicted_settlement
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.variants.key_results import SETTLEMENT
 
 ON_SOIL = "error bars on soil"  # block of the page
 OF_ALL_ERRORS = "of all errors"

@@ -14,7 +14,6 @@ import numpy as np
 
 from benchmarks.soil_precision.ladders import LADDERS
 from benchmarks.soil_precision.scenes import DEPTHS
-from riser_soil.accuracy.study_points import COST
 from riser_soil.core.arrays import Array
 from riser_soil.core.environment import environment_alone
 from riser_soil.results import Run
@@ -64,18 +63,18 @@ def _one(scene: str, method: str, n: int, results: Path) -> Measured:
 
 def _run(scene: str, method: str, n: int, given: str, folder: Path) -> Measured:
     (folder / "given.yaml").write_text(given, encoding="utf-8")
-    command = [sys.executable, "-m", "riser_soil.accuracy.point_run", str(folder / "given.yaml"), str(folder)]
+    command = [sys.executable, "-m", "riser_soil", "run", str(folder / "given.yaml"), "-o", str(folder), "--force"]
     alone = environment_alone() | {"OMP_NUM_THREADS": "1", "RISER_SOIL_COMPLIANCE": "off"}
     try:
-        subprocess.run(command, env=alone, timeout=LONGEST, capture_output=True)
+        ended = subprocess.run(command, env=alone, timeout=LONGEST, capture_output=True, text=True)
     except subprocess.TimeoutExpired:
         return Measured(scene, method, n, LONGEST, {}, {}, "took too long")
-    cost = json.loads((folder / COST).read_text(encoding="utf-8"))
-    if cost["status"] != 0:
-        return Measured(scene, method, n, cost["cpu"], {}, {}, cost["reason"].partition("\n")[0])
+    seconds = Run(folder).summary["processor_seconds"] if Run.is_there(folder) else 0.0
+    if ended.returncode != 0:
+        return Measured(scene, method, n, seconds, {}, {}, ended.stderr.partition("\n")[0])
     figures, curves = _of_pushed(Run(folder)) if scene == "pushed" else _of_laid(Run(folder))
     along = {name: list(map(float, at)) for name, at in curves.items()}
-    return Measured(scene, method, n, cost["cpu"], figures, along)
+    return Measured(scene, method, n, seconds, figures, along)
 
 
 Found = tuple[dict[str, float], dict[str, Array]]

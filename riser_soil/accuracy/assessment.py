@@ -15,9 +15,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from riser_soil.accuracy.extrapolation import Limit, limit
-from riser_soil.accuracy.key_results import KeyResult
 from riser_soil.accuracy.refinements import Refinements
 from riser_soil.accuracy.study_points import Factors, PointOutcome
+from riser_soil.variants.key_results import KeyResult
 
 TOGETHER = 2.0  # times what errors do not add up by, in the reference's uncertainty
 TELLING = 0.1  # relative uncertainty of the reference beyond which an error of the quantity can't be told

@@ -12,7 +12,6 @@ from rich.table import Table
 
 from riser_soil.accuracy.chain import bars_of, comparison_runs, run_values
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
-from riser_soil.accuracy.key_results import key_results
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core import compiled
 from riser_soil.errors import Interruption
@@ -21,6 +20,7 @@ from riser_soil.results.folder import SUMMARY
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.summary import add_to_summary
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.key_results import key_results
 from riser_soil.whole_run import run
 
 LEFT = "while its error bars were computed; {} has the whole run, without them"

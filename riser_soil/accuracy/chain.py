@@ -20,8 +20,6 @@ from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, error_bars
 from riser_soil.accuracy.extreme_differences import alone, extremes_of
 from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
-from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult, key_results
-from riser_soil.accuracy.settings import is_firm, settings_of, varied
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
 from riser_soil.core.snapshot import Instants, SoilSnapshot, instants_at
@@ -37,6 +35,8 @@ from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, lay, run_stage
+from riser_soil.variants.key_results import SETTLEMENT, KeyResult, key_results
+from riser_soil.variants.settings import is_firm, settings_of, varied
 
 Envelopes = dict[str, CurveEnvelope]  # of moments and tensions, by line
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import FORCE_FLOOR
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Instant
+from riser_soil.variants.key_results import FORCE_FLOOR
 
 GAP = 0.5  # of the accuracy asked: what falls between nodes
 FORGIVEN = 0.2  # of how far a moment is below the largest, or a tension above the least

@@ -32,7 +32,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from riser_soil.accuracy.extreme_differences import Extremes, apart
-from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
+from riser_soil.variants.key_results import SETTLEMENT, KeyResult
 
 SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalty": "penalty"}
 SMALLEST, SMALLEST_ON_SOIL = 5e-5, 1e-4  # bar told, over the quantity's scale

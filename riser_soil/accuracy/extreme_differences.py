@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import KeyResult, key_results
 from riser_soil.core.arrays import Array
 from riser_soil.results.peaks import RunPeaks, StagePeaks
+from riser_soil.variants.key_results import KeyResult, key_results
 
 NEAR = 0.2  # of a quantity's range over the windows, from its extreme
 

@@ -43,9 +43,9 @@ class Study:
 
     def compute(self, points: Iterable[Factors], jobs: int) -> None:
         """Compute points that are not there yet, `jobs` at a time."""
-        wanted, place = [point for point in points if point not in self.outcomes], self.folder / POINTS
-        runs = [StudyPoint(point, self.refinements.scene_at(point), place) for point in wanted]
-        for outcome in compute(runs, jobs, self._tell):
+        wanted = [point for point in points if point not in self.outcomes]
+        runs = [StudyPoint(point, self.refinements.scene_at(point)) for point in wanted]
+        for outcome in compute(runs, self.folder / POINTS, jobs, self._tell):
             self.outcomes[outcome.factors] = outcome
 
     def _tell(self, outcome: PointOutcome, before: bool) -> None:

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.accuracy.settings import resolved
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales, scales_of
@@ -32,6 +31,7 @@ from riser_soil.scene.soil import Block, CellSizes, GeneratedMesh
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, lay, run_stage
+from riser_soil.variants.settings import resolved
 
 PEAK = 1.5  # load under a touchdown point over the weight, for which fine cells are chosen
 COARSEST = 0.5  # of the run's cells, that fine ones are at most

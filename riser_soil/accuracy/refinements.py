@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from riser_soil.accuracy.settings import Setting, settings_in_words, varied
 from riser_soil.accuracy.study_points import Factors
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.settings import Setting, settings_in_words, varied
 
 RATIOS = {"elements": 2.0, "time_step": 2.0, "soil_mesh": 2.0 ** (1.0 / 3.0), "penalty": 10.0**0.5}
 """From level to level: the soil's cells grow in number by the cube, so that each level about doubles a run's cost; the

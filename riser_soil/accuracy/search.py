@@ -10,8 +10,6 @@ from typing import Any, TypeVar
 
 from riser_soil.accuracy.chain import Envelopes, Variation, bars_of, comparison_runs, peaks_of, run_values, variations
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
-from riser_soil.accuracy.key_results import key_results
-from riser_soil.accuracy.settings import SETTINGS, resolved, varied
 from riser_soil.assembly.graded_segments import broken, graded
 from riser_soil.assembly.motions import periods_of
 from riser_soil.errors import SolveError
@@ -20,6 +18,8 @@ from riser_soil.scene.lines import by_line, risers, with_risers, with_segments
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+from riser_soil.variants.key_results import key_results
+from riser_soil.variants.settings import SETTINGS, resolved, varied
 
 SHAPES = 3  # static runs at most that grade the mesh
 SETTLED = 1.5  # elements at most so many times as long as curvature asks for

@@ -10,12 +10,12 @@ from pathlib import Path
 from riser_soil.accuracy.cheapest_setting import next_setting
 from riser_soil.accuracy.findings import TARGETS, Says, Study
 from riser_soil.accuracy.refinements import RATIOS, Refinements
-from riser_soil.accuracy.settings import Setting, resolved, settings_of
 from riser_soil.accuracy.study_files import write_files
 from riser_soil.accuracy.study_points import POINTS
-from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError
-from riser_soil.results.whole_file import refuse_file, unusable
+from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError, WriteError
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.runs_folder import claimed
+from riser_soil.variants.settings import Setting, resolved, settings_of
 
 TRIES = 3  # settings expected to reach a target that are run
 FINER = 2  # levels at most by which a scene that fails is made finer
@@ -35,15 +35,20 @@ def study(
     ResultsError, and SolveError where those fail, too.
     """
     refinements = Refinements(resolved(scene), _chosen(scene, settings), levels)
-    refuse(folder, force)
-    try:
-        made = _around_what_runs(Study(refinements, folder, says))
-        _compute_refinements(made, jobs)
-        _try_settings(made)
-    except Interruption as end:
-        end.place = f"in a study; call again to go on, {folder} keeps what was computed"
-        raise
-    write_files(made)
+    kept = f"call again to go on, {folder} keeps what was computed"
+    with claimed(folder, POINTS, "a study") as runs:
+        if force:
+            shutil.rmtree(runs, ignore_errors=True)
+        try:
+            made = _around_what_runs(Study(refinements, folder, says))
+            _compute_refinements(made, jobs)
+            _try_settings(made)
+        except Interruption as end:
+            end.place = f"in a study; {kept}"
+            raise
+        except WriteError as err:
+            raise WriteError(f"{err}; {kept}") from err
+        write_files(made)
     return made
 
 
@@ -71,20 +76,6 @@ def _finer(made: Study) -> Study:
         finer.outcomes[factors] = replace(before, factors=factors)
     finer.compute([refinements.base], 1)
     return finer
-
-
-def refuse(folder: Path, force: bool) -> None:
-    """Only an empty folder, or one with a study, takes a study; by force an earlier one's points are removed."""
-    refuse_file(folder)
-    there = [entry.name for entry in folder.iterdir()] if folder.is_dir() else []
-    if there and POINTS not in there:
-        raise SceneError(f"{folder}: holds something else than a study, {min(there)}; choose another with -o FOLDER")
-    try:
-        if force:
-            shutil.rmtree(folder / POINTS, ignore_errors=True)
-        (folder / POINTS).mkdir(parents=True, exist_ok=True)
-    except OSError as err:
-        raise unusable(folder, err) from err
 
 
 def _chosen(scene: Scene, names: Sequence[str]) -> tuple[Setting, ...]:

@@ -15,7 +15,6 @@ from riser_soil.accuracy.barred_run import LEFT, print_bars, values_of_run, writ
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, times_as_long, too_dear
 from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measured, trial
-from riser_soil.accuracy.settings import settings_in_words, settings_of
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
 from riser_soil.core import compiled
@@ -24,6 +23,7 @@ from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.settings import settings_in_words, settings_of
 from riser_soil.whole_run import run
 
 RUNS = 4  # at most that are to reach the accuracy

@@ -14,11 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from riser_soil.cases.case_file import PERCENT, Cases, Overrides
+from riser_soil.cases.case_file import PERCENT, Cases
 from riser_soil.core.quantities import FLATTEST
 from riser_soil.errors import SceneError
 from riser_soil.scene.document import Document
 from riser_soil.scene.water import ALONE, KINDS
+from riser_soil.variants.variant import Overrides
 
 SEED = "seed"
 _WITH_SEED = ("jonswap", "pierson_moskowitz", "spectrum")

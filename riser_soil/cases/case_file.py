@@ -27,6 +27,7 @@ from riser_soil.scene.files import NamedFile, wrong_file
 from riser_soil.scene.reader import error_of
 from riser_soil.scene.vessel_offset import Offset
 from riser_soil.scene.wave_kinds import Seed
+from riser_soil.variants.variant import Overrides
 
 MOST_LETTERS = 100
 MOST_SEEDS = 1000
@@ -48,8 +49,6 @@ def is_name(text: str) -> bool:
     return _NAME.fullmatch(text) is not None
 
 
-Overrides = dict[str, Any]
-"""Values by the paths that `run --set` takes."""
 CaseName = Annotated[Text, AfterValidator(_name_given)]
 
 

@@ -17,12 +17,13 @@ import numpy as np
 import xarray
 
 from riser_soil import __version__
-from riser_soil.cases.case_folder import CHARACTERISTIC, DATA, EXTREMES, FILES, PLOT, TABLE
 from riser_soil.cases.case_table import CaseTable
 from riser_soil.cases.characteristic import CharacteristicExtreme, row_of
 from riser_soil.plots.load_cases import Panel, draw_load_cases
 from riser_soil.results.whole_file import written_together
 
+TABLE, EXTREMES, CHARACTERISTIC, DATA, PLOT = "cases.csv", "extremes.csv", "characteristic.csv", "cases.nc", "cases.png"
+FILES = (TABLE, EXTREMES, CHARACTERISTIC, DATA, PLOT)
 
 def write_files(table: CaseTable, extremes: Sequence[CharacteristicExtreme], folder: Path) -> None:
     """All files together."""

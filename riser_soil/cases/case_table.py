@@ -1,4 +1,4 @@
-"""Table of all cases: what became of each, and its values, key results and statistics of the last dynamic stage."""
+"""Table of all cases: how each ended, and its values, key results and statistics of the last dynamic stage."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from riser_soil.cases.case_folder import Outcome, place
 from riser_soil.cases.case_values import CaseValue, case_values
 from riser_soil.cases.expansion import Case
 from riser_soil.core.arrays import Array
+from riser_soil.variants.runs_folder import Outcome
 
 
 @dataclass(frozen=True, eq=False)
 class CaseTable:
-    """All cases in their order, what became of them, and the values of those that are done."""
+    """All cases in their order, how they ended, and the values of those that are done."""
 
     title: str
     cases: Sequence[Case]
@@ -59,9 +59,9 @@ class CaseTable:
 
 
 def case_table(
-    title: str, folder: Path, cases: Sequence[Case], outcomes: Mapping[str, Outcome], since: float
+    title: str, runs: Path, cases: Sequence[Case], outcomes: Mapping[str, Outcome], since: float
 ) -> CaseTable:
-    """From the results in the cases' folders. since: s, of the statistics."""
+    """Table from the results in the cases' folders. runs: folder of these. since: s, of the statistics."""
     done = [case.name for case in cases if outcomes[case.name].done]
-    values = {name: {value.key: value for value in case_values(place(folder, name), since)} for name in done}
+    values = {name: {value.key: value for value in case_values(runs / name, since)} for name in done}
     return CaseTable(title, cases, outcomes, values)

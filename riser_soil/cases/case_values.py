@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import KeyResult, key_results
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.results.cycles import beginning
 from riser_soil.results.read import Run
+from riser_soil.variants.key_results import KeyResult, key_results
 
 MEAN, DEVIATION = ", mean", ", standard deviation"
 _USED = "_utilisation"

@@ -2,48 +2,35 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass, field, replace
-from functools import cache
 from itertools import product
 from pathlib import Path
 
-from riser_soil import __version__
 from riser_soil.cases.axes import CaseAxis, Point, axes_of, is_seed
-from riser_soil.cases.case_file import MOST_LETTERS, Cases, Overrides, is_name, read_case_file
+from riser_soil.cases.case_file import MOST_LETTERS, Cases, is_name, read_case_file
 from riser_soil.errors import SceneError
-from riser_soil.results.folder import CHECKPOINT
-from riser_soil.scene.document import Document
-from riser_soil.scene.dump import dump_scene
-from riser_soil.scene.identity import paths_in
-from riser_soil.scene.overrides import override, put_once
-from riser_soil.scene.problem import shown
-from riser_soil.scene.reader import checked, read_document
-from riser_soil.scene.scene import Scene
+from riser_soil.variants.variant import BaseScene, Overrides, Variant, variant_of
 
 MOST_CASES = 100_000
 MOST_LINES = 20
+_NONE = Variant("", "")  # of a case whose scene is not made yet
 _PLACE = "<case>"  # of a mistake, before it is known which cases have it
 
 
 @dataclass(frozen=True)
 class Case:
     """A run to be had. values: by their paths, in what it differs from the base scene; labels: by its axes, what each
-    calls its value; group: what it has in common with cases that differ in their seed alone. scene: resolved, as text.
-
-    key: digest of its scene, the files that this names, and the program's version: what would give the same results.
+    calls its value; group: what it has in common with cases that differ in their seed alone. variant: its scene.
     """
 
     name: str
     values: Overrides
     labels: Mapping[str, str] = field(default_factory=dict)
     group: str = ""
-    scene: str = ""
-    key: str = ""
+    variant: Variant = _NONE
 
     @property
     def group_labels(self) -> tuple[str, ...]:
@@ -54,15 +41,11 @@ class Case:
 def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[Case]]:
     """The cases of a file, all scenes checked; overrides: of the base scene. SceneError has one line per problem."""
     case_file = read_case_file(file)
-    base = read_document(case_file.base)
-    _put(base, case_file.values, f"{file}: set")
-    override(base, overrides)
+    base = BaseScene.read(case_file.base, overrides, case_file.values, f"{file}: set")
     cases, problems = [], dict[str, list[str]]()  # what is wrong, and of which cases
-    for case in named_cases(file, axes_of(file, case_file, base)):
+    for case in named_cases(file, axes_of(file, case_file, base.document)):
         try:
-            own = deepcopy(base)
-            _put(own, case.values, _PLACE)
-            cases.append(_resolved(case, own, case_file.base.parent))
+            cases.append(replace(case, variant=variant_of(base.with_values(case.values, _PLACE))))
         except SceneError as err:
             for line in str(err).splitlines():
                 problems.setdefault(line, []).append(case.name)
@@ -99,30 +82,3 @@ def _together(axes: Sequence[str], points: Sequence[Point]) -> Case:
     labels = {axis: point.label for axis, point in zip(axes, points, strict=True)}
     group = "-".join(part for point in points if (part := point.group))
     return Case("-".join(point.name for point in points), values, labels, group or "all seeds")
-
-
-def _put(document: Document, values: Overrides, place: str) -> None:
-    for path, value in values.items():
-        put_once(document, path, deepcopy(value), f"{place} {path}={shown(value)}")
-
-
-def _resolved(case: Case, document: Document, folder: Path) -> Case:
-    """The case with its scene; its results have their place among the cases, whatever the scene says."""
-    scene = checked(document, folder)
-    scene = scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
-    text = dump_scene(scene)
-    return replace(case, scene=text, key=_key(scene, text))
-
-
-def _key(scene: Scene, text: str) -> str:
-    digest = hashlib.sha256(f"{__version__}\n{text}".encode())
-    for _, at in paths_in(scene):
-        file = at / CHECKPOINT if at.is_dir() else at  # of a run that the case begins with the end of
-        if file.is_file():
-            digest.update(_digest(file, file.stat().st_mtime_ns))
-    return digest.hexdigest()
-
-
-@cache
-def _digest(file: Path, modified: int) -> bytes:
-    return hashlib.sha256(file.read_bytes()).digest()

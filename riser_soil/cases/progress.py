@@ -13,7 +13,7 @@ from rich.live import Live
 from rich.markup import escape
 from rich.table import Table
 
-from riser_soil.cases.case_folder import Outcome
+from riser_soil.variants.runs_folder import Outcome
 
 FEWEST_ROWS, OTHER_LINES = 3, 8  # rows of a table on a low screen; lines of the screen that are not its rows
 Labels = tuple[str, ...]
@@ -60,7 +60,7 @@ class CaseProgress:
         """Cases that have ended, those of earlier calls included."""
         return self.count - len(self._todo) + len(self._outcomes)
 
-    def take(self, outcome: Outcome) -> None:
+    def add(self, outcome: Outcome) -> None:
         """One more has ended."""
         self._outcomes[outcome.name] = outcome
         if not (outcome.done and self._on_terminal):

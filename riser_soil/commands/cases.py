@@ -21,7 +21,7 @@ def cases(
         typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the case file's name without its ending"),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option("--jobs", help="worker processes on this machine; by default one for each core")
+        int | None, typer.Option("--jobs", help="cases at a time on this machine; by default one for each core")
     ] = None,
     scheduler: Annotated[
         str | None,
@@ -42,12 +42,12 @@ def cases(
         from rich.console import Console
 
         from riser_soil.cases.characteristic import governing_table, warnings_of
-        from riser_soil.cases.pool import cores
-        from riser_soil.cases.sweep import Workers, run_cases
+        from riser_soil.cases.sweep import run_cases
+        from riser_soil.variants.pool import Workers, cores
 
         folder = output or Path(file.stem)
-        workers = Workers(jobs or cores(), scheduler, limit)
-        table, extremes = run_cases(file, folder, workers, overrides or (), typer.echo)
+        workers = Workers(jobs or cores(), scheduler)
+        table, extremes = run_cases(file, folder, workers, overrides or (), limit, typer.echo)
         if extremes:
             Console(force_jupyter=False).print(governing_table(extremes))
         for warning in warnings_of(extremes, table.cases):

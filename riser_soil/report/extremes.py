@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.accuracy.key_results import key_results
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import Row
 from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
+from riser_soil.variants.key_results import key_results
 
 READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}  # units of key results, as they are read
 _ENDS = {"start": "A", "end": "B"}

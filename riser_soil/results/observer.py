@@ -32,7 +32,6 @@ from riser_soil.core.snapshot import (
     StepStatistics,
     instants_at,
 )
-from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
@@ -44,6 +43,7 @@ from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import BoundaryStress, Plausibility, boundary_stress
 from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.riser_snapshot import elastic_residual
+from riser_soil.results.run_clock import RunClock
 from riser_soil.results.schedule import DueOutputs, Schedule
 from riser_soil.results.screen import Progress, print_summary
 from riser_soil.results.settlement_trough import count_of, offsets_of
@@ -83,7 +83,7 @@ class Observer:
     def __init__(
         self,
         assembly: Assembly,
-        clock: Timer,
+        clock: RunClock,
         recorder: Recorder | None,
         progress: Progress,
         peaks: RunPeaks | None = None,
@@ -106,7 +106,7 @@ class Observer:
     def open(
         cls,
         assembly: Assembly,
-        clock: Timer,
+        clock: RunClock,
         folder: Path,
         force: bool,
         peaks: RunPeaks | None = None,
@@ -264,6 +264,7 @@ class Observer:
             self.flush()
             soil = self._soil() if together else None
             if self._recorder is not None:
+                self._recorder.summary.processor_seconds = self._clock.processor_seconds
                 self._recorder.record_last(soil)
                 if isinstance(end, Interruption):
                     end.place = self._recorder.reached
@@ -309,6 +310,7 @@ class Observer:
     def finish(self) -> None:
         if self._recorder is not None:
             self._recorder.add_seconds(self._clock.seconds)
+            self._recorder.summary.processor_seconds = self._clock.processor_seconds
             self._recorder.finish()
             print_summary(self._recorder.summary.as_dict())
 

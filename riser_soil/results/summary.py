@@ -279,6 +279,7 @@ class Summary:
         self.laying: dict[str, float] | None = None  # how a slack riser was laid before the stages
         self.stages: list[StageTally] = []
         self.seconds: Counter[str] = Counter()
+        self.processor_seconds = math.nan  # until the run ends
         self._facts = facts
 
     def as_dict(self) -> dict[str, Any]:
@@ -295,6 +296,7 @@ class Summary:
             "warnings": list(facts.warnings),
             "stages": [stage.as_dict() for stage in self.stages],
             "seconds": dict(self.seconds),
+            "processor_seconds": self.processor_seconds,
             **({"laying": self.laying} if self.laying is not None else {}),
         }
 

@@ -50,8 +50,9 @@ class Watched:
         return [name for name in _entries(self._place) if name != ".attempts"]
 
     def runs(self) -> dict[int, int]:
-        """Processes that run cases, each with its worker's."""
-        of_case = (pid for pid in self._job.processes() if b"/.attempts/" in _read(pid, "cmdline"))
+        """Processes that run cases, each with the process that began it: the command, or a worker."""
+        mark, alive = str(self._place / ".attempts").encode(), (int(p.name) for p in Path("/proc").glob("[0-9]*"))
+        of_case = (pid for pid in alive if mark in _read(pid, "cmdline"))
         return {pid: parent for pid in of_case if (parent := _parent(pid))}
 
 

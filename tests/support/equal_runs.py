@@ -74,7 +74,7 @@ def _datasets(group: h5py.Group, at: str = "") -> Iterator[tuple[str, h5py.Datas
 
 def _summaries(one: Path, other: Path) -> Iterator[str]:
     a, b = (json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in (one, other))
-    a, b = ({name: value for name, value in reported.items() if name != "seconds"} for reported in (a, b))
+    a, b = ({name: value for name, value in each.items() if "seconds" not in name} for each in (a, b))
     yield from (f"summary.json: {name}" for name in _differing(dict(_leaves(a)), dict(_leaves(b))))
 
 

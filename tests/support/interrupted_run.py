@@ -15,8 +15,8 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import AnyArray, Saved
-from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
+from riser_soil.results.run_clock import RunClock
 from riser_soil.scene.scene import Scene
 from riser_soil.stages import lay, resume_stage, run_stage
 
@@ -45,7 +45,7 @@ class Kept:
 
 def whole(scene: Scene, folder: Path, after: tuple[int, ...]) -> Kept:
     """A run from its beginning, its states kept after some steps."""
-    kept, assembly, clock = Kept(after), build(scene, MPI.COMM_SELF), Timer.new()
+    kept, assembly, clock = Kept(after), build(scene, MPI.COMM_SELF), RunClock()
     with Observer.open(assembly, clock, folder, force=False) as observer:
         before, laid = lay(assembly, clock)
         if laid is not None:
@@ -56,14 +56,14 @@ def whole(scene: Scene, folder: Path, after: tuple[int, ...]) -> Kept:
 
 def resumed(scene: Scene, folder: Path, saved: Saved) -> Kept:
     """The rest of a run, all things built anew."""
-    kept, assembly, clock = Kept(), build(scene, MPI.COMM_SELF), Timer.new()
+    kept, assembly, clock = Kept(), build(scene, MPI.COMM_SELF), RunClock()
     with Observer.open(assembly, clock, folder, force=False) as observer:
         stage, before = resume_stage(assembly, saved, observer, clock, kept.keep)
         _go_on(assembly, scene.stages.index(stage) + 1, before, observer, clock, kept)
     return kept
 
 
-def _go_on(assembly: Assembly, first: int, before: State, observer: Observer, clock: Timer, kept: Kept) -> None:
+def _go_on(assembly: Assembly, first: int, before: State, observer: Observer, clock: RunClock, kept: Kept) -> None:
     for stage in assembly.scene.stages[first:]:
         before = run_stage(assembly, stage, before, observer, clock, kept.keep)
     kept.end()

@@ -13,7 +13,7 @@ from benchmarks.error_bars.calibration import CERTAIN, Judged, judge, ratios, sh
 from benchmarks.error_bars.random_risers import CALIBRATION, OUT_OF_SAMPLE
 from benchmarks.error_bars.scenes import Mapping
 from riser_soil.accuracy.error_bars import ErrorBar
-from riser_soil.accuracy.key_results import SETTLEMENT, KeyResult
+from riser_soil.variants.key_results import SETTLEMENT, KeyResult
 
 
 def test_every_scene_has_a_reference() -> None:

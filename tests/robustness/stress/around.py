@@ -15,13 +15,13 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from riser_soil.accuracy.key_results import KeyResult, key_results
 from riser_soil.errors import RiserSoilError
 from riser_soil.results.folder import write_atomically
 from riser_soil.results.read import Run
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.key_results import KeyResult, key_results
 from riser_soil.whole_run import run
 from tests.robustness.limited_process import Ending, Job, Limits, ended, import_all
 from tests.robustness.stress.bounds import Answer, between, bounds

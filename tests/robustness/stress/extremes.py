@@ -8,10 +8,10 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from riser_soil.accuracy.settings import SETTINGS, varied
 from riser_soil.scene.lines import acts_on, risers, with_acts, with_risers
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage, varying_in
+from riser_soil.variants.settings import SETTINGS, varied
 
 BASE = "as it is"
 CLOSE, NEAR, SAME = 0.02, 0.1, 1e-4  # what key results may differ by, of their scales

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.accuracy.key_results import KeyResult, key_results
 from riser_soil.core.snapshot import Instant, RunFacts
 from riser_soil.results.figures import final_state, pack
 from riser_soil.results.summary import StageTally, Summary, plain_json
+from riser_soil.variants.key_results import KeyResult, key_results
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary
 
 ARC = np.linspace(0.0, 150.0, 301)

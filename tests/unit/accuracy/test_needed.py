@@ -10,10 +10,10 @@ import pytest
 
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues
 from riser_soil.accuracy.extreme_differences import alone
-from riser_soil.accuracy.key_results import KeyResult
 from riser_soil.accuracy.needed import doubtful, expected, largest, needed, times_as_long, too_dear
 from riser_soil.accuracy.search import TriedSetting
 from riser_soil.accuracy.target_run import _next_factors
+from riser_soil.variants.key_results import KeyResult
 
 VALUE = 1000.0
 ORDERS = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}  # in which shares fall

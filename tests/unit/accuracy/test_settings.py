@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from riser_soil.accuracy.settings import SETTINGS, Setting, is_firm, resolved, settings_of, varied
 from riser_soil.assembly import sized
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import scales_of
@@ -18,6 +17,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.scene.stages import DynamicStage
+from riser_soil.variants.settings import SETTINGS, Setting, is_firm, resolved, settings_of, varied
 from tests.support.said import telling
 from tests.support.scenes import LAY, Mapping, heave, touchdown
 

@@ -48,12 +48,12 @@ def test_every_combination_is_a_case(tmp_path: Path) -> None:
         "riser.end.position.0": 9.5,
         "title": "far out",
     }
-    assert len({case.key for case in found}) == 8
+    assert len({case.variant.key for case in found}) == 8
 
 
 def test_a_case_is_the_scene_that_run_would_make_of_it(tmp_path: Path) -> None:
     (case,) = cases(tmp_path, "set: {title: all}\nproduct: {riser.end.position: [[8.0, 0.0, 5.0]]}", "gravity=9.8")
-    (tmp_path / "again.yaml").write_text(case.scene, encoding="utf-8")
+    (tmp_path / "again.yaml").write_text(case.variant.text, encoding="utf-8")
     overrides = ["title=all", "gravity=9.8", "riser.end.position=[8.0, 0.0, 5.0]"]
     assert read_scene(tmp_path / "again.yaml") == read_scene(tmp_path / "small.yaml", overrides)
     assert case.name == "position_1"
@@ -82,7 +82,7 @@ def test_the_key_changes_with_what_the_results_hang_on(tmp_path: Path) -> None:
     (tmp_path / "way.csv").write_text(way.format("0.1"), encoding="utf-8")
 
     def key(text: str) -> str:
-        return cases(tmp_path, text)[0].key
+        return cases(tmp_path, text)[0].variant.key
 
     first = key(f"table: [{{name: a, set: {{stages: {pull}}}}}]")
     assert key(f"table: [{{name: b, set: {{stages: {pull}, output.directory: x}}}}]") == first
@@ -93,7 +93,7 @@ def test_the_key_changes_with_what_the_results_hang_on(tmp_path: Path) -> None:
 
 def test_a_case_is_another_one_where_the_run_that_it_begins_with_has_changed(tmp_path: Path) -> None:
     def key() -> str:
-        return cases(tmp_path, f"product: {{initial.from: [{tmp_path / 'hung'}]}}")[0].key
+        return cases(tmp_path, f"product: {{initial.from: [{tmp_path / 'hung'}]}}")[0].variant.key
 
     (tmp_path / "hung").mkdir()
     keys = [key()]

@@ -10,7 +10,6 @@ import pytest
 from rich.console import Console
 
 from riser_soil.cases.case_file import WantedExtremes
-from riser_soil.cases.case_folder import Outcome
 from riser_soil.cases.case_table import CaseTable
 from riser_soil.cases.case_values import CaseValue, Sample
 from riser_soil.cases.characteristic import (
@@ -22,6 +21,7 @@ from riser_soil.cases.characteristic import (
     warnings_of,
 )
 from riser_soil.cases.expansion import Case
+from riser_soil.variants.runs_folder import Outcome
 
 MODE, SCALE = 900.0e3, 40.0e3  # N, of the extremes of 1200 s
 WANTED = WantedExtremes(fractile=0.95, duration=3600.0, confidence=0.9)

@@ -19,14 +19,15 @@ from typer.testing import CliRunner
 
 from riser_soil.accuracy import findings
 from riser_soil.accuracy.findings import Study
-from riser_soil.accuracy.key_results import KeyResult
-from riser_soil.accuracy.study import refuse, study
+from riser_soil.accuracy.study import study
 from riser_soil.accuracy.study_page import words
-from riser_soil.accuracy.study_points import PointOutcome, StudyPoint
+from riser_soil.accuracy.study_points import PointOutcome, StudyPoint, compute
 from riser_soil.commands.app import app
-from riser_soil.errors import ResultsError, SceneError, SolveError
+from riser_soil.errors import ResultsError, SceneError, SolveError, WriteError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
+from riser_soil.variants import one_run
+from riser_soil.variants.key_results import KeyResult
 from tests.support.on_ranks import HANGS, environment
 from tests.support.said import line_with, telling
 from tests.support.scenes import LAY, heave, touchdown
@@ -54,7 +55,7 @@ def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, 
     """A study whose runs are formulas of the sizes of elements and steps, 1 in the scene; failures by `fails`."""
     fails: Callable[[float, float], bool] = given.pop("fails", lambda h, dt: False)
 
-    def compute(points: Sequence[StudyPoint], jobs: int, reported: Any) -> list[PointOutcome]:
+    def compute(points: Sequence[StudyPoint], runs: Path, jobs: int, on_end: Any) -> list[PointOutcome]:
         return [outcome(point.factors) for point in points]
 
     def outcome(factors: tuple[float, ...]) -> PointOutcome:
@@ -176,7 +177,7 @@ def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest
             return PointOutcome(point.factors, 3, "folded", 1.0, True)
         return PointOutcome(point.factors, 0, "", 1.0, True, 1, found)
 
-    def compute(points: Sequence[StudyPoint], jobs: int, reported: Any) -> list[PointOutcome]:
+    def compute(points: Sequence[StudyPoint], runs: Path, jobs: int, on_end: Any) -> list[PointOutcome]:
         return [outcome(point) for point in points]
 
     monkeypatch.setattr(findings, "compute", compute)
@@ -215,21 +216,58 @@ def test_bad_input_is_refused(tmp_path: Path) -> None:
     (tmp_path / "letters").mkdir()
     (tmp_path / "letters" / "a.txt").write_text("mine")
     with pytest.raises(SceneError, match=telling("else than a study", "a.txt")):
-        refuse(tmp_path / "letters", force=True)
+        study(scene(), tmp_path / "letters", force=True)
 
 
-def test_how_a_point_ended(tmp_path: Path) -> None:
-    """One that was killed is run again, one whose solve failed is not."""
-    point = StudyPoint((2.0, 1.0), scene(), tmp_path)
-    point.folder.mkdir(parents=True)
-    killed = point.ended(-9, alone=True)
-    assert (killed.reason, math.isnan(killed.cpu), killed.done) == ("killed by signal 9", True, False)
-    assert point.found() is None
-    (point.folder / "cost.json").write_text('{"status": 3, "reason": "no\\n convergence at all", "cpu": 1.5}')
-    failed = point.ended(3, alone=True)
-    assert (failed.reason, failed.cpu) == ("no convergence at all", 1.5)
-    assert point.found() == failed
-    assert StudyPoint((1.0, 1.0), scene().model_copy(update={"gravity": 9.8}), tmp_path).folder != point.folder
+FAKE = """
+import json, os, signal, sys
+folder, status = sys.argv[1:]
+if status == "-9":
+    os.kill(os.getpid(), signal.SIGKILL)
+json.dump({"finished": status == "0", "stages": [], "processor_seconds": 1.5}, open(folder + "/summary.json", "w"))
+open(folder + "/results.nc", "w").close()
+print("no convergence at all" if status == "3" else folder + "/scene.yaml:7: riser.start: buried")
+sys.exit(int(status))
+"""
+
+
+@pytest.mark.parametrize(
+    ("status", "reason", "cpu", "again"),
+    [
+        (0, "", 1.5, False),
+        (2, "riser.start: buried", 1.5, False),
+        (3, "no convergence at all", 1.5, False),
+        (4, "", 1.5, True),
+        (-9, "killed by SIGKILL, as where memory runs out", math.nan, True),
+    ],
+)
+def test_how_a_point_ends(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, status: int, reason: str, cpu: float, again: bool
+) -> None:
+    """One that was killed, or found the disk full, is run again; one whose scene fails is not. Its summary stays."""
+    monkeypatch.setattr(one_run, "command", lambda made: [sys.executable, "-c", FAKE, str(made), str(status)])
+    point, told = StudyPoint((2.0, 1.0), scene()), list[bool]()
+    if status == 4:
+        with pytest.raises(WriteError, match="buried"):
+            compute([point], tmp_path, 1, lambda outcome, before: told.append(before))
+        assert not list(tmp_path.glob("*/*"))
+        return
+    for _ in range(2):
+        (found,) = compute([point], tmp_path, 1, lambda outcome, before: told.append(before))
+        assert (found.status, found.reason, found.alone) == (137 if status == -9 else status, reason, True)
+        assert found.cpu == pytest.approx(cpu, nan_ok=True)
+    assert told == [False, not again]
+    (folder,) = (entry for entry in tmp_path.iterdir() if not entry.name.startswith("."))
+    left = {"case.json", "said.txt", "scene.yaml"} | ({"summary.json"} if status >= 0 else set())
+    assert {entry.name for entry in folder.iterdir()} == left
+
+
+def test_a_scene_that_differs_is_another_run(tmp_path: Path) -> None:
+    scenes = (scene().model_copy(update={"gravity": g}) for g in (9.8, 9.81))
+    one, other = (StudyPoint((1.0,), each).task(tmp_path, True) for each in scenes)
+    assert one["name"] != other["name"]
+    twice = StudyPoint((2.0,), scene().model_copy(update={"error_bars": True, "gravity": 9.8})).task(tmp_path, True)
+    assert twice["name"] == one["name"], "a study estimates no error bars"
 
 
 COMMAND = [sys.executable, "-m", "riser_soil", "study", "small.yaml", "--levels", "3", "--jobs", "2"]
@@ -270,7 +308,7 @@ def _first_outcomes(folder: Path, process: subprocess.Popen[str]) -> list[Path]:
     """What has been computed as soon as there is something."""
     since = time.monotonic()
     while time.monotonic() - since < HANGS and process.poll() is None:
-        found = list(folder.glob("small-study/points/*/outcome.json"))
+        found = list(folder.glob("small-study/points/*/case.json"))
         if found:
             return found
         time.sleep(0.05)
@@ -298,8 +336,7 @@ def test_the_command_refuses_bad_input(
 
 def test_a_run_that_fails_tells_why(tmp_path: Path) -> None:
     given = YAML(typ="safe").load(SMALL) | {"solver": {"max_iterations": 1, "min_load_step": 1.0}}
-    point = StudyPoint((1.0,), scene_from_mapping(given), tmp_path)
-    outcome = point.ended(point.start().wait(timeout=HANGS), alone=True)
+    (outcome,) = compute([StudyPoint((1.0,), scene_from_mapping(given))], tmp_path, 1, lambda outcome, before: None)
     assert outcome.status == 3
     assert "no stable equilibrium" in outcome.reason
     assert 0.0 < outcome.cpu < HANGS

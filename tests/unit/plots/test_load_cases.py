@@ -9,7 +9,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +20,17 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from riser_soil import __version__
-from riser_soil.cases import case_files, pool, work
-from riser_soil.cases.case_folder import ATTEMPTS, CASES, Outcome, attempt, found, settle
-from riser_soil.cases.case_process import die_with
+from riser_soil.cases import case_files
 from riser_soil.cases.case_values import case_values
 from riser_soil.cases.progress import CaseProgress
-from riser_soil.cases.work import NOT_WANTED, STOPPED_BY_LIMIT, Task, run_case
+from riser_soil.cases.sweep import CASES
 from riser_soil.commands.app import app
 from riser_soil.results.read import Run
+from riser_soil.variants import dask_workers, one_run
+from riser_soil.variants.one_run import NOT_WANTED, STOPPED_BY_LIMIT, Task, known, run_variant, task
+from riser_soil.variants.run_process import die_with
+from riser_soil.variants.runs_folder import ATTEMPTS, Outcome, attempt, settle
+from riser_soil.variants.variant import Variant
 from tests.support.case_files import SMALL, case_file
 from tests.support.recorded_run import WEIGHT, record
 from tests.support.said import line_with, lines_with
@@ -36,7 +39,6 @@ SWEEP = "product: {line_types.pipe.EI: [100.0, 200.0], riser.end.position.0: [8.
 NAMES = ["EI=100-position_0=8", "EI=100-position_0=9", "EI=200-position_0=8", "EI=200-position_0=9"]
 FINISHED = "import sys, shutil; shutil.copytree(sys.argv[1], sys.argv[2], dirs_exist_ok=True)"
 Fake = Callable[[str], None]
-TRUE_OUTCOMES = pool.outcomes
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +55,7 @@ def fake(monkeypatch: pytest.MonkeyPatch, recorded: Path) -> Fake:
     """Puts a piece of Python in the place of `riser-soil run`; its arguments: a finished run, the case's folder."""
 
     def put(code: str) -> None:
-        monkeypatch.setattr(work, "command", lambda made: [sys.executable, "-c", code, str(recorded), str(made)])
+        monkeypatch.setattr(one_run, "command", lambda made: [sys.executable, "-c", code, str(recorded), str(made)])
 
     put(FINISHED)
     return put
@@ -61,23 +63,19 @@ def fake(monkeypatch: pytest.MonkeyPatch, recorded: Path) -> Fake:
 
 @pytest.fixture
 def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any]:
-    """The command in a folder with sweep.yaml; its cases are computed in this process, one by one."""
+    """The command in a folder with sweep.yaml; its cases are computed one by one."""
     monkeypatch.chdir(tmp_path)
 
-    def outcomes(
-        tasks: Sequence[Task], jobs: int, scheduler: str | None, begin: Callable[[], None]
-    ) -> Iterator[Outcome]:
-        begin()
-        return (Outcome.of(run_case(task)) for task in tasks)
+    def invoked(*options: str) -> Any:
+        jobs = () if {"--jobs", "--scheduler"} & set(options) else ("--jobs", "1")
+        return CliRunner().invoke(app, ["cases", "sweep.yaml", *jobs, *options])
 
-    monkeypatch.setattr(pool, "outcomes", outcomes)
-    return lambda *options: CliRunner().invoke(app, ["cases", "sweep.yaml", *options])
+    return invoked
 
 
-def a_task(folder: Path, **changes: Any) -> Task:
+def a_task(folder: Path, key: str = "1", **changes: Any) -> Task:
     (folder / CASES / ATTEMPTS).mkdir(parents=True, exist_ok=True)
-    task = {"name": "a", "key": "1", "scene": SMALL, "folder": str(folder), "limit": None, "version": __version__}
-    return task | changes
+    return task("a", Variant(SMALL, key), folder / CASES) | changes
 
 
 def rows(file: Path) -> list[dict[str, str]]:
@@ -86,34 +84,34 @@ def rows(file: Path) -> list[dict[str, str]]:
 
 
 def test_results_take_their_place_when_the_run_has_ended(tmp_path: Path, fake: Fake) -> None:
-    outcome = Outcome.of(run_case(a_task(tmp_path)))
+    outcome = Outcome.of(run_variant(a_task(tmp_path)))
     assert outcome.done
     assert outcome.seconds > 0.0
-    assert (tmp_path / "cases/a/scene.yaml").read_text() == SMALL
-    assert found(tmp_path, "a", "1") == outcome
+    assert (tmp_path / "cases/a/scene.yaml").read_text().endswith(f"\n{SMALL}")
+    assert known(a_task(tmp_path)) == outcome
     assert not list((tmp_path / CASES / ATTEMPTS).iterdir())
 
 
 def test_what_is_done_is_not_done_again(tmp_path: Path, fake: Fake) -> None:
-    first = run_case(a_task(tmp_path))
+    first = run_variant(a_task(tmp_path))
     fake("import sys; sys.exit(1)")
-    assert run_case(a_task(tmp_path)) == first
-    assert run_case(a_task(tmp_path, key="2"))["status"] == 1
-    assert found(tmp_path, "a", "1") is None
+    assert run_variant(a_task(tmp_path)) == first
+    assert run_variant(a_task(tmp_path, key="2"))["status"] == 1
+    assert known(a_task(tmp_path)) is None
 
 
 def test_the_first_of_two_attempts_that_finish_stays(tmp_path: Path, fake: Fake, recorded: Path) -> None:
     """As where a worker that was given up is alive all the same; one that failed gives way."""
-    task = a_task(tmp_path)
-    run_case(task)
-    late, failed = attempt(tmp_path, "a", SMALL), attempt(tmp_path, "a", SMALL)
+    runs = tmp_path / CASES
+    run_variant(a_task(tmp_path))
+    late, failed = attempt(runs, "a", SMALL), attempt(runs, "a", SMALL)
     (late / "late").touch()
-    assert settle(late, tmp_path, Outcome("a", "1", 0, machine="late")).machine != "late"
-    assert settle(failed, tmp_path, Outcome("a", "1", 3)).done
+    assert settle(late, runs, Outcome("a", "1", 0, machine="late")).machine != "late"
+    assert settle(failed, runs, Outcome("a", "1", 3)).done
     assert not (tmp_path / "cases/a/late").exists()
-    assert settle(attempt(tmp_path, "a", SMALL), tmp_path, Outcome("a", "2", 3)).status == 3
+    assert settle(attempt(runs, "a", SMALL), runs, Outcome("a", "2", 3)).status == 3
     fake(FINISHED)
-    assert run_case(task)["status"] == 0
+    assert run_variant(a_task(tmp_path))["status"] == 0
     assert [entry.name for entry in (tmp_path / CASES).iterdir() if entry.name != ATTEMPTS] == ["a"]
     assert not list((tmp_path / CASES / ATTEMPTS).iterdir())
 
@@ -130,36 +128,36 @@ def test_the_first_of_two_attempts_that_finish_stays(tmp_path: Path, fake: Fake,
 )
 def test_a_run_that_fails_tells_why(tmp_path: Path, fake: Fake, code: str, status: int, reason: str) -> None:
     fake(code)
-    outcome = Outcome.of(run_case(a_task(tmp_path)))
+    outcome = Outcome.of(run_variant(a_task(tmp_path)))
     assert (outcome.status, outcome.reason) == (status, reason)
     assert json.loads((tmp_path / "cases/a/case.json").read_text())["reason"] == reason
 
 
 def test_a_run_that_takes_too_long_is_stopped(tmp_path: Path, fake: Fake) -> None:
     fake("import time; time.sleep(600)")
-    outcome = Outcome.of(run_case(a_task(tmp_path, limit=0.2)))
+    outcome = Outcome.of(run_variant(a_task(tmp_path, limit=0.2)))
     assert outcome.status == STOPPED_BY_LIMIT
     line_with([outcome.reason], "took longer", "limit of 0.2 s")
 
 
 def test_a_run_that_nobody_waits_for_is_stopped_and_leaves_nothing(tmp_path: Path, fake: Fake) -> None:
     fake("import time; time.sleep(600)")
-    assert run_case(a_task(tmp_path), wanted=lambda: False)["status"] == NOT_WANTED
+    assert run_variant(a_task(tmp_path), wanted=lambda: False)["status"] == NOT_WANTED
     assert not (tmp_path / "cases/a").exists()
 
 
 def test_workers_tell_what_they_lack(tmp_path: Path) -> None:
-    other = run_case(a_task(tmp_path, version="0.0.1"))
+    other = run_variant(a_task(tmp_path, version="0.0.1"))
     assert other["status"] == 2
     line_with([other["reason"]], "worker", f"riser_soil {__version__}", "not 0.0.1", "install the same")
-    away = run_case(a_task(tmp_path) | {"folder": str(tmp_path / "elsewhere")})
+    away = run_variant(a_task(tmp_path) | {"runs": str(tmp_path / "elsewhere")})
     assert away["status"] == 4
     line_with([away["reason"]], "No such file", "workers", "folder shared")
 
 
 def test_a_run_ends_with_its_worker(tmp_path: Path) -> None:
     """With the thread that began it; and one whose worker had ended before it could ask for that, by itself."""
-    module = "from riser_soil.cases.case_process import die_with\n"
+    module = "from riser_soil.variants.run_process import die_with\n"
     begun: list[int] = []
 
     def worker() -> None:
@@ -352,8 +350,7 @@ def test_a_scheduler_that_does_not_answer_leaves_all_as_it_was(
     assert invoke("-o", "done").exit_code == 0
     case_file(tmp_path, SWEEP.replace("100.0", "300.0"))
     before = sorted(tmp_path.rglob("*"))
-    monkeypatch.setattr(pool, "CONNECTING", "0.1s")
-    monkeypatch.setattr(pool, "outcomes", TRUE_OUTCOMES)
+    monkeypatch.setattr(dask_workers, "CONNECTING", "0.1s")
     for folder in ("done", "new"):
         nobody = invoke("-o", folder, "--scheduler", "tcp://127.0.0.1:9")
         assert nobody.exit_code == 2
@@ -370,8 +367,8 @@ def test_progress_is_a_table_on_a_terminal_and_lines_elsewhere(
     console = Console(force_terminal=terminal, stderr=True, width=80, height=20)
     todo = {"storm3", "storm4", "storm5"}
     with CaseProgress(groups, todo, lambda: {"storm4", "storm5"}, console) as progress:
-        progress.take(Outcome("storm3", "", 0, seconds=1.5))
-        progress.take(Outcome("storm4", "", 3, "no convergence"))
+        progress.add(Outcome("storm3", "", 0, seconds=1.5))
+        progress.add(Outcome("storm4", "", 3, "no convergence"))
         Console(width=80, file=(table := io.StringIO())).print(progress.table())
     out, err = capsys.readouterr()
     assert "11 of 12:" in line_with(out + err, "storm4:", "failed", "status 3:", "no convergence")

@@ -29,6 +29,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("results",),
     ("statistics", "imported_scene"),
     ("stages", "plots"),
+    ("variants",),
     ("whole_run", "material", "calibration", "modes", "hang_off", "moordyn", "orcaflex", "drafts", "fatigue"),
     ("accuracy",),
     ("cases", "report"),
@@ -55,8 +56,8 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
     "scipy.stats": ("riser_soil.calibration", "riser_soil.statistics"),
     "scipy.signal": "riser_soil.statistics",
     "xarray": ("riser_soil.results", "riser_soil.cases", "riser_soil.modes"),
-    "distributed": "riser_soil.cases",
-    "dask": "riser_soil.cases",
+    "distributed": "riser_soil.variants",
+    "dask": "riser_soil.variants",
     "raschii": "riser_soil.sea",
 }
 

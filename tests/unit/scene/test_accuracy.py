@@ -14,9 +14,7 @@ from benchmarks.asked_accuracy.asked import asking as without_settings
 from benchmarks.error_bars import references
 from benchmarks.error_bars.scenes import SCENES
 from riser_soil.accuracy import target_run
-from riser_soil.accuracy.key_results import key_results
 from riser_soil.accuracy.search import first_setting, trial
-from riser_soil.accuracy.settings import SETTINGS
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.commands.app import app
 from riser_soil.errors import AccuracyError, Interruption, SceneError, SolveError
@@ -24,6 +22,8 @@ from riser_soil.scene.dump import schema_text
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage
+from riser_soil.variants.key_results import key_results
+from riser_soil.variants.settings import SETTINGS
 from riser_soil.whole_run import run
 from tests.support.on_ranks import mpirun
 from tests.support.said import line_with, telling

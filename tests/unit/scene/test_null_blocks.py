@@ -52,7 +52,7 @@ def test_a_case_takes_the_code_check_off(tmp_path: Path) -> None:
     (tmp_path / "cases.yaml").write_text(text, encoding="utf-8")
     scenes = []
     for case in read_cases(tmp_path / "cases.yaml", ())[1]:
-        (tmp_path / f"{case.name}.yaml").write_text(case.scene, encoding="utf-8")
+        (tmp_path / f"{case.name}.yaml").write_text(case.variant.text, encoding="utf-8")
         scenes.append(read_scene(tmp_path / f"{case.name}.yaml"))
     assert [len(scene.code_check) for scene in scenes] == [1, 0]
     assert [scene.solver.load_steps for scene in scenes] == [7, 7]

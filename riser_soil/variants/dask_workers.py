@@ -1,12 +1,11 @@
-"""Workers for cases, by Dask's distributed scheduler: processes of this machine, or those of a scheduler elsewhere.
+"""Runs by the workers of a Dask scheduler, on this machine or others.
 
-A worker that dies is replaced, and the case that it had is done again; one whose worker dies time after time fails.
+A worker that dies is replaced, and the run that it had is done again; one whose worker dies time after time fails.
 """
 
 from __future__ import annotations
 
 import logging
-import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
@@ -16,30 +15,27 @@ from typing import Any
 from uuid import uuid4
 
 import dask
-from distributed import Client, LocalCluster, as_completed, get_worker
+from distributed import Client, as_completed, get_worker
 from distributed.scheduler import KilledWorker
 
 from riser_soil import __version__
-from riser_soil.cases.case_folder import Outcome
-from riser_soil.cases.work import Task, run_case
 from riser_soil.errors import SceneError, SolveError
+from riser_soil.variants.one_run import Task, run_variant
+from riser_soil.variants.runs_folder import Outcome
 
 CONNECTING = "10s"
 PACKAGE = "riser_soil"
-_HERE = "127.0.0.1"  # all that listens, does so here alone, at ports that are free
 KILLED = 128 + signal.SIGKILL
-SETTINGS = {"distributed.scheduler.worker-saturation": 1.0}  # a worker gets a case when it is free for it
+SETTINGS = {"distributed.scheduler.worker-saturation": 1.0}  # a worker gets a run when it is free for it
 
 
-def outcomes(
-    tasks: Sequence[Task], jobs: int, scheduler: str | None, begin: Callable[[], None]
-) -> Iterator[Outcome]:
-    """What becomes of the cases, as they end. When the caller leaves, cases that run are stopped.
+def outcomes_by_dask(tasks: Sequence[Task], scheduler: str, begin: Callable[[], None]) -> Iterator[Outcome]:
+    """Outcomes of tasks, as they end. When the caller closes the generator, runs are stopped.
 
-    scheduler: address of a Dask scheduler, whose workers are taken; None: `jobs` worker processes on this machine.
-    begin: called when the workers are there, before they get a case.
+    scheduler: its address. begin: called when the workers are there, before they get a task.
     """
-    with dask.config.set(SETTINGS), _client(jobs, scheduler) as client:
+    with dask.config.set(SETTINGS), _quiet_logs(), _connected(scheduler) as client:
+        _refuse_strangers(client, scheduler)
         begin()
         mark = uuid4().hex
         futures = {
@@ -60,7 +56,7 @@ def outcomes(
 
 
 def on_worker(task: Task) -> dict[str, Any]:
-    """`run_case` in a worker's thread, as long as somebody waits for it."""
+    """`run_variant` in a worker's thread, as long as somebody waits for it."""
     worker = get_worker()
     key = worker.get_current_task()
 
@@ -68,7 +64,7 @@ def on_worker(task: Task) -> dict[str, Any]:
         known = worker.state.tasks.get(key)
         return known is not None and known.state == "executing"
 
-    return run_case(task, wanted)
+    return run_variant(task, wanted)
 
 
 def _outcome(future: Any, task: Task) -> Outcome:
@@ -77,25 +73,6 @@ def _outcome(future: Any, task: Task) -> Outcome:
     except KilledWorker as err:
         reason = f"its worker died {err.allowed_failures + 1} times; is memory enough?"
         return Outcome(task["name"], task["key"], KILLED, reason)
-
-
-@contextmanager
-def _client(jobs: int, scheduler: str | None) -> Iterator[Client]:
-    with _quiet_logs():
-        if scheduler is not None:
-            with _connected(scheduler) as client:
-                _refuse_strangers(client, scheduler)
-                yield client
-            return
-        with (
-            LocalCluster(
-                n_workers=jobs, threads_per_worker=1, processes=True, memory_limit=0, silence_logs=logging.CRITICAL,
-                host=_HERE, dashboard_address=f"{_HERE}:0", worker_dashboard_address=f"{_HERE}:0",
-                scheduler_kwargs={"dashboard": False},
-            ) as cluster,
-            Client(cluster) as client,
-        ):  # fmt: skip
-            yield client
 
 
 def _connected(address: str) -> Client:
@@ -126,8 +103,3 @@ def _quiet_logs() -> Iterator[None]:
         yield
     finally:
         logging.disable(logging.NOTSET)
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0))

@@ -1,6 +1,6 @@
-"""What a worker does with a case: run it in a process of its own and give the results their place.
+"""One run of a variant, in a process of its own: started, watched, stopped, and moved to its place.
 
-Tasks and outcomes are plain data, so that a worker may be on another machine.
+Tasks and outcomes are plain data, so that the run may be on another machine.
 """
 
 from __future__ import annotations
@@ -12,36 +12,58 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
 from riser_soil import __version__
-from riser_soil.cases.case_folder import SAID, Outcome, attempt, found, place, settle
 from riser_soil.core.environment import environment_alone
 from riser_soil.errors import ResultsError, WriteError
-from riser_soil.results.folder import SCENE
+from riser_soil.results.folder import SCENE, names_in
+from riser_soil.results.ownership import sealed
+from riser_soil.variants.runs_folder import SAID, Outcome, attempt, known_outcome, settle
+from riser_soil.variants.variant import Variant
 
 Task = dict[str, Any]
-"""name, key, scene (resolved, as text), folder (of all cases, absolute), limit [s] or None, version of the program."""
+"""The arguments of `task` by name, as plain data; scene: the variant's text; version: of the program."""
 
 POLL, GRACE = 0.05, 20.0  # s between two looks at a run; s that one has to end in order
 NOT_WANTED = 128 + signal.SIGTERM
 STOPPED_BY_LIMIT = 124  # as of timeout(1)
 
 
-def run_case(task: Task, wanted: Callable[[], bool] = lambda: True) -> dict[str, Any]:
-    """Compute a case, unless its results are there; the outcome as plain data. wanted: asked while the case runs."""
+def task(
+    name: str, variant: Variant, runs: Path, *, limit: float | None = None, keep: Collection[str] | None = None,
+    final: Collection[int] = (), alone: bool = True,
+) -> Task:  # fmt: skip
+    """A run to be computed. runs: the folder of all runs, absolute. limit: s that it may take, None for any time.
+
+    keep: the result files that stay, all by default. final: exit statuses of failures that would come again: such a
+    run is not computed again. alone: whether no other run is beside it.
+    """
+    return {
+        "name": name, "key": variant.key, "scene": sealed(variant.text), "runs": str(runs), "limit": limit,
+        "keep": None if keep is None else [*keep], "final": [*final], "alone": alone, "version": __version__,
+    }  # fmt: skip
+
+
+def known(task: Task) -> Outcome | None:
+    """Outcome of an earlier run of the task; None where it has to be computed."""
+    return known_outcome(Path(task["runs"]), task["name"], task["key"], task["final"])
+
+
+def run_variant(task: Task, wanted: Callable[[], bool] = lambda: True) -> dict[str, Any]:
+    """Compute a task, unless its outcome is known; the outcome as plain data. wanted: asked while it runs."""
     if task["version"] != __version__:
         return _refused(task, f"the worker has riser_soil {__version__}, not {task['version']}; install the same")
-    known = found(Path(task["folder"]), task["name"], task["key"])
-    if known is not None:
-        return known.as_dict()
+    before = known(task)
+    if before is not None:
+        return before.as_dict()
     try:
         return _computed(task, wanted).as_dict()
     except OSError as err:
         remedy = "; workers need the folder shared" if isinstance(err, FileNotFoundError) else ""
-        return _refused(task, f"{err.filename or task['folder']}: {err.strerror}{remedy}", WriteError.exit_status)
+        return _refused(task, f"{err.filename or task['runs']}: {err.strerror}{remedy}", WriteError.exit_status)
 
 
 def _refused(task: Task, reason: str, status: int = ResultsError.exit_status) -> dict[str, Any]:
@@ -50,21 +72,26 @@ def _refused(task: Task, reason: str, status: int = ResultsError.exit_status) ->
 
 
 def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
-    folder, since = Path(task["folder"]), time.monotonic()
-    made = attempt(folder, task["name"], task["scene"])
+    runs, since = Path(task["runs"]), time.monotonic()
+    made = attempt(runs, task["name"], task["scene"])
     process = _started(made)
     stopped = _watched(process, since + task["limit"] if task["limit"] else float("inf"), wanted)
     status, reason = stopped or _exit_status(process.returncode), ""
     if stopped == STOPPED_BY_LIMIT:
         reason = f"took longer than the limit of {task['limit']:g} s"
     elif status:
-        reason = _last_words(process.returncode, made / SAID).replace(str(made), str(place(folder, task["name"])))
+        reason = _last_words(process.returncode, made / SAID).replace(str(made), str(runs / task["name"]))
     seconds = time.monotonic() - since
-    outcome = Outcome(task["name"], task["key"], status, reason, seconds, socket.gethostname())
+    outcome = Outcome(task["name"], task["key"], status, reason, seconds, socket.gethostname(), task["alone"])
     if status == WriteError.exit_status:  # what it has written would fill the disk
         shutil.rmtree(made, ignore_errors=True)
         return outcome
-    return outcome if stopped == NOT_WANTED else settle(made, folder, outcome)
+    if stopped == NOT_WANTED:
+        return outcome
+    if task["keep"] is not None:
+        for name in set(names_in(made)) - set(task["keep"]):
+            (made / name).unlink(missing_ok=True)
+    return settle(made, runs, outcome)
 
 
 def _exit_status(returned: int) -> int:
@@ -73,13 +100,13 @@ def _exit_status(returned: int) -> int:
 
 
 def command(made: Path) -> list[str]:
-    """What runs the scene in a folder and leaves its results there."""
-    module = "riser_soil.cases.case_process"
+    """Arguments of the process that runs the scene in a folder and leaves its results there."""
+    module = "riser_soil.variants.run_process"
     return [sys.executable, "-m", module, str(os.getpid()), str(made / SCENE), str(made)]
 
 
 def _started(made: Path) -> subprocess.Popen[bytes]:
-    """In a session of its own: Ctrl-C in the terminal ends the worker, and that the run."""
+    """In a session of its own: Ctrl-C in the terminal ends the command, and that the run."""
     with (made / SAID).open("wb") as said:
         return subprocess.Popen(
             command(made), env=environment_alone() | {"OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL, stdout=said,
@@ -111,6 +138,7 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
 
 
 def _last_words(status: int, said: Path) -> str:
+    """Why a run failed: the signal that killed it, or the last line that it printed."""
     if status < 0:
         name = signal.Signals(-status).name
         return f"killed by {name}{', as where memory runs out' if status == -signal.SIGKILL else ''}"

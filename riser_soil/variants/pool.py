@@ -1,0 +1,61 @@
+"""Pool of runs: processes of this machine, several at a time, or those of a Dask scheduler's workers."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import closing
+from dataclasses import dataclass
+
+from riser_soil.errors import WriteError
+from riser_soil.variants.one_run import Task, run_variant
+from riser_soil.variants.runs_folder import Outcome
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Who computes: `jobs` runs at a time on this machine, or the workers of a Dask scheduler at an address."""
+
+    jobs: int = 1
+    scheduler: str | None = None
+
+
+def compute(
+    tasks: Sequence[Task], workers: Workers, on_end: Callable[[Outcome], None], begin: Callable[[], None] = lambda: None
+) -> None:
+    """Compute tasks and call `on_end` as each ends. No run of this machine outlives the call, however that ends.
+
+    begin: called when the workers are there, before they get a task. Raises WriteError where the disk is full, as the
+    next runs would fail for it, too.
+    """
+    with closing(outcomes(tasks, workers, begin)) as found:
+        for outcome in found:
+            if outcome.status == WriteError.exit_status:
+                raise WriteError(f"{outcome.name}: {outcome.reason}")
+            on_end(outcome)
+
+
+def outcomes(tasks: Sequence[Task], workers: Workers, begin: Callable[[], None]) -> Generator[Outcome]:
+    """Outcomes of tasks, as they end. Runs are stopped when the caller closes the generator."""
+    if workers.scheduler is not None:
+        from riser_soil.variants.dask_workers import outcomes_by_dask
+
+        yield from outcomes_by_dask(tasks, workers.scheduler, begin)
+        return
+    begin()
+    stopped = threading.Event()
+    with ThreadPoolExecutor(workers.jobs) as pool:
+        futures = [pool.submit(run_variant, task, lambda: not stopped.is_set()) for task in tasks]
+        try:
+            for future in as_completed(futures):
+                yield Outcome.of(future.result())
+        finally:
+            stopped.set()
+            pool.shutdown(cancel_futures=True)
+
+
+def cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0))
