@@ -84,7 +84,7 @@ difference, in motion {in_motion:g}. Other bars are {by_slice:g} times that diff
 4. **Factor of safety.** {factors}; on soil
    {on_soil_factors}, and for a few slices of soil whose law depends on its path {on_path:g}.
 5. **Sum.** Different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
-   ([key_results.py](../riser_soil/accuracy/key_results.py)), on soil {smallest_on_soil:g}.
+   ([key_results.py](../riser_soil/variants/key_results.py)), on soil {smallest_on_soil:g}.
 
 The code: [error_bars.py](../riser_soil/accuracy/error_bars.py), [chain.py](../riser_soil/accuracy/chain.py).
 
