@@ -16,7 +16,6 @@ from riser_soil.core.system import Timer
 from riser_soil.results.instants import InstantReader
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, run_stage
 
@@ -41,9 +40,6 @@ class StepHistory(StatelessObserver):
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         self._instants = InstantReader(self.assembly)
-
-    def relaxed(self, relaxed: RelaxationResult) -> None:
-        pass
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver
@@ -15,9 +14,6 @@ class IterationCounter(StatelessObserver):
     """Newton iterations of all steps of a stage."""
 
     iterations: int = 0
-
-    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        pass
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.iterations += step.solution.iterations

@@ -19,14 +19,11 @@ from riser_soil.assembly.hang_off import HungEnd, by_cable, first_value, hung_en
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
-from riser_soil.core.system import Timer
 from riser_soil.errors import SceneError, SolveError
-from riser_soil.interruption import agreeing
 from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from riser_soil.stages import StatelessObserver, lay, run_stage
+from riser_soil.stages import StatelessObserver, solve_stages
 
 ANGLE, TENSION = 0.002, 2e-5  # deg; of the tension asked for: a fifth of what is promised
 MOST = 12  # static solves by end
@@ -171,11 +168,9 @@ def _reached(ends: Sequence[HungEnd], scene: Scene, comm: Communicator) -> Array
     """The lines' own angles [deg] or tensions [N] (ends,) at the end of the first stage, the vessel at no offset;
     collective.
     """
-    assembly, clock = build(sized(scene.model_copy(update={"vessel": None})), comm), Timer.new()
+    assembly = build(sized(scene.model_copy(update={"vessel": None})), comm)
     last = _LastStep(assembly, ends)
-    with agreeing(comm):
-        before, _ = lay(assembly, clock)
-        run_stage(assembly, assembly.scene.stages[0], before, last, clock)
+    solve_stages(assembly, last, assembly.scene.stages[:1])
     return np.array(comm.bcast(last.seen))
 
 
@@ -184,9 +179,6 @@ class _LastStep(StatelessObserver):
 
     def __init__(self, assembly: Assembly, ends: Sequence[HungEnd]) -> None:
         self._assembly, self._ends, self.seen = assembly, ends, list[float]()
-
-    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        pass
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         if last and self._assembly.comm.rank == 0:
@@ -197,9 +189,6 @@ class _LastStep(StatelessObserver):
         if hung.asked.angle is None:
             return float(riser.effective_tension[-1 if at_end else 0])
         return from_vertical(riser.end_tangent if at_end else -riser.start_tangent)
-
-    def relaxed(self, relaxed: object) -> None:
-        pass
 
 
 def from_vertical(upwards: Array) -> float:

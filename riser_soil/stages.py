@@ -6,7 +6,7 @@ A riser on soil first comes to rest on a cushion, without the soil.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Protocol
@@ -24,7 +24,7 @@ from riser_soil.core.roles import Adaptive, owners, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, within
 from riser_soil.core.system import System, Timer, total
 from riser_soil.errors import SolveError
-from riser_soil.interruption import asked_to_end, end_together, uninterrupted
+from riser_soil.interruption import agreeing, asked_to_end, end_together, uninterrupted
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
 from riser_soil.solve.adaptive_steps import AutoSteps, from_last_to_first
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
@@ -62,7 +62,16 @@ class StageObserver(Stateful, Protocol):
 
 
 class StatelessObserver:
-    """An observer without state to resume from."""
+    """An observer that has no state to resume from, and does nothing with what it doesn't define a method for."""
+
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        pass
+
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
+        pass
+
+    def relaxed(self, relaxed: RelaxationResult) -> None:
+        pass
 
     def state(self) -> Saved:
         return {}
@@ -77,9 +86,6 @@ class LayingCounter(StatelessObserver):
 
     steps: int = 0
     relaxations: int = 0
-
-    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        pass
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.steps += 1
@@ -122,6 +128,19 @@ def _release_bodies(assembly: Assembly, counter: LayingCounter, clock: Timer) ->
         residual = total(supported.forces(State.at_rest(1.0, supported.numbering.size)))
     reactions = {name: residual[body.part] for name, body in assembly.hung.bodies.items()}
     _solve_stage(assembly, assembly.begin_letting_go(stage, reactions), stage, None, counter, clock)
+
+
+def solve_stages(assembly: Assembly, observer: StageObserver, stages: Sequence[Stage] | None = None) -> State:
+    """Solve a scene's first stages, by default all, without a results folder; the state at their end; collective.
+
+    Raises the errors of a run.
+    """
+    clock = Timer.new()
+    with agreeing(assembly.comm):
+        state, _ = lay(assembly, clock)
+        for stage in assembly.scene.stages if stages is None else stages:
+            state = run_stage(assembly, stage, state, observer, clock)
+    return state
 
 
 def run_stage(

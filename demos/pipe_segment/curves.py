@@ -15,6 +15,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from riser_soil.variants.variant import BaseScene
 
 HERE = Path(__file__).parent
 SCENE = HERE / "scene.yaml"
@@ -54,7 +55,7 @@ def resistance(path: PenetrationPath, *overrides: str) -> Array:
     with TemporaryDirectory() as place:
         table = Path(place) / TABLE
         write_table(path, 0.0, table)
-        return PipeSegment(str(SCENE), overrides).resistance({}, path, table) / (SU * D)
+        return PipeSegment(BaseScene.read(SCENE, overrides)).resistance({}, path, table) / (SU * D)
 
 
 def of_law(law: NormalLaw, w: Array) -> Array:

@@ -23,9 +23,7 @@ from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
 from riser_soil.core.snapshot import Instants, SoilSnapshot, instants_at
-from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
-from riser_soil.interruption import agreeing
 from riser_soil.results.hung_figures import hung_reader, looked_at
 from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
@@ -34,9 +32,9 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from riser_soil.stages import StatelessObserver, lay, run_stage
+from riser_soil.stages import StatelessObserver, solve_stages
 from riser_soil.variants.key_results import SETTLEMENT, KeyResult, key_results
-from riser_soil.variants.settings import is_firm, settings_of, varied
+from riser_soil.variants.settings import is_firm, refined, settings_of
 
 Envelopes = dict[str, CurveEnvelope]  # of moments and tensions, by line
 
@@ -164,11 +162,9 @@ def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> NextScene 
     """None where the scene has nothing to vary."""
     if not factors:
         return None
-    settings = {setting.name: setting for setting in settings_of(scene)}
-    first, other = settings[next(iter(factors))], scene
+    first = next(setting for setting in settings_of(scene) if setting.name == next(iter(factors)))
     try:
-        for name, factor in factors.items():
-            other = varied(other, settings[name], factor)
+        other = refined(scene, factors)
     except SceneError as err:
         return NextScene(source, factors[first.name], None, str(err))
     reached = first.fineness(other) / first.fineness(scene)
@@ -200,12 +196,9 @@ def peaks_of(scene: Scene, comm: Any, envelopes: Envelopes | None = None) -> Run
 
     envelopes: to be filled, line by line, where they are wanted; on rank 0.
     """
-    assembly, clock = build(sized(scene), comm), Timer.new()
+    assembly = build(sized(scene), comm)
     observer = PeakObserver(assembly, envelopes)
-    with agreeing(comm):
-        before, _ = lay(assembly, clock)
-        for stage in assembly.scene.stages:
-            before = run_stage(assembly, stage, before, observer, clock)
+    solve_stages(assembly, observer)
     return observer.peaks
 
 
@@ -239,9 +232,6 @@ class PeakObserver(StatelessObserver):
             if self._envelopes is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
                 for line, instant in seen.items():
                     self._envelopes[line].follow(instants_at(instant, 0))
-
-    def relaxed(self, relaxed: object) -> None:
-        pass
 
     def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Instants:
         seen = {line: reader.instant_of([reader.look(stepper)]) for line, reader in self._instants.items()}

@@ -12,6 +12,7 @@ the run's. The slice has the run's laws and contact, and is in plane strain.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -22,15 +23,13 @@ from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.soil_sizes import ACROSS, BESIDE, ROUND, STRIP, touching_width
 from riser_soil.core.arrays import Array
-from riser_soil.core.system import Timer
 from riser_soil.scene.lines import on_soil
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import Block, CellSizes, GeneratedMesh
-from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from riser_soil.stages import StatelessObserver, lay, run_stage
+from riser_soil.stages import StatelessObserver, solve_stages
 from riser_soil.variants.settings import resolved
 
 PEAK = 1.5  # load under a touchdown point over the weight, for which fine cells are chosen
@@ -158,9 +157,6 @@ class _Pressing(StatelessObserver):
         self._assembly, self._settlement, self._load = assembly, settlement, load
         self.settled, self.borne = [0.0], [0.0]
 
-    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        pass
-
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         soil = self._assembly.recovered_soil()
         assert soil is not None
@@ -169,22 +165,15 @@ class _Pressing(StatelessObserver):
         if self.settled[-1] >= self._settlement or self.borne[-1] >= self._load:
             raise _ReachedError
 
-    def relaxed(self, relaxed: object) -> None:
-        pass
-
 
 def _pressed(scene: Scene, settlement: float = np.inf, load: float = np.inf) -> tuple[Array, Array]:
     """Settlements [m] and loads [N] on the way to one of them."""
     from mpi4py import MPI
 
-    assembly, clock = build(scene, MPI.COMM_SELF), Timer.new()
+    assembly = build(scene, MPI.COMM_SELF)
     pressing = _Pressing(assembly, settlement, load)
-    before, _ = lay(assembly, clock)
-    try:
-        for stage in assembly.scene.stages:
-            before = run_stage(assembly, stage, before, pressing, clock)
-    except _ReachedError:
-        pass
+    with suppress(_ReachedError):
+        solve_stages(assembly, pressing)
     return np.array(pressing.settled), np.array(pressing.borne)
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from riser_soil.accuracy.study_points import Factors
 from riser_soil.scene.scene import Scene
-from riser_soil.variants.settings import Setting, settings_in_words, varied
+from riser_soil.variants.settings import Setting, refined, settings_in_words, varied
 
 RATIOS = {"elements": 2.0, "time_step": 2.0, "soil_mesh": 2.0 ** (1.0 / 3.0), "penalty": 10.0**0.5}
 """From level to level: the soil's cells grow in number by the cube, so that each level about doubles a run's cost; the
@@ -53,11 +53,9 @@ class Refinements:
         return tuple(factor if n == number else 1.0 for n in range(len(self.settings)))
 
     def scene_at(self, point: Factors) -> Scene:
-        """SceneError where a setting can't be turned so far."""
-        scene = self.scene
-        for setting, factor in zip(self.settings, point, strict=True):
-            scene = varied(scene, setting, factor)
-        return scene
+        """The scene of a point. SceneError where a setting can't be so fine."""
+        names = (setting.name for setting in self.settings)
+        return refined(self.scene, dict(zip(names, point, strict=True)))
 
     def in_words(self, point: Factors) -> str:
         """The settings in words."""

@@ -19,7 +19,7 @@ from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.variants.key_results import key_results
-from riser_soil.variants.settings import SETTINGS, resolved, varied
+from riser_soil.variants.settings import refined, resolved
 
 SHAPES = 3  # static runs at most that grade the mesh
 SETTLED = 1.5  # elements at most so many times as long as curvature asks for
@@ -79,14 +79,6 @@ def _known(values: RunValues | None) -> RunValues:
     return values
 
 
-def finer(scene: Scene, factors: dict[str, float]) -> Scene:
-    """The scene with settings finer by factors, where it has them."""
-    for setting in SETTINGS:
-        if setting.name in factors and setting.there(scene):
-            scene = varied(scene, setting, factors[setting.name])
-    return scene
-
-
 def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
     """By the static stages that the scene begins with; as it is where there is none."""
     segments, statics = _segments(scene), first_statics(scene)
@@ -110,7 +102,7 @@ def _computed(scene: Scene, comm: Any) -> tuple[Scene, Envelopes, RunPeaks]:
         try:
             return scene, seen, peaks_of(scene, comm, seen)
         except SolveError:
-            scene = finer(scene, dict.fromkeys(HELPING, EACH))
+            scene = refined(scene, dict.fromkeys(HELPING, EACH))
     seen = {}
     return scene, seen, peaks_of(scene, comm, seen)
 

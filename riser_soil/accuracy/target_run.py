@@ -14,7 +14,7 @@ from typing import Any
 from riser_soil.accuracy.barred_run import LEFT, print_bars, values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, times_as_long, too_dear
-from riser_soil.accuracy.search import TriedSetting, finer, first_setting, measured, trial
+from riser_soil.accuracy.search import TriedSetting, first_setting, measured, trial
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
 from riser_soil.core import compiled
@@ -23,7 +23,7 @@ from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
-from riser_soil.variants.settings import settings_in_words, settings_of
+from riser_soil.variants.settings import refined, settings_in_words, settings_of
 from riser_soil.whole_run import run
 
 RUNS = 4  # at most that are to reach the accuracy
@@ -109,7 +109,7 @@ def _finer_run(
 ) -> TriedSetting:
     """The scene of the last, so many times as fine by source."""
     names = {source: name for name, source in SOURCES.items()}
-    scene = finer(last.scene, {names[source]: factor for source, factor in factors.items()})
+    scene = refined(last.scene, {names[source]: factor for source, factor in factors.items()})
     peaks, since = RunPeaks(), compiled.seconds_of_work()
     run(scene, folder, force, peaks)
     taken = compiled.seconds_of_work() - since

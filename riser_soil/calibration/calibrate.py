@@ -8,15 +8,16 @@ from pathlib import Path
 
 from riser_soil.calibration.least_squares import Fit, FitParameter, fit
 from riser_soil.calibration.path import MeasuredResistance, path_through, read_resistance
-from riser_soil.calibration.report import printed, refuse_folder, write_folder
+from riser_soil.calibration.report import FILES, printed, write_folder
 from riser_soil.calibration.segment import TABLE, PipeSegment, diameter, first_penetration, write_table
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import world
 from riser_soil.errors import SceneError
 from riser_soil.interruption import handling_signals
+from riser_soil.results.whole_file import refuse_folder
 from riser_soil.scene.problem import NOTHING, shown, value_at
-from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
+from riser_soil.variants.variant import BaseScene
 
 LARGEST_STEP = 0.01  # over the diameter
 
@@ -43,15 +44,16 @@ def calibrate(
         raise SceneError("calibrate runs on one process: start it without mpirun")
     if not 0.0 < step <= 0.5:
         raise SceneError(f"--step {step:g}: must lie between 0 and 0.5 diameters; 0.01 is usual")
-    refuse_folder(folder, force)
-    measured, at_first = read_resistance(Path(data)), read_scene(scene, overrides)
+    refuse_folder(folder, FILES, "a calibration", force)
+    measured, base = read_resistance(Path(data)), BaseScene.read(scene, overrides)
+    at_first = base.with_values({}, "")
     parameters = tuple(parameter(at_first, each) for each in wanted)
     refuse_twice([p.name for p in parameters])
     refuse_too_many(parameters, measured, data)
     start = first_penetration(at_first)
     refuse_too_deep(measured, diameter(at_first), data)
     path = path_through(measured.w, start, step * diameter(at_first))
-    segment = PipeSegment(str(scene), overrides)
+    segment = PipeSegment(base)
     with handling_signals(), tempfile.TemporaryDirectory() as place:
         table = Path(place) / TABLE
         write_table(path, start, table)

@@ -12,24 +12,13 @@ from riser_soil.calibration.least_squares import CONFIDENCE, Fit
 from riser_soil.calibration.path import MeasuredResistance, PenetrationPath
 from riser_soil.calibration.segment import TABLE, PipeSegment
 from riser_soil.core.arrays import Array
-from riser_soil.errors import SceneError
 from riser_soil.plots.soil_curves import draw_resistance
-from riser_soil.results.whole_file import refuse_file, written_together
+from riser_soil.results.whole_file import written_together
 from riser_soil.scene.dump import dump_scene
 
 SCENE, CURVE, NUMBERS, PICTURE = "calibrated.yaml", "fit.csv", "calibration.json", "fit.png"
 COLUMNS = "w [m], V [N/m], fitted V [N/m]"
 FILES = (SCENE, TABLE, CURVE, NUMBERS, PICTURE)
-
-
-def refuse_folder(folder: Path, force: bool) -> None:
-    """Only an empty folder, or by force one with a calibration, takes another."""
-    refuse_file(folder)
-    there = sorted(entry.name for entry in folder.iterdir()) if folder.is_dir() else []
-    if [name for name in there if name not in FILES]:
-        raise SceneError(f"{folder}: holds more than a calibration, {there[0]}; choose another with -o FOLDER")
-    if there and not force:
-        raise SceneError(f"{folder}: holds a calibration; overwrite it with --force, or choose another with -o FOLDER")
 
 
 def printed(runs: int, misfit: float, parameters: Mapping[str, float]) -> None:

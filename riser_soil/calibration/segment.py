@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,16 +12,13 @@ from riser_soil.assembly import Assembly, build
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.calibration.path import PenetrationPath
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import State
-from riser_soil.core.system import Timer
 from riser_soil.errors import SceneError, SolveError
-from riser_soil.scene.reader import read_scene
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from riser_soil.stages import StatelessObserver, run_stage
+from riser_soil.stages import StatelessObserver, solve_stages
+from riser_soil.variants.variant import BaseScene
 
 TABLE = "path.csv"
 STEP = 1.0  # of the count that the table goes by
@@ -30,18 +26,16 @@ STEP = 1.0  # of the count that the table goes by
 
 @dataclass(frozen=True)
 class PipeSegment:
-    """A scene file and overrides for it; its stages are replaced by the path."""
+    """A scene, of which the stages are replaced by a path of penetration."""
 
-    file: str
-    overrides: Sequence[str]
+    base: BaseScene
 
     def scene(self, parameters: Mapping[str, float], table: Path | str, steps: int) -> Scene:
         """The scene that follows a table of so many steps, with numbers by their paths in it."""
         motion = {"table": str(table)}
         stage = {"name": "penetration", "kind": "quasi-static", "duration": STEP * steps, "time_step": STEP}
-        given = [f"stages={json.dumps([stage | {'motion': {'start': motion, 'end': motion}}])}"]
-        given += [f"{path}={float(value)!r}" for path, value in parameters.items()]
-        return read_scene(self.file, [*self.overrides, *given])
+        stages = {"stages": [stage | {"motion": {"start": motion, "end": motion}}]}
+        return self.base.with_values({**stages, **parameters}, "--fit", again=True)
 
     def resistance(self, parameters: Mapping[str, float], path: PenetrationPath, table: Path) -> Array:
         """Vertical resistance (m,) at the steps of a path [N/m], > 0 where the soil pushes the pipe up."""
@@ -49,7 +43,7 @@ class PipeSegment:
         assembly = build(scene, communicator_of(scene))
         log = ContactForceLog(assembly)
         try:
-            run_stage(assembly, scene.stages[0], State.at_rest(0.0, assembly.size), log, Timer.new())
+            solve_stages(assembly, log)
         except SolveError as err:
             given = ", ".join(f"{name} = {value:.6g}" for name, value in parameters.items())
             raise SolveError(f"with {given}: {err}") from err
@@ -66,15 +60,12 @@ class ContactForceLog(StatelessObserver):
     forces: list[float] = field(default_factory=list)
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        self._take(stepper)
+        self._log(stepper)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
-        self._take(stepper)
+        self._log(stepper)
 
-    def relaxed(self, relaxed: RelaxationResult) -> None:
-        pass
-
-    def _take(self, stepper: TimeStepper) -> None:
+    def _log(self, stepper: TimeStepper) -> None:
         self.times.append(stepper.now.t)
         self.forces.append(self.assembly.ground_force(stepper.now))
 

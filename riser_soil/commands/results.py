@@ -186,11 +186,12 @@ def fatigue(
             return
         from riser_soil.fatigue.assessment import assess
         from riser_soil.fatigue.fatigue_file import read_fatigue_file
-        from riser_soil.fatigue.report import refuse_folder, result_lines, write_folder
+        from riser_soil.fatigue.report import FILES, result_lines, write_folder
+        from riser_soil.results.whole_file import refuse_folder
 
         folder = output or Path(f"{file.stem}-damage")
         given = read_fatigue_file(file)
-        refuse_folder(folder, force)
+        refuse_folder(folder, FILES, "an assessment", force)
         found = assess(file, given)
         write_folder(folder, found, plot)
         typer.echo("\n".join([*result_lines(found), f"tables are in {folder}"]))

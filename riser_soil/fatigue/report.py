@@ -12,23 +12,12 @@ from typing import Any
 import numpy as np
 
 from riser_soil import __version__
-from riser_soil.errors import SceneError
 from riser_soil.fatigue.assessment import YearlyDamage
 from riser_soil.results.summary import plain_json
-from riser_soil.results.whole_file import refuse_file, written_together
+from riser_soil.results.whole_file import written_together
 
 FILES = TABLE, NUMBERS, PICTURE = "fatigue.csv", "fatigue.json", "fatigue.png"
 COLUMNS = ("arc_m", "angle_deg", "diameter_m", "thickness_m", "damage_per_year", "life_years")
-
-
-def refuse_folder(folder: Path, force: bool) -> None:
-    """Only an empty folder, or by force one with an assessment, takes another."""
-    refuse_file(folder)
-    there = sorted(entry.name for entry in folder.iterdir()) if folder.is_dir() else []
-    if [name for name in there if name not in FILES]:
-        raise SceneError(f"{folder}: holds more than an assessment, {there[0]}; choose another with -o FOLDER")
-    if there and not force:
-        raise SceneError(f"{folder}: holds an assessment; overwrite it with --force, or choose another with -o FOLDER")
 
 
 def write_folder(folder: Path, found: YearlyDamage, plot: bool) -> None:

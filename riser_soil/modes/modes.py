@@ -16,7 +16,6 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Model, Part, State, Weights
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SceneError, SolveError
-from riser_soil.interruption import agreeing
 from riser_soil.modes.eigenpairs import Eigenpairs, lowest
 from riser_soil.riser.directors import Frames
 from riser_soil.riser.line import UP, Line
@@ -24,7 +23,7 @@ from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
-from riser_soil.stages import LayingCounter, lay, run_stage
+from riser_soil.stages import StatelessObserver, solve_stages
 
 if TYPE_CHECKING:
     from riser_soil.bodies.body import MovingBody
@@ -276,17 +275,14 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
     SceneError where there is no such stage; else raises what a run would.
     """
     stages = stages_up_to(scene, stage)
-    assembly, clock = build(sized(scene), communicator_of(scene)), Timer.new()
-    with agreeing(assembly.comm):
-        before, _ = lay(assembly, clock)
-        for each in stages:
-            before = run_stage(assembly, each, before, LayingCounter(), clock)
+    assembly = build(sized(scene), communicator_of(scene))
+    solve_stages(assembly, StatelessObserver(), stages)
     of_bodies = [] if assembly.hung is None else assembly.hung.frictions.values()
     for friction in (*assembly.frictions, *of_bodies):
         friction.stick()
     if assembly.soil is not None:
         assembly.soil.mix_elastic(1.0)
-    return _linearised(assembly, stages[-1], clock)
+    return _linearised(assembly, stages[-1])
 
 
 def stages_up_to(scene: Scene, name: str | None) -> list[Stage]:
@@ -308,11 +304,11 @@ def stages_up_to(scene: Scene, name: str | None) -> list[Stage]:
     return found
 
 
-def _linearised(assembly: Assembly, stage: Stage, clock: Timer) -> RiserAtRest:
+def _linearised(assembly: Assembly, stage: Stage) -> RiserAtRest:
     model, state = assembly.begin(stage), State.at_rest(stage.end, assembly.size)
     at_rest = [part for part in model.parts if part is not assembly.cushion]
     massive = _with_mass(assembly)
-    system = System(assembly.comm, Model(model.lines, [*at_rest, *massive], model.others), clock)
+    system = System(assembly.comm, Model(model.lines, [*at_rest, *massive], model.others), Timer.new())
     try:
         stiffness = _assembled(system, state, STIFFNESS, at_rest)
         mass = _assembled(system, state, MASS, massive)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -56,6 +56,19 @@ def refuse_file(folder: Path) -> None:
     """Raises SceneError for a result folder that is a file."""
     if os.path.lexists(folder) and not folder.is_dir():
         raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
+
+
+def refuse_folder(folder: Path, files: Collection[str], what: str, force: bool) -> None:
+    """Raises SceneError for a folder that is not empty, unless by force one that has these files alone.
+
+    what: they are, for messages: `a calibration`.
+    """
+    refuse_file(folder)
+    there = sorted(entry.name for entry in folder.iterdir()) if folder.is_dir() else []
+    if others := [name for name in there if name not in files]:
+        raise SceneError(f"{folder}: holds more than {what}, {others[0]}; choose another with -o FOLDER")
+    if there and not force:
+        raise SceneError(f"{folder}: holds {what}; overwrite it with --force, or choose another with -o FOLDER")
 
 
 def unusable(folder: Path, err: OSError, when_full: str = "") -> RiserSoilError:

@@ -131,6 +131,7 @@ def claimed(folder: Path, runs: str, what: str) -> Iterator[Path]:
     holds, for messages: `load cases`. SceneError where it holds something else, or another call has it.
     """
     refuse_file(folder)
+    FolderLock.try_out(folder)
     there = [entry.name for entry in folder.iterdir()] if folder.is_dir() else []
     if there and runs not in there:
         raise SceneError(f"{folder}: holds something else than {what}, {min(there)}; choose another with -o FOLDER")

@@ -9,7 +9,7 @@ penalty.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -62,6 +62,16 @@ def varied(scene: Scene, setting: Setting, factor: float) -> Scene:
     if _elements(turned) > MOST_ELEMENTS:
         raise SceneError(f"{setting.words}, {factor:g} times as fine: more than {MOST_ELEMENTS} elements")
     return turned
+
+
+def refined(scene: Scene, factors: Mapping[str, float]) -> Scene:
+    """The scene with settings finer by factors, by their names; those that it lacks are left out.
+
+    SceneError where one can't be.
+    """
+    for setting in settings_of(scene):
+        scene = varied(scene, setting, factors.get(setting.name, 1.0))
+    return scene
 
 
 def settings_in_words(scene: Scene, settings: Iterable[Setting] | None = None) -> str:

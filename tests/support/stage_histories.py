@@ -16,7 +16,6 @@ from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, run_stage
 from tests.support.driven_stage import Watcher, built, take
@@ -84,9 +83,6 @@ class Energies(StatelessObserver):
         by_contact = sum(work.dissipated for work in taking)
         self._rows.append((stepper.energy.total, step.work, step.dissipated, by_contact))
         self.cuts += step.cuts
-
-    def relaxed(self, relaxed: RelaxationResult) -> None:
-        """Dynamic stages know no relaxation."""
 
     @property
     def steps(self) -> int:

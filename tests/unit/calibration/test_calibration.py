@@ -17,6 +17,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
 from riser_soil.soil.clay import UndrainedClay
+from riser_soil.variants.variant import BaseScene
 from tests.support.said import telling
 
 SCENE = Path(__file__).parents[3] / "demos/pipe_segment/scene.yaml"
@@ -101,7 +102,7 @@ def test_resistance_is_per_length_of_pipe_on_soil(tmp_path: Path) -> None:
     write_table(path, 0.0, table)
     thick, longer = "soil.block.x=[0.075, 0.225]", "riser.end.position=[0.6, 0.0, 0.15]"
     more = (thick, longer, "riser.segments.0.length=0.6")
-    V = [PipeSegment(str(SCENE), (*COARSE, *given)).resistance({}, path, table)[-1] for given in ((), more)]
+    V = [PipeSegment(BaseScene.read(SCENE, (*COARSE, *given))).resistance({}, path, table)[-1] for given in ((), more)]
     assert V[1] == pytest.approx(V[0], rel=0.01)
     assert V[0] > 500.0
 
@@ -175,7 +176,7 @@ def test_a_noisy_curve_gives_its_strength_back(tmp_path: Path, capsys: pytest.Ca
     w = np.linspace(0.0, 0.06, 60) * D
     path, table = path_through(w, 0.0, 0.01 * D), tmp_path / TABLE
     write_table(path, 0.0, table)
-    V = path.at_points(PipeSegment(str(SCENE), COARSE).resistance({"soil.law.su": 4.0e3}, path, table))
+    V = path.at_points(PipeSegment(BaseScene.read(SCENE, COARSE)).resistance({"soil.law.su": 4.0e3}, path, table))
     noisy = V * (1.0 + 0.05 * np.random.default_rng(3).normal(size=len(w)))
     data = written(tmp_path, "w [m], V [N/m]\n" + "\n".join(f"{a}, {b}" for a, b in zip(w, noisy, strict=True)))
     found = calibrate(data, SCENE, ["soil.law.su=1e3:1e4"], tmp_path / "out", overrides=COARSE, relative=True)

@@ -1,14 +1,10 @@
-"""Load cases without a solver: results take their places once, what is done is kept, failed cases are rows."""
+"""Load cases without a solver: cases that are done are kept, failed ones are rows; tables, progress, bad input."""
 
 from __future__ import annotations
 
 import csv
 import io
-import json
-import os
 import sys
-import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,7 +15,6 @@ import xarray
 from rich.console import Console
 from typer.testing import CliRunner
 
-from riser_soil import __version__
 from riser_soil.cases import case_files
 from riser_soil.cases.case_values import case_values
 from riser_soil.cases.progress import CaseProgress
@@ -27,11 +22,8 @@ from riser_soil.cases.sweep import CASES
 from riser_soil.commands.app import app
 from riser_soil.results.read import Run
 from riser_soil.variants import dask_workers, one_run
-from riser_soil.variants.one_run import NOT_WANTED, STOPPED_BY_LIMIT, Task, known, run_variant, task
-from riser_soil.variants.run_process import die_with
-from riser_soil.variants.runs_folder import ATTEMPTS, Outcome, attempt, settle
-from riser_soil.variants.variant import Variant
-from tests.support.case_files import SMALL, case_file
+from riser_soil.variants.runs_folder import Outcome
+from tests.support.case_files import case_file
 from tests.support.recorded_run import WEIGHT, record
 from tests.support.said import line_with, lines_with
 
@@ -73,125 +65,9 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any
     return invoked
 
 
-def a_task(folder: Path, key: str = "1", **changes: Any) -> Task:
-    (folder / CASES / ATTEMPTS).mkdir(parents=True, exist_ok=True)
-    return task("a", Variant(SMALL, key), folder / CASES) | changes
-
-
 def rows(file: Path) -> list[dict[str, str]]:
     with file.open(newline="", encoding="utf-8") as opened:
         return list(csv.DictReader(opened))
-
-
-def test_results_take_their_place_when_the_run_has_ended(tmp_path: Path, fake: Fake) -> None:
-    outcome = Outcome.of(run_variant(a_task(tmp_path)))
-    assert outcome.done
-    assert outcome.seconds > 0.0
-    assert (tmp_path / "cases/a/scene.yaml").read_text().endswith(f"\n{SMALL}")
-    assert known(a_task(tmp_path)) == outcome
-    assert not list((tmp_path / CASES / ATTEMPTS).iterdir())
-
-
-def test_what_is_done_is_not_done_again(tmp_path: Path, fake: Fake) -> None:
-    first = run_variant(a_task(tmp_path))
-    fake("import sys; sys.exit(1)")
-    assert run_variant(a_task(tmp_path)) == first
-    assert run_variant(a_task(tmp_path, key="2"))["status"] == 1
-    assert known(a_task(tmp_path)) is None
-
-
-def test_the_first_of_two_attempts_that_finish_stays(tmp_path: Path, fake: Fake, recorded: Path) -> None:
-    """As where a worker that was given up is alive all the same; one that failed gives way."""
-    runs = tmp_path / CASES
-    run_variant(a_task(tmp_path))
-    late, failed = attempt(runs, "a", SMALL), attempt(runs, "a", SMALL)
-    (late / "late").touch()
-    assert settle(late, runs, Outcome("a", "1", 0, machine="late")).machine != "late"
-    assert settle(failed, runs, Outcome("a", "1", 3)).done
-    assert not (tmp_path / "cases/a/late").exists()
-    assert settle(attempt(runs, "a", SMALL), runs, Outcome("a", "2", 3)).status == 3
-    fake(FINISHED)
-    assert run_variant(a_task(tmp_path))["status"] == 0
-    assert [entry.name for entry in (tmp_path / CASES).iterdir() if entry.name != ATTEMPTS] == ["a"]
-    assert not list((tmp_path / CASES / ATTEMPTS).iterdir())
-
-
-@pytest.mark.parametrize(
-    ("code", "status", "reason"),
-    [
-        ("print('a'); print('no  convergence at arc 3 m'); raise SystemExit(3)", 3, "no convergence at arc 3 m"),
-        ("raise SystemExit(7)", 7, "ended with status 7"),
-        ("raise ZeroDivisionError('bug')", 1, "ZeroDivisionError: bug"),
-        ("import os; os.kill(os.getpid(), 9)", 137, "killed by SIGKILL, as where memory runs out"),
-        ("import os; os.abort()", 134, "killed by SIGABRT"),
-    ],
-)
-def test_a_run_that_fails_tells_why(tmp_path: Path, fake: Fake, code: str, status: int, reason: str) -> None:
-    fake(code)
-    outcome = Outcome.of(run_variant(a_task(tmp_path)))
-    assert (outcome.status, outcome.reason) == (status, reason)
-    assert json.loads((tmp_path / "cases/a/case.json").read_text())["reason"] == reason
-
-
-def test_a_run_that_takes_too_long_is_stopped(tmp_path: Path, fake: Fake) -> None:
-    fake("import time; time.sleep(600)")
-    outcome = Outcome.of(run_variant(a_task(tmp_path, limit=0.2)))
-    assert outcome.status == STOPPED_BY_LIMIT
-    line_with([outcome.reason], "took longer", "limit of 0.2 s")
-
-
-def test_a_run_that_nobody_waits_for_is_stopped_and_leaves_nothing(tmp_path: Path, fake: Fake) -> None:
-    fake("import time; time.sleep(600)")
-    assert run_variant(a_task(tmp_path), wanted=lambda: False)["status"] == NOT_WANTED
-    assert not (tmp_path / "cases/a").exists()
-
-
-def test_workers_tell_what_they_lack(tmp_path: Path) -> None:
-    other = run_variant(a_task(tmp_path, version="0.0.1"))
-    assert other["status"] == 2
-    line_with([other["reason"]], "worker", f"riser_soil {__version__}", "not 0.0.1", "install the same")
-    away = run_variant(a_task(tmp_path) | {"runs": str(tmp_path / "elsewhere")})
-    assert away["status"] == 4
-    line_with([away["reason"]], "No such file", "workers", "folder shared")
-
-
-def test_a_run_ends_with_its_worker(tmp_path: Path) -> None:
-    """With the thread that began it; and one whose worker had ended before it could ask for that, by itself."""
-    module = "from riser_soil.variants.run_process import die_with\n"
-    begun: list[int] = []
-
-    def worker() -> None:
-        code = f"{module}import time\ndie_with({os.getpid()})\nopen('here', 'w').close()\ntime.sleep(60)"
-        begun.append(os.posix_spawn(sys.executable, [sys.executable, "-c", code], os.environ))
-        while not (tmp_path / "here").exists():
-            time.sleep(0.01)
-
-    former = Path.cwd()
-    os.chdir(tmp_path)
-    try:
-        thread = threading.Thread(target=worker)
-        thread.start()
-        thread.join()
-    finally:
-        os.chdir(former)
-    _, status = os.waitpid(begun[0], 0)
-    assert os.WTERMSIG(status) == 9
-    with pytest.raises(SystemExit) as left:
-        _in_child(lambda: die_with(1))
-    assert left.value.code == 137
-
-
-def _in_child(do: Callable[[], None]) -> None:
-    """In a forked process: the call would change this one for good."""
-    if (pid := os.fork()) == 0:
-        status = 0
-        try:
-            do()
-        except SystemExit as leave:
-            status = int(leave.code or 0)
-        finally:
-            os._exit(status)
-    raise SystemExit(os.WEXITSTATUS(os.waitpid(pid, 0)[1]))
 
 
 def test_values_of_a_run(recorded: Path) -> None:
