@@ -174,7 +174,7 @@ def test_a_full_disk_ends_all(tmp_path: Path, fake: Fake) -> None:
     fake(
         "import sys, time\n"
         "if '/b.' in sys.argv[1]: print('results.nc: No space left'); sys.exit(4)\n"
-        "time.sleep(600)"
+        "time.sleep(60)"
     )
     with pytest.raises(WriteError, match=telling("b: results.nc", "No space left")):
         compute(tasks, Workers(2), lambda outcome: ended.append(outcome.name))
@@ -183,7 +183,7 @@ def test_a_full_disk_ends_all(tmp_path: Path, fake: Fake) -> None:
 
 
 def test_runs_are_stopped_when_the_caller_leaves(tmp_path: Path, fake: Fake) -> None:
-    fake(f"import time\nif '/a.' not in __import__('sys').argv[1]: time.sleep(600)\n{FINISHED}")
+    fake(f"import time\nif '/a.' not in __import__('sys').argv[1]: time.sleep(60)\n{FINISHED}")
 
     def leave(outcome: Outcome) -> None:
         raise KeyboardInterrupt
