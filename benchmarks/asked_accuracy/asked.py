@@ -11,7 +11,7 @@ from enum import Enum
 from pathlib import Path
 from statistics import median
 
-from benchmarks.asked_accuracy.by_hand import HandSetting, turned
+from benchmarks.asked_accuracy.by_hand import HandSetting
 from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, taken, true_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
@@ -19,7 +19,7 @@ from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SCENE
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from riser_soil.variants.settings import settings_in_words
+from riser_soil.variants.settings import refined, settings_in_words
 
 SOIL = {name: scene for name, scene in SCENES.items() if "soil" in scene}
 
@@ -83,7 +83,7 @@ def asked(
     with tempfile.TemporaryDirectory() as place:
         folder, beside = Path(place) / "asked", Path(place) / "beside"
         if hand is not None:  # also for what is imported and loaded once
-            run_errors(turned(mapping, hand.factors), beside, reference)
+            run_errors(refined(scene_from_mapping(mapping), hand.factors), beside, reference)
         said, everything = _run(asking(mapping, accuracy), folder)
         if not (folder / SCENE).exists():
             return AskedScene(name, None, said, "none", None, everything)
@@ -92,7 +92,7 @@ def asked(
         if hand is None or said:
             return AskedScene(name, errors, said, setting, None, everything)
         _, chosen = run_errors(scene, beside, reference)
-        _, by_hand = run_errors(turned(mapping, hand.factors), beside, reference)
+        _, by_hand = run_errors(refined(scene_from_mapping(mapping), hand.factors), beside, reference)
         return AskedScene(name, errors, said, setting, HandCost(everything, chosen, by_hand), everything)
 
 

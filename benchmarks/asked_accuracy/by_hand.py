@@ -1,4 +1,4 @@
-"""Best settings by hand: of each scene the cheapest, with its settings turned or not, that truly reaches the accuracy.
+"""Best settings by hand: of each scene the cheapest, with its settings varied or not, that truly reaches the accuracy.
 
 `by_hand.json` has the factors of fineness by scene, and their largest true error; null where none of them reaches it,
 or where too few quantities have a certain reference to tell. Settings are tried in the order of what they are expected
@@ -20,7 +20,7 @@ from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.variants.settings import settings_of, varied
+from riser_soil.variants.settings import refined, settings_of
 
 FILE = Path(__file__).with_name("by_hand.json")
 ASKED = {name: scene for name, scene in SCENES.items() if "soil" not in scene}
@@ -42,19 +42,11 @@ class HandSetting:
     error: float
 
 
-def turned(mapping: Mapping, factors: Factors) -> Scene:
-    """The scene with its settings finer by factors."""
-    scene = scene_from_mapping(mapping)
-    for setting in settings_of(scene):
-        scene = varied(scene, setting, factors[setting.name])
-    return scene
-
-
 def best(mapping: Mapping, reference: Reference) -> HandSetting | None:
     """The first setting, by expected cost, that reaches the accuracy."""
     with tempfile.TemporaryDirectory() as folder:
         for factors in settings(scene_from_mapping(mapping)):
-            errors, _ = run_errors(turned(mapping, factors), Path(folder) / "run", reference)
+            errors, _ = run_errors(refined(scene_from_mapping(mapping), factors), Path(folder) / "run", reference)
             if errors is not None and not errors.telling:
                 return None
             if errors is not None and errors.within:

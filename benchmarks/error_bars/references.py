@@ -33,7 +33,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.stages import LAID_IN
-from riser_soil.variants.settings import settings_of, varied
+from riser_soil.variants.settings import refined, settings_of
 
 FILE, ON_SOIL = (Path(__file__).with_name(f"references{more}.json") for more in ("", "_on_soil"))
 LEFT, LEFT_ON_SOIL = 1.0 / 3.0, 1.0  # of the change between the two, in the finer one
@@ -111,8 +111,7 @@ def _is_laid(scene: Scene) -> bool:
 
 
 def _values(scene: Scene, level: Level) -> Values:
-    for setting in settings_of(scene):
-        scene = varied(scene, setting, level[setting.name])
+    scene = refined(scene, level)
     if scene.soil is not None:
         scene = _loaded_in(_along(scene, level), level["load_steps"])
     try:

@@ -1,4 +1,4 @@
-"""Run of a scene with error bars: the run, its comparison runs, the bars in its summary and on the screen."""
+"""Run of a scene with error bars: the run, its comparison runs, the bars in the summary and on the screen."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from riser_soil.scene.scene import Scene
 from riser_soil.variants.key_results import key_results
 from riser_soil.whole_run import run
 
-LEFT = "while its error bars were computed; {} has the whole run, without them"
+INTERRUPTED = "while its error bars were computed; {} has the whole run, without them"
 
 
 def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, restart: bool = False) -> None:
-    """Run a scene, then print the error bars of its results; collective. Where a comparison run fails, the run itself
-    stays as it is.
+    """Run a scene, then compute and print error bars of its key results; collective.
+
+    Where a comparison run fails, the run itself stays as it is.
     """
     folder, comm, peaks = Path(folder), communicator_of(scene), RunPeaks()
     began = compiled.seconds_of_work()
     run(scene, folder, force, peaks, restart)
-    taken = compiled.seconds_of_work() - began
+    seconds = compiled.seconds_of_work() - began
     bars = _bars(scene, folder, peaks, comm)
     if comm.rank == 0:
-        extra = compiled.seconds_of_work() - began - taken
-        seconds = {"run": taken, "comparison_runs": extra}
-        write_bars(folder, bars, seconds)
-        print_bars(bars, extra / taken)
+        extra = compiled.seconds_of_work() - began - seconds
+        write_bars(folder, bars, {"run": seconds, "comparison_runs": extra})
+        print_bars(bars, extra / seconds)
 
 
 def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorBar]:
@@ -47,7 +47,7 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
         try:
             chain = comparison_runs(scene, comm)
         except Interruption as end:
-            end.place = LEFT.format(folder)
+            end.place = INTERRUPTED.format(folder)
             raise
     if comm.rank != 0:
         return []
@@ -55,12 +55,12 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
 
 
 def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:
-    """Values of a finished run, with the peaks that were gathered on the way."""
+    """Values of a finished run. peaks: gathered while it ran."""
     return run_values(key_results(json.loads((folder / SUMMARY).read_text(encoding="utf-8"))), peaks)
 
 
 def write_bars(folder: Path, bars: list[ErrorBar], seconds: dict[str, float], **more: Any) -> None:
-    """Write error bars into the summary of a finished run. more: blocks of the summary beside them."""
+    """Add error bars to the summary of a finished run. more: other blocks that are added."""
     error_bars = {"seconds": seconds, "quantities": [_as_entry(bar) for bar in bars]}
     add_to_summary(folder, {"error_bars": error_bars} | more)
 
@@ -74,7 +74,7 @@ def _as_entry(bar: ErrorBar) -> dict[str, Any]:
 
 
 def print_bars(bars: list[ErrorBar], share: float, console: Console | None = None, what: str = "error bars") -> None:
-    """share: of the run's seconds that comparison runs, or `what` else, took in addition."""
+    """Print tables of error bars. share: seconds of `what`, over those of the run."""
     console = console or Console(force_jupyter=False)
     for stage, of_stage in groupby(bars, key=lambda bar: bar.key_result.stage):
         console.print(_table(stage, list(of_stage)))

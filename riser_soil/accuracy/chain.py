@@ -1,13 +1,13 @@
-"""Comparison runs of a run in a chain, each varied in one source of error: longer steps, then more elements too.
+"""Comparison runs of a run in a chain, each varied in one source of error: longer steps, then also more elements.
 
-On a rigid floor the penalty goes with the elements: 16 times as stiff with elements half as long, so that both halve
-the length in which a riser sinks in beside an end, (4 EI/k)^(1/4).
+On a rigid floor the penalty is varied with the elements: 16 times as stiff with elements half as long, so that both
+halve the length over which a riser sinks in beside an end, (4 EI/k)^(1/4).
 
-On soil one run is coarser in all its settings, as each takes near half of the first one's time, however coarse it is;
-finer cells are those of a slice (`fine_slice`). On a block, where a coarser run costs little beside the run, the next
-one has the run's own steps again: longer steps and coarser cells may err in opposite directions. Of a few slices the
-cells are coarsened twice, as contact grows cell by cell and two runs agree by chance. Then elements are finer, as they
-cost little there, and the penalty with them.
+On soil one run is coarser in all its settings, as each takes nearly half of the first one's time, however coarse it is;
+finer cells are those of a slice (`fine_slice`). On a block, where a coarser run costs little compared with the run, the
+next one has the run's own steps again: errors of longer steps and of coarser cells may cancel. For soil of a few slices
+the cells are coarsened twice, as contact grows cell by cell and two runs may agree by chance. Then elements are finer,
+as they cost little there, and the penalty is varied with them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, error_bars
-from riser_soil.accuracy.extreme_differences import alone, extremes_of
+from riser_soil.accuracy.extreme_differences import extremes_of, without_windows
 from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
@@ -40,8 +40,9 @@ Envelopes = dict[str, CurveEnvelope]  # of moments and tensions, by line
 
 
 class Variation(NamedTuple):
-    """What a comparison run differs in from the one before. factors: of fineness by setting, of which the first is
-    told.
+    """Difference of a comparison run from the run before. source: of error.
+
+    factors: of fineness by setting; the first one is that of the error bar.
     """
 
     source: str
@@ -53,22 +54,20 @@ ALL_COARSER = Variation("soil", {"soil_mesh": 0.5, "time_step": 2.0 / 3.0, "elem
 OWN_STEPS = Variation("time", {"time_step": 1.0 / ALL_COARSER.factors["time_step"]})  # after all was coarser
 FINER_MESH = Variation("mesh", {"elements": 2.0, "penalty": 16.0})
 FINER_MESH_ON_SOIL = Variation("mesh", {"elements": 2.0, "penalty": 4.0})
-# Steps that a comparison run leaves to the shortest period, as the mesh tells little on longer ones; how many times as
-# long they are at least, at most, and where nothing has a period.
-STEPS_LEFT, LONGER, LONGEST, USUAL = 20.0, 2.0, 4.0, 3.0
-LEAST_RATIO = 1.4  # below it two runs are too much alike
-# Errors that a comparison run may fail with: those that all ranks meet, and those that one may meet alone.
+# Least number of steps in the shortest period, as the mesh has little effect with longer ones; least and largest ratio
+# of step sizes, and the ratio where nothing has a period.
+STEPS_OF_PERIOD, LONGER, LONGEST, USUAL = 20.0, 2.0, 4.0, 3.0
+LEAST_RATIO = 1.4  # of fineness of two runs whose difference is significant
+# Errors that end a comparison run: those that all ranks raise together, and those that one may raise alone.
 OF_ALL, OF_ONE = (SolveError, MemoryShortageError, SceneError, MeshError), (ArithmeticError, ValueError)
 
 
 def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None = None) -> list[ComparisonRun]:
-    """Those of a scene, run one after the other; collective, their values on rank 0. varying: those of error bars by
-    default.
+    """Comparison runs of a scene, one after the other; collective, their values on rank 0.
 
-    On soil a penalty that is firm enough is not varied: see `is_firm`.
-
-    In the place of a finer one that fails comes one that is as much coarser. Where that fails, too, there is nothing to
-    compare the next ones with: they are not run.
+    varying: the variations of error bars by default. On soil a penalty that is firm (`is_firm`) is not varied. If a
+    finer run fails, one that is coarser by the same factors takes its place. If that fails, too, the next ones have no
+    run to be compared with, and are not computed.
     """
     chain: list[ComparisonRun] = []
     known = {setting.name for setting in settings_of(scene)} - ({"penalty"} if is_firm(scene) else set())
@@ -83,19 +82,19 @@ def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None
         if any(before.extremes is None for before in chain):
             chain.append(ComparisonRun(source, step.finer, None, "a coarser run before failed"))
             continue
-        found = _run(step, comm)
-        if found.extremes is None and step.scene is not None and step.finer > 1.0:
+        computed = _run(step, comm)
+        if computed.extremes is None and step.scene is not None and step.finer > 1.0:
             coarser = _step(now, source, {name: 1.0 / factor for name, factor in varied_by.items()})
             assert coarser is not None
             if (other := _run(coarser, comm)).extremes is not None:
-                found, step = other, coarser
-        chain.append(found)
+                computed, step = other, coarser
+        chain.append(computed)
         now = step.scene or now
     return chain
 
 
 def variations(scene: Scene) -> Sequence[Variation]:
-    """For error bars of a run, as cheap as they can be."""
+    """Variations for error bars of a run, as cheap as possible."""
     longer = Variation("time", {"time_step": 1.0 / _longer(scene)})
     if scene.soil is None:
         return longer, FINER_MESH
@@ -105,18 +104,18 @@ def variations(scene: Scene) -> Sequence[Variation]:
 
 
 def _longer(scene: Scene) -> float:
-    """How many times as long a comparison run's steps are."""
+    """Ratio of a comparison run's time steps to the run's."""
     steps = [
         period / stage.time_step
         for stage in scene.stages
         if isinstance(stage, DynamicStage) and stage.time_step != "auto"
         for _, period in periods_of(scene, stage)
     ]
-    return min(max(min(steps, default=USUAL * STEPS_LEFT) / STEPS_LEFT, LONGER), LONGEST)
+    return min(max(min(steps, default=USUAL * STEPS_OF_PERIOD) / STEPS_OF_PERIOD, LONGER), LONGEST)
 
 
 def bars_of(scene: Scene, run: RunValues, chain: Sequence[ComparisonRun]) -> list[ErrorBar]:
-    """The error bars of a run of the scene with its comparison runs; on soil a slice of it is computed for them."""
+    """Error bars of a run of the scene by its comparison runs; on soil a slice is computed, too."""
     rigid = scene.soil is None and isinstance(scene.seabed, RigidSeabed)
     return error_bars(run, chain, rigid, None if scene.soil is None else _cells(scene, run))
 
@@ -134,13 +133,13 @@ def _cells(scene: Scene, run: RunValues) -> SoilOfRun:
 
 
 def run_values(recorded: Mapping[str, KeyResult], peaks: RunPeaks) -> RunValues:
-    """Values of a run whose peaks were gathered on the way. Peaks of the soil may be missing: the recorded values stand
-    for them.
+    """Values of a run by its recorded key results and its peaks. Where peaks are missing, as of the soil, they are the
+    recorded values.
     """
     known = {key: key_result.value for key, key_result in recorded.items()}
     of_nodes, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "smooth"))
-    followed = {key: alone(value) for key, value in known.items()} | extremes_of(peaks)
-    return RunValues(recorded, of_nodes, followed, smooth)
+    extremes = {key: without_windows(value) for key, value in known.items()} | extremes_of(peaks)
+    return RunValues(recorded, of_nodes, extremes, smooth)
 
 
 def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
@@ -150,7 +149,7 @@ def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class NextScene:
-    """The next scene of a chain, None where it can't be, for the `reason`. finer: than the one before, in a source."""
+    """Next scene of a chain; None where it can't be varied, for the `reason`. finer: its ratio of fineness."""
 
     source: str
     finer: float
@@ -159,7 +158,7 @@ class NextScene:
 
 
 def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> NextScene | None:
-    """None where the scene has nothing to vary."""
+    """The next scene; None where it has none of the settings."""
     if not factors:
         return None
     first = next(setting for setting in settings_of(scene) if setting.name == next(iter(factors)))
@@ -186,15 +185,15 @@ def _run(step: NextScene, comm: Any) -> ComparisonRun:
 
 
 def _recording_all(scene: Scene) -> Scene:
-    """Automatic steps are not held back by output times."""
+    """The scene without output times, by which automatic steps would be shortened."""
     output = scene.output.model_copy(update={"interval": None, "xdmf_interval": None})
     return scene.model_copy(update={"output": output})
 
 
 def peaks_of(scene: Scene, comm: Any, envelopes: Envelopes | None = None) -> RunPeaks:
-    """Peaks of a scene, computed without a results folder; collective, told on rank 0. Raises what a run would.
+    """Peaks of a scene, computed without a results folder, on rank 0; collective. Raises the errors of a run.
 
-    envelopes: to be filled, line by line, where they are wanted; on rank 0.
+    envelopes: to be filled on rank 0, by lines, where they are wanted.
     """
     assembly = build(sized(scene), comm)
     observer = PeakObserver(assembly, envelopes)
@@ -203,7 +202,7 @@ def peaks_of(scene: Scene, comm: Any, envelopes: Envelopes | None = None) -> Run
 
 
 class PeakObserver(StatelessObserver):
-    """Follows a comparison_run: `peaks` has what the summary of a run would have of it; on rank 0."""
+    """Observer of a comparison run. peaks: those that the summary of a run would have, on rank 0."""
 
     def __init__(self, assembly: Assembly, envelopes: Envelopes | None = None) -> None:
         self._assembly = assembly
@@ -221,19 +220,19 @@ class PeakObserver(StatelessObserver):
         self._schedule.begin_stage(stage.kind)
         self.peaks.begin_stage(stage.name, stage.kind, stage.end, self._instants)
         if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
-            self._record(0.0, stepper)  # not followed: no shape that a step has found
+            self._record(0.0, stepper)  # not in envelopes, as it is the result of no step
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Record a committed step; collective where there is soil."""
         whole = self._assembly.recovered_soil() if self._schedule.due(step.t, last).pictures else None
         soil = None if whole is None else whole.output_fields()
         if self._assembly.comm.rank == 0:
-            seen = self._record(step.t, stepper, soil)
+            instants = self._record(step.t, stepper, soil)
             if self._envelopes is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
-                for line, instant in seen.items():
-                    self._envelopes[line].follow(instants_at(instant, 0))
+                for line, instant in instants.items():
+                    self._envelopes[line].add(instants_at(instant, 0))
 
     def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Instants:
-        seen = {line: reader.instant_of([reader.look(stepper)]) for line, reader in self._instants.items()}
-        self.peaks.record([t], seen, soil, looked_at(self._hung, stepper.now))
-        return seen
+        instants = {line: reader.instant_of([reader.look(stepper)]) for line, reader in self._instants.items()}
+        self.peaks.record([t], instants, soil, looked_at(self._hung, stepper.now))
+        return instants

@@ -1,8 +1,8 @@
 """Cheapest settings that reach an accuracy: predicted from a study's refinement series, then run.
 
 Predicted errors are the sums of the settings' own, whatever their signs, so that no setting is chosen for errors that
-happen to cancel; predicted costs are products of the refinement series' ratios. One level beyond each refinement series
-is predicted by the observed order and by how the cost has grown.
+happen to cancel; predicted costs are products of the refinement series' ratios. The level after the finest of each
+series is predicted by the observed order and by the growth of the cost.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Quantities = Mapping[str, AssessedQuantity]
 
 @dataclass(frozen=True, eq=False)
 class CostAndError:
-    """Cost and error of settings as predicted by refinement series, for a target in the quantities."""
+    """Cost and error of settings, predicted by refinement series, for a target in the quantities."""
 
     refinements: Refinements
     outcomes: Outcomes
@@ -31,40 +31,41 @@ class CostAndError:
     target: float
 
     def settings(self) -> Iterator[Factors]:
-        """All combinations of levels, with one beyond each refinement series."""
-        levels = [(*self._levels(n), self._beyond(n)) for n in range(len(self.refinements.settings))]
+        """All combinations of levels, with one more than were computed of each setting."""
+        levels = [(*self._levels(n), self._next_level(n)) for n in range(len(self.refinements.settings))]
         return product(*levels)
 
-    def excess(self, point: Factors) -> float:
-        """Largest over the quantities of the error to be expected over the allowed one; errors of the settings are
-        added without their signs.
+    def error_ratio(self, point: Factors) -> float:
+        """Largest ratio of the predicted error to the allowed one among the quantities.
+
+        Errors of the settings are added without their signs.
         """
-        parts = (
+        ratios = (
             math.fsum(self._share(each, *at) for at in enumerate(point)) / each.allowed(self.target)
             for each in self.quantities.values()
         )
-        return max(parts, default=math.inf)
+        return max(ratios, default=math.inf)
 
     def reached_by(self, outcome: PointOutcome) -> bool:
         """Whether a setting that was run reaches the target, and not by errors that happen to cancel."""
-        found = outcome.key_results
-        missed = [
-            key not in found or each.error_of(found[key]) > each.allowed(self.target)
+        results = outcome.key_results
+        reached = all(
+            key in results and each.error_of(results[key]) <= each.allowed(self.target)
             for key, each in self.quantities.items()
-        ]
-        return outcome.done and not any(missed) and self.excess(outcome.factors) <= MAX_CANCELLATION
+        )
+        return outcome.done and reached and self.error_ratio(outcome.factors) <= MAX_CANCELLATION
 
     def seconds(self, point: Factors) -> float:
-        """Processor time [s]."""
+        """Predicted processor time of a point [s]."""
         base = self.outcomes[self.refinements.base].cpu
         return base * math.prod(self._cost(number, factor) for number, factor in enumerate(point))
 
     def _levels(self, number: int) -> list[float]:
-        """The levels of one setting's refinement series that were computed, from coarse to fine."""
+        """Levels of one setting's refinement series that were computed, from coarse to fine."""
         points = zip(self.refinements.factors[number], self.refinements.along(number), strict=True)
         return [factor for factor, point in points if point in self.outcomes and self.outcomes[point].done]
 
-    def _beyond(self, number: int) -> float:
+    def _next_level(self, number: int) -> float:
         return self._levels(number)[-1] * RATIOS[self.refinements.settings[number].name]
 
     def _share(self, each: AssessedQuantity, number: int, factor: float) -> float:
@@ -79,7 +80,7 @@ class CostAndError:
     def _cost(self, number: int, factor: float) -> float:
         """Processor time at a level of one setting over that of the scene."""
         levels = self._levels(number)
-        costs = [self.outcomes[self.refinements.turned(number, each)].cpu for each in levels]
+        costs = [self.outcomes[self.refinements.point(number, each)].cpu for each in levels]
         base = self.outcomes[self.refinements.base].cpu
         if factor in levels:
             return costs[levels.index(factor)] / base
@@ -88,19 +89,19 @@ class CostAndError:
 
 
 def next_setting(predicted: CostAndError) -> Factors | None:
-    """The cheapest setting not yet run that should reach the target at less than the cheapest that does."""
+    """Cheapest setting that is predicted to reach the target at less cost than any run so far; None without one."""
     reached = cheapest(predicted)
     most = reached.cpu if reached is not None else math.inf
-    able = [
+    candidates = [
         (predicted.seconds(point), point)
         for point in predicted.settings()
-        if point not in predicted.outcomes and predicted.excess(point) <= 1.0
+        if point not in predicted.outcomes and predicted.error_ratio(point) <= 1.0
     ]
-    seconds, point = min(able, default=(math.inf, None))
+    seconds, point = min(candidates, default=(math.inf, None))
     return point if seconds < most else None
 
 
 def cheapest(predicted: CostAndError) -> PointOutcome | None:
-    """The setting that reaches the target at the least cost, among those that have been run; None where none does."""
-    able = [outcome for outcome in predicted.outcomes.values() if predicted.reached_by(outcome)]
-    return min(able, key=lambda outcome: outcome.cpu, default=None)
+    """The cheapest run that reaches the target; None where none does."""
+    reaching = [outcome for outcome in predicted.outcomes.values() if predicted.reached_by(outcome)]
+    return min(reaching, key=lambda outcome: outcome.cpu, default=None)

@@ -1,6 +1,6 @@
-"""How a scene is run: hang-offs and the vessel's offset first, then as it is, with error bars, or to an accuracy.
+"""Run as a scene asks: hang-offs and the vessel's offset first, then as it is, with error bars, or to an accuracy.
 
-What isn't needed isn't imported.
+Modules are imported where they are needed, as a plain run needs few of them.
 """
 
 from __future__ import annotations
@@ -19,14 +19,15 @@ from riser_soil.scene.variants import at_offset, displacement
 def run_as_asked(
     scene: Scene, folder: Path, force: bool = False, error_bars: bool = False, restart: bool = False
 ) -> None:
-    """Leaves the results in a folder; collective. error_bars: wanted, whether the scene asks for them or not. restart:
-    go on from the folder's last checkpoint.
+    """Run a scene and leave its results in a folder; collective.
+
+    error_bars: estimate them, whether the scene asks for them or not. restart: resume from the last checkpoint.
     """
     if restart and force:
         raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
     scene, more = in_numbers(scene)
     more = (_solved_before(folder) if restart else {}) | more
-    with _telling(more, folder, scene):
+    with _adding(more, folder, scene):
         _run(scene, folder, force, error_bars, restart)
 
 
@@ -47,7 +48,7 @@ def _run(scene: Scene, folder: Path, force: bool, error_bars: bool, restart: boo
 
 
 def _solved_before(folder: Path) -> dict[str, Any]:
-    """What the summary of a run that goes on tells of its hang-offs and its vessel's offset."""
+    """Blocks on hang-offs and the vessel's offset in the summary of a run that is resumed."""
     from riser_soil.results.folder import SUMMARY
     from riser_soil.results.read import Run
 
@@ -56,8 +57,8 @@ def _solved_before(folder: Path) -> dict[str, Any]:
 
 
 @contextmanager
-def _telling(more: Mapping[str, Any], folder: Path, scene: Scene) -> Iterator[None]:
-    """Blocks that the summary of a run gets, also of one that ends before its time."""
+def _adding(more: Mapping[str, Any], folder: Path, scene: Scene) -> Iterator[None]:
+    """Add blocks to the summary of the run in the `with` statement, also of one that ends before its time."""
     try:
         yield
     except (SolveError, MemoryShortageError, Interruption):
@@ -78,7 +79,7 @@ def _add(more: Mapping[str, Any], folder: Path, scene: Scene) -> None:
 
 
 def _refuse_restart(restart: bool, folder: Path) -> None:
-    """An accuracy is reached by several runs, of which the folder has the last one alone."""
+    """SceneError for a restart with an accuracy: of its several runs the folder has the last one only."""
     if restart:
         raise SceneError(
             f"--restart: an accuracy is sought anew; take --force in its place, or run {folder}/scene.yaml, the "
@@ -87,9 +88,7 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
 
 
 def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
-    """The scene with its hang-offs solved, where it asks for some, and then its vessel at its offset; and what its
-    summary tells of both. Collective.
-    """
+    """The scene with its hang-offs solved and its vessel at its offset; blocks of the summary on both; collective."""
     scene, more = _hung(scene)
     if scene.vessel is None:
         return scene, more

@@ -1,10 +1,10 @@
-"""Element lengths as curvature asks for them: short where moment or tension bends along the riser, long elsewhere.
+"""Element lengths that curvature requires: short where moment or tension curves along the riser, long elsewhere.
 
-Between two nodes a straight line misses a curve by h^2 |f''|/8. The lengths h are such that it misses, at any time of a
-run, the largest moment by at most a share of it, and the least tension by the same share of its scale. Where a moment
-is far below the largest, or a tension far above the least, it may be missed by more, as no key result is there.
-A tension T bends elements into shapes that a cubic can't follow, which leaves T h^4 k''/384 in the moments (see
-`results.bending_misfit`): that keeps to the share, too.
+Between two nodes linear interpolation of f has an error of h^2 |f''|/8. With lengths h it is, at any time of a run, at
+most a share of the largest moment, and the same share of the least tension's scale. Where a moment is far below the
+largest, or a tension far above the least, the error may be larger, as no key result is there. A tension T bends
+elements into shapes that no cubic has, which leaves an error T h^4 k''/384 in the moments (`results.bending_misfit`).
+This keeps to the share, too.
 """
 
 from __future__ import annotations
@@ -17,65 +17,65 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Instant
 from riser_soil.variants.key_results import FORCE_FLOOR
 
-GAP = 0.5  # of the accuracy asked: what falls between nodes
-FORGIVEN = 0.2  # of how far a moment is below the largest, or a tension above the least
-SHRINK = 6.0  # at most, from one run to the next: what is not resolved yet asks for more than it needs
+INTERPOLATION = 0.5  # error between nodes, over the accuracy asked for
+FORGIVEN = 0.2  # error that is allowed, over a moment's distance below the largest, or a tension's above the least
+MOST_FINER = 6.0  # ratio of lengths from one run to the next: curves that are not resolved yet require too much
 
 
 @dataclass
 class CurveEnvelope:
-    """Moment and tension along the riser over a run: extremes and second derivatives by their largest size.
+    """Envelope of moment and tension along the riser over a run, and of their second derivatives.
 
-    arc: (nn,) m. moment, least: (nn,) largest moment [N m], least tension [N]. bends: (2, nn) second derivatives of
-    moment and tension. pull: (nn,) tension over EI [1/m2]. force: largest tension or shear [N].
+    arc: (nn,) m. moment, least: (nn,) largest moment [N m], least tension [N]. second: (2, nn) largest second
+    derivatives of moment and tension. pull: (nn,) largest tension over EI [1/m2]. force: largest tension or shear [N].
     """
 
     arc: Array = field(default_factory=lambda: np.zeros(0))
     moment: Array = field(default_factory=lambda: np.zeros(0))
     least: Array = field(default_factory=lambda: np.zeros(0))
-    bends: Array = field(default_factory=lambda: np.zeros((2, 0)))
+    second: Array = field(default_factory=lambda: np.zeros((2, 0)))
     pull: Array = field(default_factory=lambda: np.zeros(0))
     force: float = 0.0
 
-    def follow(self, seen: Instant) -> None:
-        """One more instant."""
-        riser, arc = seen.riser, seen.arc
-        bends = np.stack([_bend(arc, riser.moment_vector), _bend(arc, riser.effective_tension[:, None])])
+    def add(self, instant: Instant) -> None:
+        """Extend the envelope by one more instant."""
+        riser, arc = instant.riser, instant.arc
+        second = np.stack([_second(arc, riser.moment_vector), _second(arc, riser.effective_tension[:, None])])
         if not self.arc.size:
-            self.arc, self.bends, self.pull = arc, bends, np.zeros(arc.size)
+            self.arc, self.second, self.pull = arc, second, np.zeros(arc.size)
             self.moment, self.least = riser.bending_moment, riser.effective_tension
         with np.errstate(divide="ignore", invalid="ignore"):
             flexibility = np.nan_to_num(riser.curvature / riser.bending_moment, posinf=0.0)
         self.pull = np.maximum(self.pull, flexibility * riser.effective_tension)
-        self.bends = np.maximum(self.bends, bends)
+        self.second = np.maximum(self.second, second)
         self.moment = np.maximum(self.moment, riser.bending_moment)
         self.least = np.minimum(self.least, riser.effective_tension)
         self.force = max(self.force, float(np.abs(riser.effective_tension).max()), _shear(arc, riser.moment_vector))
 
     def lengths(self, share: float) -> Array:
-        """Lengths of elements (nn,) [m] at the nodes, for a share of accuracy; inf where all is straight."""
-        gap = GAP * share
+        """Element lengths (nn,) [m] required at the nodes for a relative accuracy `share`; inf if all is straight."""
+        allowed = INTERPOLATION * share
         largest = self.moment.max()
-        of_moment = gap * largest + FORGIVEN * (largest - self.moment)
-        of_tension = gap * FORCE_FLOOR * self.force + FORGIVEN * (self.least - self.least.min())
-        by_moment, by_tension = self.bends
+        of_moment = allowed * largest + FORGIVEN * (largest - self.moment)
+        of_tension = allowed * FORCE_FLOOR * self.force + FORGIVEN * (self.least - self.least.min())
+        of_moment_curve, of_tension_curve = self.second
         with np.errstate(divide="ignore", invalid="ignore"):
             lengths = np.stack([
-                np.sqrt(8.0 * of_moment / by_moment),
-                np.sqrt(8.0 * of_tension / by_tension),
-                (384.0 * gap * largest / (self.pull * by_moment)) ** 0.25,
+                np.sqrt(8.0 * of_moment / of_moment_curve),
+                np.sqrt(8.0 * of_tension / of_tension_curve),
+                (384.0 * allowed * largest / (self.pull * of_moment_curve)) ** 0.25,
             ])  # fmt: skip
-        asked = np.nan_to_num(lengths, nan=np.inf, posinf=np.inf).min(axis=0)
-        return np.maximum(asked, _present(self.arc) / SHRINK)
+        required = np.nan_to_num(lengths, nan=np.inf, posinf=np.inf).min(axis=0)
+        return np.maximum(required, _present(self.arc) / MOST_FINER)
 
-    def excess(self, share: float) -> float:
-        """Length of the elements over what is asked for, where it is most."""
-        asked = self.lengths(share)
-        return float((np.diff(self.arc) / np.minimum(asked[1:], asked[:-1])).max())
+    def length_ratio(self, share: float) -> float:
+        """Largest ratio of an element's length to the length required there."""
+        required = self.lengths(share)
+        return float((np.diff(self.arc) / np.minimum(required[1:], required[:-1])).max())
 
 
-def _bend(arc: Array, values: Array) -> Array:
-    """Size of the second derivative (nn,) of values (nn, m); at the ends that of the neighbours."""
+def _second(arc: Array, values: Array) -> Array:
+    """Size of the second derivative (nn,) of values (nn, m) by arc; at the ends that of the neighbours."""
     if arc.size < 3:
         return np.zeros(arc.size)
     slope = np.diff(values, axis=0) / np.diff(arc)[:, None]
@@ -89,6 +89,6 @@ def _shear(arc: Array, moment: Array) -> float:
 
 
 def _present(arc: Array) -> Array:
-    """The shorter of the elements at each node (nn,)."""
+    """Length of the shorter element at each node (nn,) [m]."""
     length = np.diff(arc)
     return np.minimum(np.append(length, length[-1]), np.insert(length, 0, length[0]))

@@ -1,28 +1,28 @@
-"""Error bars: how far a run's key results may be off, from comparison runs of the same scene.
+"""Error bars: bounds on the errors of a run's key results, from comparison runs of the same scene.
 
 Comparison runs form a chain: each differs in one setting from the one before it, so that each difference has one
 source. The soil's cells and the time steps are coarser, as finer ones would cost more than the run; elements are finer,
 and so is the penalty. An error that falls with the power p of the fineness is, by Richardson's extrapolation, the
-difference over
-|f^-p - 1|, f being how much finer the comparison run is: of a finer one it is little more than the difference, whatever
-the order is, so that it can be relied on where the run is far from converged, too. A large difference from longer steps
-has not reached its order yet: the divisor falls towards 1 as it grows. A source's share of the bar is
+difference over |f^-p - 1|, f being the ratio of the comparison run's fineness to the run's. For a finer comparison run
+this is little more than the difference, whatever the order is, so that it is reliable far from convergence, too. A
+large difference from longer steps has not reached its order yet: the divisor falls towards 1 as it grows. A source's
+share of the bar is
 
-    safety * (what falls between samples + difference / |f^-p - 1|).
+    safety * (error of sampling + difference / |f^-p - 1|).
 
-Differences are those of the extremes and of their course in time together (`apart`). What falls between the
-run's nodes is the mesh's, between its steps the time step's, as is what alternates from step to step around an extreme:
-short waves that the steps do not resolve (`results.peaks`). Largest moments and curvatures are told between nodes
-(`riser.section_kernels`). Of two comparison runs in one source, one coarser than the other, the larger share counts.
-Shares of different sources add up as squares do. With these factors the calibration (`benchmarks.error_bars`) finds the
-true error inside at least 95 % of the bars.
+Differences are those of the extremes and of their course in time together (`extreme_differences.difference`). The error
+of sampling between the run's nodes is the mesh's, between its steps the time step's, and so is an alternation from step
+to step around an extreme: short waves that the steps do not resolve (`results.peaks`). Largest moments and curvatures
+are evaluated between nodes (`riser.section_kernels`). Of two comparison runs in one source, one coarser than the other,
+the larger share counts. The bar is the root of the sum of the squares of shares. With these factors the calibration
+(`benchmarks.error_bars`) finds the true error inside at least 95 % of the bars.
 
 On soil one run is coarser in all its settings, and a slice across the riser has finer cells (`fine_slice`). Its share
-is the soil's. On a block a second one has the run's own steps on the coarser cells. Its share is the time steps',
-that of the longer ones, as errors on soil that yields fall more slowly than by the order. Of a settlement the soil's
-share is by the slice, and by a part of the coarser run's difference, as a slice knows nothing of what lies along the
-riser. Others are uncertain by that difference, or by more, in so far as the settlement changes by more on fine cells
-than on coarse ones. Soil of a few slices has no slice that is cheaper than the run: there cells are coarsened twice.
+is the soil's. On a block a second one has the run's own steps on the coarser cells. Its share is the time step's,
+evaluated for the longer steps, as errors on soil that yields fall more slowly than by the order. The soil's share of a
+settlement is by the slice, and by a part of the coarser run's difference, as a slice has no variation along the riser.
+The share of other quantities is that difference, enlarged where the settlement changes by more on fine cells than on
+coarse ones. For soil of a few slices a slice is no cheaper than the run: there cells are coarsened twice.
 """
 
 from __future__ import annotations
@@ -31,31 +31,31 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from riser_soil.accuracy.extreme_differences import Extremes, apart
+from riser_soil.accuracy.extreme_differences import Extremes, difference
 from riser_soil.variants.key_results import SETTLEMENT, KeyResult
 
 SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalty": "penalty"}
-SMALLEST, SMALLEST_ON_SOIL = 5e-5, 1e-4  # bar told, over the quantity's scale
+SMALLEST, SMALLEST_ON_SOIL = 5e-5, 1e-4  # least bar, over the quantity's scale
 ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
-#: Orders in a contact force on a rigid floor, by a penalty. Beside an end that is held on it the riser sinks in within
-#: a length (4 EI/k)^(1/4) (beam on an elastic foundation), or an element where that is longer; what lies there, the end
-#: bears.
+#: Orders of a contact force on a rigid floor, by a penalty. Beside an end that is fixed on the floor the riser sinks in
+#: over a length (4 EI/k)^(1/4) (beam on an elastic foundation), or over an element where that is longer; the end bears
+#: the weight of that length.
 CONTACT_FORCE, OF_CONTACT_FORCE = "largest contact force", {"mesh": 1.0, "penalty": 0.25}
 SAFETY = {"mesh": 2.0, "time": 2.8, "soil": 0.9, "penalty": 1.6}
 ON_SOIL = {"mesh": 1.5, "time": 1.5}
-ON_PATH = {"soil": 1.4}  # where the soil's law depends on its path: its errors jump more, as cells yield one by one
-BY_SLICE = {"soil": 1.2}  # where a slice tells the settlement's error
-# Of a settlement: safety of what the slice tells; part of the coarser run's difference, at rest and in motion, where
+ON_PATH = {"soil": 1.4}  # for path-dependent soil, whose errors jump more, as cells yield one by one
+BY_SLICE = {"soil": 1.2}  # where the settlement's error is known by a slice
+# For a settlement: safety of the slice's error; part of the coarser run's difference, at rest and in motion, where
 # the trough comes by many loads and a slice is pressed once.
 SLICE, AT_REST, IN_MOTION = 1.4, 0.35, 1.8
-MOST_SEEN = 2.0  # times at most that a difference counts by what the slice tells; where it fails, always
-LARGE = {"time": 0.05}  # differences of coarser runs, over the scale, that are half way to the divisor 1
+MOST_ENLARGED = 2.0  # largest factor on a difference by the slice's error; the factor where the slice fails
+LARGE = {"time": 0.05}  # difference of a coarser run, over the scale, whose divisor is half way to 1
 Values = Mapping[str, float]  # of key results by their keys, in their units
 
 
 @dataclass(frozen=True)
 class ComparisonRun:
-    """A run of the chain: the source in which it differs from the one before, and how many times as fine it is in it.
+    """Run of the chain. source: of error, in which it differs from the run before. finer: how many times as fine it is.
 
     extremes: of its key results; None where it failed, for the `reason`.
     """
@@ -68,7 +68,11 @@ class ComparisonRun:
 
 @dataclass(frozen=True)
 class RunValues:
-    """The run's key results: as told, with peaks between nodes, between steps too, and without what rings."""
+    """Values of a run's key results.
+
+    key_results: as in the summary. of_nodes: with peaks between nodes. peaks: between nodes and steps. smooth: without
+    alternation from step to step.
+    """
 
     key_results: Mapping[str, KeyResult]
     of_nodes: Values
@@ -78,10 +82,10 @@ class RunValues:
 
 @dataclass(frozen=True)
 class ErrorBar:
-    """The error of a key result is at most `bar`, in its unit; None where it can't be told, for the `reason`.
+    """Bound on the error of a key result, in its unit; None where it is not known, for the `reason`.
 
-    by_source: the shares of mesh, time, soil and penalty, as far as they are known, in the same unit. order: in which
-    they fall.
+    by_source: the shares of mesh, time, soil and penalty, as far as they are known, in the same unit. order: of
+    convergence, by source.
     """
 
     key_result: KeyResult
@@ -93,10 +97,10 @@ class ErrorBar:
 
 @dataclass(frozen=True)
 class SoilOfRun:
-    """The soil of a run: whether its law depends on its path.
+    """Soil of a run. path_dependent: whether its law is.
 
-    fine: settlements [m] on fine cells by their keys, as a slice tells them; none where it failed, None of soil that is
-    not told by a slice. moving: stages that are not static.
+    fine: settlements [m] of a slice with fine cells, by their keys; empty where the slice failed, None where no slice
+    is computed. moving: names of stages that are not static.
     """
 
     path_dependent: bool
@@ -124,10 +128,10 @@ def _bar(
     order: Mapping[str, float],
     soil: SoilOfRun | None,
 ) -> ErrorBar:
-    found, unknown = _of_sources(key_result, run, chain, order)
-    between, safety = gaps(key_result, run), _safety(soil)
-    shares = {s: safety[s] * (between.get(s, 0.0) + found.get(s, 0.0)) for s in between | found}
-    if soil is not None and soil.fine is not None and "soil" in found:
+    errors, unknown = _errors_by_source(key_result, run, chain, order)
+    sampling, safety = sampling_errors(key_result, run), _safety(soil)
+    shares = {s: safety[s] * (sampling.get(s, 0.0) + errors.get(s, 0.0)) for s in sampling | errors}
+    if soil is not None and soil.fine is not None and "soil" in errors:
         shares["soil"] = _by_slice(key_result, run, chain, order, soil)
     if unknown:
         return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
@@ -142,26 +146,26 @@ def _by_slice(
     order: Mapping[str, float],
     soil: SoilOfRun,
 ) -> float:
-    """The soil's share, from a slice and a coarser run."""
+    """The soil's share of a bar, from a slice and a coarser run."""
     assert soil.fine is not None
-    off = _of_sources(key_result, run, chain, order)[0]["soil"]
+    error = _errors_by_source(key_result, run, chain, order)[0]["soil"]
     settled = run.key_results.get(f"{key_result.stage}: {SETTLEMENT}")
     if settled is None or settled.key not in soil.fine:
-        return BY_SLICE["soil"] * MOST_SEEN * off
+        return BY_SLICE["soil"] * MOST_ENLARGED * error
     finer = abs(soil.fine[settled.key] - settled.value)
     if key_result.name == SETTLEMENT:
-        return math.hypot(SLICE * finer, (IN_MOTION if key_result.stage in soil.moving else AT_REST) * off)
-    coarser = _of_sources(settled, run, chain, order)[0].get("soil", 0.0)
-    seen = min(max(finer / coarser, 1.0), MOST_SEEN) if coarser > 0.0 else MOST_SEEN
-    return BY_SLICE["soil"] * seen * off
+        return math.hypot(SLICE * finer, (IN_MOTION if key_result.stage in soil.moving else AT_REST) * error)
+    coarser = _errors_by_source(settled, run, chain, order)[0].get("soil", 0.0)
+    enlarged = min(max(finer / coarser, 1.0), MOST_ENLARGED) if coarser > 0.0 else MOST_ENLARGED
+    return BY_SLICE["soil"] * enlarged * error
 
 
-def _of_sources(
+def _errors_by_source(
     key_result: KeyResult, run: RunValues, chain: Sequence[ComparisonRun], order: Mapping[str, float]
 ) -> tuple[dict[str, float], list[str]]:
-    """Errors by source, without safety, in the quantity's unit; and why a source is not known."""
+    """Errors by source, without safety, in the quantity's unit; and reasons why some are not known."""
     key, scale = key_result.key, key_result.scale
-    found, unknown, fineness = dict[str, float](), list[str](), dict[str, float]()
+    errors, unknown, fineness = dict[str, float](), list[str](), dict[str, float]()
     before: Extremes | None = run.peaks
     for comparison_run in chain:
         source, so_far = comparison_run.source, fineness.get(comparison_run.source, 1.0)
@@ -171,31 +175,31 @@ def _of_sources(
             and comparison_run.extremes is not None
             and key in comparison_run.extremes
         ):
-            off = apart(before[key], comparison_run.extremes[key])
-            of_before = off / divisor(comparison_run, order[source], off / scale if scale > 0.0 else 0.0)
-            found[source] = max(found.get(source, 0.0), of_before * so_far ** order[source])
+            change = difference(before[key], comparison_run.extremes[key])
+            error = change / divisor(comparison_run, order[source], change / scale if scale > 0.0 else 0.0)
+            errors[source] = max(errors.get(source, 0.0), error * so_far ** order[source])
         else:
             unknown.append(f"{source}: {comparison_run.reason or 'a coarser run does not have it'}")
         fineness[source] = so_far * comparison_run.finer
         before = comparison_run.extremes
-    return found, unknown
+    return errors, unknown
 
 
-def divisor(comparison_run: ComparisonRun, order: float, off: float) -> float:
-    """Ratio of the difference of two runs to the error of the first. off: the difference over its scale."""
+def divisor(comparison_run: ComparisonRun, order: float, change: float) -> float:
+    """Ratio of the difference of two runs to the error of the first. change: the difference over its scale."""
     asymptotic = abs(comparison_run.finer**-order - 1.0)
     if comparison_run.source not in LARGE:
         return asymptotic
-    return 1.0 + (asymptotic - 1.0) / (1.0 + off / LARGE[comparison_run.source])
+    return 1.0 + (asymptotic - 1.0) / (1.0 + change / LARGE[comparison_run.source])
 
 
 def orders(name: str, rigid: bool) -> Mapping[str, float]:
-    """Orders by source in which the error of a quantity falls. rigid: on a rigid floor."""
+    """Orders of convergence of a quantity by source. rigid: whether the ground is a rigid floor."""
     return ORDER | OF_CONTACT_FORCE if name == CONTACT_FORCE and rigid else ORDER
 
 
-def gaps(key_result: KeyResult, run: RunValues) -> dict[str, float]:
-    """What falls between nodes and between steps of the run itself, and what rings."""
+def sampling_errors(key_result: KeyResult, run: RunValues) -> dict[str, float]:
+    """Errors of sampling at the run's nodes and steps, and by alternation from step to step, in the quantity's unit."""
     key, value = key_result.key, key_result.value
     nodes = run.of_nodes.get(key, value)
     peak = run.peaks[key].value if key in run.peaks else nodes

@@ -11,15 +11,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-LEAST_ORDER, MOST_ORDER = 0.4, 8.0  # beyond them three values tell no order
-LEAST_DOUBT = 0.3  # of the last correction: two extrapolations may agree by chance
+LEAST_ORDER, MOST_ORDER = 0.4, 8.0  # of three values whose order counts as observed
+LEAST_UNCERTAINTY = 0.3  # of the last correction: two extrapolations may agree by chance
 
 
 @dataclass(frozen=True)
 class Limit:
-    """What a refinement series leads to. uncertainty: how far the limit may be off, in the values' unit.
+    """Limit of a refinement series. uncertainty: how far the limit may be off, in the values' unit.
 
-    order: observed with the finest three, None where they show none: the limit is then the finest value.
+    order: observed with the finest three values, None where they show none: the limit is then the finest value.
     """
 
     value: float
@@ -28,11 +28,11 @@ class Limit:
 
 
 def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:
-    """The limit of values at sizes h, in any order, each size once; one value is its own limit, of unknown uncertainty.
+    """Limit of values at sizes h, in any order, each size once; one value is its own limit, of unknown uncertainty.
 
-    Uncertainty: how far the extrapolation from the finest three is from that of the three before, at least 0.3 of
-    the last correction. Where there are none before or they show no order: the correction, at least half the last
-    change. Without an order among the finest three: the largest change among them.
+    The uncertainty is how far the extrapolation from the finest three is from that of the three before, at least 0.3
+    of the last correction. Where there are none before or they show no order, it is the correction, at least half the
+    last change. Without an order among the finest three, it is the largest change among them.
     """
     refinement = sorted(zip(sizes, values, strict=True), reverse=True)
     if len({h for h, _ in refinement}) < len(refinement):
@@ -49,27 +49,30 @@ def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:
     correction, change = abs(value - finest), abs(finest - refinement[-2][1])
     if before is None:
         return Limit(value, max(correction, 0.5 * change), order)
-    return Limit(value, max(abs(value - before[0]), LEAST_DOUBT * correction), order)
+    return Limit(value, max(abs(value - before[0]), LEAST_UNCERTAINTY * correction), order)
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
-    """Order p by which three values at falling sizes close in on a limit; None where they show none."""
+    """Order p by which three values at falling sizes converge; None where they show none."""
     (h1, h2, h3), (q1, q2, q3) = sizes, values
     first, second = q1 - q2, q2 - q3
     if first * second <= 0.0:
         return None
 
-    def excess(p: float) -> float:
-        """Above 0 where p is too large; lengths over h2, so that no power over- or underflows."""
+    def residual(p: float) -> float:
+        """Residual of the equation for p, positive where p is too large.
+
+        Sizes are over h2, so that no power over- or underflows.
+        """
         a, c = (h1 / h2) ** p, (h3 / h2) ** p
         return (a - 1.0) / (1.0 - c) - first / second
 
     low, high = LEAST_ORDER, MOST_ORDER
-    if excess(low) > 0.0 or excess(high) < 0.0:
+    if residual(low) > 0.0 or residual(high) < 0.0:
         return None
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if excess(middle) > 0.0 else (middle, high)
+        low, high = (low, middle) if residual(middle) > 0.0 else (middle, high)
     return 0.5 * (low + high)
 
 

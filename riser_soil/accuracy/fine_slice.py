@@ -1,12 +1,12 @@
-"""Error of the soil's cells, found where it arises: in one slice across the riser, on the run's cells and on fine ones.
+"""Error of the soil's cells by a slice across the riser, on the run's cells and on fine ones.
 
-How deep a riser settles somewhere follows from the load that it bears there and from the cells below it. A stiff pipe
-is pressed into a slice of the run's cells until it settles as deep as the riser did: what it bears then is the load.
-Pressed on fine cells it settles more, or less, under the same load. A slice costs so little that its cells can be finer
-than the run's: clay that yields on fine cells alone is seen.
+A riser's settlement follows from its load and the cells below it. A stiff pipe is pressed into a slice of the run's
+cells until it settles as deep as the riser did; its resistance then is the load. On fine cells its settlement under the
+same load is another one. A slice costs so little that its cells can be finer than the run's, so that clay which yields
+on fine cells alone has its effect.
 
-Fine cells resolve what touches, as automatic ones do, and are half as large as the run's at most; far off they are as
-the run's. The slice has the run's laws and contact, and is in plane strain.
+Fine cells resolve the contact width, as automatic ones do, and are at most half as large as the run's; far from the
+pipe they are the run's. The slice has the run's laws and contact, and is in plane strain.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, solve_stages
 from riser_soil.variants.settings import resolved
 
-PEAK = 1.5  # load under a touchdown point over the weight, for which fine cells are chosen
-COARSEST = 0.5  # of the run's cells, that fine ones are at most
-# Depth to which the first stage presses the pipe, over the riser's settlement; how much deeper each next one goes; its
-# load steps at least, those of the first are as many as of a riser that is laid.
+PEAK = 1.5  # load at a touchdown point over the weight, for which fine cells are chosen
+COARSEST = 0.5  # largest size of fine cells over the run's
+# Depth to which the first stage presses the pipe, over the riser's settlement; ratio of depths from stage to stage;
+# least number of load steps of a stage, of which the first has as many as a riser that is laid.
 FIRST, DEEPER, STEPS = 1.25, 1.5, 3
-DEEPEST = 0.45  # of the diameter, to which a pipe is pressed
-STIFF = 1e3  # times as stiff as the soil is the pipe
+DEEPEST = 0.45  # to which a pipe is pressed, over the diameter
+STIFF = 1e3  # stiffness of the pipe over the soil's
 LENGTH = 0.2  # of the slice under the pipe, in diameters
-FEW = 3.0  # cells along the riser, of soil of which a slice is too large a part
+FEW = 3.0  # cells along the riser of a block that has too few slices for one to be cheap
 
 
 def has_many_slices(scene: Scene) -> bool:
@@ -54,10 +54,9 @@ def has_many_slices(scene: Scene) -> bool:
 
 
 def settlements_on_fine_cells(scene: Scene, settlements: Sequence[float]) -> list[float] | None:
-    """How deep a riser that settles so deep [m] would on fine cells; None where no slice tells: of a mesh file, beside
-    a trench, of contact at nodes, of a pipe without weight or settlement. Raises what a run would.
+    """Settlements on fine cells of a riser with these settlements [m]; not collective. Raises the errors of a run.
 
-    A rank computes it by itself.
+    None where there is no slice: with a mesh file, a trench, contact at nodes, or a pipe without weight or settlement.
     """
     own = on_soil(resolved(scene))
     if own is None:
@@ -98,7 +97,7 @@ def _given_mesh(scene: Scene) -> GeneratedMesh:
 
 
 def _cells(across: float, strip: float, mesh: GeneratedMesh) -> GeneratedMesh:
-    """Hexahedra of a section, far off as large as those of a mesh."""
+    """Mesh of hexahedra of a section, far from the pipe as large as those of a mesh."""
     return GeneratedMesh(
         size_at_riser=CellSizes(along=mesh.along, across=across, strip=strip), size_far=max(mesh.size_far, across)
     )
@@ -126,7 +125,7 @@ def _across(scene: Scene) -> int:
 
 
 def _pipe(scales: Scales, E: float) -> dict[str, Any]:
-    """A scene of a length of pipe that is as stiff as soil of a modulus E [Pa] asks for, held at its ends."""
+    """Scene of a length of pipe that is stiff compared with soil of modulus E [Pa], with fixed ends."""
     D, gravity = scales.diameter, 9.81
     pipe = {"outer_diameter": D, "submerged_weight": scales.weight, "mass": scales.weight / gravity}
     pipe |= {"EA": STIFF * E * D**2, "EI": STIFF * E * D**4}
@@ -178,6 +177,6 @@ def _pressed(scene: Scene, settlement: float = np.inf, load: float = np.inf) -> 
 
 
 def _at(x: Array, y: Array, value: float) -> float:
-    """Value at which a curve y(x), x increasing, is read; beyond its ends its first or last part goes on straight."""
+    """Value of a curve y(x), x increasing, with linear extrapolation at both ends."""
     n = int(np.clip(np.searchsorted(x, value), 1, x.size - 1))
     return float(y[n - 1] + (y[n] - y[n - 1]) * (value - x[n - 1]) / (x[n] - x[n - 1]))

@@ -1,4 +1,4 @@
-"""Refinement series of a study: how fine its points are, setting by setting around the scene's own settings."""
+"""Refinement series of a study: points around the scene's own settings, setting by setting."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from riser_soil.scene.scene import Scene
 from riser_soil.variants.settings import Setting, refined, settings_in_words, varied
 
 RATIOS = {"elements": 2.0, "time_step": 2.0, "soil_mesh": 2.0 ** (1.0 / 3.0), "penalty": 10.0**0.5}
-"""From level to level: the soil's cells grow in number by the cube, so that each level about doubles a run's cost; the
-penalty costs little and its error falls with its inverse."""
-SAME = 0.01  # two levels closer than that, by rounding, are one
+"""Ratios of levels. The number of the soil's cells grows by the cube, so that each level about doubles a run's cost.
+The penalty costs little, and its error falls with its inverse."""
+SAME = 0.01  # relative difference of two levels that count as one, as counts are rounded
 
 
 @dataclass(frozen=True, eq=False)
 class Refinements:
-    """The settings of a study and how fine their levels are; the scene is the point (1, 1, ...).
+    """Settings of a study and the fineness of their levels; the scene is the point (1, 1, ...).
 
     levels: of each setting, of which half (rounded down) are finer than the scene.
     """
@@ -34,7 +34,7 @@ class Refinements:
 
     @cached_property
     def factors(self) -> tuple[tuple[float, ...], ...]:
-        """Levels of each setting, from coarse to fine; levels that rounding makes equal are there once."""
+        """Levels of each setting, from coarse to fine, each once where rounding makes some equal."""
         finer = self.levels // 2
         exponents = range(finer + 1 - self.levels, finer + 1)
         powers = ([RATIOS[setting.name] ** n for n in exponents] for setting in self.settings)
@@ -42,14 +42,15 @@ class Refinements:
 
     @property
     def corner(self) -> Factors | None:
-        """All settings one level finer at once, which tells whether their errors add up; None of a single setting."""
+        """Point with all settings one level finer, which shows whether their errors add up; None for one setting."""
         return tuple(RATIOS[setting.name] for setting in self.settings) if len(self.settings) > 1 else None
 
     def along(self, number: int) -> list[Factors]:
-        """Points of one setting's refinement series, from coarse to fine; the others are as in the scene."""
-        return [self.turned(number, factor) for factor in self.factors[number]]
+        """Points of one setting's refinement series, from coarse to fine."""
+        return [self.point(number, factor) for factor in self.factors[number]]
 
-    def turned(self, number: int, factor: float) -> Factors:
+    def point(self, number: int, factor: float) -> Factors:
+        """Point with one setting at a level and the others as in the scene."""
         return tuple(factor if n == number else 1.0 for n in range(len(self.settings)))
 
     def scene_at(self, point: Factors) -> Scene:
@@ -58,16 +59,16 @@ class Refinements:
         return refined(self.scene, dict(zip(names, point, strict=True)))
 
     def in_words(self, point: Factors) -> str:
-        """The settings in words."""
+        """Settings of a point in words."""
         return settings_in_words(self.scene_at(point), self.settings)
 
     def fineness(self, number: int, factor: float) -> float:
-        """Fineness at a level over that of the scene, after counts are rounded."""
+        """Fineness of one setting at a level over that of the scene, after counts are rounded."""
         setting = self.settings[number]
         return setting.fineness(varied(self.scene, setting, factor)) / setting.fineness(self.scene)
 
     def _distinct(self, number: int, factors: Sequence[float]) -> tuple[float, ...]:
-        """The scene's own level stays, of the others the first of those that are equal."""
+        """Levels that differ: the scene's own, and of others that are equal the one nearest to it."""
         kept = {1.0: 1.0}
         for factor in sorted(factors, key=lambda f: max(f, 1.0 / f)):
             fine = self.fineness(number, factor)

@@ -21,22 +21,22 @@ from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.variants.key_results import key_results
 from riser_soil.variants.settings import refined, resolved
 
-SHAPES = 3  # static runs at most that grade the mesh
-SETTLED = 1.5  # elements at most so many times as long as curvature asks for
+MOST_STATIC_RUNS = 3  # that grade the mesh
+LENGTH_RATIO = 1.5  # largest ratio of elements' lengths to those that curvature requires, of a graded mesh
 LONGER = Variation("time", {"time_step": 0.5})  # of the trial, whose steps are long already
-ATTEMPTS, EACH = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
+ATTEMPTS, EACH = 3, 2.0  # runs of a scene that fails; ratio of elements and of steps from one to the next
 HELPING = ("elements", "time_step")
-_Found = TypeVar("_Found")
+_Value = TypeVar("_Value")
 OfLines = dict[str, tuple[Segment, ...]]
-EVEN, LEAST, BROKEN = 24, 4, 2  # elements of the riser; at least of a segment, and of a part of one between two places
-# Time steps to the shortest period of what moves, times the root of the accuracy, as errors fall with the step's
-# square; within limits. Where nothing has a period, to a quarter of a stage; so many to any stage at least.
+EVEN, LEAST, BROKEN = 24, 4, 2  # elements of a riser; least number in a segment, and in a part of a segment
+# Time steps in the shortest period of a motion, times the root of the accuracy, as errors fall with the square of the
+# step; least and largest number of steps in it. Where nothing has a period, it is a quarter of the stage.
 OF_PERIOD, FEWEST, MOST = 5.0, 16.0, 500.0
 
 
 @dataclass(frozen=True, eq=False)
 class TriedSetting:
-    """A scene that was computed, its values on rank 0, its error bars, and the seconds that it took as a run."""
+    """A scene that was computed. values: on rank 0. seconds: processor time of the run [s]."""
 
     scene: Scene
     values: RunValues | None
@@ -45,33 +45,29 @@ class TriedSetting:
 
 
 def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
-    """On a mesh that curvature has graded, with comparison runs; collective. scene: in its first setting."""
+    """Run of a scene on a mesh that is graded by curvature, with its error bars; collective.
+
+    scene: in its first setting.
+    """
     segments = _segments(scene)
     scene = _meshed(scene, accuracy, comm)
-    scene, seen, peaks = _computed(scene, comm)
-    if _excess(seen, accuracy, comm) > SETTLED:
-        scene, _, peaks = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
+    scene, envelopes, peaks = _computed(scene, comm)
+    if _length_ratio(envelopes, accuracy, comm) > LENGTH_RATIO:
+        scene, _, peaks = _computed(_graded(scene, segments, envelopes, accuracy, comm), comm)
     values = run_values(key_results(peaks.as_summary("sampled")), peaks) if comm.rank == 0 else None
     return TriedSetting(scene, values, measured(scene, values, comm, LONGER))
 
 
 def measured(scene: Scene, values: RunValues | None, comm: Any, longer: Variation | None = None) -> list[ErrorBar]:
-    """Error bars of a run by comparison runs, elements and penalty apart; collective. values: the run's, on rank 0.
-    longer: steps, if other than usual.
+    """Error bars of a run by comparison runs, one for each setting; collective.
+
+    values: of the run, on rank 0. longer: the variation of time steps, if not the usual one.
     """
-    apart = [*_apart(variations(scene))]
-    chain = comparison_runs(scene, comm, apart if longer is None else _with(longer, apart))
+    single = [
+        Variation(SOURCES[name], {name: factor}) for each in variations(scene) for name, factor in each.factors.items()
+    ]
+    chain = comparison_runs(scene, comm, [longer if longer and each.source == "time" else each for each in single])
     return _on_first(comm, lambda: bars_of(scene, _known(values), chain))
-
-
-def _with(longer: Variation, usual: Sequence[Variation]) -> list[Variation]:
-    return [longer if each.source == longer.source else each for each in usual]
-
-
-def _apart(varying: Sequence[Variation]) -> Iterator[Variation]:
-    """Source by source: a run may need one of them."""
-    for _, factors in varying:
-        yield from (Variation(SOURCES[name], {name: factor}) for name, factor in factors.items())
 
 
 def _known(values: RunValues | None) -> RunValues:
@@ -80,57 +76,57 @@ def _known(values: RunValues | None) -> RunValues:
 
 
 def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
-    """By the static stages that the scene begins with; as it is where there is none."""
+    """The scene on a mesh that is graded by its first static stages; as it is where it begins with another one."""
     segments, statics = _segments(scene), first_statics(scene)
-    for _ in range(SHAPES if statics else 0):
-        part, seen, _ = _computed(scene.model_copy(update={"stages": statics}), comm)
+    for _ in range(MOST_STATIC_RUNS if statics else 0):
+        part, envelopes, _ = _computed(scene.model_copy(update={"stages": statics}), comm)
         scene = with_risers(scene, risers(part))
-        if _excess(seen, accuracy, comm) <= SETTLED:
+        if _length_ratio(envelopes, accuracy, comm) <= LENGTH_RATIO:
             break
-        scene = _graded(scene, segments, seen, accuracy, comm)
+        scene = _graded(scene, segments, envelopes, accuracy, comm)
     return scene
 
 
 def first_statics(scene: Scene) -> Sequence[Any]:
+    """The static stages with which a scene begins."""
     return tuple(takewhile(lambda stage: isinstance(stage, StaticStage), scene.stages))
 
 
-def _computed(scene: Scene, comm: Any) -> tuple[Scene, Envelopes, RunPeaks]:
-    """The scene, finer where it fails otherwise, and what was seen of it."""
-    for _ in range(ATTEMPTS - 1):
-        seen: Envelopes = {}
-        try:
-            return scene, seen, peaks_of(scene, comm, seen)
-        except SolveError:
-            scene = refined(scene, dict.fromkeys(HELPING, EACH))
-    seen = {}
-    return scene, seen, peaks_of(scene, comm, seen)
+def _computed(scene: Scene, comm: Any, attempts: int = ATTEMPTS) -> tuple[Scene, Envelopes, RunPeaks]:
+    """The scene, finer where it fails otherwise, with envelopes and peaks of its run."""
+    envelopes: Envelopes = {}
+    try:
+        return scene, envelopes, peaks_of(scene, comm, envelopes)
+    except SolveError:
+        if attempts == 1:
+            raise
+    return _computed(refined(scene, dict.fromkeys(HELPING, EACH)), comm, attempts - 1)
 
 
 def _segments(scene: Scene) -> OfLines:
     return {name: line.segments for name, line in risers(scene).items()}
 
 
-def _graded(scene: Scene, segments: OfLines, seen: Envelopes, accuracy: float, comm: Any) -> Scene:
+def _graded(scene: Scene, segments: OfLines, envelopes: Envelopes, accuracy: float, comm: Any) -> Scene:
     def made() -> OfLines:
-        return {name: graded(segments[name], own.arc, own.lengths(accuracy)) for name, own in seen.items()}
+        return {name: graded(segments[name], own.arc, own.lengths(accuracy)) for name, own in envelopes.items()}
 
     return with_segments(scene, _on_first(comm, made))
 
 
-def _excess(seen: Envelopes, accuracy: float, comm: Any) -> float:
-    """Largest of all lines' errors over the accuracy asked for; the same on all ranks."""
-    return _on_first(comm, lambda: max(own.excess(accuracy) for own in seen.values()))
+def _length_ratio(envelopes: Envelopes, accuracy: float, comm: Any) -> float:
+    """Largest ratio of an element's length to the required one, of all lines; the same on all ranks."""
+    return _on_first(comm, lambda: max(own.length_ratio(accuracy) for own in envelopes.values()))
 
 
-def _on_first(comm: Any, found: Callable[[], _Found]) -> _Found:
-    """What rank 0 finds."""
-    there: _Found = comm.bcast(found() if comm.rank == 0 else None)
-    return there
+def _on_first(comm: Any, value: Callable[[], _Value]) -> _Value:
+    """A value that rank 0 computes, on all ranks."""
+    shared: _Value = comm.bcast(value() if comm.rank == 0 else None)
+    return shared
 
 
 def first_setting(scene: Scene) -> Scene:
-    """The scene with elements, steps, soil mesh and penalty in numbers, and no accuracy asked any more."""
+    """The scene from which the search begins: elements, steps, soil mesh and penalty in numbers, no accuracy."""
     accuracy = scene.accuracy
     assert accuracy is not None
     of_period = min(max(OF_PERIOD / math.sqrt(accuracy), FEWEST), MOST)
@@ -145,7 +141,7 @@ def _first_segments(scene: Scene) -> Iterator[Segment]:
 
 
 def _parts(scene: Scene) -> Iterator[tuple[Segment, int]]:
-    """Segments, broken where something acts, with their least number of elements."""
+    """Parts of segments between the points where something acts, with their least number of elements."""
     for parts in broken(scene):
         yield from ((part, LEAST if len(parts) == 1 else BROKEN) for part in parts)
 

@@ -17,9 +17,9 @@ from riser_soil.scene.scene import Scene
 from riser_soil.variants.runs_folder import claimed
 from riser_soil.variants.settings import Setting, resolved, settings_of
 
-TRIES = 3  # settings expected to reach a target that are run
-FINER = 2  # levels at most by which a scene that fails is made finer
-HELPING = ("elements", "time_step")  # settings that may help it
+TRIES = 3  # largest number of settings run for a target, each predicted to reach it
+FINER = 2  # largest number of levels by which a scene that fails is refined
+HELPING = ("elements", "time_step")  # settings that are refined where a scene fails
 LEAST_LEVELS, MOST_LEVELS = 3, 9
 
 
@@ -27,11 +27,11 @@ def study(
     scene: Scene, folder: Path, *, settings: Sequence[str] = (), levels: int = 5, jobs: int = 1, force: bool = False,
     says: Says = print,
 ) -> Study:  # fmt: skip
-    """Run the study and leave its files in a folder; one that was interrupted goes on where it was.
+    """Run a study and leave its files in a folder. A study that was interrupted is resumed.
 
-    settings: names of those to vary, all that the scene has by default. levels: of each refinement series. jobs:
-    processes at a time for the finest points; the others, whose time counts, run one at a time. force: begin anew.
-    Where the scene fails, the study is around one with more elements and shorter steps. Raises SceneError,
+    settings: names of those to vary, all of the scene's by default. levels: number in each refinement series. jobs:
+    processes at a time for the finest points; the others, which are timed, run one at a time. force: discard earlier
+    runs. Where the scene fails, the study is around one with more elements and shorter steps. Raises SceneError,
     ResultsError, and SolveError where those fail, too.
     """
     refinements = Refinements(resolved(scene), _chosen(scene, settings), levels)
@@ -53,7 +53,7 @@ def study(
 
 
 def _around_what_runs(made: Study) -> Study:
-    """The study, or one around a finer scene, whose scene has been run."""
+    """The study with its scene computed; where that fails, a study around a finer scene."""
     made.compute([made.refinements.base], 1)
     for _ in range(FINER):
         if made.scene.done or not any(setting.name in HELPING for setting in made.refinements.settings):
@@ -67,7 +67,7 @@ def _around_what_runs(made: Study) -> Study:
 
 
 def _finer(made: Study) -> Study:
-    """A level finer in what may help a scene that fails; what has been run is known in its terms."""
+    """The study around a scene one level finer in elements and steps, with the same points in its terms."""
     step = tuple(RATIOS[setting.name] if setting.name in HELPING else 1.0 for setting in made.refinements.settings)
     refinements = Refinements(made.refinements.scene_at(step), made.refinements.settings, made.refinements.levels)
     finer = Study(refinements, made.folder, made.says, failure=made.failure or made.scene.reason)
@@ -88,7 +88,7 @@ def _chosen(scene: Scene, names: Sequence[str]) -> tuple[Setting, ...]:
 
 
 def _compute_refinements(made: Study, jobs: int) -> None:
-    """The finest of each refinement series and the corner, which take longest, then the rest one at a time."""
+    """Compute the finest point of each series and the corner, which take longest, then the others one at a time."""
     refinements = made.refinements
     along = [refinements.along(number) for number in range(len(refinements.settings))]
     finest = [points[-1] for points in along]
@@ -97,7 +97,7 @@ def _compute_refinements(made: Study, jobs: int) -> None:
 
 
 def _try_settings(made: Study) -> None:
-    """Run what should reach the targets at less cost than what has been run."""
+    """Run settings that are predicted to reach the targets at less cost than the runs so far."""
     for target in TARGETS:
         for _ in range(TRIES):
             point = next_setting(made.predicted(target))

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil import __version__
-from riser_soil.accuracy.assessment import TELLING, AssessedQuantity
+from riser_soil.accuracy.assessment import MOST_UNCERTAIN, AssessedQuantity
 from riser_soil.accuracy.findings import TARGETS, Study
 from riser_soil.accuracy.study_page import page, words
 from riser_soil.accuracy.study_points import PointOutcome
@@ -67,7 +67,7 @@ def _quantity(study: Study, each: AssessedQuantity) -> dict[str, Any]:
         "reference": each.reference.value,
         "uncertainty": each.uncertainty,
         "scale": each.reference.scale,
-        "judged": each.doubt <= TELLING,
+        "judged": each.relative_uncertainty <= MOST_UNCERTAIN,
         "error": each.error,
         "knobs": {
             setting.name: {

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from typing import Any
 
-from riser_soil.accuracy.assessment import TELLING, AssessedQuantity
+from riser_soil.accuracy.assessment import MOST_UNCERTAIN, AssessedQuantity
 from riser_soil.accuracy.findings import TARGETS, Study
 from riser_soil.plots.work_precision import SettingLine, WorkPrecision, drawn_work_precision
 
@@ -25,7 +25,7 @@ Quantities = dict[str, AssessedQuantity]
 
 
 def page(study: Study, content: Mapping[str, Any]) -> str:
-    """told: the content of study.json."""
+    """The page of a study. content: of study.json."""
     machine = content["machine"]
     made = (
         f"riser-soil {content['version']}, {content['date']}; {machine['cores']} cores ({machine['processor']}), "
@@ -41,8 +41,8 @@ def page(study: Study, content: Mapping[str, Any]) -> str:
             *_list(content["words"]),
             _image(study, content),
             '<p class="note">Error: the largest relative error among the key results, each line with one setting '
-            "turned and the others as in the scene. Below the dotted line errors are less than what the reference is "
-            "known to. Hollow points ran beside others.</p>",
+            "varied and the others as in the scene. Below the dotted line errors are less than the uncertainty of the "
+            "reference. Hollow points ran beside others.</p>",
             "<h2>Key results</h2>",
             _quantities(content),
             "<h2>Points</h2>",
@@ -146,7 +146,7 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def words(study: Study) -> list[str]:
-    """Sentences, in their order."""
+    """Result of a study in sentences."""
     return [
         *_moved(study),
         *_unknown(study.quantities()),
@@ -164,25 +164,26 @@ def _moved(study: Study) -> Iterator[str]:
 
 
 def percent(part: float) -> str:
-    """Three figures; a part of inf or nan is unknown."""
+    """A part in percent, of three digits; one of inf or nan is unknown."""
     return f"{100.0 * part:.3g} %" if math.isfinite(part) else "unknown"
 
 
 def _unknown(quantities: Quantities) -> Iterator[str]:
-    unknown = _doubtful(quantities, TELLING)
+    unknown = _uncertain(quantities, MOST_UNCERTAIN)
     if unknown:
         yield (
             f"the error of {unknown} is unknown, as no refinement converges; what follows is without them"
         )
 
 
-def _doubtful(quantities: Quantities, doubt: float) -> str:
-    """Quantities whose reference is not known to a relative uncertainty."""
-    return ", ".join(f"{key} (± {percent(each.doubt)})" for key, each in quantities.items() if not each.doubt <= doubt)
+def _uncertain(quantities: Quantities, most: float) -> str:
+    """Quantities whose reference has a larger relative uncertainty, in words."""
+    uncertain = ((key, each.relative_uncertainty) for key, each in quantities.items())
+    return ", ".join(f"{key} (± {percent(size)})" for key, size in uncertain if not size <= most)
 
 
 def _off(quantities: Quantities, error: float, key: str) -> str:
-    return f"{percent(error)} off at most (± {percent(quantities[key].doubt)}), in {key}"
+    return f"{percent(error)} off at most (± {percent(quantities[key].relative_uncertainty)}), in {key}"
 
 
 def _accuracy(study: Study) -> Iterator[str]:
@@ -200,7 +201,7 @@ def _limiting(study: Study) -> Iterator[str]:
     shares = [(*_largest_share(quantities, n), setting.words) for n, setting in enumerate(study.refinements.settings)]
     largest = "; ".join(f"{setting} {percent(share)} ({key})" for share, key, setting in sorted(shares, reverse=True))
     most, key, setting = max(shares)
-    if most <= quantities[key].doubt:
+    if most <= quantities[key].relative_uncertainty:
         yield f"no setting limits the accuracy by more than the study resolves; largest shares of error: {largest}"
     else:
         yield f"what limits the accuracy is the {setting}; largest shares of error: {largest}"
@@ -226,7 +227,7 @@ def _cheapest(study: Study, target: float) -> Iterator[str]:
         yield f"{percent(target)} is reached{where} {at}"
     else:
         yield f"{percent(target)} can't be judged{where}; the reference is reached as far as it is known {at}"
-    beside = _doubtful(quantities, target)
+    beside = _uncertain(quantities, target)
     if beside:
         yield f"the reference is known less well than to {percent(target)} of {beside}"
 

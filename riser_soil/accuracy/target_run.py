@@ -1,9 +1,9 @@
 """Run to an accuracy: mesh, steps, soil and penalty are chosen so that all key results reach it.
 
-A short search comes first, without files (`search`). The run itself is as much finer as its error bars ask for. What
-bars are left is predicted from the trial before, and measured by comparison runs of the run where that is doubtful
-(`needed.doubtful`). Where they miss the accuracy, a finer run follows, unless the runs that are left would, too, or it
-would take too long. A run that fails is replaced by one that goes half the way to its setting.
+A short search comes first, without files (`search`). The run itself is as much finer as the trial's error bars require.
+Its own bars are predicted from the trial's, or measured by comparison runs where the prediction is unreliable
+(`required_fineness.unreliable`). If they exceed the accuracy, a finer run follows, unless further runs would exceed it,
+too, or take too long. A run that fails is replaced by one half the way to its setting.
 """
 
 from __future__ import annotations
@@ -11,9 +11,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from riser_soil.accuracy.barred_run import LEFT, print_bars, values_of_run, write_bars
+from riser_soil.accuracy.barred_run import INTERRUPTED, print_bars, values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
-from riser_soil.accuracy.needed import Factors, doubtful, expected, largest, needed, times_as_long, too_dear
+from riser_soil.accuracy.required_fineness import (
+    Factors,
+    cost_ratio,
+    largest,
+    out_of_reach,
+    predicted_bars,
+    required,
+    unreliable,
+)
 from riser_soil.accuracy.search import TriedSetting, first_setting, measured, trial
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
@@ -26,16 +34,17 @@ from riser_soil.scene.scene import Scene
 from riser_soil.variants.settings import refined, settings_in_words, settings_of
 from riser_soil.whole_run import run
 
-RUNS = 4  # at most that are to reach the accuracy
-LONGEST = 1800.0  # s of the processor, of a run that follows another: soil's price grows by the cube of its fineness
-HALF_WAY = 0.5  # as a power of all factors
-CLOSER = 0.7  # of what the run before aimed at, as its bars fell by less than their orders
+RUNS = 4  # largest number of runs
+LONGEST = 1800.0  # processor time of a run after the first [s]: the soil's cost grows by the cube of its fineness
+HALF_WAY = 0.5  # exponent of all factors
+CLOSER = 0.7  # aim over that of the run before, as its bars fell by less than their orders predict
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"
 
 
 def run_to_accuracy(scene: Scene, folder: Path | str, force: bool = False) -> None:
-    """Run a scene with a setting that reaches `scene.accuracy`; collective. AccuracyError where none was found: the
-    finest run is in the folder then, with its error bars.
+    """Run a scene with a setting that reaches `scene.accuracy`; collective.
+
+    AccuracyError where none was found: the folder has the finest run then, with its error bars.
     """
     folder, comm, began = Path(folder), communicator_of(scene), compiled.seconds_of_work()
     accuracy = scene.accuracy
@@ -58,9 +67,9 @@ def _sought(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
 
 
 def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, comm: Any) -> tuple[TriedSetting, str]:
-    """The last run, and why there is no finer one where it can't be run."""
+    """The last run, and in words why no finer one follows."""
     for number in range(RUNS):
-        _tell(last, accuracy, comm)
+        _print_largest(last, accuracy, comm)
         try:
             factors, seconds = comm.bcast(_next_factors(last, accuracy, number))
             if seconds > LONGEST:
@@ -72,19 +81,20 @@ def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, c
             return last, f"; a finer one can't be run: {err}"
         if largest(last.bars)[0] <= accuracy or number == RUNS - 1:
             break
-        if times := too_dear(last.bars, accuracy, RUNS - 1 - number):
+        if times := out_of_reach(last.bars, accuracy, RUNS - 1 - number):
             duration = in_words(times * last.seconds)
             return last, f"; to reach it would take at least {times:.0f} times as long, {duration}"
     return last, f"; after {RUNS} runs"
 
 
 def _next_factors(last: TriedSetting, accuracy: float, number: int) -> tuple[Factors, float]:
-    """How many times as fine the run of a number is, by source, and what it takes [s]: as much closer to what is asked
-    as there is time for.
+    """Ratios of fineness of the run of a number by source, and its processor time [s].
+
+    Each run aims closer than the one before, as far as there is time for.
     """
     for closer in range(number, -1, -1):
-        factors = needed(last.bars, CLOSER**closer * accuracy)
-        seconds = last.seconds * times_as_long(factors)
+        factors = required(last.bars, CLOSER**closer * accuracy)
+        seconds = last.seconds * cost_ratio(factors)
         if seconds <= LONGEST:
             break
     return factors, seconds
@@ -93,7 +103,7 @@ def _next_factors(last: TriedSetting, accuracy: float, number: int) -> tuple[Fac
 def _next_run(
     last: TriedSetting, factors: Factors, accuracy: float, folder: Path, force: bool, comm: Any
 ) -> TriedSetting:
-    """That which is so many times as fine by source; where it fails, one half the way to it."""
+    """A run that is finer by factors; where it fails, one half the way to it."""
     try:
         return _finer_run(last, factors, accuracy, folder, force, comm)
     except SolveError as err:
@@ -107,30 +117,31 @@ def _next_run(
 def _finer_run(
     last: TriedSetting, factors: Factors, accuracy: float, folder: Path, force: bool, comm: Any
 ) -> TriedSetting:
-    """The scene of the last, so many times as fine by source."""
+    """A run of the last scene, finer by factors."""
     names = {source: name for name, source in SOURCES.items()}
     scene = refined(last.scene, {names[source]: factor for source, factor in factors.items()})
     peaks, since = RunPeaks(), compiled.seconds_of_work()
     run(scene, folder, force, peaks)
-    taken = compiled.seconds_of_work() - since
+    seconds = compiled.seconds_of_work() - since
     values = values_of_run(folder, peaks) if comm.rank == 0 else None
     bars = comm.bcast(_predicted_bars(last, values, factors, accuracy))
     if bars is None:
         bars = _measured(scene, values, folder, comm)
-    return TriedSetting(scene, values, bars, taken)
+    return TriedSetting(scene, values, bars, seconds)
 
 
 def _predicted_bars(
     last: TriedSetting, values: RunValues | None, factors: Factors, accuracy: float
 ) -> list[ErrorBar] | None:
-    """The run's bars, from those of the one before; None where that is doubtful, and on other ranks. Finer cells of
-    soil are: in them contact grows cell by cell.
+    """Error bars of a run by those of the run before, on rank 0; None where they are unreliable.
+
+    They always are with finer cells of soil, as contact grows cell by cell.
     """
     if values is None or factors.get("soil", 1.0) > 1.0:
         return None
     assert last.values is not None
-    left = expected(last.bars, last.values, values, factors)
-    return None if doubtful(last.bars, last.values, values, left, accuracy) else left
+    bars = predicted_bars(last.bars, last.values, values, factors)
+    return None if unreliable(last.bars, last.values, values, bars, accuracy) else bars
 
 
 def _measured(scene: Scene, values: RunValues | None, folder: Path, comm: Any) -> list[ErrorBar]:
@@ -138,24 +149,24 @@ def _measured(scene: Scene, values: RunValues | None, folder: Path, comm: Any) -
         try:
             return measured(scene, values, comm)
         except Interruption as end:
-            end.place = LEFT.format(folder)
+            end.place = INTERRUPTED.format(folder)
             raise
 
 
-def _tell(last: TriedSetting, accuracy: float, comm: Any) -> None:
+def _print_largest(last: TriedSetting, accuracy: float, comm: Any) -> None:
     if comm.rank == 0:
         off, key = largest(last.bars)
         print(f"accuracy {accuracy:.2%}: with {settings_in_words(last.scene)} it is {off:.2%} ({key})")
 
 
 def _report(last: TriedSetting, accuracy: float, folder: Path, seconds: float) -> None:
-    """seconds: of everything."""
+    """Write and print the error bars. seconds: processor time of run and search [s]."""
     off, key = largest(last.bars)
     outcome = {"asked": accuracy, "reached": off <= accuracy, "largest_error": off, "of": key}
     settings = {setting.name: setting.in_words(last.scene) for setting in settings_of(last.scene)}
-    taken = {"run": last.seconds, "search": seconds - last.seconds}
-    write_bars(folder, last.bars, taken, accuracy=outcome | {"settings": settings})
-    print_bars(last.bars, taken["search"] / taken["run"], what="the search for the accuracy")
+    spent = {"run": last.seconds, "search": seconds - last.seconds}
+    write_bars(folder, last.bars, spent, accuracy=outcome | {"settings": settings})
+    print_bars(last.bars, spent["search"] / spent["run"], what="the search for the accuracy")
 
 
 def _missed(last: TriedSetting, accuracy: float, folder: Path, limit: str) -> str:

@@ -12,6 +12,8 @@ from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
 from benchmarks.asked_accuracy.true_errors import run_errors
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge, share_inside
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.variants.settings import refined
 
 
 @pytest.mark.verify
@@ -44,6 +46,7 @@ def test_settings_by_hand_reach_it(tmp_path: Path) -> None:
     known = references.read()
     for name, setting in by_hand.read().items():
         if setting is not None:
-            errors, _ = run_errors(by_hand.turned(by_hand.ASKED[name], setting.factors), tmp_path / "run", known[name])
+            scene = refined(scene_from_mapping(by_hand.ASKED[name]), setting.factors)
+            errors, _ = run_errors(scene, tmp_path / "run", known[name])
             assert errors is not None, name
             assert errors.within, name

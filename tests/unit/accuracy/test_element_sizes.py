@@ -34,7 +34,7 @@ def seen(moment: Array, tension: Array, **more: Array) -> Instant:
 def envelope(*instants: Instant) -> CurveEnvelope:
     made = CurveEnvelope()
     for instant in instants:
-        made.follow(instant)
+        made.add(instant)
     return made
 
 
@@ -97,7 +97,7 @@ def test_what_is_not_resolved_shrinks_step_by_step() -> None:
 
 def test_excess_is_the_worst_length_over_the_length_asked_for() -> None:
     made = envelope(seen(BULGE, EVEN))
-    assert made.excess(SHARE) == pytest.approx(0.5 / made.lengths(SHARE).min(), rel=1e-6)
+    assert made.length_ratio(SHARE) == pytest.approx(0.5 / made.lengths(SHARE).min(), rel=1e-6)
 
 
 def layered() -> CurveEnvelope:

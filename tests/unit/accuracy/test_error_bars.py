@@ -22,7 +22,7 @@ from benchmarks.error_bars.scenes import CLAY, SCENES
 from riser_soil.accuracy import chain
 from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, divisor, error_bars, orders
-from riser_soil.accuracy.extreme_differences import Extreme, alone, apart
+from riser_soil.accuracy.extreme_differences import Extreme, difference, without_windows
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
@@ -47,7 +47,7 @@ QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 
 
 def bar_of(reported: float, peak: float, *comparison_runs: ComparisonRun, soil: SoilOfRun | None = None) -> ErrorBar:
     key_result = KeyResult("hang", "top tension", "N", reported, 1000.0)
-    values = RunValues({KEY: key_result}, {KEY: peak}, {KEY: alone(peak)}, {KEY: peak})
+    values = RunValues({KEY: key_result}, {KEY: peak}, {KEY: without_windows(peak)}, {KEY: peak})
     (bar,) = error_bars(values, comparison_runs, rigid=False, soil=soil)
     return bar
 
@@ -58,7 +58,7 @@ def of_order(order: float, finer: float, error: float, source: str, before: floa
 
 
 def comparison_run(source: str, finer: float, value: float) -> ComparisonRun:
-    return ComparisonRun(source, finer, {KEY: alone(value)})
+    return ComparisonRun(source, finer, {KEY: without_windows(value)})
 
 
 @pytest.mark.parametrize(("source", "finer", "order"), [("mesh", 2.0, 2.0), ("time", 0.2, 2.0), ("soil", 0.5, 1.0)])
@@ -113,7 +113,8 @@ def on_soil(tension: float = 1000.0, settled: float = 1e-3) -> RunValues:
     """Of a stage in which a riser settles [m]."""
     keys = [KeyResult("hang", "top tension", "N", tension, 0.0), KeyResult("hang", SETTLEMENT, "m", settled, 0.0)]
     known = {each.key: each.value for each in keys}
-    return RunValues({each.key: each for each in keys}, known, {key: alone(x) for key, x in known.items()}, known)
+    peaks = {key: without_windows(x) for key, x in known.items()}
+    return RunValues({each.key: each for each in keys}, known, peaks, known)
 
 
 @pytest.mark.parametrize(
@@ -182,16 +183,16 @@ def course(*windows: float, least: bool = False) -> Extreme:
 def test_runs_that_agree_in_the_extreme_by_chance_are_apart_in_windows_near_it() -> None:
     """Of windows at 0, 9 and 10 those above 8 count: differences of 3 and 0 there, and of 0 in the extreme itself."""
     run, other = course(0.0, 9.0, 10.0), course(50.0, 12.0, 10.0)
-    assert apart(run, other) == pytest.approx(math.sqrt(0.5 * (0.0 + 9.0 / 2.0)))
+    assert difference(run, other) == pytest.approx(math.sqrt(0.5 * (0.0 + 9.0 / 2.0)))
     upside_down = (course(*(-each.windows), least=True) for each in (run, other))
-    assert apart(*upside_down) == pytest.approx(apart(run, other))
+    assert difference(*upside_down) == pytest.approx(difference(run, other))
 
 
 def test_windows_that_are_not_known_do_not_count() -> None:
     """As where a riser does not touch; a quantity that has no course at all is its extreme alone."""
-    assert apart(course(math.nan, 9.0, 10.0), course(1.0, math.nan, 14.0)) == pytest.approx(4.0)
-    assert apart(course(9.0, 10.0), course(math.nan, math.nan)._replace(value=13.0)) == 3.0
-    assert apart(alone(10.0), course(9.0, 13.0)) == 3.0
+    assert difference(course(math.nan, 9.0, 10.0), course(1.0, math.nan, 14.0)) == pytest.approx(4.0)
+    assert difference(course(9.0, 10.0), course(math.nan, math.nan)._replace(value=13.0)) == 3.0
+    assert difference(without_windows(10.0), course(9.0, 13.0)) == 3.0
 
 
 def test_soil_that_depends_on_its_path_takes_a_larger_factor() -> None:
@@ -216,7 +217,7 @@ def test_what_falls_between_nodes_is_the_meshs() -> None:
 def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
     key_result = KeyResult("heave", "top tension", "N", 1000.0, 1000.0)
     key = key_result.key
-    nodes, steps, smooth = {key: 1000.0}, {key: alone(1004.0)}, {key: 997.0}
+    nodes, steps, smooth = {key: 1000.0}, {key: without_windows(1004.0)}, {key: 997.0}
     (bar,) = error_bars(RunValues({key: key_result}, nodes, steps, smooth), [], rigid=False)
     assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * (4.0 + 3.0))
 

@@ -158,11 +158,11 @@ def test_a_target_finer_than_the_reference_counts_what_can_be_reported(
         monkeypatch, tmp_path / "s", lambda h, dt: 100.0 + (-1.0) ** round(math.log2(dt)) + 0.5 * h**2
     )
     tension = made.quantities()["heave: top tension"]
-    assert 0.015 < tension.doubt < 0.05
+    assert 0.015 < tension.relative_uncertainty < 0.05
     reached = made.reaching(0.001)
     assert reached is not None
-    assert tension.error_of(reached.key_results["heave: top tension"]) <= tension.doubt
-    assert made.predicted(0.001).excess((0.25, 0.25)) > 1.0
+    assert tension.error_of(reached.key_results["heave: top tension"]) <= tension.relative_uncertainty
+    assert made.predicted(0.001).error_ratio((0.25, 0.25)) > 1.0
     *_, cannot, why = words(made)
     line_with([cannot], "0.1 % can't be judged", "reference", "least cost")
     line_with([why], "known less well", "0.1 %", "heave: top tension (±")

@@ -1,4 +1,4 @@
-"""How much finer a setting has to be: of made-up error bars, and what is left of them afterwards."""
+"""Fineness that an accuracy requires by made-up error bars, and the bars that are predicted."""
 
 from __future__ import annotations
 
@@ -9,8 +9,15 @@ from typing import Any, cast
 import pytest
 
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues
-from riser_soil.accuracy.extreme_differences import alone
-from riser_soil.accuracy.needed import doubtful, expected, largest, needed, times_as_long, too_dear
+from riser_soil.accuracy.extreme_differences import without_windows
+from riser_soil.accuracy.required_fineness import (
+    cost_ratio,
+    largest,
+    out_of_reach,
+    predicted_bars,
+    required,
+    unreliable,
+)
 from riser_soil.accuracy.search import TriedSetting
 from riser_soil.accuracy.target_run import _next_factors
 from riser_soil.variants.key_results import KeyResult
@@ -31,10 +38,10 @@ def bar(**shares: float) -> ErrorBar:
 
 
 def values(reported: float, peak: float | None = None) -> RunValues:
-    """A run's; peak: between its steps."""
+    """Values of a run. peak: between its steps."""
     key_result = KeyResult("hang", "top tension", "N", reported, 100.0)
     return RunValues(
-        {KEY: key_result}, {KEY: reported}, {KEY: alone(reported if peak is None else peak)}, {KEY: reported}
+        {KEY: key_result}, {KEY: reported}, {KEY: without_windows(reported if peak is None else peak)}, {KEY: reported}
     )
 
 
@@ -49,13 +56,13 @@ def left(given: ErrorBar, factors: dict[str, float]) -> float:
 )
 def test_bars_just_keep_to_the_margin(shares: dict[str, float]) -> None:
     given = bar(**shares)
-    assert left(given, dict(needed([given], 0.01))) == pytest.approx(MARGIN * 0.01, rel=1e-6)
+    assert left(given, dict(required([given], 0.01))) == pytest.approx(MARGIN * 0.01, rel=1e-6)
 
 
 def test_no_cheaper_way_leads_there() -> None:
     """The cost is the product of powers; other ways of sharing the error out cost more."""
     given = bar(mesh=0.02, time=0.04)
-    factors = dict(needed([given], 0.01))
+    factors = dict(required([given], 0.01))
 
     def cost(at: dict[str, float]) -> float:
         return math.prod(factor ** COST[source] for source, factor in at.items())
@@ -69,85 +76,86 @@ def test_no_cheaper_way_leads_there() -> None:
 
 
 def test_what_is_accurate_enough_stays() -> None:
-    assert not needed([bar(mesh=0.002, time=0.003)], 0.01)
-    assert set(needed([bar(mesh=0.0001, time=0.05)], 0.01)) == {"time"}
+    assert not required([bar(mesh=0.002, time=0.003)], 0.01)
+    assert set(required([bar(mesh=0.0001, time=0.05)], 0.01)) == {"time"}
 
 
 def test_the_worst_quantity_counts_and_no_step_is_huge() -> None:
     """Elements four times as fine at most."""
-    found = needed([bar(time=0.02), bar(time=0.05), bar(mesh=100.0)], 0.01)
+    found = required([bar(time=0.02), bar(time=0.05), bar(mesh=100.0)], 0.01)
     assert found["time"] == pytest.approx(math.sqrt(0.05 / (MARGIN * 0.01 - SMALLEST)))
     assert found["mesh"] == 4.0
 
 
 def test_soil_is_at_most_twice_as_fine_in_the_next_run() -> None:
     """That is eight times as many cells."""
-    assert needed([bar(soil=0.015)], 0.01)["soil"] == pytest.approx(0.015 / (MARGIN * 0.01 - SMALLEST))
-    found = needed([bar(soil=0.03, time=0.03)], 0.01)
+    assert required([bar(soil=0.015)], 0.01)["soil"] == pytest.approx(0.015 / (MARGIN * 0.01 - SMALLEST))
+    found = required([bar(soil=0.03, time=0.03)], 0.01)
     assert found["soil"] == 2.0
-    assert times_as_long(found) == pytest.approx(8.0 * found["time"])
+    assert cost_ratio(found) == pytest.approx(8.0 * found["time"])
 
 
-def test_what_the_runs_that_are_left_can_not_reach_is_too_dear() -> None:
+def test_what_the_runs_that_are_left_can_not_reach_is_out_of_reach() -> None:
     """By the elements and the steps that it asks for, four times as many a run; soil's price has limits of its own."""
     aim = MARGIN * 0.01 - SMALLEST
     for given in (bar(mesh=15.0 * aim), bar(time=15.0 * aim), bar(soil=1.0)):
-        assert too_dear([given], 0.01, 1) == 0.0
+        assert out_of_reach([given], 0.01, 1) == 0.0
     far = bar(time=100.0 * aim)
-    assert too_dear([far], 0.01, 1) == pytest.approx(10.0)
-    assert too_dear([far], 0.01, 2) == 0.0
+    assert out_of_reach([far], 0.01, 1) == pytest.approx(10.0)
+    assert out_of_reach([far], 0.01, 2) == 0.0
     both = [bar(mesh=100.0 * aim), far]
-    assert too_dear(both, 0.01, 1) == pytest.approx(100.0)
+    assert out_of_reach(both, 0.01, 1) == pytest.approx(100.0)
 
 
 def test_unknown_bars_ask_for_a_finer_setting() -> None:
     unknown = ErrorBar(KEY_RESULT, None, {"time": 1.0}, "a coarser run failed")
-    assert needed([unknown], 0.01) == {"mesh": 2.0, "time": 2.0}
+    assert required([unknown], 0.01) == {"mesh": 2.0, "time": 2.0}
     assert largest([unknown, bar(time=0.5)]) == (math.inf, KEY)
 
 
 def test_shares_fall_by_their_orders() -> None:
-    (found,) = expected([bar(mesh=0.02, time=0.04)], values(1000.0), values(1030.0), {"mesh": 2.0, "time": 4.0})
+    (found,) = predicted_bars([bar(mesh=0.02, time=0.04)], values(1000.0), values(1030.0), {"mesh": 2.0, "time": 4.0})
     assert found.by_source == pytest.approx({"mesh": 5.0, "time": 2.5})
     assert found.bar == pytest.approx(math.hypot(5.0, 2.5) + SMALLEST * 1030.0)
 
 
 @pytest.mark.parametrize(
-    ("apart", "share"),
+    ("change", "share"),
     [(4.0, SAFETY["penalty"] * 4.0 / 3.0), (1e-3, BY_CHANCE * 5.0), (12.0, SAFETY["penalty"] * 12.0 / 3.0)],
 )
-def test_two_runs_that_one_source_tells_apart_tell_its_share(apart: float, share: float) -> None:
-    """By Richardson's extrapolation, be it more than was to be expected, but no less than a part of that."""
-    (found,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.0 + apart), {"penalty": 4.0 ** (1 / 0.75)})
+def test_share_of_a_source_that_is_finer_alone_is_by_the_difference(change: float, share: float) -> None:
+    """By Richardson's extrapolation, be it more than predicted by the order, but no less than a part of that."""
+    runs, factors = (values(1000.0), values(1000.0 + change)), {"penalty": 4.0 ** (1 / 0.75)}
+    (found,) = predicted_bars([bar(penalty=0.02)], *runs, factors)
     assert found.by_source["penalty"] == pytest.approx(share)
 
 
-def test_two_runs_that_several_sources_tell_apart_bound_the_share_of_each() -> None:
-    """Each as if it were alone, and a part of what was to be expected at least, for they may hide one another."""
+def test_difference_of_two_runs_bounds_the_share_of_each_of_several_sources() -> None:
+    """Each as if it were alone, and a part of the predicted share at least, as errors may cancel."""
     before, factors = bar(penalty=0.02, mesh=0.02), {"penalty": 4.0 ** (1 / 0.75), "mesh": 2.0}
-    (near,) = expected([before], values(1000.0), values(1003.0), factors)
+    (near,) = predicted_bars([before], values(1000.0), values(1003.0), factors)
     assert near.by_source["penalty"] == pytest.approx(SAFETY["penalty"] * 3.0 / 3.0)
     assert near.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 3.0 / (2.0 ** ORDERS["mesh"] - 1.0))
-    (same,) = expected([before], values(1000.0), values(1000.001), factors)
+    (same,) = predicted_bars([before], values(1000.0), values(1000.001), factors)
     assert same.by_source["penalty"] == pytest.approx(BY_CHANCE * 5.0)
     assert same.by_source["mesh"] == pytest.approx(BY_CHANCE * 5.0)
-    (far,) = expected([before], values(1000.0), values(1015.0), factors)
+    (far,) = predicted_bars([before], values(1000.0), values(1015.0), factors)
     assert (far.by_source["penalty"], far.by_source["mesh"]) == pytest.approx((5.0, 5.0))
 
 
 def test_a_source_that_is_no_finer_keeps_its_share() -> None:
-    (found,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.001), {"penalty": 1.0, "time": 2.0})
+    (found,) = predicted_bars([bar(penalty=0.02)], values(1000.0), values(1000.001), {"penalty": 1.0, "time": 2.0})
     assert found.by_source["penalty"] == pytest.approx(20.0)
 
 
 @pytest.mark.parametrize("factors", [{"soil": 2.0}, {"soil": 2.0, "mesh": 2.0}])
 def test_two_meshes_of_soil_that_agree_may_do_so_by_chance(factors: dict[str, float]) -> None:
-    (found,) = expected([bar(soil=0.02)], values(1000.0), values(1000.0), factors)
+    (found,) = predicted_bars([bar(soil=0.02)], values(1000.0), values(1000.0), factors)
     assert found.by_source["soil"] == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize(
-    ("before", "apart", "fell", "measured"),
+    ("before", "change", "after", "measured"),
     [
         (0.02, 15.0, 0.005, False),
         (0.02, 25.0, 0.005, True),  # further than the bar before told
@@ -157,23 +165,23 @@ def test_two_meshes_of_soil_that_agree_may_do_so_by_chance(factors: dict[str, fl
         (0.03, 15.0, 0.003, False),  # likewise, but from less than eight times half the accuracy
     ],
 )
-def test_what_is_foretold_can_be_relied_on_or_not(before: float, apart: float, fell: float, measured: bool) -> None:
-    """Of an accuracy of 1 %."""
-    (given, left), runs = (bar(time=share) for share in (before, fell)), (values(1000.0), values(1000.0 + apart))
-    assert doubtful([given], *runs, [left], 0.01) is measured
+def test_predictions_can_be_relied_on_or_not(before: float, change: float, after: float, measured: bool) -> None:
+    """For an accuracy of 1 %."""
+    (given, predicted), runs = (bar(time=share) for share in (before, after)), (values(1000.0), values(1000.0 + change))
+    assert unreliable([given], *runs, [predicted], 0.01) is measured
 
 
-def test_a_quantity_that_one_of_two_runs_lacks_can_not_be_foretold() -> None:
-    assert doubtful([bar(time=0.02)], values(1000.0), values(1001.0), [], 0.01)
+def test_a_quantity_that_one_of_two_runs_lacks_can_not_be_predicted() -> None:
+    assert unreliable([bar(time=0.02)], values(1000.0), values(1001.0), [], 0.01)
 
 
 def test_what_falls_between_the_runs_own_steps_is_kept() -> None:
-    (found,) = expected([bar(time=0.02)], values(1000.0), values(1000.0, peak=1008.0), {"time": 10.0})
+    (found,) = predicted_bars([bar(time=0.02)], values(1000.0), values(1000.0, peak=1008.0), {"time": 10.0})
     assert found.by_source["time"] == pytest.approx(SAFETY["time"] * 8.0)
 
 
 def test_a_quantity_that_the_run_before_lacks_is_not_known() -> None:
-    (found,) = expected([], values(1000.0), values(1000.0), {})
+    (found,) = predicted_bars([], values(1000.0), values(1000.0), {})
     assert found.bar is None
     assert "run before" in found.reason
 
