@@ -39,7 +39,7 @@ class StepHistory(StatelessObserver):
     iterations: int = 0
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        self._instants = InstantReader(self.assembly)
+        self._instants = InstantReader(self.assembly.riser)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)

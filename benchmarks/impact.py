@@ -113,19 +113,19 @@ def _take(method: Method, scene: Mapping, energies: Energies) -> None:
 def _model(assembly: Assembly, stage: DynamicStage, contact: str) -> Model:
     """The stage's parts, its contact replaced."""
     model = assembly.begin(stage)
-    parts = [part for part in model.parts if part is not assembly.seabed]
+    parts = [part for part in model.parts if part is not assembly.riser.seabed]
     return replace(model, parts=[*parts, _contact(assembly, contact)])
 
 
 def _contact(assembly: Assembly, contact: str) -> Part:
-    assert assembly.seabed is not None
+    assert assembly.riser.seabed is not None
     if contact == FULLY_IMPLICIT:
-        return assembly.seabed
+        return assembly.riser.seabed
     if contact == AVERAGED:
-        return Averaged(assembly.seabed)
-    law = DiscreteGradient(Penalty(assembly.contact_stiffness["seabed"], 1e-3))
-    radius = contact_radius(assembly.scene, assembly.elements)
-    return SeabedContact(assembly.line, radius, Plane.level(-DROP), law, gauss(5))
+        return Averaged(assembly.riser.seabed)
+    law = DiscreteGradient(Penalty(assembly.riser.contact_stiffness["seabed"], 1e-3))
+    radius = contact_radius(assembly.scene, assembly.riser.elements)
+    return SeabedContact(assembly.riser.line, radius, Plane.level(-DROP), law, gauss(5))
 
 
 def over_all(method: Method, pairs: Iterable[tuple[float, float]]) -> list[Outcome]:

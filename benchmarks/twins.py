@@ -73,7 +73,7 @@ def timed_iteration(stage: TimedStage) -> float:
 
 def actions(stage: TimedStage) -> dict[str, Action]:
     """What a Newton iteration asks of each of the classes."""
-    line, elements = stage.assembly.line, stage.assembly.elements
+    line, elements = stage.assembly.riser.line, stage.assembly.riser.elements
     state, damped = stirred(line, stage.stepper.before), replace(elements, damping=np.full(line.length.size, 0.1))
     return {
         "frames (trial and rates)": lambda: turn(line, state),

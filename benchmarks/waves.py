@@ -71,7 +71,7 @@ def measure(count: int) -> tuple[Cost, Cost]:
 
 def taken(stage: TimedStage, *seas: Sea | PlainSums) -> list[float]:
     """Seconds of a step, and of the water's motion by each of the seas at its trials, whose places differ a little."""
-    line, before = stage.assembly.line, stage.iterations
+    line, before = stage.assembly.riser.line, stage.iterations
     step = timed(lambda: stage.walk(1))
     trials, state = stage.iterations - before + 1, stage.stepper.now
     N = stations.stations(line.length).N

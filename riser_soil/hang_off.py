@@ -185,7 +185,7 @@ class _LastStep(StatelessObserver):
             self.seen = [self._seen(hung, stepper) for hung in self._ends]
 
     def _seen(self, hung: HungEnd, stepper: TimeStepper) -> float:
-        riser, at_end = riser_snapshot(self._assembly.by_line[hung.line], stepper), hung.name == "end"
+        riser, at_end = riser_snapshot(self._assembly.lines[hung.line], stepper), hung.name == "end"
         if hung.asked.angle is None:
             return float(riser.effective_tension[-1 if at_end else 0])
         return from_vertical(riser.end_tangent if at_end else -riser.start_tangent)

@@ -13,7 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.assembly.assembly import LAID_IN, LETTING_GO
 from riser_soil.assembly.motions import corners
 from riser_soil.assembly.stage import scheme_of, times_to_hit
@@ -177,7 +177,7 @@ def _solve_stage(
     checkpoint: CheckpointWriter | None = None,
 ) -> State:
     """Solve one stage. begin: initial state, saved state to resume from, or None for rest."""
-    if isinstance(begin, State | None) and assembly.cushion is not None and assembly.is_laid_in(stage):
+    if isinstance(begin, State | None) and assembly.is_cushioned_in(stage):
         seat(assembly, model, settings_of(assembly), clock)
     system = System(assembly.comm, model, clock)
     if begin is None:
@@ -297,11 +297,10 @@ def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
 
     The step is cut where supports press the riser in. Where it sinks farther or none converges, settling is tried.
     """
-    stepper, on_soil = run.stepper, _on_soil(run.assembly)
-    longest = MOST_SUNK * on_soil.scales.diameter
+    stepper, longest = run.stepper, MOST_SUNK * _on_soil(run.assembly).scales.diameter
     try:
         step = stepper.advance(run.control, MOST_CUTS if stepper.moves_supports(run.control) else 0)
-        if _sunk(on_soil, stepper.before, step.solution.state) <= longest:
+        if _sunk(run.assembly, stepper.before, step.solution.state) <= longest:
             return step
     except SolveError:
         pass
@@ -316,12 +315,12 @@ def _followed_by_soil(run: StageRun) -> AcceptedStep | None:
 
 def _sunk(assembly: Assembly, before: State, after: State) -> float:
     """How far [m] a line on soil has sunk where it presses; collective."""
-    line, presses = assembly.line, _pressing(assembly, after) > 0.0
+    line, presses = _on_soil(assembly).line, _pressing(assembly, after) > 0.0
     down = line.positions3(before)[:, 2] - line.positions3(after)[:, 2]
     return float(down[presses].max(initial=0.0))
 
 
-def _on_soil(assembly: Assembly) -> Assembly:
+def _on_soil(assembly: Assembly) -> LineAssembly:
     """The line that lies on the soil, in a scene with soil."""
     found = assembly.line_on_soil
     assert found is not None
@@ -330,9 +329,9 @@ def _on_soil(assembly: Assembly) -> Assembly:
 
 def _pressing(assembly: Assembly, state: State) -> Array:
     """Force per length (nn,) [N/m] on the soil, the same on all ranks; collective."""
-    contact = assembly.soil_contact
-    assert contact is not None
-    return assembly.comm.allreduce(contact.force_per_length(state))
+    soil = assembly.soil
+    assert soil is not None
+    return assembly.comm.allreduce(soil.contact.force_per_length(state))
 
 
 def _bring_to_rest(run: StageRun, seek: Callable[[StageRun], RelaxationResult]) -> None:
@@ -365,7 +364,7 @@ def _by_relaxation(run: StageRun) -> RelaxationResult:
 def _by_settling(run: StageRun) -> RelaxationResult:
     """Equilibrium at the load factor of the step, by letting the riser settle into the soil."""
     assembly, system, lying = run.assembly, run.stepper.system, _on_soil(run.assembly)
-    pressed = Pressed(lying.line, lambda state: _pressing(lying, state), lying.scales.weight, lying.scales.diameter)
+    pressed = Pressed(lying.line, lambda state: _pressing(assembly, state), lying.scales.weight, lying.scales.diameter)
     return settle(assembly.comm, system.model, pressed, settings_of(assembly), system.clock, run.control.target)
 
 
@@ -393,8 +392,8 @@ def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
     soil. A riser that falls onto soil starts from its motion.
     """
     settings, lies = settings_of(assembly), bool(assembly.contacts) and isinstance(stage, StaticStage)
-    at_rest = not assembly.is_first(stage) or (assembly.cushion is not None and assembly.is_laid_in(stage))
-    moves = assembly.cushion is not None and isinstance(stage, DynamicStage)
+    at_rest = not assembly.is_first(stage) or assembly.is_cushioned_in(stage)
+    moves = assembly.cushioned and isinstance(stage, DynamicStage)
     return replace(settings, line_search=settings.line_search or lies, linear_start=(lies and at_rest) or moves)
 
 
@@ -408,7 +407,7 @@ def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
     moved = lying.moved(t0, t1) / (MOVED_BY * lying.scales.diameter)
     if assembly.scene.has_path_dependent_soil:
         moved = max(moved, lying.pressed(t0, t1) / (PRESSED_BY * lying.scales.diameter) - ROUND_OFF)
-    laid = LAID_IN if assembly.cushion is not None and assembly.is_laid_in(stage) else 1
+    laid = LAID_IN if assembly.is_cushioned_in(stage) else 1
     return max(asked, laid, min(math.ceil(moved), MOST_STEPS))
 
 
@@ -454,7 +453,8 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
 
     By Newton's method, else by dynamic relaxation: SolveError where that finds none either.
     """
-    absent = [*assembly.soil_parts, *assembly.on_soil]
+    soil = assembly.soil
+    absent = [] if soil is None else [*soil.parts, *soil.pressed_by]
     alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
     system = System(assembly.comm, alone, clock)
     newton = Newton(system, replace(settings, line_search=False))

@@ -54,8 +54,9 @@ def run(
         if scene.code_check:
             refuse_unfit_runs(assembly)
         clock.add("build", since)
+        lying = assembly.line_on_soil
         if comm.rank == 0:
-            for line in (*reported_waves(assembly), *resolution(assembly)):
+            for line in (*reported_waves(assembly), *(resolution(lying) if lying is not None else ())):
                 print(line)
         warnings = [*physical_warnings(assembly), *of_size]
         for warning in warnings if comm.rank == 0 else ():
@@ -86,7 +87,7 @@ def _take_all(assembly: Assembly, observer: Observer, clock: RunClock, saved: Sa
 def _begin(assembly: Assembly, observer: Observer, clock: RunClock) -> State:
     before, laid = lay(assembly, clock)
     if laid is not None:
-        observer.laid(assembly.slack, laid.steps, laid.relaxations)
+        observer.laid(assembly.slackest.slack, laid.steps, laid.relaxations)
     return before
 
 

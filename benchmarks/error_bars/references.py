@@ -102,7 +102,7 @@ def _is_dear(scene: Scene) -> bool:
     assert scene.soil is not None
     assert soil is not None
     in_block = scene.soil.model == "block" and (yields or _is_laid(scene))
-    return moves or in_block or soil.field.size > (CHEAP if yields else 3 * CHEAP)
+    return moves or in_block or soil.whole.field.size > (CHEAP if yields else 3 * CHEAP)
 
 
 def _is_laid(scene: Scene) -> bool:

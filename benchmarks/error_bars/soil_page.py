@@ -84,5 +84,5 @@ def forecast_factor(mapping: SceneMapping, reference: Reference) -> float | None
     settled = reference.get(f"{scene.stages[0].name}: {SETTLEMENT}")
     if settled is None or scene.line.initial == "straight":
         return None
-    expected = predicted_settlement(build(sized(scene), MPI.COMM_WORLD))
+    expected = predicted_settlement(build(sized(scene), MPI.COMM_WORLD).riser)
     return None if expected is None else expected.deepest / settled[0]

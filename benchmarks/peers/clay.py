@@ -62,7 +62,7 @@ class Run:
     @property
     def block(self) -> calculix.Block:
         assert self.assembly.soil is not None
-        grid = self.assembly.soil.grid
+        grid = self.assembly.soil.whole.grid
         points, order = grid.nodes.points, list(grid.family.vtk)
         return calculix.Block(points, grid.nodes.cells[:, order], grid.supported(points))
 
@@ -70,14 +70,14 @@ class Run:
     def unknowns(self) -> int:
         """Displacements of the soil that are not held."""
         assert self.assembly.soil is not None
-        return int((~self.assembly.soil.field.prescribed).sum())
+        return int((~self.assembly.soil.whole.field.prescribed).sum())
 
     def by(self, program: str, folder: Path) -> Pressed:
         """Pressed by riser_soil or with one of ELEMENTS; folder: for ccx' files."""
         if program == OURS:
             return self._ours()
-        assert self.assembly.soil_contact is not None
-        law = self.assembly.soil_contact.law
+        assert self.assembly.soil is not None
+        law = self.assembly.soil.contact.law
         assert isinstance(law, Penalty)
         return calculix.run(self.block, law.stiffness, ELEMENTS[program], folder)
 

@@ -79,7 +79,7 @@ def scene_of(case: Case, elements: int, time_step: float, newton: str, mesh: str
 def _graded(scene: dict[str, Any], elements: int) -> list[dict[str, Any]]:
     """Segments of no more elements than so many, in the lengths' proportions to each other that are proposed."""
     checked = scene_from_mapping(scene)
-    asked = asked_lengths(build(checked, MPI.COMM_SELF))
+    asked = asked_lengths(build(checked, MPI.COMM_SELF).riser)
     assert asked is not None
     arc, lengths = asked
     coarse, fine = 1e3, 1e-3  # times the proposed lengths

@@ -206,11 +206,11 @@ class PeakObserver(StatelessObserver):
 
     def __init__(self, assembly: Assembly, envelopes: Envelopes | None = None) -> None:
         self._assembly = assembly
-        self._instants = {line: InstantReader(own) for line, own in assembly.by_line.items()}
+        self._instants = {line: InstantReader(own) for line, own in assembly.lines.items()}
         self._hung = hung_reader(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        self.peaks = RunPeaks(None if soil is None else soil.output_mesh(), assembly.name_on_soil)
+        self.peaks = RunPeaks(None if soil is None else soil.whole.output_mesh(), assembly.name_on_soil)
         self._envelopes = envelopes
         if envelopes is not None:
             envelopes.update({line: CurveEnvelope() for line in self._instants})
@@ -224,8 +224,8 @@ class PeakObserver(StatelessObserver):
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Record a committed step; collective where there is soil."""
-        whole = self._assembly.recovered_soil() if self._schedule.due(step.t, last).pictures else None
-        soil = None if whole is None else whole.output_fields()
+        known = self._assembly.soil if self._schedule.due(step.t, last).pictures else None
+        soil = None if known is None else known.recovered().output_fields()
         if self._assembly.comm.rank == 0:
             instants = self._record(step.t, stepper, soil)
             if self._envelopes is not None and (last or not isinstance(self._assembly.stage, StaticStage)):

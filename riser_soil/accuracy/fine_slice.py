@@ -157,9 +157,9 @@ class _Pressing(StatelessObserver):
         self.settled, self.borne = [0.0], [0.0]
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
-        soil = self._assembly.recovered_soil()
+        soil = self._assembly.soil
         assert soil is not None
-        self.settled.append(float(-soil.output_fields().displacement[:, 2].min()))
+        self.settled.append(float(-soil.recovered().output_fields().displacement[:, 2].min()))
         self.borne.append(self._assembly.ground_force(stepper.now))
         if self.settled[-1] >= self._settlement or self.borne[-1] >= self._load:
             raise _ReachedError

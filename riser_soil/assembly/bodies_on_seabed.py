@@ -12,15 +12,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly import ground
+from riser_soil.assembly.contact_laws import seabed_law, stiffnesses
 from riser_soil.assembly.friction import coefficients, seabed_adhesion
 from riser_soil.assembly.line_assembly import LineAssembly
 from riser_soil.assembly.scales import Scales, contact_radius
+from riser_soil.assembly.seabed import ground_of
 from riser_soil.assembly.seabed_reach import why_apart
 from riser_soil.bodies.body import BodyProperties, MovingBody
 from riser_soil.bodies.loads import BodyWeight
 from riser_soil.bodies.seabed_contact import BodyContact
 from riser_soil.bodies.seabed_friction import BodyFriction
+from riser_soil.contact.coulomb import adhesion_at
+from riser_soil.contact.friction import mobilised_within
 from riser_soil.core.arrays import Array
 from riser_soil.core.sphere import radius_of
 from riser_soil.scene.bodies import BodyTouch
@@ -70,7 +73,7 @@ def on_seabed(
     if scene.seabed is None or scene.contact is None:
         return found
     any_line = next(iter(lines.values())).scene  # all see the same ground
-    shape = ground.ground_of(any_line, scene.seabed)
+    shape = ground_of(any_line, scene.seabed)
     for name, field in bodies.items():
         if why_apart(scene, name):
             continue
@@ -118,18 +121,15 @@ def _width(scene: Scene, properties: BodyProperties) -> float:
 
 
 def _contact(scene: Scene, seabed: Seabed, settings: Contact, body: _Body, shape: Ground) -> BodyContact:
-    stiffness = ground.stiffnesses(scene, settings, body.scales)
+    stiffness = stiffnesses(scene, settings, body.scales)
     if body.given.stiffness is not None:
         stiffness["seabed"] = body.given.stiffness / body.width
-    law = ground.seabed_law(seabed, settings, body.scales, body.width, stiffness)
+    law = seabed_law(seabed, settings, body.scales, body.width, stiffness)
     return BodyContact(body.field, body.points, body.radius, body.width, shape, law)
 
 
 def _friction(seabed: Seabed, settings: Contact, body: _Body, contact: BodyContact) -> BodyFriction | None:
     """By its own coefficient, else by that across a pipe; None without any."""
-    from riser_soil.contact.coulomb import adhesion_at
-    from riser_soil.contact.friction import mobilised_within
-
     asked, own = settings.friction, body.given.friction
     if own is not None:
         given = {"axial": own, "lateral": own}

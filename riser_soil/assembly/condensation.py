@@ -8,38 +8,30 @@ and the dense block is a fifth of one: below that condensation pays, as any scen
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from riser_soil.contact.ground import touching_boxes
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from riser_soil.soil.condensed import CondensedSoil
-    from riser_soil.soil.soil import Soil
-    from riser_soil.soil.surface import SoilTop
+from riser_soil.soil.soil import Soil
+from riser_soil.soil.surface import SoilTop
 
 MOST_REACHED = 2.0  # dofs that the riser reaches, over n^(2/3) of n in all
 
 
-def condensed_of(scene: Scene, soil: Soil, line: Line, diameter: float) -> CondensedSoil | None:
-    """The condensed soil in the place of the whole one, where it is condensed; SceneError where that is asked for and
-    can't be.
+def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
+    """Why the soil is solved for as a whole; empty where it is condensed. diameter: of the riser [m].
+
+    SceneError where condensing is asked for and impossible.
     """
-    reason = why_whole(scene, soil, line, diameter)
+    reason = _reason(scene, soil, line, diameter)
     if reason and scene.solver.soil == "condensed":
         raise SceneError(f"solver.soil: the soil can't be condensed: {reason}; write auto")
-    if reason:
-        return None
-    from riser_soil.soil.condensed import CondensedSoil, CondensedTop
-
-    return CondensedSoil(soil, CondensedTop(soil))
+    return reason
 
 
-def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
-    """Why the soil is solved for as a whole; empty where it is condensed. diameter: of the riser [m]."""
+def _reason(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
     assert scene.soil is not None
     ranks = soil.grid.nodes.comm.size
     if not scene.soil.is_linear:
@@ -62,8 +54,6 @@ def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
 
 def _under(line: Line, surface: SoilTop, diameter: float) -> int:
     """How many points of the top belong to facets under the riser's width in plan, where it begins."""
-    from riser_soil.contact.ground import touching_boxes
-
     axis = line.to_global(line.x)
     axis[:, 2] = 0.0
     wide = np.array([0.5 * diameter, 0.5 * diameter, np.inf])

@@ -6,69 +6,53 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.ground import SHALLOWEST, contact_width, mean_diameter
-from riser_soil.assembly.scales import Scales, scales_of
+from riser_soil.assembly.contact_laws import contact_width
+from riser_soil.assembly.scales import SHALLOWEST, Scales, scales_of
+from riser_soil.contact.coulomb import Adhesion, adhesion_at
+from riser_soil.contact.friction import CoulombFriction, mobilised_within
+from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import IntArray
 from riser_soil.riser.sections import Elements
-from riser_soil.scene.contact import Contact, Friction
+from riser_soil.scene.contact import Friction
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import Seabed
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_law import strength_of
 
 if TYPE_CHECKING:
-    from riser_soil.contact.coulomb import Adhesion
-    from riser_soil.contact.friction import CoulombFriction
-    from riser_soil.contact.seabed_contact import SeabedContact
-    from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilAdhesion, SoilFriction
+    from riser_soil.contact.surface_contact import SurfaceContact
 
 MOBILISATION = 1.0 / 30.0  # of the outer diameter: the slide that mobilises friction
 FULL_AT = 0.1  # of su: the pressure from which on adhesion is full where no coefficient is given
 
 
 def friction_of(
-    scene: Scene, settings: Contact, seabed: SeabedContact, elements: Elements
-) -> CoulombFriction | None:
-    """Friction on the seabed, where the scene asks for it."""
-    if settings.friction is None:
-        return None
-    from riser_soil.contact.coulomb import adhesion_at
-    from riser_soil.contact.friction import CoulombFriction, mobilised_within
-
-    given, scales = settings.friction, scales_of(elements)
-    mu, slide = coefficients(given, scales)
-    adhesion = seabed_adhesion(scene.seabed, given.adhesion, mean_diameter(elements))
+    seabed: Seabed, given: Friction, contact: SeabedContact, elements: Elements, diameter: float
+) -> CoulombFriction:
+    """Friction on the seabed. diameter: of the pipe, for the law of adhesion [m]."""
+    mu, slide = coefficients(given, scales_of(elements))
+    adhesion = seabed_adhesion(seabed, given.adhesion, diameter)
     most, _ = adhesion_at(adhesion, 0.5 * adhesion.diameter)
     stiffness = mobilised_within(slide, *mu, np.abs(elements.weight), most)
-    return CoulombFriction(seabed, *mu, stiffness, adhesion)
+    return CoulombFriction(contact, *mu, stiffness, adhesion)
 
 
-def seabed_adhesion(seabed: Seabed | None, share: float | None, diameter: float) -> Adhesion:
+def seabed_adhesion(seabed: Seabed, share: float | None, diameter: float) -> Adhesion:
     """Adhesion of clay to a pipe of a diameter [m]; without a limit on ground that has no strength."""
-    from riser_soil.contact.coulomb import Adhesion
-
-    strength = seabed.undrained_strength if seabed is not None else None
+    strength = seabed.undrained_strength
     if share is None or strength is None:
         return Adhesion()
     return Adhesion(share, strength, diameter)
 
 
 def soil_friction_of(
-    scene: Scene, settings: Contact, contact: SoilContact, elements: Elements, volume: IntArray
-) -> SoilFriction | None:
-    """Friction on the soil, where the scene asks for it and the pipe's surface touches. volume (nf,): of the surface's
-    facets, see `SoilTop`.
+    scene: Scene, soil: SoilScene, given: Friction, contact: SurfaceContact, elements: Elements, volume: IntArray
+) -> SoilFriction:
+    """Friction on the soil, where the pipe's surface touches it. volume (nf,): of the surface's facets, see `SoilTop`.
     """
-    given, soil = settings.friction, scene.soil
-    if given is None or settings.at_nodes:
-        return None
-    from riser_soil.contact.friction import mobilised_within
     from riser_soil.contact.soil_friction import SoilFriction
-    from riser_soil.contact.surface_contact import SurfaceContact
 
-    assert isinstance(contact, SurfaceContact)
-    assert soil is not None
     scales = scales_of(elements)
     mu, slide = coefficients(given, scales)
     width = contact_width(scales, soil.top_law.surface_modulus(scales.diameter))

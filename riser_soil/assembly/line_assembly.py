@@ -35,12 +35,12 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage, pressure_in
 
 if TYPE_CHECKING:
+    from riser_soil.assembly.soil_assembly import SoilAssembly
     from riser_soil.assembly.vessels import Vessels
     from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
-    from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
@@ -58,6 +58,7 @@ class LineAssembly:
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `parts`.
     pressures: inside and outside the pipe; None where the wall tension is not known. vessels: those that carry ends.
     spins: whether nothing but inertia keeps it from spinning about its own axis.
+    soil: what it lies on, with their contact and friction. seabed: contact with the seabed, friction: on that.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     start_places: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow
     from it. stage: the last one begun, as this line sees it.
@@ -72,10 +73,9 @@ class LineAssembly:
     pressures: Pressures | None
     vessels: Vessels | None
     spins: bool
-    soil_contact: SoilContact | None = None
+    soil: SoilAssembly | None = None
     seabed: SeabedContact | None = None
     friction: CoulombFriction | None = None
-    soil_friction: SoilFriction | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     start_places: dict[str, Array] = field(default_factory=dict)
     stage: Stage | None = None
@@ -83,18 +83,14 @@ class LineAssembly:
     @property
     def contacts(self) -> list[RiserContact]:
         """Its contact parts."""
-        both: tuple[RiserContact | None, RiserContact | None] = (self.soil_contact, self.seabed)
-        return [contact for contact in both if contact is not None]
+        on_soil: list[RiserContact] = [] if self.soil is None else [self.soil.contact]
+        return on_soil if self.seabed is None else [*on_soil, self.seabed]
 
     @property
     def frictions(self) -> list[CoulombFriction | SoilFriction]:
         """Its friction parts."""
-        return [friction for friction in (self.friction, self.soil_friction) if friction is not None]
-
-    @property
-    def on_soil(self) -> list[SoilContact | SoilFriction]:
-        """Parts by which it loads the soil."""
-        return [part for part in (self.soil_contact, self.soil_friction) if part is not None]
+        on_soil = None if self.soil is None else self.soil.friction
+        return [friction for friction in (self.friction, on_soil) if friction is not None]
 
     @cached_property
     def scales(self) -> Scales:
@@ -216,14 +212,26 @@ class LineAssembly:
             return 0.0
         return pressure_in(self.scene.stages, self.stage, t, given.pressure) - given.pressure
 
-    def moves(self, t0: float, t1: float) -> list[tuple[Array, Array]]:
+    def moved(self, t0: float, t1: float) -> float:
+        """How far the end that the present stage moves farthest [m] is at t1 from where it is at t0."""
+        return max((float(np.linalg.norm(after - before)) for before, after in self._moves(t0, t1)), default=0.0)
+
+    def pressed(self, t0: float, t1: float) -> float:
+        """By how much the embedment of an end's underside changes between t0 and t1 of the present stage [m], in the
+        level soil before it.
+        """
+        axis = self.scene.seabed_level + 0.5 * self.scales.diameter
+        depths = ([max(0.0, axis - float(x[2])) for x in move] for move in self._moves(t0, t1))
+        return max((abs(after - before) for before, after in depths), default=0.0)
+
+    def _moves(self, t0: float, t1: float) -> list[tuple[Array, Array]]:
         """Where the ends that the present stage moves are at t0 and at t1 (3,) [m]."""
         motions = (end.motion for end in (self.line.start, self.line.end))
         return [(motion(t0)[0], motion(t1)[0]) for motion in motions if motion is not None]
 
     def first_guess(self) -> Array | None:
         """Increments (nn, ndof) to where the search for a laid line's equilibrium begins; None for where it is."""
-        if self.seabed is None or self.catenary is None or self.soil_contact is not None:
+        if self.seabed is None or self.catenary is None or self.soil is not None:
             return None
         from riser_soil.assembly.laid_guess import laid_guess
 
@@ -245,16 +253,3 @@ def line_assembly(scene: Scene, name: str, active: bool, spins: bool | None = No
     pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
     turns = spins_freely(scene.line) if spins is None else spins
     return LineAssembly(scene, line, elements, parts, catenary, attachments, pressures, vessels, turns)
-
-
-def add_seabed(own: LineAssembly) -> None:
-    """Give a line the seabed of its scene, outside the soil that it has."""
-    from riser_soil.assembly import friction, ground
-
-    scene, line, elements = own.scene, own.line, own.elements
-    assert scene.seabed is not None
-    assert scene.contact is not None
-    diameter = ground.mean_diameter(elements)
-    law = ground.seabed_law(scene.seabed, scene.contact, own.scales, diameter, own.contact_stiffness)
-    own.seabed = ground.seabed_contact_of(scene, scene.contact, line, elements, law, own.soil_contact)
-    own.friction = friction.friction_of(scene, scene.contact, own.seabed, elements)

@@ -13,6 +13,7 @@ from riser_soil.scene.scene import Scene
 
 FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
 THINNEST = 1e-3  # of the length: stands for the diameter of a chain that has none
+SHALLOWEST = 1.0 / 300.0  # of the diameter: soil that gains strength from nothing has at least that of this depth
 LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
 
 

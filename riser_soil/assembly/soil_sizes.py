@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
+from riser_soil.assembly.contact_laws import contact_width
 from riser_soil.assembly.graded_segments import to_four_figures
-from riser_soil.assembly.ground import contact_width
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.touchdown_forecast import TouchdownForecast, forecast

@@ -99,11 +99,12 @@ def diameter(scene: Scene) -> float:
 
 def contact_length(assembly: Assembly) -> float:
     """Length of the pipe over the soil, along its direction in plan [m]."""
-    line, soil = assembly.line, assembly.soil
+    line, soil = assembly.riser.line, assembly.soil
     assert soil is not None
+    grid = soil.whole.grid
     axis = int(np.argmax(np.abs(line.direction[:2])))
     ends = sorted(float(line.to_global(line.x[node])[axis]) for node in (0, -1))
-    low, high = max(ends[0], soil.grid.low[axis]), min(ends[1], soil.grid.high[axis])
+    low, high = max(ends[0], grid.low[axis]), min(ends[1], grid.high[axis])
     if high <= low or not np.isclose(abs(line.direction[axis]), 1.0):
         raise SceneError("soil.block: a pipe segment lies over the soil, along x or y; move or turn the pipe")
     return float(high - low)

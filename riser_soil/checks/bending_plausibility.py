@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.assembly.graded_segments import broken, graded, growing
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.shape import catenary_between, resting_level
@@ -32,62 +32,62 @@ LONG, MANY = 1.5, 1.5  # times what is proposed: elements' lengths, and their nu
 LIFTED = 1e-6  # of the length: what hangs
 
 
-def bending_warnings(assembly: Assembly) -> Iterator[str]:
+def bending_warnings(riser: LineAssembly) -> Iterator[str]:
     """Warnings about the elements' lengths, each with its numbers."""
-    yield from _long_in_boundary_layers(assembly)
-    yield from _long_in_the_bend(assembly)
-    yield from _uneven_neighbours(assembly)
+    yield from _long_in_boundary_layers(riser)
+    yield from _long_in_the_bend(riser)
+    yield from _uneven_neighbours(riser)
 
 
-def nodes_on_ground(assembly: Assembly) -> IntArray:
+def nodes_on_ground(riser: LineAssembly) -> IntArray:
     """Nodes that lie on the ground in the first shape."""
-    heights = assembly.line.to_global(assembly.line.x)[:, 2]
-    lowest = heights.min() + 1e-6 * assembly.line.arc[-1]
-    return np.flatnonzero(heights < lowest) if assembly.contacts else np.zeros(0, dtype=np.int64)
+    heights = riser.line.to_global(riser.line.x)[:, 2]
+    lowest = heights.min() + 1e-6 * riser.line.arc[-1]
+    return np.flatnonzero(heights < lowest) if riser.contacts else np.zeros(0, dtype=np.int64)
 
 
-def _long_in_boundary_layers(assembly: Assembly) -> Iterator[str]:
+def _long_in_boundary_layers(riser: LineAssembly) -> Iterator[str]:
     """Elements beside a touchdown point or a prescribed rotation against the boundary layer there."""
-    if assembly.catenary is None:
+    if riser.catenary is None:
         return
-    H, line = assembly.catenary.H, assembly.line
-    layer = np.sqrt(_stiffness(assembly) / H)
-    for place, e in _boundary_layers(assembly):
-        if assembly.elements.bends[e] and line.length[e] > LONGEST_ELEMENT * layer[e]:
+    H, line = riser.catenary.H, riser.line
+    layer = np.sqrt(_stiffness(riser) / H)
+    for place, e in _boundary_layers(riser):
+        if riser.elements.bends[e] and line.length[e] > LONGEST_ELEMENT * layer[e]:
             yield (
                 f"elements {place} are {line.length[e]:.4g} m long, but bending varies there over sqrt(EI/H) = "
                 f"{layer[e]:.4g} m (H = {H:.4g} N): take at most {LONGEST_ELEMENT * layer[e]:.3g} m"
             )
 
 
-def _boundary_layers(assembly: Assembly) -> Iterator[tuple[str, int]]:
+def _boundary_layers(riser: LineAssembly) -> Iterator[tuple[str, int]]:
     """Places of bending boundary layers in the initial shape, each with an element of the line."""
-    line = assembly.line
+    line = riser.line
     if line.start.rotation_fixed:
         yield "at the start", 0
     if line.end.rotation_fixed:
         yield "at the end", line.length.size - 1
-    on_ground = nodes_on_ground(assembly)
+    on_ground = nodes_on_ground(riser)
     if on_ground.size > 1:
         e = min(int(on_ground[-1]), line.length.size - 1)
         yield f"at the touchdown point (arc {line.arc[on_ground[-1]]:.4g} m)", e
 
 
-def _long_in_the_bend(assembly: Assembly) -> Iterator[str]:
+def _long_in_the_bend(riser: LineAssembly) -> Iterator[str]:
     """Elements whose cubic shape misses the catenary's.
 
     It is off by L^4 k''/384, k being the curvature, and the tension T makes a moment of that.
     """
-    if assembly.catenary is None:
+    if riser.catenary is None:
         return
     from riser_soil.riser.catenary import bend_of_curvature, curvature
 
-    line, H, T = assembly.line, assembly.catenary.H, assembly.catenary.tension
-    w = np.abs(assembly.elements.weight)
+    line, H, T = riser.line, riser.catenary.H, riser.catenary.tension
+    w = np.abs(riser.elements.weight)
     middle = 0.5 * (T[1:] + T[:-1])
-    bends = np.logical_and(_hanging(assembly), assembly.elements.bends)
+    bends = np.logical_and(_hanging(riser), riser.elements.bends)
     error = bends * middle * line.length**4 * bend_of_curvature(w, H, middle) / 384.0
-    moment = _stiffness(assembly) * curvature(w, H, np.minimum(T[1:], T[:-1]))
+    moment = _stiffness(riser) * curvature(w, H, np.minimum(T[1:], T[:-1]))
     share = error / float((bends * moment).max(initial=np.finfo(float).tiny))
     e = int(share.argmax())
     if share[e] > MOMENT_ERROR:
@@ -99,21 +99,21 @@ def _long_in_the_bend(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _hanging(assembly: Assembly) -> Array:
+def _hanging(riser: LineAssembly) -> Array:
     """Whether elements hang free in the first shape (ne,)."""
-    on_ground = np.zeros(assembly.line.nodes, dtype=bool)
-    on_ground[nodes_on_ground(assembly)] = nodes_on_ground(assembly).size > 1
+    on_ground = np.zeros(riser.line.nodes, dtype=bool)
+    on_ground[nodes_on_ground(riser)] = nodes_on_ground(riser).size > 1
     return np.asarray(~(on_ground[1:] & on_ground[:-1]))
 
 
-def _stiffness(assembly: Assembly) -> Array:
-    return np.maximum(assembly.elements.EI_y, assembly.elements.EI_z)
+def _stiffness(riser: LineAssembly) -> Array:
+    return np.maximum(riser.elements.EI_y, riser.elements.EI_z)
 
 
-def _uneven_neighbours(assembly: Assembly) -> Iterator[str]:
-    length, arc = assembly.line.length, assembly.line.arc
+def _uneven_neighbours(riser: LineAssembly) -> Iterator[str]:
+    length, arc = riser.line.length, riser.line.arc
     ratio = np.maximum(length[1:] / length[:-1], length[:-1] / length[1:])
-    moves = any(stage.kind == "dynamic" for stage in assembly.scene.stages)
+    moves = any(stage.kind == "dynamic" for stage in riser.scene.stages)
     if moves and ratio.size and ratio.max() > UNEVEN * (1.0 + 1e-9):
         e = int(ratio.argmax())
         shortest = WAVE_IN_ELEMENTS * max(length[e : e + 2])
@@ -124,20 +124,20 @@ def _uneven_neighbours(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def proposal(assembly: Assembly, path: str) -> str:
+def proposal(riser: LineAssembly, path: str) -> str:
     """Segments of a line in words, with line feeds; "" where the elements are right already, or no cable tells.
 
     path: of the line in the scene.
     """
-    asked, given = asked_lengths(assembly), assembly.scene.line.segments
+    asked, given = asked_lengths(riser), riser.scene.line.segments
     if asked is None:
         return ""
     try:
-        segments = segments_for(assembly.scene, *asked)
+        segments = segments_for(riser.scene, *asked)
     except SceneError as err:  # more elements than a riser may have
         return f"elements graded as the riser's bend asks for: none, {str(err).partition(': ')[2]}"
     few, many = (sum(segment.element_count for segment in each) for each in (segments, given))
-    if many < MANY * few and _excess(assembly.line.arc, *asked) < LONG:
+    if many < MANY * few and _excess(riser.line.arc, *asked) < LONG:
         return ""
     head = (
         f"elements graded as the riser's bend asks for, for {SHARE:.0%} of the largest moment at rest: {few} in place "
@@ -146,18 +146,18 @@ def proposal(assembly: Assembly, path: str) -> str:
     return "\n".join([head, *(f"  - {_as_in_scene(segment)}" for segment in segments)])
 
 
-def asked_lengths(assembly: Assembly) -> tuple[Array, Array] | None:
+def asked_lengths(riser: LineAssembly) -> tuple[Array, Array] | None:
     """Arc lengths (n,) [m] and the lengths (n,) [m] of elements there, at most; None where the riser is no cable
     between two places, or soil has a say.
     """
-    scene = assembly.scene
+    scene = riser.scene
     supported = all(isinstance(end, Support) for end in (scene.line.start, scene.line.end))
-    if assembly.catenary is None or scene.soil is not None or not supported:
+    if riser.catenary is None or scene.soil is not None or not supported:
         return None
     fine = scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": _fine(scene)})})
     elements = elements_of(fine)
     try:
-        shapes = [catenary_between(fine, elements, assembly.attachments, *ends) for ends in extreme_places(scene)]
+        shapes = [catenary_between(fine, elements, riser.attachments, *ends) for ends in extreme_places(scene)]
     except SceneError:  # ends farther apart than the riser is long: told elsewhere
         return None
     lengths = _lengths(scene, elements, shapes)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.assembly.shape import tensions_of_taut
 from riser_soil.checks.bending_plausibility import nodes_on_ground
 from riser_soil.core.arrays import Array
@@ -21,37 +21,37 @@ END_NAMES = {"start": "end A", "end": "end B"}
 TOUCHING = 1e-6  # of the length: what rests on the seabed
 
 
-def by_hand(assembly: Assembly) -> Iterator[str]:
+def by_hand(riser: LineAssembly) -> Iterator[str]:
     """Effective tensions at the ends and touchdown points, at rest: of the cable without bending stiffness, and by
     formula beside it.
     """
-    start, end = assembly.scene.line.start, assembly.scene.line.end
+    start, end = riser.scene.line.start, riser.scene.line.end
     if not (isinstance(start, Support) and isinstance(end, Support)):
         return
     places = np.array(start.position), np.array(end.position)
-    if assembly.catenary is not None and assembly.catenary.slack == 0.0:
-        yield from _of_cable(assembly, assembly.catenary)
-    elif (tension := tensions_of_taut(assembly.elements, *places)) is not None:
-        yield _of_taut(assembly.elements, tension, *places)
+    if riser.catenary is not None and riser.catenary.slack == 0.0:
+        yield from _of_cable(riser, riser.catenary)
+    elif (tension := tensions_of_taut(riser.elements, *places)) is not None:
+        yield _of_taut(riser.elements, tension, *places)
 
 
-def _of_cable(assembly: Assembly, cable: Catenary) -> Iterator[str]:
+def _of_cable(riser: LineAssembly, cable: Catenary) -> Iterator[str]:
     """Beside the cable's tensions H + sum of w dz, from the lowest point up: dT = w dz along a cable, whatever its
     shape. An attachment's weight P adds some P sin(slope).
     """
     z = cable.curve.position[:, 2]
-    low, near = int(z.argmin()), TOUCHING * float(assembly.line.arc[-1])
+    low, near = int(z.argmin()), TOUCHING * float(riser.line.arc[-1])
     yield f"by hand, at rest as a cable: H = {_kN(cable.H)} kN, lowest at z = {z[low]:.4g} m"
     for name, at, part in (("start", 0, slice(None, low)), ("end", -1, slice(low, None))):
         if z[at] - z[low] > near:
-            terms = _by_weight(assembly.elements.weight[part], np.diff(z)[part] * (1.0 if name == "end" else -1.0))
-            held = _held(assembly, cable, low, name == "end")
+            terms = _by_weight(riser.elements.weight[part], np.diff(z)[part] * (1.0 if name == "end" else -1.0))
+            held = _held(riser, cable, low, name == "end")
             summands = [_kN(cable.H), *(f"{w / 1e3:.4g} * {h:.5g}" for w, h in terms), *([_kN(held)] if held else [])]
             total = cable.H + sum(w * h for w, h in terms) + held
             formula = "H + sum of w h" + (" + attachments" if held else "")
             where, tension = _end_words(name, z), _kN(cable.tension[at])
             yield f"  {where}: effective tension {tension} kN; {formula} = {' + '.join(summands)} = {_kN(total)} kN"
-            yield from _touchdown(assembly, cable, name)
+            yield from _touchdown(riser, cable, name)
 
 
 def _end_words(name: str, z: Array) -> str:
@@ -60,24 +60,24 @@ def _end_words(name: str, z: Array) -> str:
     return f"{role} ({END_NAMES[name]})"
 
 
-def _touchdown(assembly: Assembly, cable: Catenary, name: str) -> Iterator[str]:
+def _touchdown(riser: LineAssembly, cable: Catenary, name: str) -> Iterator[str]:
     """The touchdown point that hangs from an end, where the line lies on level ground: the pipe between them weighs as
     much as the cable pulls up at the end, V = sqrt(T^2 - H^2).
     """
-    lying = nodes_on_ground(assembly)
+    lying = nodes_on_ground(riser)
     if lying.size < 2:
         return
     at, near = (-1, lying[-1]) if name == "end" else (0, lying[0])
-    arc, end = assembly.line.arc, assembly.line.arc[at]
+    arc, end = riser.line.arc, riser.line.arc[at]
     V = float(np.sqrt(max(cable.tension[at] ** 2 - cable.H**2, 0.0)))
-    found = _arcs_that_carry(assembly, V, name == "end")
+    found = _arcs_that_carry(riser, V, name == "end")
     if not found.size:
         return
     touchdown = float(found[np.abs(found - arc[near]).argmin()])
     place = np.array([np.interp(touchdown, arc, each) for each in cable.curve.position[:, :2].T])
     layback = float(np.linalg.norm(cable.curve.position[at, :2] - place))
     element = min(int(lying[-1]), arc.size - 2) if name == "end" else max(int(lying[0]) - 1, 0)
-    earlier = float(np.sqrt(assembly.elements.EI_y[element] / cable.H))
+    earlier = float(np.sqrt(riser.elements.EI_y[element] / cable.H))
     yield (
         f"  TDP at arc {touchdown:.5g} m, {layback:.5g} m from the {_end_words(name, cable.curve.position[:, 2])} in "
         f"plan: V = sqrt(T^2 - H^2) = {_kN(V)} kN carries {abs(end - touchdown):.5g} m; a stiff pipe touches down some "
@@ -85,11 +85,11 @@ def _touchdown(assembly: Assembly, cable: Catenary, name: str) -> Iterator[str]:
     )
 
 
-def _arcs_that_carry(assembly: Assembly, V: float, towards_end: bool) -> Array:
+def _arcs_that_carry(riser: LineAssembly, V: float, towards_end: bool) -> Array:
     """Arc lengths [m] between which and an end the line weighs V [N] in water, its attachments included."""
-    arc, weight = assembly.line.arc, assembly.elements.weight * assembly.elements.length
-    for each in assembly.attachments:
-        weight[assembly.line.element_at(each.arc)[0]] += each.net_weight
+    arc, weight = riser.line.arc, riser.elements.weight * riser.elements.length
+    for each in riser.attachments:
+        weight[riser.line.element_at(each.arc)[0]] += each.net_weight
     carried = np.concatenate([[0.0], np.cumsum(weight[::-1] if towards_end else weight)]) - V
     arcs = arc[::-1] if towards_end else arc
     here = np.flatnonzero((carried[:-1] <= 0.0) != (carried[1:] <= 0.0))
@@ -103,13 +103,13 @@ def _by_weight(weight: Array, climb: Array) -> list[tuple[float, float]]:
     return [(w, float(climb[weight == w].sum())) for w in distinct]
 
 
-def _held(assembly: Assembly, cable: Catenary, low: int, towards_end: bool) -> float:
+def _held(riser: LineAssembly, cable: Catenary, low: int, towards_end: bool) -> float:
     """Tension that attachments between the lowest point and an end add there: weight times the sine of the slope [N].
     """
-    arc, z = assembly.line.arc, cable.curve.position[:, 2]
+    arc, z = riser.line.arc, cable.curve.position[:, 2]
     steep = np.diff(z) / np.linalg.norm(cable.curve.chord, axis=1) * (1.0 if towards_end else -1.0)
-    here = (each for each in assembly.attachments if (each.arc > arc[low]) == towards_end)
-    return float(sum(each.net_weight * steep[assembly.line.element_at(each.arc)[0]] for each in here))
+    here = (each for each in riser.attachments if (each.arc > arc[low]) == towards_end)
+    return float(sum(each.net_weight * steep[riser.line.element_at(each.arc)[0]] for each in here))
 
 
 def _of_taut(elements: Elements, tension: Array, start: Array, end: Array) -> str:

@@ -7,8 +7,7 @@ from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from riser_soil.assembly import Assembly, build, sized
-from riser_soil.assembly.condensation import why_whole
+from riser_soil.assembly import Assembly, LineAssembly, build, sized
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.seabed_reach import why_apart
 from riser_soil.assembly.soil_block import why_all
@@ -18,11 +17,12 @@ from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, s
 from riser_soil.checks.inventory import built, left_out, no_new_mesh, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
+from riser_soil.core.communicator import Communicator
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
     from riser_soil.assembly.bodies_and_joints import Hung
-    from riser_soil.soil.soil import Soil
+    from riser_soil.assembly.soil_assembly import SoilAssembly
 
 HEADS = ("line type", "from m", "to m", "OD m", "ID m", "empty kg/m", "filled kg/m", "in air N/m", "in water N/m")
 STIFFNESSES = ("EA N", "EI N.m2")
@@ -59,11 +59,11 @@ def describe(scene: Scene, place: Callable[[str], str] = str) -> str:
     assembly = build(scene, comm)
     warnings = [place(warning) for warning in (*physical_warnings(assembly), *of_size)]
     lines = [_title(assembly)]
-    for name, line in assembly.by_line.items():
+    for name, line in assembly.lines.items():
         lines += [f"{name}: {text}" if name and not text.startswith(" ") else text for text in by_hand(line)]
     lines += [*reported_waves(assembly), *(f"warning: {warning}" for warning in warnings), _verdict(warnings)]
-    for name, line in assembly.by_line.items():
-        lines += [*_unknowns(line, name)]
+    for name, line in assembly.lines.items():
+        lines += [*_unknowns(line, name, comm)]
     lines += [*_hung(assembly), _memory_line(assembly), *_results(size), *_model(assembly.scene)]
     return "\n".join(lines)
 
@@ -129,30 +129,31 @@ def _touches(hung: Hung, name: str) -> str:
     return f"touches the seabed at {where}, {sizes}{friction}; {sunk}"
 
 
-def _unknowns(assembly: Assembly, name: str) -> Iterator[str]:
-    line = assembly.line
+def _unknowns(riser: LineAssembly, name: str, comm: Communicator) -> Iterator[str]:
+    line = riser.line
     yield (
         f"{name or 'riser'}: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
-        f"{unknowns(assembly.comm, line)} unknowns"
+        f"{unknowns(comm, line)} unknowns"
     )
-    yield from line_summary(assembly)
-    if better := proposal(assembly, f"lines.{name}" if name else "riser"):
+    yield from line_summary(riser)
+    if better := proposal(riser, f"lines.{name}" if name else "riser"):
         yield better
-    if assembly.attachments:
-        net = sum(attachment.net_weight for attachment in assembly.attachments)
-        yield f"{_counted(len(assembly.attachments), 'attachment')}: weight less buoyancy {net:.4g} N in all"
-    if assembly.soil is not None:
-        cells = assembly.comm.allreduce(assembly.soil.blocks()["soil"].shape[0])
-        yield f"soil: {cells} cells, {unknowns(assembly.comm, assembly.soil.field)} unknowns"
-        yield from _computed(assembly.scene)
-        yield from _condensed(assembly, assembly.soil)
-        yield from resolution(assembly)
+    if riser.attachments:
+        net = sum(attachment.net_weight for attachment in riser.attachments)
+        yield f"{_counted(len(riser.attachments), 'attachment')}: weight less buoyancy {net:.4g} N in all"
+    if riser.soil is not None:
+        soil = riser.soil.whole
+        cells = comm.allreduce(soil.blocks()["soil"].shape[0])
+        yield f"soil: {cells} cells, {unknowns(comm, soil.field)} unknowns"
+        yield from _computed(riser.scene)
+        yield from _condensed(riser.scene, riser.soil)
+        yield from resolution(riser)
         from riser_soil.checks.soil_edge import edge_report
         from riser_soil.checks.soil_mesh import mesh_report
 
-        yield from mesh_report(assembly)
-        yield from edge_report(assembly)
-    for ground, stiffness in assembly.contact_stiffness.items():
+        yield from mesh_report(riser)
+        yield from edge_report(riser)
+    for ground, stiffness in riser.contact_stiffness.items():
         yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
 
 
@@ -165,26 +166,22 @@ def _computed(scene: Scene) -> Iterator[str]:
         yield f"soil: all of it is computed, not half: {why}"
 
 
-def _condensed(assembly: Assembly, soil: Soil) -> Iterator[str]:
+def _condensed(scene: Scene, soil: SoilAssembly) -> Iterator[str]:
     """How linear soil is solved for, and why."""
-    assert assembly.scene.soil is not None
-    if assembly.condensed is not None:
+    assert scene.soil is not None
+    if soil.condensed is not None:
         yield "soil: condensed to what the riser touches of its surface; the whole is recovered for results"
-        if assembly.condensed.top.compliance.kept:
+        if soil.condensed.top.compliance.kept:
             yield "soil: what earlier runs have found of its compliance is at hand"
-    elif assembly.scene.soil.is_linear:
-        reason = why_whole(assembly.scene, soil, assembly.line, assembly.scales.diameter)
-        yield f"soil: solved for as a whole, not condensed: {reason}"
+    elif scene.soil.is_linear:
+        yield f"soil: solved for as a whole, not condensed: {soil.why_whole}"
 
 
-def resolution(assembly: Assembly) -> Iterator[str]:
-    """The soil's cells under the riser against what touches, where the scene has them meshed."""
-    lying = assembly.line_on_soil
-    if lying is None:
-        return
+def resolution(riser: LineAssembly) -> Iterator[str]:
+    """The soil's cells under a riser against what touches, where the scene has them meshed."""
     from riser_soil.checks.mesh_plausibility import reported_resolution
 
-    line = reported_resolution(lying)
+    line = reported_resolution(riser)
     if line is not None:
         yield line
 
@@ -203,16 +200,16 @@ def memory(assembly: Assembly) -> float:
     comm = assembly.comm
     total = riser_memory(comm.size, sum(unknowns(comm, field) for field in assembly.moving))
     if assembly.soil is not None and assembly.scene.soil is not None:
-        cells, rows, cols = assembly.soil.blocks()["soil"].shape
-        factor = soil_factor(assembly.scene, assembly.scene.soil, unknowns(comm, assembly.soil.field))
+        cells, rows, cols = assembly.soil.whole.blocks()["soil"].shape
+        factor = soil_factor(assembly.scene, assembly.scene.soil, unknowns(comm, assembly.soil.whole.field))
         entries = worth(assembly.scene.soil, rows * cols)
         total += soil_memory(comm.size, comm.allreduce(cells), entries, factor)
     return total
 
 
-def line_summary(assembly: Assembly) -> list[str]:
+def line_summary(riser: LineAssembly) -> list[str]:
     """Segments with their weights, and the weight of the whole line: lines of text."""
-    return [*_table(_rows(assembly)), *_whole(assembly)]
+    return [*_table(_rows(riser)), *_whole(riser)]
 
 
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
@@ -222,8 +219,8 @@ def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
         yield "  ".join([f"  {name[0]:<{name[1]}}", *(f"{cell:>{width}}" for cell, width in numbers)])
 
 
-def _rows(assembly: Assembly) -> list[tuple[str, ...]]:
-    scene, elements = assembly.scene, assembly.elements
+def _rows(riser: LineAssembly) -> list[tuple[str, ...]]:
+    scene, elements = riser.scene, riser.elements
     rows: list[tuple[str, ...]] = [(*HEADS, *STIFFNESSES)]
     begin = 0.0
     firsts = accumulate((segment.element_count for segment in scene.line.segments), initial=0)
@@ -242,15 +239,15 @@ def _shown(value: float | None) -> str:
     return "-" if value is None else f"{value:.4g}"
 
 
-def _whole(assembly: Assembly) -> Iterator[str]:
+def _whole(riser: LineAssembly) -> Iterator[str]:
     """Length and weights of the whole line."""
-    elements = assembly.elements
+    elements = riser.elements
     mass, wet = (float(each @ elements.length) for each in (elements.mass, elements.weight))
-    held = sum(attachment.net_weight for attachment in assembly.attachments)
+    held = sum(attachment.net_weight for attachment in riser.attachments)
     parts = [f"line: {elements.length.sum():.6g} m"]
     if mass > 0.0:
-        parts.append(f"{mass / 1e3:.4g} t with contents, weight in air {assembly.scene.gravity * mass / 1e3:.4g} kN")
+        parts.append(f"{mass / 1e3:.4g} t with contents, weight in air {riser.scene.gravity * mass / 1e3:.4g} kN")
     parts.append(f"in water {wet / 1e3:.4g} kN")
-    if assembly.attachments:
+    if riser.attachments:
         parts.append(f"with attachments {(wet + held) / 1e3:.4g} kN")
     yield ", ".join(parts)

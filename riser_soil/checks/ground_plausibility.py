@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
-from riser_soil.assembly.ground import smoothing
+from riser_soil.assembly import LineAssembly
+from riser_soil.assembly.contact_laws import smoothing
 from riser_soil.assembly.motions import cycle_count
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
@@ -36,28 +36,28 @@ POINTS, OFF_LEVEL = 20, 1e-3
 SUNK_AT = 0.25
 
 
-def ground_warnings(assembly: Assembly) -> Iterator[str]:
+def ground_warnings(riser: LineAssembly) -> Iterator[str]:
     """Warnings about seabed, soil and contact, each with its numbers."""
-    yield from _penalty_against_soil(assembly)
-    yield from _corner_against_weight(assembly)
-    yield from _beyond_the_grid(assembly)
-    yield from _ends_below(assembly.scene)
-    if assembly.soil is not None:
+    yield from _penalty_against_soil(riser)
+    yield from _corner_against_weight(riser)
+    yield from _beyond_the_grid(riser)
+    yield from _ends_below(riser.scene)
+    if riser.soil is not None:
         from riser_soil.checks.soil_edge import edge_warnings
         from riser_soil.checks.soil_mesh import quality_warnings
 
-        yield from quality_warnings(assembly)
-        yield from edge_warnings(assembly)
-        yield from _nothing_below(assembly)
-        yield from _nodes_without_friction(assembly)
-        yield from _nodes_on_soil(assembly)
-        yield from mesh_warnings(assembly)
-        yield from _small_strain(assembly)
-        yield from _unrenewed(assembly)
-        yield from _top_off_the_seabed(assembly)
-        yield from _out_of_reach(assembly)
-        yield from _rate_without_effect(assembly)
-        yield from _forgets(assembly.scene)
+        yield from quality_warnings(riser)
+        yield from edge_warnings(riser)
+        yield from _nothing_below(riser)
+        yield from _nodes_without_friction(riser)
+        yield from _nodes_on_soil(riser)
+        yield from mesh_warnings(riser)
+        yield from _small_strain(riser)
+        yield from _unrenewed(riser)
+        yield from _top_off_the_seabed(riser)
+        yield from _out_of_reach(riser)
+        yield from _rate_without_effect(riser)
+        yield from _forgets(riser.scene)
 
 
 def _forgets(scene: Scene) -> Iterator[str]:
@@ -72,12 +72,12 @@ def _forgets(scene: Scene) -> Iterator[str]:
         )
 
 
-def _beyond_the_grid(assembly: Assembly) -> Iterator[str]:
+def _beyond_the_grid(riser: LineAssembly) -> Iterator[str]:
     """Nodes of the first shape, as of a free end, above no heights of the seabed."""
-    seabed = assembly.scene.seabed
+    seabed = riser.scene.seabed
     if seabed is None or seabed.grid is None:
         return
-    line, heights = assembly.line, seabed.grid.heights
+    line, heights = riser.line, seabed.grid.heights
     beyond = [s for s, x in zip(line.arc, line.to_global(line.x), strict=True) if not heights.holds(x[0], x[1])]
     if beyond:
         yield (
@@ -101,51 +101,51 @@ def _ends_below(scene: Scene) -> Iterator[str]:
             )
 
 
-def _nothing_below(assembly: Assembly) -> Iterator[str]:
+def _nothing_below(riser: LineAssembly) -> Iterator[str]:
     """Nodes that lie beyond the soil where there is no seabed beside it."""
-    assert assembly.soil is not None
-    grid, nodes = assembly.soil.grid, nodes_on_ground(assembly)
-    xy = assembly.line.to_global(assembly.line.x)[nodes, :2]
-    beyond = assembly.line.arc[nodes[np.any((xy < grid.low[:2]) | (xy > grid.high[:2]), axis=1)]]
-    if assembly.scene.seabed is None and nodes.size > 1 and beyond.size:
+    assert riser.soil is not None
+    grid, nodes = riser.soil.whole.grid, nodes_on_ground(riser)
+    xy = riser.line.to_global(riser.line.x)[nodes, :2]
+    beyond = riser.line.arc[nodes[np.any((xy < grid.low[:2]) | (xy > grid.high[:2]), axis=1)]]
+    if riser.scene.seabed is None and nodes.size > 1 and beyond.size:
         yield (
             f"{beyond.size} nodes of the riser, from arc {beyond[0]:.4g} to {beyond[-1]:.4g} m, lie beyond the soil, "
             "where nothing bears them: add seabed, which acts beside the soil, or enlarge the soil"
         )
 
 
-def _nodes_without_friction(assembly: Assembly) -> Iterator[str]:
-    settings = assembly.scene.contact
+def _nodes_without_friction(riser: LineAssembly) -> Iterator[str]:
+    settings = riser.scene.contact
     if settings is None or not settings.at_nodes:
         return
     for key in ("friction", "suction"):
         if getattr(settings, key) is not None:
             yield (
-                f"contact.{key} acts on the seabed only: on the soil, {_extent(assembly)}, the riser's nodes have no "
+                f"contact.{key} acts on the seabed only: on the soil, {_extent(riser)}, the riser's nodes have no "
                 f"{key}; leave out contact.method: node"
             )
 
 
-def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
+def _nodes_on_soil(riser: LineAssembly) -> Iterator[str]:
     """Contact at nodes, whose settlement converges to nothing as cells and elements are refined."""
-    scene = assembly.scene
+    scene = riser.scene
     if scene.contact is None or not scene.contact.at_nodes or scene.soil is None:
         return
     mesh = scene.soil.mesh
     cells = f"cells of {reported_size(mesh)}" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
     yield (
-        f"the pipe, D = {_diameter(assembly):.4g} m, touches the soil at its nodes only, "
-        f"{assembly.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "
+        f"the pipe, D = {_diameter(riser):.4g} m, touches the soil at its nodes only, "
+        f"{riser.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "
         "yields depend on these two sizes; contact.method: surface lets it touch all along"
     )
 
 
-def _small_strain(assembly: Assembly) -> Iterator[str]:
+def _small_strain(riser: LineAssembly) -> Iterator[str]:
     """Soil that yields at small strain under a pipe that it bears only on its strength."""
-    scene = assembly.scene
+    scene = riser.scene
     if scene.soil is None or scene.soil.is_linear or scene.soil_moves:
         return
-    bearing, weight = scene.soil.top_law.bearing(_diameter(assembly)), assembly.scales.weight
+    bearing, weight = scene.soil.top_law.bearing(_diameter(riser)), riser.scales.weight
     if bearing is not None and weight > SUNK_AT * bearing.capacity:
         yield (
             f"the soil is computed at small strain, and the riser's weight, {weight:.4g} N/m, is "
@@ -155,20 +155,20 @@ def _small_strain(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _unrenewed(assembly: Assembly) -> Iterator[str]:
+def _unrenewed(riser: LineAssembly) -> Iterator[str]:
     """Cells that move and are not made anew."""
-    if assembly.scene.soil_moves and assembly.mesh_renewal is None:
+    if riser.scene.soil_moves and riser.soil is not None and riser.soil.mesh_renewal is None:
         yield (
             "the soil's cells move with it, and under contact at nodes get no new mesh on the way: a run ends where "
             "one folds, as where the pipe sinks in by some 0.3 diameters; take contact.method: surface"
         )
 
 
-def _top_off_the_seabed(assembly: Assembly) -> Iterator[str]:
+def _top_off_the_seabed(riser: LineAssembly) -> Iterator[str]:
     """A mesh whose top is nowhere at the seabed; known where the soil's surface is."""
-    assert assembly.soil is not None
-    z, level = assembly.soil.surface.points[:, 2], assembly.scene.seabed_level
-    near = OFF_LEVEL * float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
+    assert riser.soil is not None
+    z, level = riser.soil.whole.surface.points[:, 2], riser.scene.seabed_level
+    near = OFF_LEVEL * float(riser.soil.whole.grid.high[2] - riser.soil.whole.grid.low[2])
     if z.size and not z.min() - near <= level <= z.max() + near:
         yield (
             f"soil.mesh: the soil's top lies {z.min():.5g} to {z.max():.5g} m high and nowhere at the seabed, z = "
@@ -176,21 +176,21 @@ def _top_off_the_seabed(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _out_of_reach(assembly: Assembly) -> Iterator[str]:
+def _out_of_reach(riser: LineAssembly) -> Iterator[str]:
     """Soil that the first shape is farther above than the ends' motions, loads and water may lower it."""
-    assert assembly.soil is not None
-    scene, grid = assembly.scene, assembly.soil.grid
-    points, underside = _along(assembly)
+    assert riser.soil is not None
+    scene, grid = riser.scene, riser.soil.whole.grid
+    points, underside = _along(riser)
     above = np.all((points[:, :2] >= grid.low[:2]) & (points[:, :2] <= grid.high[:2]), axis=1)
     gap = float(np.min((underside - scene.seabed_level)[above], initial=np.inf))
     moved = farthest_move(scene)
-    reach = LOWERED * moved + DRIVEN * scene.line.length * _driven(scene) + 2.0 * _diameter(assembly)
+    reach = LOWERED * moved + DRIVEN * scene.line.length * _driven(scene) + 2.0 * _diameter(riser)
     if gap <= reach:
         return
     where = f"hangs {gap:.4g} m above it" if np.isfinite(gap) else "is not above it"
     down = points[underside.argmin()]
     yield (
-        f"the riser does not reach the soil, {_extent(assembly)}: in its first shape it {where}, and its ends move by "
+        f"the riser does not reach the soil, {_extent(riser)}: in its first shape it {where}, and its ends move by "
         f"no more than {moved:.4g} m; it is lowest at x = {down[0]:.5g}, y = {down[1]:.5g} m: move the soil there"
     )
 
@@ -201,9 +201,9 @@ def _driven(scene: Scene) -> bool:
     return water or any(map(varying_in, scene.stages))
 
 
-def _rate_without_effect(assembly: Assembly) -> Iterator[str]:
+def _rate_without_effect(riser: LineAssembly) -> Iterator[str]:
     """A reference rate of shear beyond that of the fastest end over the diameter, where ends alone move."""
-    scene = assembly.scene
+    scene = riser.scene
     assert scene.soil is not None
     reference, dynamic = scene.soil.reference_rate, [s for s in scene.stages if isinstance(s, DynamicStage)]
     if reference is None:
@@ -211,7 +211,7 @@ def _rate_without_effect(assembly: Assembly) -> Iterator[str]:
     if not dynamic:
         yield "soil.law.rate: static stages are slow and the scene has no other: it changes nothing; leave it out"
     elif not _driven(scene):
-        fastest = top_speed(scene) / _diameter(assembly)
+        fastest = top_speed(scene) / _diameter(riser)
         if fastest < reference:
             yield (
                 f"soil.law.rate: the reference, {reference:.3g} 1/s, is more than the fastest end makes over a "
@@ -219,30 +219,30 @@ def _rate_without_effect(assembly: Assembly) -> Iterator[str]:
             )
 
 
-def _along(assembly: Assembly) -> tuple[Array, Array]:
+def _along(riser: LineAssembly) -> tuple[Array, Array]:
     """Points (n, 3) of the line, straight between its nodes, and the height of its underside there (n,)."""
-    line = assembly.line
+    line = riser.line
     share = np.linspace(0.0, 1.0, POINTS)[:, None]
     x = line.to_global(line.x)
     points = (x[:-1, None] + share * np.diff(x, axis=0)[:, None]).reshape(-1, 3)
-    return points, points[:, 2] - np.repeat(contact_radius(assembly.scene, assembly.elements), POINTS)
+    return points, points[:, 2] - np.repeat(contact_radius(riser.scene, riser.elements), POINTS)
 
 
-def _diameter(assembly: Assembly) -> float:
-    return float(assembly.elements.outer_diameter.max())
+def _diameter(riser: LineAssembly) -> float:
+    return float(riser.elements.outer_diameter.max())
 
 
-def _extent(assembly: Assembly) -> str:
-    assert assembly.soil is not None
-    (x0, y0, _), (x1, y1, _) = assembly.soil.grid.low, assembly.soil.grid.high
+def _extent(riser: LineAssembly) -> str:
+    assert riser.soil is not None
+    (x0, y0, _), (x1, y1, _) = riser.soil.whole.grid.low, riser.soil.whole.grid.high
     return f"x from {x0:.5g} to {x1:.5g} m and y from {y0:.5g} to {y1:.5g} m"
 
 
-def _penalty_against_soil(assembly: Assembly) -> Iterator[str]:
-    if assembly.scene.soil is None:
+def _penalty_against_soil(riser: LineAssembly) -> Iterator[str]:
+    if riser.scene.soil is None:
         return
-    E = assembly.scene.soil.top_law.surface_modulus(assembly.scales.diameter)
-    k = assembly.contact_stiffness["soil"]
+    E = riser.scene.soil.top_law.surface_modulus(riser.scales.diameter)
+    k = riser.contact_stiffness["soil"]
     if k < SOFT * E:
         yield (
             f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe "
@@ -255,13 +255,13 @@ def _penalty_against_soil(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _corner_against_weight(assembly: Assembly) -> Iterator[str]:
+def _corner_against_weight(riser: LineAssembly) -> Iterator[str]:
     """A stiff penalty rounded over a long way pushes hard before anything touches."""
-    settings, weight = assembly.scene.contact, assembly.scales.weight
+    settings, weight = riser.scene.contact, riser.scales.weight
     if settings is None:
         return
-    for ground, k in assembly.contact_stiffness.items():
-        width = smoothing(settings, assembly.scales, ground, k)
+    for ground, k in riser.contact_stiffness.items():
+        width = smoothing(settings, riser.scales, ground, k)
         force = 0.25 * k * width
         if force > CORNER * weight:
             yield (

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
 from riser_soil.assembly.touchdown_forecast import TouchdownForecast, forecast
 from riser_soil.checks.settlement import Settled, predicted_settlement
@@ -24,15 +24,15 @@ LONG = 1.5
 EXCESS, DEEP = 0.05, 2.516
 
 
-def reported_resolution(assembly: Assembly) -> str | None:
+def reported_resolution(riser: LineAssembly) -> str | None:
     """The cells under the riser against what touches, and what they miss of the settlement; None without them."""
-    mesh, soil = _generated(assembly), assembly.scene.soil
-    if mesh is None or soil is None or assembly.soil is None:
+    mesh, soil = _generated(riser), riser.scene.soil
+    if mesh is None or soil is None or riser.soil is None:
         return None
-    fine, found = predicted_settlement(assembly), predicted_settlement(assembly, mesh.across)
+    fine, found = predicted_settlement(riser), predicted_settlement(riser, mesh.across)
     if fine is None or found is None:
         return None
-    width = touching_width(assembly.scales, soil.top_law)
+    width = touching_width(riser.scales, soil.top_law)
     return (
         f"soil under the riser: cells of {reported_size(mesh)}, where {width:.3g} m touch at rest: it settles by about "
         f"{1000.0 * fine.by_weight:.2g} mm under its weight, at the touchdown point by {1000.0 * fine.deepest:.2g} mm, "
@@ -60,13 +60,13 @@ def excess_of_sections(bending: float, width: float, depth: float) -> float:
     return float(max(0.0, np.log(depth / (DEEP * bending))) / (np.log(4.0 * depth / width) - 0.5))
 
 
-def mesh_warnings(assembly: Assembly) -> Iterator[str]:
+def mesh_warnings(riser: LineAssembly) -> Iterator[str]:
     """Warnings about the soil's mesh and block, each with its numbers."""
-    yield from _cells_against_contact(assembly)
-    yield from _lengths_against_bending(assembly)
-    yield from _sections_against_bending(assembly)
-    yield from _oblique(assembly)
-    yield from _leaves_the_block(assembly)
+    yield from _cells_against_contact(riser)
+    yield from _lengths_against_bending(riser)
+    yield from _sections_against_bending(riser)
+    yield from _oblique(riser)
+    yield from _leaves_the_block(riser)
 
 
 def reported_size(mesh: GeneratedMesh) -> str:
@@ -80,22 +80,22 @@ def _key(mesh: GeneratedMesh) -> str:
     return "size_at_riser.across" if isinstance(mesh.size_at_riser, CellSizes) else "size_at_riser"
 
 
-def _generated(assembly: Assembly) -> GeneratedMesh | None:
+def _generated(riser: LineAssembly) -> GeneratedMesh | None:
     """The mesh of a scene with the pipe's surface on a block of soil."""
-    scene = assembly.scene
+    scene = riser.scene
     if scene.contact is None or scene.contact.at_nodes or scene.soil is None:
         return None
     return scene.soil.mesh if isinstance(scene.soil.mesh, GeneratedMesh) else None
 
 
-def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
+def _cells_against_contact(riser: LineAssembly) -> Iterator[str]:
     """Cells wider than what touches: they bear the pipe as a strip of their own width would."""
-    mesh, soil = _generated(assembly), assembly.scene.soil
+    mesh, soil = _generated(riser), riser.scene.soil
     if mesh is None or soil is None:
         return
-    fine, found, size = predicted_settlement(assembly), predicted_settlement(assembly, mesh.across), mesh.across
+    fine, found, size = predicted_settlement(riser), predicted_settlement(riser, mesh.across), mesh.across
     if fine is not None and found is not None and missed(found, fine) > GRADED + MISSING:
-        width = touching_width(assembly.scales, soil.top_law)
+        width = touching_width(riser.scales, soil.top_law)
         yield (
             f"soil.mesh.{_key(mesh)} {size:.4g} m is {size / width:.2g} times the {width:.3g} m by which the riser "
             f"touches at rest: it settles by about {1000.0 * found.deepest:.2g} mm, not by the "
@@ -104,16 +104,16 @@ def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _lengths_against_bending(assembly: Assembly) -> Iterator[str]:
+def _lengths_against_bending(riser: LineAssembly) -> Iterator[str]:
     """Elements of the pipe on the soil, or cells along it, longer than the soil lets the pipe bend."""
-    mesh, soil = _generated(assembly), assembly.scene.soil
+    mesh, soil = _generated(riser), riser.scene.soil
     if mesh is None or soil is None:
         return
-    bending = bending_on_soil(assembly.elements, soil.top_law)
+    bending = bending_on_soil(riser.elements, soil.top_law)
     if bending == 0.0:  # chain and rope load the soil by their weight, evenly
         return
-    above = _elements_above(assembly)
-    element = float(assembly.line.length[above].max(initial=0.0))
+    above = _elements_above(riser)
+    element = float(riser.line.length[above].max(initial=0.0))
     for what, length in (("elements of the riser over the soil", element), ("soil.mesh cells along it", mesh.along)):
         if length > LONG * bending:
             yield (
@@ -123,17 +123,17 @@ def _lengths_against_bending(assembly: Assembly) -> Iterator[str]:
             )
 
 
-def _sections_against_bending(assembly: Assembly) -> Iterator[str]:
+def _sections_against_bending(riser: LineAssembly) -> Iterator[str]:
     """Sections under a pipe that bends within a length short beside the soil's depth."""
-    mesh, soil = _generated(assembly), assembly.scene.soil
+    mesh, soil = _generated(riser), riser.scene.soil
     if mesh is None or soil is None or soil.model == "block":
         return
-    assert assembly.soil is not None
-    bending = bending_on_soil(assembly.elements, soil.top_law)
+    assert riser.soil is not None
+    bending = bending_on_soil(riser.elements, soil.top_law)
     if bending == 0.0:
         return
-    depth = float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
-    excess = excess_of_sections(bending, touching_width(assembly.scales, soil.top_law), depth)
+    depth = float(riser.soil.whole.grid.high[2] - riser.soil.whole.grid.low[2])
+    excess = excess_of_sections(bending, touching_width(riser.scales, soil.top_law), depth)
     if excess > EXCESS:
         yield (
             f"soil.model: sections neglect the soil's stress along the riser: where it bends, within {bending:.3g} m "
@@ -142,18 +142,18 @@ def _sections_against_bending(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _elements_above(assembly: Assembly) -> BoolArray:
+def _elements_above(riser: LineAssembly) -> BoolArray:
     """Elements (ne,) whose middle lies above the soil's block at first."""
-    assert assembly.soil is not None
-    x = assembly.line.to_global(assembly.line.x)[:, :2]
-    middle, grid = 0.5 * (x[1:] + x[:-1]), assembly.soil.grid
+    assert riser.soil is not None
+    x = riser.line.to_global(riser.line.x)[:, :2]
+    middle, grid = 0.5 * (x[1:] + x[:-1]), riser.soil.whole.grid
     above: BoolArray = np.all((middle >= grid.low[:2]) & (middle <= grid.high[:2]), axis=1)
     return above
 
 
-def _oblique(assembly: Assembly) -> Iterator[str]:
+def _oblique(riser: LineAssembly) -> Iterator[str]:
     """Long cells under a riser across the axes."""
-    mesh, (x, y, _) = _generated(assembly), np.abs(assembly.line.direction)
+    mesh, (x, y, _) = _generated(riser), np.abs(riser.line.direction)
     if mesh is not None and isinstance(mesh.size_at_riser, CellSizes) and min(x, y) > PARALLEL * max(x, y):
         yield (
             f"soil.mesh.size_at_riser.along {mesh.along:.4g} m has no effect, as the riser runs across x and y: cells "
@@ -161,16 +161,16 @@ def _oblique(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _leaves_the_block(assembly: Assembly) -> Iterator[str]:
+def _leaves_the_block(riser: LineAssembly) -> Iterator[str]:
     """A block, or the range of its fine cells, from which the touchdown point moves, by catenaries between the ends as
     they move.
     """
-    assert assembly.soil is not None
-    found = forecast(assembly.scene, assembly.elements)
+    assert riser.soil is not None
+    found = forecast(riser.scene, riser.elements)
     if found is None:
         return
-    yield from _leaves_fine_cells(assembly, found)
-    low, high = assembly.soil.grid.low[:2], assembly.soil.grid.high[:2]
+    yield from _leaves_fine_cells(riser, found)
+    low, high = riser.soil.whole.grid.low[:2], riser.soil.whole.grid.high[:2]
     beyond = np.maximum(np.maximum(low - found.points, found.points - high), 0.0).max(axis=1)
     if beyond[0] == 0.0 and beyond.max() > 0.0:
         at = found.points[beyond.argmax()]
@@ -181,8 +181,8 @@ def _leaves_the_block(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _leaves_fine_cells(assembly: Assembly, found: TouchdownForecast) -> Iterator[str]:
-    mesh = _generated(assembly)
+def _leaves_fine_cells(riser: LineAssembly, found: TouchdownForecast) -> Iterator[str]:
+    mesh = _generated(riser)
     if mesh is None or mesh.touchdown is None:
         return
     (low, high), axis = mesh.touchdown, int(np.argmax(np.abs(found.ahead)))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
@@ -38,7 +38,7 @@ def overload(assembly: Assembly) -> str:
     A riser that sinks may yet be caught, as by firmer ground beside: this explains a failure and foretells none.
     """
     state = State.at_rest(0.0, assembly.size)
-    found = (each for name, own in assembly.by_line.items() for each in _overloads(own, name, state))
+    found = (each for name, own in assembly.lines.items() for each in _overloads(own, name, state))
     worst = max(found, key=lambda each: each.load / each.capacity, default=None)
     worst = assembly.comm.bcast(worst)
     if worst is None:
@@ -51,14 +51,14 @@ def overload(assembly: Assembly) -> str:
     )
 
 
-def surface_bearing(assembly: Assembly) -> Bearing | None:
+def surface_bearing(riser: LineAssembly) -> Bearing | None:
     """What the surface of the soil bears under a strip as wide as the pipe.
 
     None without soil under the riser or without a limit, and where firmer soil may begin within a diameter: below a
     first layer that ends there, or anywhere among named volumes.
     """
-    soil, D = assembly.scene.soil, assembly.scales.diameter
-    if soil is None or assembly.soil_contact is None:
+    soil, D = riser.scene.soil, riser.scales.diameter
+    if soil is None or riser.soil is None:
         return None
     first = soil.layers[0] if soil.layers and len(soil.layers) > 1 else None
     if first is not None and (first.to is None or first.to < D):
@@ -78,32 +78,32 @@ def over_a_length(force: Array, line: Line, length: float) -> Array:
     return np.asarray((last - first) / length)
 
 
-def _overloads(assembly: Assembly, name: str, state: State) -> Iterator[Overload]:
+def _overloads(riser: LineAssembly, name: str, state: State) -> Iterator[Overload]:
     """Overloads of a line where it is now, on the rank that holds its contact: the ground bears its weight at least
     where it touches.
     """
-    if not assembly.line.active:
+    if not riser.line.active:
         return
-    for contact, capacity, meaning in _limits(assembly):
+    for contact, capacity, meaning in _limits(riser):
         force = contact.force_per_length(state)
-        load = np.where(force > 0.0, np.maximum(force, _weight(assembly)), 0.0)
+        load = np.where(force > 0.0, np.maximum(force, _weight(riser)), 0.0)
         depth = np.where(load > capacity, contact.depth(state), -np.inf)
         node = int(np.argmax(depth))
         if load[node] > capacity:
-            place = assembly.line.arc[node], assembly.line.positions3(state)[node]
+            place = riser.line.arc[node], riser.line.positions3(state)[node]
             yield Overload(load[node], capacity, depth[node], *place, meaning, f"{name} " if name else "")
 
 
-def _limits(assembly: Assembly) -> Iterator[tuple[RiserContact, float, str]]:
+def _limits(riser: LineAssembly) -> Iterator[tuple[RiserContact, float, str]]:
     """Grounds that bear so much only [N/m], and what that is."""
-    D, bearing = assembly.scales.diameter, surface_bearing(assembly)
-    if assembly.soil_contact is not None and bearing is not None:
-        yield assembly.soil_contact, *bearing
-    if assembly.seabed is not None and math.isfinite(assembly.seabed.law.capacity):
-        yield assembly.seabed, assembly.seabed.law.capacity, f"by its law at a depth of one diameter, {D:.4g} m"
+    D, bearing = riser.scales.diameter, surface_bearing(riser)
+    if riser.soil is not None and bearing is not None:
+        yield riser.soil.contact, *bearing
+    if riser.seabed is not None and math.isfinite(riser.seabed.law.capacity):
+        yield riser.seabed, riser.seabed.law.capacity, f"by its law at a depth of one diameter, {D:.4g} m"
 
 
-def _weight(assembly: Assembly) -> Array:
+def _weight(riser: LineAssembly) -> Array:
     """Weight of the riser at the nodes (nn,) [N/m], downwards."""
-    weight = assembly.elements.weight
+    weight = riser.elements.weight
     return np.maximum(np.append(weight, weight[-1:]), np.append(weight[:1], weight))

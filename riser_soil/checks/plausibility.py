@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.checks.bending_plausibility import bending_warnings
 from riser_soil.checks.inventory import has_dynamics
 from riser_soil.core.arrays import BoolArray
@@ -26,9 +26,9 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
     yield from (f"{dotted(path)}: {text}" for path, text in doubts(assembly.scene.model_dump(by_alias=True)))
     yield from _options_without_petsc(assembly)
     if not assembly.scene.lines:
-        yield from _of_one(assembly)
+        yield from _of_one(assembly.riser)
         return
-    found = {name: [_placed(each, name) for each in _of_one(line)] for name, line in assembly.by_line.items()}
+    found = {name: [_placed(each, name) for each in _of_one(line)] for name, line in assembly.lines.items()}
     for warning in dict.fromkeys(each for of_line in found.values() for each in of_line):
         names = [name for name, of_line in found.items() if warning in of_line]
         of_its_own = names[0] in warning.partition(":")[0].split(".")
@@ -66,27 +66,27 @@ def _placed(warning: str, line: str) -> str:
     return dotted(path_of_line(tuple(path.split(".")), line)) + colon + words
 
 
-def _of_one(assembly: Assembly) -> Iterator[str]:
-    yield from _light_pipes(assembly)
-    yield from bending_warnings(assembly)
-    if assembly.contacts:
+def _of_one(riser: LineAssembly) -> Iterator[str]:
+    yield from _light_pipes(riser)
+    yield from bending_warnings(riser)
+    if riser.contacts:
         from riser_soil.checks.ground_plausibility import ground_warnings
 
-        yield from ground_warnings(assembly)
-    if assembly.scene.code_check:
+        yield from ground_warnings(riser)
+    if riser.scene.code_check:
         from riser_soil.checks.code_plausibility import code_check_warnings
 
-        yield from code_check_warnings(assembly.scene)
-    yield from _beyond_the_rao(assembly)
-    yield from _loads_that_end(assembly.scene)
-    if assembly.scene.water is not None and assembly.scene.water.waves is not None:
+        yield from code_check_warnings(riser.scene)
+    yield from _beyond_the_rao(riser)
+    yield from _loads_that_end(riser.scene)
+    if riser.scene.water is not None and riser.scene.water.waves is not None:
         from riser_soil.checks.wave_plausibility import wave_warnings
 
-        yield from wave_warnings(assembly.scene)
-    if _moves(assembly.scene):
+        yield from wave_warnings(riser.scene)
+    if _moves(riser.scene):
         from riser_soil.checks.motion_plausibility import motion_warnings
 
-        yield from motion_warnings(assembly.scene)
+        yield from motion_warnings(riser.scene)
 
 
 def _moves(scene: Scene) -> bool:
@@ -96,10 +96,10 @@ def _moves(scene: Scene) -> bool:
     return any(each is not None for each in moved) or (waves and has_dynamics(scene))
 
 
-def _light_pipes(assembly: Assembly) -> Iterator[str]:
+def _light_pipes(riser: LineAssembly) -> Iterator[str]:
     """Warnings of pipes that float although neither a buoyancy module nor anything else is meant to lift them."""
-    weight, arc = assembly.elements.weight, assembly.line.arc
-    light = np.flatnonzero((weight < 0.0) & ~_meant_to_float(assembly) & ~_in_air(assembly))
+    weight, arc = riser.elements.weight, riser.line.arc
+    light = np.flatnonzero((weight < 0.0) & ~_meant_to_float(riser) & ~_in_air(riser))
     if light.size:
         yield (
             f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the "
@@ -107,32 +107,32 @@ def _light_pipes(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _in_air(assembly: Assembly) -> BoolArray:
+def _in_air(riser: LineAssembly) -> BoolArray:
     """Elements (ne,) above the water's surface in the first shape, whose buoyancy does not act."""
-    water, line = assembly.scene.water, assembly.line
+    water, line = riser.scene.water, riser.line
     if water is None or water.surface_level is None:
         return np.zeros(line.length.size, dtype=bool)
     dry = line.to_global(line.x)[:, 2] > water.surface_level
     return np.asarray(dry[1:] & dry[:-1])
 
 
-def _meant_to_float(assembly: Assembly) -> BoolArray:
+def _meant_to_float(riser: LineAssembly) -> BoolArray:
     """Elements (ne,) whose buoyancy is meant: those of a riser that weighs something as a whole, attachments included,
     which lie between heavier ones, as the buoyant section of a lazy wave, or whose submerged_weight is given.
     """
-    scene, weight = assembly.scene, assembly.elements.weight
+    scene, weight = riser.scene, riser.elements.weight
     given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.line.segments]
     meant = np.repeat(given, [segment.element_count for segment in scene.line.segments])
     heavy = np.flatnonzero(weight > 0.0)
     if heavy.size:
         meant[heavy[0] : heavy[-1]] = True
-    held = float(weight @ assembly.elements.length) + sum(each.net_weight for each in assembly.attachments)
+    held = float(weight @ riser.elements.length) + sum(each.net_weight for each in riser.attachments)
     return np.asarray(meant & (held > 0.0))
 
 
-def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:
+def _beyond_the_rao(riser: LineAssembly) -> Iterator[str]:
     """Waves outside the frequencies of a vessel's table."""
-    for path, beyond in (assembly.vessels.beyond if assembly.vessels is not None else {}).items():
+    for path, beyond in (riser.vessels.beyond if riser.vessels is not None else {}).items():
         yield (
             f"{path}: {100.0 * beyond.below:.3g} % of the waves' energy lies below the table's first frequency, "
             f"{beyond.first:.4g} rad/s, where the vessel moves as there, and {100.0 * beyond.above:.3g} % above its "

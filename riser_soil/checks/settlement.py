@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
-from riser_soil.assembly.ground import contact_width
+from riser_soil.assembly import LineAssembly
+from riser_soil.assembly.contact_laws import contact_width
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.soil_sizes import touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
@@ -51,12 +51,13 @@ class Settled(NamedTuple):
     overshoot: float
 
 
-def predicted_settlement(assembly: Assembly, across: float = 0.0) -> Settled | None:
+def predicted_settlement(riser: LineAssembly, across: float = 0.0) -> Settled | None:
     """On cells of a size across the riser [m]; None without soil, and of a riser that has no weight."""
-    soil = assembly.soil
+    soil = riser.soil
     if soil is None:
         return None
-    return settled(assembly.scene, assembly.elements, float(soil.grid.high[2] - soil.grid.low[2]), across)
+    grid = soil.whole.grid
+    return settled(riser.scene, riser.elements, float(grid.high[2] - grid.low[2]), across)
 
 
 def settled(scene: Scene, elements: Elements, depth: float, across: float = 0.0) -> Settled | None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.checks.settlement import settlement
 from riser_soil.scene.seabed_features import Trench
 from riser_soil.scene.soil import Block
@@ -33,9 +33,9 @@ class SoilEdge(NamedTuple):
         return self.in_soil + self.dug - self.in_seabed
 
 
-def edge_report(assembly: Assembly) -> Iterator[str]:
+def edge_report(riser: LineAssembly) -> Iterator[str]:
     """What `check` tells of the edge."""
-    edge = soil_edge(assembly)
+    edge = soil_edge(riser)
     if edge is None:
         return
     in_soil, in_seabed = edge.weight / edge.in_soil, edge.weight / edge.in_seabed
@@ -47,10 +47,10 @@ def edge_report(assembly: Assembly) -> Iterator[str]:
     )
 
 
-def edge_warnings(assembly: Assembly) -> Iterator[str]:
+def edge_warnings(riser: LineAssembly) -> Iterator[str]:
     """A step that bends the riser more than its diameter lets one overlook."""
-    edge = soil_edge(assembly)
-    if edge is None or abs(edge.step) <= STEP * assembly.scales.diameter:
+    edge = soil_edge(riser)
+    if edge is None or abs(edge.step) <= STEP * riser.scales.diameter:
         return
     as_soft = f"take seabed.stiffness {edge.weight / edge.in_soil:.2g} N/m2"
     yield (
@@ -60,15 +60,15 @@ def edge_warnings(assembly: Assembly) -> Iterator[str]:
     )
 
 
-def soil_edge(assembly: Assembly) -> SoilEdge | None:
+def soil_edge(riser: LineAssembly) -> SoilEdge | None:
     """None without a seabed beside the soil, or of a riser that has no weight."""
-    soil, scales, seabed = assembly.scene.soil, assembly.scales, assembly.seabed
-    heavy = float(assembly.elements.weight.max()) > 0.0
-    if soil is None or assembly.soil is None or seabed is None or not heavy:
+    soil, scales, seabed = riser.scene.soil, riser.scales, riser.seabed
+    heavy = float(riser.elements.weight.max()) > 0.0
+    if soil is None or riser.soil is None or seabed is None or not heavy:
         return None
-    depth = float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
+    depth = float(riser.soil.whole.grid.high[2] - riser.soil.whole.grid.low[2])
     in_seabed = penetration(seabed.law, scales.weight, scales.diameter)
-    return SoilEdge(scales.weight, settlement(soil, scales, depth), in_seabed, _dug(assembly, soil.given_block))
+    return SoilEdge(scales.weight, settlement(soil, scales, depth), in_seabed, _dug(riser, soil.given_block))
 
 
 def penetration(law: NormalLaw, weight: float, diameter: float) -> float:
@@ -81,12 +81,12 @@ def penetration(law: NormalLaw, weight: float, diameter: float) -> float:
     return high
 
 
-def _dug(assembly: Assembly, block: Block | None) -> float:
+def _dug(riser: LineAssembly, block: Block | None) -> float:
     """Depth of the block's feature on the riser's line, the deepest of both edges [m]."""
     if block is None or block.feature is None:
         return 0.0
-    (x0, y0, _), (x1, y1, _) = assembly.line.to_global(assembly.line.x)[[0, -1]]
+    (x0, y0, _), (x1, y1, _) = riser.line.to_global(riser.line.x)[[0, -1]]
     ends = block.y if abs(y1 - y0) > abs(x1 - x0) else block.x
     if isinstance(block.feature, Trench):
         return max(-block.feature.height(along, 0.0, 0.0) for along in ends)
-    return -block.feature.height(0.0, 0.0, assembly.scene.largest_diameter)
+    return -block.feature.height(0.0, 0.0, riser.scene.largest_diameter)

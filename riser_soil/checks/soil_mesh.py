@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.quality import POOR, quality_of
 
@@ -15,27 +15,27 @@ LONG_HEXAHEDRA, THIN_TETRAHEDRA = 1000.0, 30.0
 ACROSS = 1e-6  # part of a cell's height by which it may reach over a boundary
 
 
-def mesh_report(assembly: Assembly) -> Iterator[str]:
+def mesh_report(riser: LineAssembly) -> Iterator[str]:
     """Lines of `check` about the soil's cells; collective."""
-    assert assembly.soil is not None
-    found = quality_of(assembly.soil.grid)
+    assert riser.soil is not None
+    found = quality_of(riser.soil.whole.grid)
     yield (
         f"soil mesh: edges of {found.smallest:.4g} to {found.largest:.4g} m, aspect ratios up to {found.aspect:.3g}, "
         f"scaled Jacobians from {found.jacobian:.3g} (1 is best)"
     )
-    assert assembly.scene.soil is not None
-    depths = boundaries(assembly.scene.soil.layers or ())
+    assert riser.scene.soil is not None
+    depths = boundaries(riser.scene.soil.layers or ())
     if depths:
         depths_listed = ", ".join(f"{depth:g}" for depth in depths)
-        cells = _cells_across(assembly, depths)
+        cells = _cells_across(riser, depths)
         lie = f"{cells} cells lie across, each of whose points has the law of its depth" if cells else "cells end there"
         yield f"soil layers meet at depths of {depths_listed} m; {lie}"
 
 
-def quality_warnings(assembly: Assembly) -> Iterator[str]:
+def quality_warnings(riser: LineAssembly) -> Iterator[str]:
     """Warnings about the shape of the soil's cells; collective."""
-    assert assembly.soil is not None
-    grid = assembly.soil.grid
+    assert riser.soil is not None
+    grid = riser.soil.whole.grid
     found, tetrahedra = quality_of(grid), grid.family.corners == 3
     if found.poor:
         yield (
@@ -50,10 +50,10 @@ def quality_warnings(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _cells_across(assembly: Assembly, depths: tuple[float, ...]) -> int:
-    assert assembly.soil is not None
-    nodes = assembly.soil.grid.nodes
-    depth = assembly.scene.seabed_level - nodes.points[nodes.cells, 2]
+def _cells_across(riser: LineAssembly, depths: tuple[float, ...]) -> int:
+    assert riser.soil is not None
+    nodes = riser.soil.whole.grid.nodes
+    depth = riser.scene.seabed_level - nodes.points[nodes.cells, 2]
     top, bottom = depth.min(axis=1, initial=np.inf), depth.max(axis=1, initial=-np.inf)
     slack = ACROSS * (bottom - top)
     across = np.zeros(len(top), dtype=bool)

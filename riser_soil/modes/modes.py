@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.sparse import csr_array
 
-from riser_soil.assembly import Assembly, build, sized
+from riser_soil.assembly import Assembly, LineAssembly, build, sized
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.stage import contents_at, dynamic_parts
@@ -159,7 +159,7 @@ def _require_sound(found: Eigenpairs, least: float) -> None:
 
 def _seen(rest: RiserAtRest, squares: Array, found: Eigenpairs) -> Modes:
     state, moved = State.at_rest(rest.stage.end, rest.assembly.size), [rest.whole(mode) for mode in found.modes]
-    each = {name: own.line for name, own in rest.assembly.by_line.items()}
+    each = {name: own.line for name, own in rest.assembly.lines.items()}
     of_lines = {name: _line_shapes(line, state, moved) for name, line in each.items()}
     of_bodies = {body.name: _body_shapes(body, moved) for body in rest.bodies}
     fields: list[Line | MovingBody] = [*each.values(), *rest.bodies]
@@ -281,7 +281,7 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
     for friction in (*assembly.frictions, *of_bodies):
         friction.stick()
     if assembly.soil is not None:
-        assembly.soil.mix_elastic(1.0)
+        assembly.soil.whole.mix_elastic(1.0)
     return _linearised(assembly, stages[-1])
 
 
@@ -306,7 +306,8 @@ def stages_up_to(scene: Scene, name: str | None) -> list[Stage]:
 
 def _linearised(assembly: Assembly, stage: Stage) -> RiserAtRest:
     model, state = assembly.begin(stage), State.at_rest(stage.end, assembly.size)
-    at_rest = [part for part in model.parts if part is not assembly.cushion]
+    cushion = None if assembly.soil is None else assembly.soil.cushion
+    at_rest = [part for part in model.parts if part is not cushion]
     massive = _with_mass(assembly)
     system = System(assembly.comm, Model(model.lines, [*at_rest, *massive], model.others), Timer.new())
     try:
@@ -319,7 +320,7 @@ def _linearised(assembly: Assembly, stage: Stage) -> RiserAtRest:
 
 def _with_mass(assembly: Assembly) -> list[Part]:
     """Mass of lines and bodies and added mass of their water, which stands still and has a level surface."""
-    hung, parts = assembly.hung, [part for own in assembly.by_line.values() for part in _of_line(own)]
+    hung, parts = assembly.hung, [part for own in assembly.lines.values() for part in _of_line(own)]
     if hung is not None and hung.bodies:
         from riser_soil.bodies.inertia import BodyInertia
 
@@ -327,8 +328,8 @@ def _with_mass(assembly: Assembly) -> list[Part]:
     return parts
 
 
-def _of_line(assembly: Assembly) -> list[Part]:
-    scene, line, elements, attached = assembly.scene, assembly.line, assembly.elements, assembly.attachments
+def _of_line(own: LineAssembly) -> list[Part]:
+    scene, line, elements, attached = own.scene, own.line, own.elements, own.attachments
     if scene.water is not None:
         scene = scene.model_copy(update={"water": scene.water.model_copy(update={"waves": None, "current": None})})
     parts = dynamic_parts(MOVING, line, elements, attached) + sea_loads(scene, line, elements, MOVING, attached)

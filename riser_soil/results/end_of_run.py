@@ -36,7 +36,8 @@ def take_up_end_of_run(assembly: Assembly) -> State:
             f"{KEY}: {initial.from_run}: it has {before.u.size} unknowns, and this scene {assembly.size}: write the "
             "same dimension (2 or 3) and solver.linear into both"
         )
-    lasting = owners(Model(assembly.moving, assembly.lasting_parts, assembly.ground_fields))
+    soil = [] if assembly.soil is None else assembly.soil.fields
+    lasting = owners(Model(assembly.moving, assembly.lasting_parts, soil))
     restore_all({name: owner for name, owner in lasting.items() if within(saved, name)}, saved)
     return before
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError, SceneError
 from riser_soil.results.checkpoint import mine_of
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 SAME_ARC = 1e-9  # of the line's length
 
 
-def line_checks(line: Assembly, name: str) -> LineChecks | None:
+def line_checks(line: LineAssembly, name: str) -> LineChecks | None:
     """Code checks of a line, by its name, with the load effects that other runs give; None where there are none.
 
     SceneError where such a run does not fit.
@@ -42,7 +42,7 @@ def refuse_unfit_runs(assembly: Assembly) -> None:
     """SceneError where a run named by a code check does not fit a line; collective, to be asked early."""
 
     def read() -> None:
-        for name, line in assembly.by_line.items():
+        for name, line in assembly.lines.items():
             line_checks(line, name)
 
     mine_of(assembly.comm, read)

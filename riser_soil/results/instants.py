@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.contact.touchdown import ContactInterval, PointsAlong, contact_intervals
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
@@ -57,10 +57,10 @@ class InstantReader:
     fields: those of `ContactSnapshot` wanted. checks: its code checks, None for none.
     """
 
-    def __init__(self, assembly: Assembly, fields: Sequence[str] = (), checks: LineChecks | None = None) -> None:
-        self._assembly, self._fields = assembly, fields
-        self._embedment: Array = np.zeros(assembly.line.nodes)
-        self._sections = sections_of(assembly) if "settlement_across" in self._fields else None
+    def __init__(self, riser: LineAssembly, fields: Sequence[str] = (), checks: LineChecks | None = None) -> None:
+        self._riser, self._fields = riser, fields
+        self._embedment: Array = np.zeros(riser.line.nodes)
+        self._sections = sections_of(riser) if "settlement_across" in self._fields else None
         self._checks = checks
 
     def begin_stage(self, name: str) -> None:
@@ -73,17 +73,17 @@ class InstantReader:
 
         lay_sections: where the riser lies now; they are laid anyway as long as they are nowhere.
         """
-        contacts, state = self._assembly.contacts, stepper.now
-        inside = look_inside(self._assembly, stepper)
+        contacts, state = self._riser.contacts, stepper.now
+        inside = look_inside(self._riser, stepper)
         found = tuple(stepper.newton.accepted.contact_results(contact, state) for contact in contacts)
         if self._sections is not None and (lay_sections or not self._sections.laid):
             of_one = self._inside(inside[None])
             arc, _, _ = self._touchdown(of_one, self._found([own[None] for own in found]))
             self._sections.lay(of_one.position[0], of_one.tangent[0], float(arc[0]))
-        return Look(inside, self._assembly.pressure_change(state.t), found, self._ground(state))
+        return Look(inside, self._riser.pressure_change(state.t), found, self._ground(state))
 
     def _ground(self, state: State) -> OnGround:
-        wanted = self._fields if self._assembly.contacts else ()
+        wanted = self._fields if self._riser.contacts else ()
         return OnGround(
             slip=self._slip() if "slip" in wanted else None,
             settlement=self._settlement(state) if "soil_settlement" in wanted else None,
@@ -98,13 +98,13 @@ class InstantReader:
         pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
         ground = mapped(lambda *values: np.stack(values), *(each.ground for each in looks))
         pressure = np.array([each.pressure for each in looks])
-        riser = snapshot_of(self._assembly, inside, pressed, pressure)
+        riser = snapshot_of(self._riser, inside, pressed, pressure)
         if self._checks is not None:
-            riser = riser._replace(code=code_snapshot(self._assembly, self._checks, inside, pressed, pressure))
-        return Instant(self._assembly.line.arc, riser, self._touch(inside, found, ground))
+            riser = riser._replace(code=code_snapshot(self._riser, self._checks, inside, pressed, pressure))
+        return Instant(self._riser.line.arc, riser, self._touch(inside, found, ground))
 
     def _inside(self, numbers: Array) -> SectionForces:
-        return SectionForces.within(numbers, self._assembly.line.nodes)
+        return SectionForces.within(numbers, self._riser.line.nodes)
 
     def _found(self, numbers: Sequence[Array]) -> list[ContactResults]:
         """Results of each contact from packed numbers, a row an instant."""
@@ -112,7 +112,7 @@ class InstantReader:
             return []
         from riser_soil.contact.contact import ContactResults
 
-        nodes, contacts = self._assembly.line.nodes, self._assembly.contacts
+        nodes, contacts = self._riser.line.nodes, self._riser.contacts
         sizes = [contact.along.arc.size for contact in contacts]
         return [ContactResults.within(own, nodes, size) for own, size in zip(numbers, sizes, strict=True)]
 
@@ -132,11 +132,11 @@ class InstantReader:
 
     def _touchdown(self, inside: SectionForces, found: Sequence[ContactResults]) -> tuple[Array, Array, IntArray]:
         """Arc length (nt,) and position (nt, 3) of the touchdown point, number of touchdown points (nt,)."""
-        count, line = len(inside.position), self._assembly.line
+        count, line = len(inside.position), self._riser.line
         if not found:
             return np.full(count, np.nan), np.full((count, 3), np.nan), np.zeros(count, dtype=np.int64)
 
-        alongs = [contact.along for contact in self._assembly.contacts]
+        alongs = [contact.along for contact in self._riser.contacts]
         zones = [
             touchdown_zone(
                 line,
@@ -161,15 +161,16 @@ class InstantReader:
         return grown
 
     def _slip(self) -> Array:
-        return np.sum([friction.slip() for friction in self._assembly.frictions], axis=0)
+        return np.sum([friction.slip() for friction in self._riser.frictions], axis=0)
 
     def _settlement(self, state: State) -> Array | None:
-        contact, xy = self._assembly.soil_contact, self._assembly.line.positions3(state)[:, :2]
-        return None if contact is None else contact.settlement(xy, state)
+        soil, xy = self._riser.soil, self._riser.line.positions3(state)[:, :2]
+        return None if soil is None else soil.contact.settlement(xy, state)
 
     def _on_soil(self, state: State) -> Array:
         """Force per length on the soil [N/m], of contact and friction together."""
-        return np.sum([part.force_on_soil_per_length(state) for part in self._assembly.on_soil], axis=0)
+        parts = [] if self._riser.soil is None else self._riser.soil.pressed_by
+        return np.sum([part.force_on_soil_per_length(state) for part in parts], axis=0)
 
     def state(self) -> Saved:
         return {"embedment": self._embedment} | gathered(self._owners)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from riser_soil import __version__
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core import outputs
 from riser_soil.core.communicator import Communicator
@@ -92,7 +92,7 @@ class Observer:
         self._peaks = peaks if recorder is not None else None
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        lines, fields = assembly.by_line, _known_fields(assembly)
+        lines, fields = assembly.lines, _known_fields(assembly)
         checks = {name: line_checks(line, name) for name, line in lines.items()} if recorder is not None else {}
         self._instants = {name: InstantReader(line, fields[name], checks.get(name)) for name, line in lines.items()}
         self._hung = hung_reader(assembly)
@@ -118,7 +118,7 @@ class Observer:
         goes_on: whether to append to the files that are there, after what is restored. warnings: those printed before
         the first step, for the summary.
         """
-        mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
+        mesh = assembly.soil.whole.output_mesh() if assembly.soil is not None else None
         known = facts(assembly, warnings)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
@@ -127,7 +127,7 @@ class Observer:
                     text, fields = dump_scene(assembly.scene), _known_fields(assembly)
                     settings = _checkpoint_settings(assembly)
                     keeping = Keeping(goes_on, end=settings is not None and settings.keep)
-                    arcs = {name: line.line.arc for name, line in assembly.by_line.items()}
+                    arcs = {name: line.line.arc for name, line in assembly.lines.items()}
                     reader = hung_reader(assembly)
                     hung = {} if reader is None else reader.variables
                     recorder = Recorder.open(folder, known, arcs, mesh, text, fields, force, keeping, hung)
@@ -195,7 +195,7 @@ class Observer:
             self._buffer.append(BufferedStep(record, due, looks, hung, stepper.now, soil))
             if due.pictures:  # which cost more than to look closely
                 time_of_run = self._recorder.time_at(step.t)
-                for name, line in self._assembly.by_line.items():
+                for name, line in self._assembly.lines.items():
                     elastic = elastic_residual(line, stepper)
                     self._plausibility[name].look_closely(time_of_run, stepper.now, elastic)
             if last or len(self._buffer) >= self._buffer_size or self._recorder.flush_is_due:
@@ -232,7 +232,7 @@ class Observer:
         times = [recorder.time_at(steps[n].record.t) for n in recorded]
         for name, plausibility in self._plausibility.items():
             plausibility.look(times, instants_at(instants[name], recorded).riser)
-            if self._assembly.by_line[name].soil is not None:
+            if self._assembly.lines[name].soil is not None:
                 plausibility.look_at_soil(times[-1], steps[-1].state, instants_at(instants[name], -1))
             stage = recorder.summary.stages[-1].of(name)
             stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
@@ -271,15 +271,15 @@ class Observer:
 
     def _soil(self) -> SoilSnapshot | None:
         """Fields of the soil; collective where there is soil."""
-        soil = self._assembly.recovered_soil()
-        return None if soil is None else soil.output_fields()
+        soil = self._assembly.soil
+        return None if soil is None else soil.recovered().output_fields()
 
     def _boundary(self) -> BoundaryStress | None:
         """Change of stress at the soil's boundaries; collective where there is soil."""
-        lying, soil = self._assembly.line_on_soil, self._assembly.recovered_soil()
-        if lying is None or soil is None:
+        lying = self._assembly.line_on_soil
+        if lying is None or lying.soil is None:
             return None
-        return boundary_stress(soil, int(np.abs(lying.line.direction[:2]).argmin()))
+        return boundary_stress(lying.soil.recovered(), int(np.abs(lying.line.direction[:2]).argmin()))
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
         """Record that a slack or steep riser's end was moved to its place, from `slack` [m] beyond it."""
@@ -360,22 +360,22 @@ def _on_all_ranks(comm: Communicator) -> Iterator[None]:
 def _known_fields(assembly: Assembly) -> dict[str, tuple[str, ...]]:
     """Fields of each line that the scene requests, as far as they can be computed."""
     asked = assembly.scene.output.fields
-    return {name: outputs.known(asked, _known_of_line(line)) for name, line in assembly.by_line.items()}
+    return {name: outputs.known(asked, _known_of_line(line)) for name, line in assembly.lines.items()}
 
 
-def _known_of_line(assembly: Assembly) -> list[Need]:
+def _known_of_line(riser: LineAssembly) -> list[Need]:
     has: dict[Need, bool] = {
-        "pressures": assembly.pressures is not None,
-        "min_bend_radius": assembly.elements.limits_bending,
-        "max_tension": assembly.elements.limits_tension,
-        "wall": assembly.wall_sections is not None,
-        "wall in space": assembly.wall_sections is not None and assembly.line.dimension == 3,
-        "yield stress": bool(assembly.elements.allowable_stress.any()),
-        "ground": bool(assembly.contacts),
-        "friction": bool(assembly.frictions),
-        "soil": assembly.soil_contact is not None,
+        "pressures": riser.pressures is not None,
+        "min_bend_radius": riser.elements.limits_bending,
+        "max_tension": riser.elements.limits_tension,
+        "wall": riser.wall_sections is not None,
+        "wall in space": riser.wall_sections is not None and riser.line.dimension == 3,
+        "yield stress": bool(riser.elements.allowable_stress.any()),
+        "ground": bool(riser.contacts),
+        "friction": bool(riser.frictions),
+        "soil": riser.soil is not None,
     }
-    if (checks := assembly.code_checks()) is not None:
+    if (checks := riser.code_checks()) is not None:
         has["code check"] = True
         has.update({need: need.replace(" ", "_") in checks.fields for need in _CHECKED})
     return [need for need, there in has.items() if there]
@@ -383,7 +383,7 @@ def _known_of_line(assembly: Assembly) -> list[Need]:
 
 def _code_checks(assembly: Assembly) -> dict[str, tuple[CodeCheckFacts, ...]]:
     """The code checks of lines that have some, by the line's name."""
-    checks = {name: line.code_checks() for name, line in assembly.by_line.items()}
+    checks = {name: line.code_checks() for name, line in assembly.lines.items()}
     return {name: each.facts for name, each in checks.items() if each is not None}
 
 
@@ -401,7 +401,7 @@ def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
         dissipating=dissipating(assembly.scene),
         working=working(assembly.scene),
         riser_dofs=sum(unknowns(assembly.comm, field) for field in assembly.moving),
-        soil_dofs=unknowns(assembly.comm, assembly.soil.field) if assembly.soil is not None else 0,
+        soil_dofs=unknowns(assembly.comm, assembly.soil.whole.field) if assembly.soil is not None else 0,
         diameter=assembly.scales.diameter,
         weight=max(own.scales.weight * float(np.ptp(own.line.arc)) for own in assembly.lines.values()),
         contact_period=assembly.contact_period,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.checks.overload import over_a_length, surface_bearing
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
@@ -93,20 +93,20 @@ class Plausibility:
     (nn,): the larger of their buckling loads, pi^2 EI/L^2 by the smaller EI.
     """
 
-    def __init__(self, assembly: Assembly) -> None:
-        elements = assembly.elements
-        self._assembly = assembly
+    def __init__(self, riser: LineAssembly) -> None:
+        elements = riser.elements
+        self._riser = riser
         self.EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
         self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
         self.buckling = larger_beside(np.square(np.pi / elements.length) * np.minimum(elements.EI_y, elements.EI_z))
-        self._middle = 0.5 * (assembly.line.arc[1:] + assembly.line.arc[:-1])
-        self._touched = assembly.soil_contact is None
-        self._bearing = surface_bearing(assembly)
+        self._middle = 0.5 * (riser.line.arc[1:] + riser.line.arc[:-1])
+        self._touched = riser.soil is None
+        self._bearing = surface_bearing(riser)
         self._where = ""
         self._lowest: Array = np.full(3, np.nan)
 
     def begin_stage(self, stage: Stage) -> None:
-        self._last_stage = stage.name == self._assembly.scene.stages[-1].name
+        self._last_stage = stage.name == self._riser.scene.stages[-1].name
         self._unit = "of the load" if stage.kind == "static" else "s"
         self._largest = 0.0  # moment [N.m]
         self._tension = 0.0  # the largest [N]
@@ -117,7 +117,7 @@ class Plausibility:
 
     def look(self, times: Sequence[float], riser: RiserSnapshot) -> None:
         """times: s of the run (static stages: load factor), of the riser's instants."""
-        arc = self._assembly.line.arc
+        arc = self._riser.line.arc
         tension, curvature, moments = map(
             np.ascontiguousarray, (riser.effective_tension, riser.curvature, riser.bending_moment)
         )
@@ -133,15 +133,15 @@ class Plausibility:
 
     def look_at_soil(self, t: float, state: State, instant: Instant) -> None:
         """t: as above; instant: the instant of this state, where there is soil."""
-        arc, touch, contact = instant.arc, instant.touch, self._assembly.soil_contact
-        assert contact is not None
+        assert self._riser.soil is not None
+        arc, touch, contact = instant.arc, instant.touch, self._riser.soil.contact
         force = contact.force_per_length(state)
         self._touched = self._touched or bool(force.any())
         if self._bearing is not None:
-            borne = over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
+            borne = over_a_length(force, self._riser.line, self._riser.scales.diameter)
             self._load = self._load.or_larger(borne, arc, t)
         self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
-        if not self._assembly.scene.soil_moves:
+        if not self._riser.scene.soil_moves:
             self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
         self._look_for_ground(instant.riser, touch)
 
@@ -156,20 +156,20 @@ class Plausibility:
 
     def _past_the_block(self, touch: ContactSnapshot) -> Array:
         """How far the touchdown point lies beyond the soil in plan (1,) [m]; 0 where there is none."""
-        assert self._assembly.soil is not None
-        grid, at = self._assembly.soil.grid, touch.touchdown_position[:2]
+        assert self._riser.soil is not None
+        grid, at = self._riser.soil.whole.grid, touch.touchdown_position[:2]
         outside = np.maximum(grid.low[:2] - at, at - grid.high[:2]).max()
         return np.array([max(0.0, float(np.nan_to_num(outside, nan=0.0)))])
 
     def look_closely(self, t: float, state: State, elastic: Array) -> None:
         """elastic: residual of the elements less its viscous share (ne, 2 ndof)."""
-        found = misfit(self._assembly.line, self._assembly.elements, state, elastic)
+        found = misfit(self._riser.line, self._riser.elements, state, elastic)
         self._misfit = self._misfit.or_larger(np.array([found.smooth]), self._middle[[found.smooth_at]], t)
         self._smooth = self._grown(self._smooth, found.smooth, found.smooth_at, t)
         self._steep = self._grown(self._steep, found.steep, found.steep_at, t)
 
     def _grown(self, worst: LargestValue, moment: float, e: int, t: float) -> LargestValue:
-        elements = self._assembly.elements
+        elements = self._riser.elements
         small = moment * elements.length[e] < SMALL_TURN * max(elements.EI_y[e], elements.EI_z[e])
         return worst if small else worst.or_larger(np.array([moment]), self._middle[[e]], t)
 
@@ -217,7 +217,7 @@ class Plausibility:
             largest = max(found.value, self._largest)
             share = found.value / largest if largest > 0.0 else 0.0
             if share > allowed:
-                length = float(self._assembly.line.length[np.abs(self._middle - found.arc).argmin()])
+                length = float(self._riser.line.length[np.abs(self._middle - found.arc).argmin()])
                 yield (
                     f"elements of {length:.4g} m are too long for the bending at arc {found.arc:.5g} m: at "
                     f"{found.t:.5g} {self._unit} their turn and the moments at their ends differ by {found.value:.4g} "
@@ -230,7 +230,7 @@ class Plausibility:
         found = self._pushed
         if found.value <= SMALL_PUSH * self._tension:
             return
-        arc, length = self._assembly.line.arc, self._assembly.line.length
+        arc, length = self._riser.line.arc, self._riser.line.length
         node = int(np.abs(arc - found.arc).argmin())
         borne, long = float(self.buckling[node]), f"elements of {length[min(node, length.size - 1)]:.4g} m"
         where = f"at arc {found.arc:.5g} m and {found.t:.5g} {self._unit}"
@@ -266,7 +266,7 @@ class Plausibility:
             )
 
     def _left(self) -> Iterator[str]:
-        if self._touched and self._beyond.value > self._assembly.scales.diameter:
+        if self._touched and self._beyond.value > self._riser.scales.diameter:
             yield (
                 f"the touchdown point left the soil's block: it was {self._beyond.value:.3g} m beyond at "
                 f"{self._beyond.t:.5g} {self._unit}, arc {self._beyond.arc:.5g} m, where the seabed bears the riser, "
@@ -274,7 +274,7 @@ class Plausibility:
             )
 
     def _too_small(self) -> Iterator[str]:
-        found, scales = self._boundary, self._assembly.scales
+        found, scales = self._boundary, self._riser.scales
         if found is None:
             return
         nominal = scales.weight / scales.diameter
@@ -293,8 +293,8 @@ class Plausibility:
         return f"{worst.value:.3g} at arc {worst.arc:.5g} m and {worst.t:.5g} {self._unit}"
 
     def _never(self) -> str:
-        assert self._assembly.soil is not None
-        (x0, y0, _), (x1, y1, _) = self._assembly.soil.grid.low, self._assembly.soil.grid.high
+        assert self._riser.soil is not None
+        (x0, y0, _), (x1, y1, _) = self._riser.soil.whole.grid.low, self._riser.soil.whole.grid.high
         down = ", ".join(f"{x:.5g}" for x in self._lowest)
         return (
             f"in no stage did the riser touch the soil, x from {x0:.5g} to {x1:.5g} m and y from {y0:.5g} to {y1:.5g} "

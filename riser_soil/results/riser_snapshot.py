@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import CodeSnapshot, ExtremeAlong, RiserSnapshot, WallSnapshot
 from riser_soil.riser.line_part import acting_on
@@ -20,39 +20,39 @@ if TYPE_CHECKING:
     from riser_soil.code_checks.line_checks import LineChecks
 
 
-def look_inside(assembly: Assembly, stepper: TimeStepper) -> Array:
+def look_inside(riser: LineAssembly, stepper: TimeStepper) -> Array:
     """Section forces at the accepted state, see `SectionForces.within`, and what the supports exert on the ends; on the
     rank that holds the riser.
     """
-    line, state, accepted = assembly.line, stepper.now, stepper.newton.accepted
-    inside, nodal = accepted.section_forces(line, assembly.elements, state), accepted.nodal_residual(line, state)
+    line, state, accepted = riser.line, stepper.now, stepper.newton.accepted
+    inside, nodal = accepted.section_forces(line, riser.elements, state), accepted.nodal_residual(line, state)
     if nodal is not None:
         add_at_ends(line, state, nodal, SectionForces.within(inside, line.nodes))
     return inside
 
 
-def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
+def riser_snapshot(riser: LineAssembly, stepper: TimeStepper) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
-    inside = SectionForces.within(look_inside(assembly, stepper), assembly.line.nodes)
-    pressed = [contact.force_per_length(stepper.now) for contact in assembly.contacts]
-    contact_force = np.sum([np.zeros(assembly.line.nodes), *pressed], axis=0)
-    return snapshot_of(assembly, inside, contact_force, assembly.pressure_change(stepper.now.t))
+    inside = SectionForces.within(look_inside(riser, stepper), riser.line.nodes)
+    pressed = [contact.force_per_length(stepper.now) for contact in riser.contacts]
+    contact_force = np.sum([np.zeros(riser.line.nodes), *pressed], axis=0)
+    return snapshot_of(riser, inside, contact_force, riser.pressure_change(stepper.now.t))
 
 
 def snapshot_of(
-    assembly: Assembly, inside: SectionForces, contact_force: Array, pressure: Array | float
+    riser: LineAssembly, inside: SectionForces, contact_force: Array, pressure: Array | float
 ) -> RiserSnapshot:
     """From its section forces, the contact force per length (nn,) and the change of the pressure inside [Pa], at one
     instant or at many.
     """
-    most_used, tightest = _tightest_bend(assembly, inside)
+    most_used, tightest = _tightest_bend(riser, inside)
     return RiserSnapshot(
         position=inside.position,
         effective_tension=inside.effective_tension,
-        wall_tension=_wall_tension(assembly, inside, pressure),
+        wall_tension=_wall_tension(riser, inside, pressure),
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
-        bend_utilisation=_bend_utilisation(assembly, inside.curvature_beside),
+        bend_utilisation=_bend_utilisation(riser, inside.curvature_beside),
         least_tension=_extreme(inside, 0),
         largest_moment=_extreme(inside, 1),
         largest_curvature=_extreme(inside, 2),
@@ -66,14 +66,14 @@ def snapshot_of(
         end_moment=inside.end_moment[..., 1, :],
         start_tangent=inside.tangent[..., 0, 0, :],
         end_tangent=inside.tangent[..., -1, 1, :],
-        tension_utilisation=_tension_utilisation(assembly, inside.effective_tension),
-        wall=_wall(assembly, inside, pressure),
+        tension_utilisation=_tension_utilisation(riser, inside.effective_tension),
+        wall=_wall(riser, inside, pressure),
     )
 
 
-def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
+def elastic_residual(riser: LineAssembly, stepper: TimeStepper) -> Array:
     """Residual of the elements (ne, 2 ndof) [N, N m], less what follows from strain rates."""
-    line, state = assembly.line, stepper.now
+    line, state = riser.line, stepper.now
     residual = stepper.newton.accepted.element_residual(line, state)
     viscous = viscous_residual(line, acting_on(line, stepper.system.model.parts), state)
     return residual if viscous is None else residual - viscous
@@ -83,59 +83,59 @@ def _extreme(inside: SectionForces, row: int) -> ExtremeAlong:
     return ExtremeAlong(inside.extreme[..., row, 0][()], inside.extreme[..., row, 1][()])
 
 
-def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array | None:
+def _bend_utilisation(riser: LineAssembly, curvature: Array) -> Array | None:
     """curvature (..., ne, 2): at the elements' ends."""
-    if not assembly.elements.limits_bending:
+    if not riser.elements.limits_bending:
         return None
-    return at_most(assembly.elements.min_bend_radius[:, None] * curvature)
+    return at_most(riser.elements.min_bend_radius[:, None] * curvature)
 
 
-def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[ExtremeAlong, Array]:
+def _tightest_bend(riser: LineAssembly, inside: SectionForces) -> tuple[ExtremeAlong, Array]:
     """The largest bend utilisation, and the radius [m] there; nan where no least radius is given."""
-    shape, allowed = inside.extreme.shape[:-2], assembly.elements.min_bend_radius[:, None]
-    if not assembly.elements.limits_bending:
+    shape, allowed = inside.extreme.shape[:-2], riser.elements.min_bend_radius[:, None]
+    if not riser.elements.limits_bending:
         unknown = np.full(shape, np.nan)[()]
         return ExtremeAlong(unknown, unknown), unknown
     rows = (allowed * values for values in (inside.curvature_beside, inside.curvature_slope))
     each = zip(*(row.reshape(-1, *allowed.shape[:1], 2) for row in rows), strict=True)
-    found = [largest_between_nodes(assembly.line.arc, *row) for row in each]
+    found = [largest_between_nodes(riser.line.arc, *row) for row in each]
     used, arc, e = (np.reshape(values, shape) for values in zip(*found, strict=True))
     radius = np.divide(allowed[e, 0], used, out=np.full(shape, np.inf), where=used > 0.0)
     return ExtremeAlong(used[()], arc[()]), radius[()]
 
 
-def _wall_tension(assembly: Assembly, inside: SectionForces, pressure: Array | float) -> Array | None:
-    if assembly.pressures is None:
+def _wall_tension(riser: LineAssembly, inside: SectionForces, pressure: Array | float) -> Array | None:
+    if riser.pressures is None:
         return None
-    return assembly.pressures.wall_tension(inside.effective_tension, inside.position[..., 2], pressure)
+    return riser.pressures.wall_tension(inside.effective_tension, inside.position[..., 2], pressure)
 
 
-def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
+def _tension_utilisation(riser: LineAssembly, tension: Array) -> Array | None:
     """Tension over the allowed one at the nodes (..., nn), the smaller one beside a node; nan where there is no limit.
     None where there is none anywhere.
     """
-    if not assembly.elements.limits_tension:
+    if not riser.elements.limits_tension:
         return None
-    allowed = assembly.elements.max_tension
+    allowed = riser.elements.max_tension
     share = larger_beside(np.divide(1.0, allowed, out=np.zeros_like(allowed), where=allowed > 0.0))
     return np.where(share > 0.0, tension * share, np.nan)
 
 
-def _wall(assembly: Assembly, inside: SectionForces, pressure: Array | float) -> WallSnapshot | None:
-    sections = assembly.wall_sections
+def _wall(riser: LineAssembly, inside: SectionForces, pressure: Array | float) -> WallSnapshot | None:
+    sections = riser.wall_sections
     if sections is None:
         return None
 
-    return wall_snapshot(assembly, sections, inside, pressure)
+    return wall_snapshot(riser, sections, inside, pressure)
 
 
 def wall_snapshot(
-    assembly: Assembly, sections: WallSections, forces: SectionForces, pressure: Array | float
+    riser: LineAssembly, sections: WallSections, forces: SectionForces, pressure: Array | float
 ) -> WallSnapshot:
-    assert assembly.pressures is not None  # scenes with a wall are refused without
-    wall, nodes = sections.wall, assembly.line.nodes
-    inside, outside = assembly.pressures.at(forces.position[..., 2], pressure)
-    about_axes = forces.about_axes * assembly.elements.bends_beside[:, None]
+    assert riser.pressures is not None  # scenes with a wall are refused without
+    wall, nodes = sections.wall, riser.line.nodes
+    inside, outside = riser.pressures.at(forces.position[..., 2], pressure)
+    about_axes = forces.about_axes * riser.elements.bends_beside[:, None]
     torque, moment_y, moment_z = np.moveaxis(about_axes, -1, 0)
     loads = sections.loads(forces.effective_tension, moment_y, moment_z, torque, inside, outside)
     von_mises = largest_von_mises(loads, wall)
@@ -160,19 +160,19 @@ def wall_snapshot(
 
 
 def code_snapshot(
-    assembly: Assembly, checks: LineChecks, forces: SectionForces, contact_force: Array, pressure: Array
+    riser: LineAssembly, checks: LineChecks, forces: SectionForces, contact_force: Array, pressure: Array
 ) -> CodeSnapshot:
     """Utilisations by codes at many instants; pressure (nt,): change of that inside [Pa]."""
     from riser_soil.code_checks.load_effects import SectionEffects
 
-    _, moment_y, moment_z = np.moveaxis(forces.about_axes * assembly.elements.bends_beside[:, None], -1, 0)
+    _, moment_y, moment_z = np.moveaxis(forces.about_axes * riser.elements.bends_beside[:, None], -1, 0)
     effects = SectionEffects(forces.effective_tension, moment_y, moment_z)
-    return checks.at(effects, _pressures(assembly, forces, pressure), forces.curvature_beside, contact_force)
+    return checks.at(effects, _pressures(riser, forces, pressure), forces.curvature_beside, contact_force)
 
 
-def _pressures(assembly: Assembly, forces: SectionForces, pressure: Array) -> tuple[Array, Array, Array]:
+def _pressures(riser: LineAssembly, forces: SectionForces, pressure: Array) -> tuple[Array, Array, Array]:
     """Inside and outside at the nodes, and inside at the level to which the contents' pressure refers [Pa]."""
-    none, pressures = np.zeros_like(forces.effective_tension), assembly.pressures
+    none, pressures = np.zeros_like(forces.effective_tension), riser.pressures
     if pressures is None:
         return none, none, none[..., :1]
     at_level = 0.0 if pressures.inside is None else pressures.inside.pressure

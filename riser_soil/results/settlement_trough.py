@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly import Assembly
+from riser_soil.assembly import LineAssembly
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
@@ -22,24 +22,23 @@ HALF_WIDTH = 3.0  # outer diameters
 UPRIGHT = 1e-6  # horizontal share of the riser's direction below which there is no across
 
 
-def offsets_of(assembly: Assembly) -> tuple[float, ...]:
+def offsets_of(riser: LineAssembly) -> tuple[float, ...]:
     """Places along a section [m], from right to left."""
-    given = assembly.scene.output.sections
-    half = HALF_WIDTH * assembly.scales.diameter if given.half_width is None else given.half_width
+    given = riser.scene.output.sections
+    half = HALF_WIDTH * riser.scales.diameter if given.half_width is None else given.half_width
     return tuple(float(x) for x in np.linspace(-half, half, given.points))
 
 
-def count_of(assembly: Assembly) -> int:
+def count_of(riser: LineAssembly) -> int:
     """Number of sections."""
-    return len(assembly.scene.output.sections.arcs or (0.0,))
+    return len(riser.scene.output.sections.arcs or (0.0,))
 
 
-def sections_of(assembly: Assembly) -> TroughSections | None:
+def sections_of(riser: LineAssembly) -> TroughSections | None:
     """The scene's sections; None where there is no soil, or on a rank that does not evaluate contact."""
-    contact = assembly.soil_contact
-    if contact is None or not contact.active:
+    if riser.soil is None or not riser.soil.contact.active:
         return None
-    return TroughSections(assembly.line, contact, assembly.scene.output.sections.arcs, offsets_of(assembly))
+    return TroughSections(riser.line, riser.soil.contact, riser.scene.output.sections.arcs, offsets_of(riser))
 
 
 class TroughSections:

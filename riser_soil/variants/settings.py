@@ -111,7 +111,7 @@ def _with_tolerance(scene: Scene) -> Scene:
 def _with_stiffness(scene: Scene) -> Scene:
     if not _has_penalty(scene) or scene.contact is None or scene.contact.stiffness != "auto":
         return scene
-    from riser_soil.assembly.ground import stiffnesses
+    from riser_soil.assembly.contact_laws import stiffnesses
 
     found: list[float] = []
     for view in by_line(scene).values():
@@ -207,7 +207,7 @@ def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
     was that before. Where an end is held on the seabed a wider one presses the riser by a force that grows with the
     penalty, to no limit.
     """
-    from riser_soil.assembly.ground import NARROWEST_CORNER
+    from riser_soil.assembly.contact_laws import NARROWEST_CORNER
 
     contact = scene.contact
     if contact is None or scene.soil is not None:

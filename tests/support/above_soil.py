@@ -113,7 +113,7 @@ def taken(scene: Mapping, coupled: bool = False, comm: Any = MPI.COMM_SELF) -> S
     """All stages of a scene."""
     assembly, seen = build(scene_from_mapping(scene), comm), Seen()
     assert assembly.soil is not None
-    total, line = assembly.soil.field, assembly.line
+    total, line = assembly.soil.whole.field, assembly.riser.line
     with counted(coupled) as counting:
 
         def watch(stepper: TimeStepper, step: AcceptedStep) -> None:

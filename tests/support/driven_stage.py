@@ -12,6 +12,7 @@ from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
 from riser_soil.assembly import Assembly, build
+from riser_soil.assembly.soil_assembly import SoilAssembly
 from riser_soil.assembly.stage import scheme_of
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
@@ -40,6 +41,12 @@ def built(mapping: Mapping) -> Assembly:
 
 def built_of(scene: Scene) -> Assembly:
     return build(scene, MPI.COMM_SELF)
+
+
+def soil_under(assembly: Assembly) -> SoilAssembly:
+    """The soil of a scene that has some."""
+    assert assembly.soil is not None
+    return assembly.soil
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from riser_soil.core.system import Timer
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher
+from tests.support.driven_stage import Watcher, soil_under
 from tests.support.scenes import LAY, Mapping, block, cells, static, touchdown
 
 PUSH = static("push", loads=[{"at": 7.0, "force": [0.0, 0.0, -900.0]}])
@@ -77,16 +77,14 @@ def run(scene: Mapping, comm: Any = MPI.COMM_SELF) -> Found:
     state = State.at_rest(0.0, made.size)
     for stage in made.scene.stages:
         state = run_stage(made, stage, state, Watcher(watch), Timer.new())
-    soil, contact = made.soil, made.soil_contact
-    assert soil is not None
-    assert contact is not None
+    soil, contact, renewal = soil_under(made).whole, soil_under(made).contact, soil_under(made).mesh_renewal
     fields, mesh = soil.output_fields(), soil.output_mesh()
     nodes, cells = (_by_place(places) for places in (mesh.points, mesh.points[mesh.cells].mean(axis=1)))
     free = int(np.count_nonzero(soil.field.owned & ~soil.field.prescribed))
     sums = np.concatenate([contact.force_on_riser(state), contact.force_on_soil(state)])
     return Found(
         comm.allreduce(free),
-        0 if made.mesh_renewal is None else made.mesh_renewal.count,
+        0 if renewal is None else renewal.count,
         fields.displacement[nodes],
         fields.von_mises[cells],
         fields.plastic_strain[cells],

@@ -49,7 +49,7 @@ def whole(scene: Scene, folder: Path, after: tuple[int, ...]) -> Kept:
     with Observer.open(assembly, clock, folder, force=False) as observer:
         before, laid = lay(assembly, clock)
         if laid is not None:
-            observer.laid(assembly.slack, laid.steps, laid.relaxations)
+            observer.laid(assembly.slackest.slack, laid.steps, laid.relaxations)
         _go_on(assembly, 0, before, observer, clock, kept)
     return kept
 

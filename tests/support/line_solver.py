@@ -187,14 +187,14 @@ def require_element_residual(told: StepResults, line: Line, parts: list[Any], ac
 
 def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     """Section forces at the state solved for last are those by the parts' methods, at that state and by SNES."""
-    line, elements, told = compiled.assembly.line, compiled.assembly.elements, compiled.newton.lines
+    line, elements, told = compiled.assembly.riser.line, compiled.assembly.riser.elements, compiled.newton.lines
     assert told is not None
     state, other = compiled.stepper.now, snes.stepper.now
     reported = SectionForces.within(told.section_forces(line, elements, state), line.nodes)
     parts = acting_on(line, compiled.system.model.parts)
     acting = element_residual(line, parts, state), viscous_residual(line, parts, state)
     own = section_forces(line, elements, state, *acting)
-    vector = snes.newton.accepted.section_forces(snes.assembly.line, snes.assembly.elements, other)
+    vector = snes.newton.accepted.section_forces(snes.assembly.riser.line, snes.assembly.riser.elements, other)
     by_snes = SectionForces.within(vector, line.nodes)
     for name, values in reported._asdict().items():
         scale = np.abs(reported.moment if name == "end_moment" else values).max()  # pinned ends have none
@@ -206,7 +206,7 @@ def require_contact_results(stage: TimedStage) -> None:
     """What the loop tells of contact after a step is what the contact's methods tell."""
     for contact in stage.assembly.contacts:
         assert isinstance(contact, SeabedContact)
-        sizes = stage.assembly.line.nodes, contact.along.arc.size
+        sizes = stage.assembly.riser.line.nodes, contact.along.arc.size
         found = ContactResults.within(stage.newton.accepted.contact_results(contact, stage.stepper.now), *sizes)
         expected = ContactResults.within(contact.results(stage.stepper.now), *sizes)
         assert expected.force.any()
@@ -229,11 +229,11 @@ def require_steps_of_snes(case: str) -> None:
     assert compiled.newton.lines is not None
     assert snes.newton.lines is None
     require_iterations(compiled, snes)
-    place, expected_place = (stage.assembly.line.positions3(stage.stepper.before) for stage in (compiled, snes))
+    place, expected_place = (stage.assembly.riser.line.positions3(stage.stepper.before) for stage in (compiled, snes))
     np.testing.assert_allclose(place, expected_place, rtol=0.0, atol=1e-9)
     found, expected = compiled.stepper, snes.stepper
-    parts = acting_on(compiled.assembly.line, found.system.model.parts)
-    require_element_residual(compiled.newton.accepted, compiled.assembly.line, parts, found.now)
+    parts = acting_on(compiled.assembly.riser.line, found.system.model.parts)
+    require_element_residual(compiled.newton.accepted, compiled.assembly.riser.line, parts, found.now)
     require_section_forces(compiled, snes)
     require_contact_results(compiled)
     np.testing.assert_allclose(found.before.v, expected.before.v, rtol=0.0, atol=1e-7)

@@ -10,6 +10,7 @@ from riser_soil.bodies.inertia import BodyInertia
 from riser_soil.core.arrays import Array
 from riser_soil.riser.hermite import weigh
 from riser_soil.riser.inertia import Inertia, RotaryInertia
+from riser_soil.riser.line import Line
 from riser_soil.riser.midpoint_directors import directors
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia
 from riser_soil.riser.spatial_directors import SpatialOrientation
@@ -18,7 +19,7 @@ from riser_soil.solve.time_stepper import TimeStepper
 
 def momentum(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
     """Linear (3,) and angular (3,) momentum about the origin, the sections' own spin included; global axes."""
-    found = [_of_line(line, stepper) for line in assembly.by_line.values()]
+    found = [_of_line(own.line, stepper) for own in assembly.lines.values()]
     for body in {} if assembly.hung is None else assembly.hung.bodies.values():
         (part,) = (p for p in stepper.system.model.parts if isinstance(p, BodyInertia) and p.line is body)
         found.append(of_body(body, part.M, body.nodal(stepper.now.v)[0]))
@@ -33,8 +34,8 @@ def of_body(body: MovingBody, M: Array, v: Array) -> tuple[Array, Array]:
     return linear, angular + np.cross(body.x[0], linear)
 
 
-def _of_line(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
-    line, trial = assembly.line, assembly.line.trial(stepper.now)
+def _of_line(line: Line, stepper: TimeStepper) -> tuple[Array, Array]:
+    trial = line.trial(stepper.now)
     x, t = line.to_global(trial.x), trial.turn.tangent @ line.basis.T
     q = np.stack([x[:-1], t[:, 0], x[1:], t[:, 1]], axis=1)
     linear, angular = np.zeros(3), np.zeros(3)
@@ -48,13 +49,13 @@ def _of_line(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
             linear += impulse[:, [0, 2]].sum(axis=(0, 1))
             angular += np.cross(q, impulse).sum(axis=(0, 1))
         if isinstance(part, RotaryInertia | MidpointRotaryInertia):
-            angular += _of_sections(assembly, stepper, part)
+            angular += _of_sections(line, stepper, part)
     return linear, angular
 
 
-def _of_sections(assembly: Assembly, stepper: TimeStepper, part: RotaryInertia | MidpointRotaryInertia) -> Array:
+def _of_sections(line: Line, stepper: TimeStepper, part: RotaryInertia | MidpointRotaryInertia) -> Array:
     """Angular momentum of the sections about their centres: their mass on their directors d, sum of d x m d'."""
-    line, trial = assembly.line, assembly.line.trial(stepper.now)
+    trial = line.trial(stepper.now)
     still = np.zeros((line.nodes, line.frames.dofs))
     on = (part if isinstance(part, RotaryInertia) else part.instant).on_directors()
     moving = [directors(line.frames, k) for k in on]

@@ -17,13 +17,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.assembly.ground import contact_width
+from riser_soil.assembly.contact_laws import contact_width
 from riser_soil.assembly.scales import LEAST_WEIGHT, Scales
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 from riser_soil.soil.seabed_feature import GrooveSpec
 from riser_soil.solve.time_stepper import AcceptedStep
-from tests.support.driven_stage import built, take
+from tests.support.driven_stage import built, soil_under, take
 from tests.support.scenes import Mapping, block, cells, level_pipe, pushed_to
 
 D, SU, STEPS = 0.3, 5.0e3, 9
@@ -101,7 +101,7 @@ def touching(E: float) -> float:
 def resistance(scene: Mapping) -> Array:
     """V/(D su) at the end of each step."""
     assembly = built(scene)
-    pressing = [part for part in (assembly.soil_contact, assembly.only.soil_friction) if part is not None]
+    pressing = [part for part in (soil_under(assembly).contact, soil_under(assembly).friction) if part is not None]
     found: list[float] = []
 
     def watch(system: System, step: AcceptedStep) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.support.driven_stage import built, take
+from tests.support.driven_stage import built, soil_under, take
 from tests.support.scenes import ELASTIC, Mapping, block, cells, level_pipe, pushed_to
 
 D, E, NU = 0.5, ELASTIC["E"], ELASTIC["nu"]
@@ -32,18 +32,18 @@ class Pushed:
         self.assembly = built(scene or slice_of_soil(cells, method))
         self.state = take(self.assembly, self.assembly.scene.stages[0])
         assert self.assembly.soil is not None
-        assert self.assembly.soil_contact is not None
-        grid = self.assembly.soil.grid
+        assert self.assembly.soil.contact is not None
+        grid = self.assembly.soil.whole.grid
         self.thickness = float(grid.high[0] - grid.low[0])
-        self.q = -float(self.assembly.soil_contact.force_on_soil(self.state)[2]) / self.thickness
+        self.q = -float(self.assembly.soil.contact.force_on_soil(self.state)[2]) / self.thickness
         self.modulus = E / (1.0 - NU**2)
         self.half_width = float(np.sqrt(2.0 * self.q * D / (np.pi * self.modulus)))
 
     @property
     def indentation(self) -> float:
         """Less the penalty's give [m]."""
-        assert self.assembly.soil_contact is not None
-        return INDENTATION - self.assembly.soil_contact.max_penetration(self.state)
+        assert self.assembly.soil is not None
+        return INDENTATION - self.assembly.soil.contact.max_penetration(self.state)
 
     def approach(self, depth: float) -> float:
         """How far the pipe comes nearer to a point so deep below it [m]; Johnson, Contact Mechanics, 5.6."""
@@ -52,7 +52,7 @@ class Pushed:
 
     def settled(self, depth: float) -> float:
         """Downward displacement of the soil at so deep below the pipe [m]."""
-        soil = self.assembly.recovered_soil()
+        soil = soil_under(self.assembly).recovered()
         assert soil is not None
         field = soil.field
         y, z = field.points[:, 1], field.points[:, 2]

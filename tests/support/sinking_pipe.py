@@ -13,7 +13,7 @@ from riser_soil.core.system import Timer
 from riser_soil.soil.condensed import SoilSurface
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher, built
+from tests.support.driven_stage import Watcher, built, soil_under
 from tests.support.scenes import Mapping, block, cells, level_pipe, pushed_to
 
 D, SU, STIFF = 0.3, 5.0e3, 400.0  # m, Pa, E over su
@@ -71,9 +71,8 @@ class Sunk:
 def sink(scene: Mapping, followed: int = 0) -> Sunk:
     """Take the scene's stages up to the one of that number, of which it tells; embedments are those of the first."""
     assembly, rows = built(scene), list[tuple[float, ...]]()
-    contact, friction, soil = assembly.soil_contact, assembly.only.soil_friction, assembly.soil
-    assert contact is not None
-    assert soil is not None
+    ground = soil_under(assembly)
+    contact, friction, soil = ground.contact, ground.friction, ground.whole
     bearing = float(soil.grid.high[0] - soil.grid.low[0]) * SU * D
     deepest = 0.5 - scene["stages"][0]["move"]["start"][2] / D
     first = soil.cells.volumes.sum()
@@ -90,7 +89,7 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
         rows.clear()
         state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
     w, V, H, iterations, t, lift = np.array(rows).T
-    renewals = 0 if assembly.mesh_renewal is None else assembly.mesh_renewal.count
+    renewals = 0 if ground.mesh_renewal is None else ground.mesh_renewal.count
     return Sunk(w, V, H, iterations, t, lift, renewals, float(soil.cells.volumes.sum() / first))
 
 

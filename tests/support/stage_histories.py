@@ -53,8 +53,8 @@ def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
             now.cuts.append(step.cuts)
             now.energy.append(step.energy.total)
             now.work.append(step.work - step.dissipated)
-            now.position.append(assembly.line.positions3(stepper.now))
-            now.last = riser_snapshot(assembly, stepper)
+            now.position.append(assembly.riser.line.positions3(stepper.now))
+            now.last = riser_snapshot(assembly.riser, stepper)
 
         before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
         reported.append(now)
@@ -125,7 +125,7 @@ class HeavedSoil:
         assert assembly.soil is not None
         lay, heave = assembly.scene.stages
         take(assembly, heave, take(assembly, lay), self._watch)
-        self.plastic_strain = float(assembly.soil.output_fields().plastic_strain.max())
+        self.plastic_strain = float(assembly.soil.whole.output_fields().plastic_strain.max())
 
     def _watch(self, system: System, step: AcceptedStep) -> None:
         self.times.append(step.t)

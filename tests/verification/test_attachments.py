@@ -43,9 +43,10 @@ def inside(assembly: Assembly) -> SectionForces:
     """Section forces at the end of the scene's only, static stage."""
     (stage,) = assembly.scene.stages
     state = take(assembly, stage)
-    parts = acting_on(assembly.line, assembly.begin(stage).parts)
+    parts = acting_on(assembly.riser.line, assembly.begin(stage).parts)
     at = State.at_rest(1.0, state.u.size)
-    return section_forces(assembly.line, assembly.elements, at, element_residual(assembly.line, parts, at))
+    residual = element_residual(assembly.riser.line, parts, at)
+    return section_forces(assembly.riser.line, assembly.riser.elements, at, residual)
 
 
 @both_dimensions
@@ -63,7 +64,7 @@ def test_tension_jumps_by_the_weight_of_what_hangs(dimension: int) -> None:
             dimension=dimension,
         )
     )
-    arc, tension = assembly.line.arc, inside(assembly).effective_tension
+    arc, tension = assembly.riser.line.arc, inside(assembly).effective_tension
     weights = {6.0: 50.0 * G, 10.7: (300.0 - 0.1 * RHO) * G, 20.0: 50.0 * G}
     expected = 100.0 * (20.0 - arc) + sum(w * (arc <= s + 1e-9) for s, w in weights.items())
     assert tension == pytest.approx(expected, rel=1e-9)
@@ -78,9 +79,9 @@ def test_a_buoy_holds_its_mooring_straight_up(dimension: int) -> None:
     )
     lift = (RHO - 200.0) * G
     found = inside(assembly)
-    assert found.effective_tension == pytest.approx(lift - 100.0 * (20.0 - assembly.line.arc), rel=1e-9)
+    assert found.effective_tension == pytest.approx(lift - 100.0 * (20.0 - assembly.riser.line.arc), rel=1e-9)
     assert found.force[0] == pytest.approx([0.0, 0.0, lift - 2000.0], rel=1e-9, abs=1e-6)
-    assert assembly.line.to_global(assembly.line.x)[-1] == pytest.approx([0.0, 0.0, 20.0], abs=1e-3)
+    assert assembly.riser.line.to_global(assembly.riser.line.x)[-1] == pytest.approx([0.0, 0.0, 20.0], abs=1e-3)
 
 
 def test_a_lazy_wave_balances_at_every_node() -> None:
@@ -98,12 +99,12 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
             riser={"initial": "catenary"},
         )
     )
-    found, arc = inside(assembly), assembly.line.arc
+    found, arc = inside(assembly), assembly.riser.line.arc
     net = (60.0 - 0.12 * RHO) * G
     below = sum(net * (arc > s + 1e-9) for s in places)
     assert found.force[:, 0] == pytest.approx(np.full(61, found.force[0, 0]), rel=1e-7)
     assert found.force[:, 2] - found.force[0, 2] == pytest.approx(100.0 * arc + below, rel=1e-7, abs=1e-3)
-    height = assembly.line.to_global(assembly.line.x)[:, 2]
+    height = assembly.riser.line.to_global(assembly.riser.line.x)[:, 2]
     turns = [i for i in range(1, 60) if (height[i] - height[i - 1]) * (height[i + 1] - height[i]) < 0.0]
     assert len(turns) == 3  # sag bend, hog bend, sag bend
 
@@ -243,7 +244,7 @@ def pressed_in(count: int, EI: float, clump: float) -> tuple[float, float]:
         )
     )
     state = take(assembly, assembly.scene.stages[0])
-    at, seabed = State.at_rest(1.0, state.u.size), assembly.seabed
+    at, seabed = State.at_rest(1.0, state.u.size), assembly.riser.seabed
     assert seabed is not None
     return float(seabed.penetration(at)[count // 2]), float(seabed.force_on_riser(at)[2])
 

@@ -16,7 +16,7 @@ from riser_soil.checks.settlement import settlement
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.automatic_cells import scaled
-from tests.support.driven_stage import take
+from tests.support.driven_stage import soil_under, take
 from tests.support.pages import Tell, signed_percent
 from tests.support.pushed_pipe import D, Pushed, slice_of_soil
 from tests.support.scenes import CLAY, ELASTIC, PIPE, Mapping, block, level_pipe, static
@@ -90,12 +90,12 @@ def pushed(scene: Scene) -> Found:
         state = take(assembly, stage, state)
     assert state is not None
     assert assembly.soil is not None
-    assert assembly.soil_contact is not None
-    recovered = assembly.recovered_soil()
+    assert assembly.soil.contact is not None
+    recovered = assembly.soil.recovered()
     assert recovered is not None
-    grid, fields = assembly.soil.grid, recovered.output_fields()
-    force = -float(assembly.soil_contact.force_on_soil(state)[2]) / float(grid.high[0] - grid.low[0])
-    return Found(force, fields.von_mises.max(), fields.plastic_strain.max(), 3 * len(assembly.soil.field.points))
+    grid, fields = assembly.soil.whole.grid, recovered.output_fields()
+    force = -float(assembly.soil.contact.force_on_soil(state)[2]) / float(grid.high[0] - grid.low[0])
+    return Found(force, fields.von_mises.max(), fields.plastic_strain.max(), 3 * len(assembly.soil.whole.field.points))
 
 
 def halved(scene: Mapping) -> tuple[Found, Found]:
@@ -165,7 +165,7 @@ def lifted(law: Mapping, along: float = 1.0, elements: int = 16) -> tuple[float,
     assembly, state = build(scene, MPI.COMM_SELF), None
     for stage in scene.stages:
         state = take(assembly, stage, state)
-    recovered = assembly.recovered_soil()
+    recovered = soil_under(assembly).recovered()
     assert recovered is not None
     mesh, fields = recovered.output_mesh(), recovered.output_fields()
     nodes, cells = mesh.points[:, 0], mesh.points[mesh.cells].mean(axis=1)[:, 0]

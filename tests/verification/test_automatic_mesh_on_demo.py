@@ -33,7 +33,7 @@ def laid(scene: Scene) -> Array:
     assembly = build(scene, MPI.COMM_SELF)
     take(assembly, scene.stages[0])
     assert assembly.soil is not None
-    fields = assembly.soil.output_fields()
+    fields = assembly.soil.whole.output_fields()
     return np.array([-fields.displacement[:, 2].min(), fields.von_mises.max()])
 
 

@@ -25,7 +25,7 @@ from riser_soil.soil.soil import Soil
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import LAID_IN
 from riser_soil.whole_run import run
-from tests.support.driven_stage import built, take
+from tests.support.driven_stage import built, soil_under, take
 from tests.support.scenes import LAY, ON_BLOCK, Mapping, touchdown
 from tests.support.watched_run import WatchedRun
 
@@ -43,20 +43,20 @@ class Laid:
             self.forces = total(step.solution.forces)
             state = step.solution.state
             self.on_riser = np.sum([c.force_on_riser(state) for c in self.assembly.contacts], axis=0)
-            assert self.assembly.soil_contact is not None
-            self.on_soil = self.assembly.soil_contact.force_on_soil(state)
+            assert self.assembly.soil is not None
+            self.on_soil = self.assembly.soil.contact.force_on_soil(state)
 
         take(self.assembly, self.assembly.scene.stages[0], watch=keep)
 
     @property
     def weight(self) -> float:
         """Submerged weight of the whole riser [N]."""
-        return float(self.assembly.elements.weight @ self.assembly.line.length)
+        return float(self.assembly.riser.elements.weight @ self.assembly.riser.line.length)
 
     @property
     def supports(self) -> Array:
         """Force (3,) of both supports on the riser [N], global axes."""
-        line = self.assembly.line
+        line = self.assembly.riser.line
         return np.asarray(self.forces[line.translation_dofs[[0, -1]]].sum(axis=0) @ line.basis.T)
 
     @property
@@ -64,8 +64,7 @@ class Laid:
         """Force (3,) of the bottom and the sides on the soil [N], of half a soil with their images; contact pushes the
         upper edges of the sides, too.
         """
-        soil = self.assembly.soil
-        assert soil is not None
+        soil = soil_under(self.assembly).whole
         out = np.zeros(3)
         for field in (soil.field, soil.surface):
             own = self.forces[field.offset : field.offset + field.size]
@@ -158,10 +157,9 @@ def pressed(kind: str) -> list[list[Drop]]:
     scene = touchdown(LAY, PRESS, kind=kind, su=1000.0, tolerance=1e-13)
     scene["solver"]["load_steps"] = 8
     assembly, found, touching = built(scene), list[list[Drop]](), list[tuple[frozenset[int], frozenset[int]]]()
-    contact = assembly.soil_contact
+    contact = soil_under(assembly).contact
     assert isinstance(contact, SurfaceContact)
-    soil = assembly.soil
-    assert soil is not None
+    soil = soil_under(assembly).whole
     usual = contact.tangent
 
     def tangent(state: State, weights: Weights, values: dict[str, Array]) -> None:
@@ -209,11 +207,11 @@ def test_riser_on_block_lays_down_the_weight_that_does_not_hang(on_block: Watche
     """Contact and the start's support bear the weight of what lies; the catenary tells it, less 1.5 % by current."""
     final = Run(on_block.folder).summary["stages"][0]["final"]
     assembly = built_on_block()
-    w = float(assembly.elements.weight[0])
+    w = float(assembly.riser.elements.weight[0])
     lying = (final["contact_force"] + final["start"]["force"][2]) / w
-    shape = catenary(assembly.line.arc, np.array([0.0, 0.0, 0.15]), np.array([80.0, 0.0, 100.0]), w, 3.0e8, 0.15)
+    shape = catenary(assembly.riser.line.arc, np.array([0.0, 0.0, 0.15]), np.array([80.0, 0.0, 100.0]), w, 3.0e8, 0.15)
     hanging = np.sqrt(shape.tension[-1] ** 2 - shape.H**2) / w
-    assert lying == pytest.approx(0.985 * (assembly.line.arc[-1] - hanging), rel=0.005)
+    assert lying == pytest.approx(0.985 * (assembly.riser.line.arc[-1] - hanging), rel=0.005)
 
 
 @pytest.mark.parametrize("part", ["contact", "soil"])

@@ -12,7 +12,7 @@ from riser_soil.contact.node_contact import NodeContact
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.soil.laws import LAWS
-from tests.support.driven_stage import FirstStep, built
+from tests.support.driven_stage import FirstStep, built, soil_under
 from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 LIFT: Mapping = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.1]}}
@@ -55,7 +55,7 @@ class Case:
 
     @property
     def riser(self) -> IntArray:
-        line = self.assembly.line
+        line = self.assembly.riser.line
         return self.step.rows(line.offset + np.arange(line.size))
 
     @property
@@ -65,7 +65,7 @@ class Case:
     @property
     def active(self) -> dict[str, IntArray]:
         """Rows of the riser's and of the soil's dofs on which contact acts at x."""
-        contact, state = self.assembly.soil_contact, self.step.state(self.x)
+        contact, state = soil_under(self.assembly).contact, self.step.state(self.x)
         if isinstance(contact, NodeContact):
             touched = contact.detect(state).touching.rows
         else:
@@ -81,7 +81,7 @@ class Case:
     @property
     def pushes_and_pulls(self) -> bool:
         """Whether the soil presses on the pipe at some points at x, and by suction holds it at others."""
-        contact = self.assembly.soil_contact
+        contact = soil_under(self.assembly).contact
         assert isinstance(contact, SurfaceContact)
         force = contact.evaluate(self.step.state(self.x)).pressed.force
         return bool(force.min() < 0.0 < force.max())
@@ -105,8 +105,7 @@ class Case:
 
     def plastic_share(self) -> float:
         """Share of the soil's cells in which some point yields on the way to x; x is accepted by this."""
-        soil = self.assembly.soil
-        assert soil is not None
+        soil = soil_under(self.assembly).whole
         before = soil.output_fields().plastic_strain
         state = self.step.state(self.x)
         soil.commit(state)

@@ -49,7 +49,7 @@ def led_around(way: int, side: int, time_step: float, elements: int = 60, dimens
     rows, before = list[tuple[float, float, float]](), State.at_rest(0.0, assembly.size)
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        found = riser_snapshot(assembly, stepper)
+        found = riser_snapshot(assembly.riser, stepper)
         rows.append((found.effective_tension[0], found.effective_tension[-1], found.bending_moment.max()))
 
     for stage in assembly.scene.stages:

@@ -242,7 +242,7 @@ def test_frames_stay_orthonormal_through_a_hundred_turns() -> None:
         momenta.append(momentum(assembly, stepper)[1])
 
     after = run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Timer.new())
-    turns = np.array([assembly.line.frames.turn(np.zeros((3, 3))).at(node) for node in range(3)])
+    turns = np.array([assembly.riser.line.frames.turn(np.zeros((3, 3))).at(node) for node in range(3)])
     assert np.abs(turns @ np.swapaxes(turns, 1, 2) - np.eye(3)).max() < 1e-13
     assert np.linalg.norm(momenta[-1] - momenta[0]) < 1e-9 * np.linalg.norm(momenta[0])
     assert after.v.reshape(-1, 6)[:, 3] == pytest.approx(np.full(3, spin), rel=1e-2)

@@ -34,6 +34,7 @@ from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.step import Solution, Step
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.scenes import FALL, Mapping, flat, pinned, tilted
@@ -161,8 +162,11 @@ def top_tension(dt: float) -> Array:
     scene = tank(1e6, dt, duration=2.4, ramp=2.4)
     assembly = build(scene, MPI.COMM_SELF)
     before = take(assembly, scene.stages[0])
-    watcher = Watcher(lambda stepper, _: tension.append(float(riser_snapshot(assembly, stepper).effective_tension[-1])))
-    run_stage(assembly, scene.stages[1], before, watcher, Timer.new())
+
+    def watch(stepper: TimeStepper, _: AcceptedStep) -> None:
+        tension.append(float(riser_snapshot(assembly.riser, stepper).effective_tension[-1]))
+
+    run_stage(assembly, scene.stages[1], before, Watcher(watch), Timer.new())
     return np.array(tension)
 
 

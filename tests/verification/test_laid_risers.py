@@ -78,7 +78,7 @@ class Laid(Watcher):
     def _see(self, stepper: TimeStepper, step: AcceptedStep) -> None:
         self.iterations.append(step.solution.iterations)
         self.cuts += step.cuts
-        self.end.append(riser_snapshot(self.assembly, stepper))
+        self.end.append(riser_snapshot(self.assembly.riser, stepper))
 
 
 def laid(mapping: Mapping) -> Laid:
@@ -174,13 +174,13 @@ def test_guess_touches_down_where_the_riser_does(apart: float) -> None:
     """Within an element or two, where the catenary misses it by half the length of the bend; its ends stay."""
     mapping = scene("rigid", apart=apart, finer=4.0)
     assembly = built(mapping)
-    assert assembly.seabed is not None
-    assert assembly.catenary is not None
-    guess = laid_guess(assembly.scene, assembly.seabed, assembly.elements, (), assembly.catenary)
+    assert assembly.riser.seabed is not None
+    assert assembly.riser.catenary is not None
+    guess = laid_guess(assembly.scene, assembly.riser.seabed, assembly.riser.elements, (), assembly.riser.catenary)
     assert guess is not None
-    placed, arc, axis = assembly.line.x[:, 1], assembly.line.arc, 0.5 * PIPE["outer_diameter"]
+    placed, arc, axis = assembly.riser.line.x[:, 1], assembly.riser.line.arc, 0.5 * PIPE["outer_diameter"]
     found = arc[laid(mapping).end[0].contact_force > 0.0][-1]
     guessed, of_cable = arc[placed + guess[:, 1] < axis][-1], arc[placed < axis + 1e-3][-1]
     assert abs(guessed - found) < 2.5
-    assert of_cable - found > 0.5 * np.sqrt(PIPE["EI"] / assembly.catenary.H)
+    assert of_cable - found > 0.5 * np.sqrt(PIPE["EI"] / assembly.riser.catenary.H)
     assert guess[[0, -1], 0] == pytest.approx([0.0, 0.0], abs=1e-9)

@@ -16,7 +16,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher, built
+from tests.support.driven_stage import Watcher, built, soil_under
 from tests.support.on_ranks import mpirun
 from tests.support.pages import Tell
 from tests.support.scenes import Mapping
@@ -291,9 +291,7 @@ def test_mean_stress_under_a_pipe_hangs_on_no_cells(scene: Mapping, largest: flo
     """
     assembly = built(scene)
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
-    soil, resumed = assembly.soil, built(scene).soil
-    assert soil is not None
-    assert resumed is not None
+    soil, resumed = soil_under(assembly).whole, soil_under(built(scene)).whole
     found = soil.output_fields().mean_stress
     assert found.max() / SU == pytest.approx(largest, rel=0.05)
     resumed.restore(soil.state())

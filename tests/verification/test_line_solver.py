@@ -55,5 +55,5 @@ def test_a_bar_that_has_turned_many_times_comes_to_rest_without_a_cut_step(monke
     monkeypatch.setattr("riser_soil.solve.newton.StepIteration", None)
     take(assembly, rest, take(assembly, turn), watch=lambda _, step: watched.append(step))
     assert len(watched) == 100
-    assert assembly.line.x[-1] == pytest.approx([1.0, 0.0], abs=1e-9)
+    assert assembly.riser.line.x[-1] == pytest.approx([1.0, 0.0], abs=1e-9)
     assert watched[-1].solution.norms[-1] > assembly.scales.force_floor

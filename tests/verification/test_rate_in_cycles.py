@@ -35,8 +35,8 @@ def lowest(place: Path, law: str, seconds: float = 1.0) -> tuple[Array, float]:
     forces, lost = {0.0: 0.0}, list[float]()
 
     def watch(system: System, step: AcceptedStep) -> None:
-        acting = step.solution.forces.end[: assembly.line.size]
-        forces[round(step.t / seconds, 3)] = abs(float(assembly.line.nodal(acting)[:, 1].sum()))
+        acting = step.solution.forces.end[: assembly.riser.line.size]
+        forces[round(step.t / seconds, 3)] = abs(float(assembly.riser.line.nodal(acting)[:, 1].sum()))
         lost.append(step.turned["soil"].dissipated)
 
     take(assembly, scene.stages[0], None, watch)

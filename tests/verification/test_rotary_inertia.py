@@ -96,7 +96,7 @@ def tossed(time_step: float) -> tuple[Array, Array]:
     rates[:, 2], rates[:, 3:] = [-1.0, 1.0], [SPIN, -TUMBLE, 0.0]
     rates[:, 2] *= 0.5 * ROD_LENGTH * TUMBLE
     take(assembly, assembly.scene.stages[-1], before, lambda system, step: energies.append(step.energy.total))
-    return assembly.line.chord[0] / np.linalg.norm(assembly.line.chord[0]), np.array(energies)
+    return assembly.riser.line.chord[0] / np.linalg.norm(assembly.riser.line.chord[0]), np.array(energies)
 
 
 def test_free_spinning_top_precesses() -> None:

@@ -12,7 +12,7 @@ from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.solve import settling
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher, built
+from tests.support.driven_stage import Watcher, built, soil_under
 from tests.support.said import telling
 from tests.support.scenes import Mapping
 from tests.support.sinking_pipe import SU, D, sink, sinking
@@ -38,7 +38,7 @@ class Rested:
     def __init__(self, load: float) -> None:
         assembly, watcher = built(resting(load)), Watcher()
         end = run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), watcher, Timer.new())
-        contact, x = assembly.soil_contact, assembly.line.positions3(end)
+        contact, x = soil_under(assembly).contact, assembly.riser.line.positions3(end)
         assert contact is not None
         self.w = 0.5 - float(np.interp(0.5 * D, x[:, 0], x[:, 2])) / D
         self.V = -float(contact.force_on_soil(end)[2]) / (SU * D * D / CELLS)

@@ -60,7 +60,7 @@ def reported(elements: int, time_step: float) -> tuple[float, float, float]:
     tension, energy = list[tuple[float, float]](), list[float]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        found = riser_snapshot(assembly, stepper).effective_tension
+        found = riser_snapshot(assembly.riser, stepper).effective_tension
         tension.append((float(found[-1]), float(found.max())))
         energy.append(stepper.energy.total)
 

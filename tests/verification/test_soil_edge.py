@@ -51,8 +51,8 @@ def force_per_length(mapping: Mapping) -> float:
     """What the soil bears at the end [N/m]."""
     assembly = built(mapping)
     state = take(assembly, assembly.scene.stages[0])
-    assert assembly.soil_contact is not None
-    return -float(assembly.soil_contact.force_on_soil(state)[2]) / LENGTH
+    assert assembly.soil is not None
+    return -float(assembly.soil.contact.force_on_soil(state)[2]) / LENGTH
 
 
 @pytest.mark.parametrize(

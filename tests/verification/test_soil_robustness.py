@@ -20,7 +20,7 @@ from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import LAID_IN, run_stage
 from riser_soil.whole_run import run
-from tests.support.driven_stage import Watcher, built, take
+from tests.support.driven_stage import Watcher, built, soil_under, take
 from tests.support.scenes import (
     CLAY,
     ELASTIC,
@@ -71,7 +71,7 @@ def runs_and_bears(scene: Mapping) -> None:
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
         before = take(assembly, stage, before, watch)
-    weight = float(assembly.elements.weight @ assembly.line.length)
+    weight = float(assembly.riser.elements.weight @ assembly.riser.line.length)
     print(f"borne {np.array(borne) / weight}, iterations {iterations}")
     after = np.array(borne[LAID_IN - 1 :])
     assert np.all((after > 0.2 * weight) & (after < weight))
@@ -94,7 +94,7 @@ class Laying(Watcher):
         self.iterations, self.cuts, self.assembly = list[int](), 0, built(scene)
         lay = self.assembly.scene.stages[0]
         state = run_stage(self.assembly, lay, State.at_rest(0.0, self.assembly.size), self, Timer.new())
-        contact = self.assembly.soil_contact
+        contact = soil_under(self.assembly).contact
         assert contact is not None
         self.borne = -float(contact.force_on_soil(state)[2])
 
@@ -106,7 +106,7 @@ class Laying(Watcher):
 def growth(assembly: Assembly) -> tuple[float, float]:
     """The widest over the narrowest cell across the riser, and the deepest over the shallowest."""
     assert assembly.soil is not None
-    points = np.round(assembly.soil.output_mesh().points, 6)
+    points = np.round(assembly.soil.whole.output_mesh().points, 6)
     across, down = (np.diff(np.unique(points[:, axis])) for axis in (1, 2))
     return float(across.max() / across.min()), float(down.max() / down.min())
 
@@ -219,7 +219,7 @@ def test_a_riser_lifted_off_the_soil_comes_to_rest_in_its_trough(tmp_path: Path)
 def forces(scene: Mapping) -> Array:
     """What the soil bears [N], step by step of the only stage."""
     assembly, found = built(scene), list[float]()
-    contact = assembly.soil_contact
+    contact = soil_under(assembly).contact
     assert contact is not None
     stage: Stage = assembly.scene.stages[0]
     take(assembly, stage, watch=lambda _, step: found.append(-float(contact.force_on_soil(step.solution.state)[2])))

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from riser_soil.assembly import Assembly, ground
+from riser_soil.assembly import Assembly, soil_contact
 from riser_soil.checks.ground_plausibility import ground_warnings
 from riser_soil.checks.settlement import LIKE_CONTACT
 from riser_soil.contact.surface_contact import SurfaceContact
@@ -18,7 +18,7 @@ from riser_soil.core.system import System
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.whole_run import run
-from tests.support.driven_stage import FirstStep, built, take
+from tests.support.driven_stage import FirstStep, built, soil_under, take
 from tests.support.pushed_pipe import INDENTATION, NU, D, E, Pushed, slice_of_soil
 from tests.support.said import line_with
 from tests.support.scenes import LAY, Mapping, heave, touchdown
@@ -39,8 +39,9 @@ def test_the_indentation_is_that_of_hertz() -> None:
 def test_the_pressure_is_that_of_hertz() -> None:
     """But for its peak, which the penalty's give flattens by some 5 %."""
     case = pushed(64)
-    assert isinstance(case.assembly.soil_contact, SurfaceContact)
-    points = case.assembly.soil_contact.evaluate(case.state).pressed
+    contact = soil_under(case.assembly).contact
+    assert isinstance(contact, SurfaceContact)
+    points = contact.evaluate(case.state).pressed
     peak = 2.0 * case.q / (np.pi * case.half_width)
     assert (points.force / points.points.area).max() == pytest.approx(peak, rel=0.08)
     assert points.points.area.sum() / case.thickness == pytest.approx(2.0 * case.half_width, rel=0.05)
@@ -59,7 +60,7 @@ def test_points_and_penalty_hardly_count(monkeypatch: pytest.MonkeyPatch) -> Non
     scene, standard = slice_of_soil(32), pushed(32).q
     scene["contact"]["stiffness"] = 2.0 * 20.0 * E
     assert Pushed(32, scene=scene).q / standard - 1.0 == pytest.approx(0.015, abs=0.01)
-    monkeypatch.setattr(ground, "POINTS_ACROSS", 2.0 * ground.POINTS_ACROSS)
+    monkeypatch.setattr(soil_contact, "POINTS_ACROSS", 2.0 * soil_contact.POINTS_ACROSS)
     assert Pushed(32).q == pytest.approx(standard, rel=5e-3)
 
 
@@ -77,8 +78,8 @@ def test_coarse_cells_settle_less_as_the_warning_says(cells: int) -> None:
 def test_wide_cells_are_reported() -> None:
     scene = touchdown(LAY, su=6000.0)
     at_nodes = scene | {"contact": {"method": "node"}}
-    assert not any("size_at_riser" in reported for reported in ground_warnings(built(at_nodes)))
-    reported = line_with(ground_warnings(built(scene)), "soil.mesh.size_at_riser", "fine cells", "take at most")
+    assert not any("size_at_riser" in reported for reported in ground_warnings(built(at_nodes).riser))
+    reported = line_with(ground_warnings(built(scene).riser), "soil.mesh.size_at_riser", "fine cells", "take at most")
     assert re.search(r"touches .* \d\S* mm.* \d\S* mm ", reported)
 
 
@@ -114,13 +115,13 @@ def test_supports_and_grounds_bear_the_weight(kind: str, dimension: int) -> None
     def keep(system: System, step: AcceptedStep) -> None:
         state = step.solution.state
         forces.append(np.sum([c.force_on_riser(state) for c in assembly.contacts], axis=0))
-        contact = assembly.soil_contact
+        contact = soil_under(assembly).contact
         assert contact is not None
         apart = contact.force_on_riser(state) + contact.force_on_soil(state)
         assert np.abs(apart).max() < 1e-12 * np.linalg.norm(contact.force_on_soil(state)) or dimension == 2
 
     take(assembly, assembly.scene.stages[0], watch=keep)
-    weight = float(assembly.elements.weight @ assembly.line.length)
+    weight = float(assembly.riser.elements.weight @ assembly.riser.line.length)
     assert 0.2 * weight < forces[-1][2] < weight
 
 

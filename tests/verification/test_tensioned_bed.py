@@ -65,11 +65,11 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
     assembly, found = built(scene), list[Found]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        riser, line = riser_snapshot(assembly, stepper), assembly.line
-        assert assembly.seabed is not None
+        riser, line = riser_snapshot(assembly.riser, stepper), assembly.riser.line
+        assert assembly.riser.seabed is not None
         tangent = line.trial(stepper.now).turn.tangent
         slope = np.append(tangent[:, 0, 1] / tangent[:, 0, 0], tangent[-1, 1, 1] / tangent[-1, 1, 0])
-        touchdown = assembly.seabed.touchdown_arc(stepper.now)
+        touchdown = assembly.riser.seabed.touchdown_arc(stepper.now)
         found.append(Found(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from demos.compute import compute
-from riser_soil.assembly.ground import GAUSS_POINTS
+from riser_soil.assembly.seabed import GAUSS_POINTS
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
@@ -62,10 +62,10 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         **more,
     )
     assembly, found = built(scene), list[Laid]()
-    seabed_contact = assembly.seabed
+    seabed_contact = assembly.riser.seabed
     assert seabed_contact is not None
     law = seabed_contact.law
-    arc = assembly.line.arc[:-1, None] + assembly.line.length[:, None] * stations.gauss(GAUSS_POINTS).points
+    arc = assembly.riser.line.arc[:-1, None] + assembly.riser.line.length[:, None] * stations.gauss(GAUSS_POINTS).points
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         clearance, force = seabed_contact.contact_along_line(stepper.now)

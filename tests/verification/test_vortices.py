@@ -43,7 +43,7 @@ class Shaken:
 
 def shaken(scene: Mapping) -> Shaken:
     assembly = built_of(scene_from_mapping(scene))
-    line, (rest, flow) = assembly.line, assembly.scene.stages
+    line, (rest, flow) = assembly.riser.line, assembly.scene.stages
     assert line.dimension == 3  # though all that is given lies in a plane
     before, found = take(assembly, rest), Shaken(np.zeros(0), np.zeros(0), [])
     t, x = list[float](), list[Array]()

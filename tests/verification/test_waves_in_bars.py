@@ -47,7 +47,7 @@ def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Any, TimeStepper
     """Time and what `look` sees after each step; v (nn,): the nodes' first speeds along an axis of the plane [m/s]."""
     assembly, rows = built(mapping), list[tuple[float, ...]]()
     rates = np.zeros(assembly.size)
-    assembly.line.nodal(rates)[:, axis] = v
+    assembly.riser.line.nodal(rates)[:, axis] = v
     before = State(0.0, np.zeros(assembly.size), rates, np.zeros(assembly.size))
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
@@ -79,8 +79,8 @@ class Strike:
         )
 
         def look(assembly: Any, stepper: TimeStepper) -> tuple[float, ...]:
-            up = assembly.line.nodal(stepper.now.v)[:, 1] @ assembly.line.tributary_length / L
-            return float(assembly.seabed.force_on_riser(stepper.now)[2]), up, stepper.energy.total
+            up = assembly.riser.line.nodal(stepper.now.v)[:, 1] @ assembly.riser.line.tributary_length / L
+            return float(assembly.riser.seabed.force_on_riser(stepper.now)[2]), up, stepper.energy.total
 
         t, force, up, energy = seen(bar, 1, np.full(steps + 1, -V), look)
         between = (t > 0.5) & (t < 1.8)

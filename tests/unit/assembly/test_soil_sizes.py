@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly import sized
-from riser_soil.assembly.ground import contact_width
+from riser_soil.assembly.contact_laws import contact_width
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales
 from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width

@@ -91,7 +91,7 @@ def test_what_happens_before_the_extremes_are_taken_is_not_seen() -> None:
 @pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))
 def test_the_end_moves_as_in_our_scene(case: Case) -> None:
     scene = scene_from_mapping(scene_of(case, 20, 0.1, "snes"))
-    end = build(scene, MPI.COMM_SELF).line.end
+    end = build(scene, MPI.COMM_SELF).riser.line.end
     set_motion(end, "end", np.array([case.end[0], 0.0, case.end[1]]), scene.stages[-1], None)
     assert end.motion is not None
     for t in (0.0, 0.3 * case.period, 0.9 * case.period, 2.2 * case.period):

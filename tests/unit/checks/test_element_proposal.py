@@ -28,7 +28,7 @@ FIRST = ROOT / "demos/first_scene.yaml"
 
 
 def of(scene: Scene) -> tuple[Segment, ...] | None:
-    asked = asked_lengths(build(scene, MPI.COMM_SELF))
+    asked = asked_lengths(build(scene, MPI.COMM_SELF).riser)
     return None if asked is None else segments_for(scene, *asked)
 
 
@@ -95,19 +95,19 @@ def test_elements_as_proposed_need_no_word() -> None:
     scene = read_scene(FIRST)
     segments = of(scene)
     assert segments is not None
-    reported = proposal(build(scene, MPI.COMM_SELF), "riser")
+    reported = proposal(build(scene, MPI.COMM_SELF).riser, "riser")
     line_with(reported, "elements graded", "bend", "1%", "largest moment")
-    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF), "riser")
+    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF).riser, "riser")
 
 
 def test_the_words_are_segments_of_a_scene() -> None:
     from ruamel.yaml import YAML
 
     scene = read_scene(FIRST)
-    reported = proposal(build(scene, MPI.COMM_SELF), "riser").split("\n", 1)[1]
+    reported = proposal(build(scene, MPI.COMM_SELF).riser, "riser").split("\n", 1)[1]
     segments = tuple(Segment(**each) for each in YAML(typ="safe").load(reported))
     assert sum(each.length for each in segments) == pytest.approx(scene.line.length, rel=1e-5)
-    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF), "riser")
+    assert not proposal(build(cut(scene, segments), MPI.COMM_SELF).riser, "riser")
     assert reported in describe(scene)
 
 

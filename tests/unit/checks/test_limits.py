@@ -45,9 +45,9 @@ def test_numbers_are_those_of_what_is_built(scene: Mapping, within: float) -> No
     read = scene_from_mapping(scene)
     size, assembly = size_of(read), build(read, COMM)
     assert assembly.soil is not None
-    assert size.elements == assembly.line.length.size
-    assert size.cells == pytest.approx(assembly.soil.blocks()["soil"].shape[0], rel=within or 1e-15)
-    assert size.soil_unknowns == pytest.approx(unknowns(COMM, assembly.soil.field), rel=within or 0.3)
+    assert size.elements == assembly.riser.line.length.size
+    assert size.cells == pytest.approx(assembly.soil.whole.blocks()["soil"].shape[0], rel=within or 1e-15)
+    assert size.soil_unknowns == pytest.approx(unknowns(COMM, assembly.soil.whole.field), rel=within or 0.3)
     assert size.memory(1) == pytest.approx(memory(assembly), rel=0.1)
 
 

@@ -48,11 +48,11 @@ LAZY = part(60.0), part(20.0, "float"), part(70.0)
 
 
 def reported(given: Scene) -> list[str]:
-    return line_summary(build(given, MPI.COMM_SELF))
+    return line_summary(build(given, MPI.COMM_SELF).riser)
 
 
 def hand_checked(given: Scene) -> list[str]:
-    return [*by_hand(build(given, MPI.COMM_SELF))]
+    return [*by_hand(build(given, MPI.COMM_SELF).riser)]
 
 
 def numbers(line: str) -> list[float]:
@@ -112,7 +112,7 @@ def test_touchdown_of_a_lazy_wave_is_behind_its_hog() -> None:
     given = scene(*LAZY)
     touchdown = numbers(hand_checked(given)[-1])[0]
     (run,) = stage_histories(given)
-    lies = build(given, MPI.COMM_SELF).line.arc[run.position[-1][:, 2] < 0.16]
+    lies = build(given, MPI.COMM_SELF).riser.line.arc[run.position[-1][:, 2] < 0.16]
     assert touchdown == pytest.approx(lies.max(), abs=5.0)
 
 
@@ -127,20 +127,20 @@ def test_a_taut_vertical_riser_begins_in_balance() -> None:
     assembly = build(given, MPI.COMM_SELF)
     assert assembly.laying is None
     (run,) = stage_histories(given)
-    first, last = numbers([*by_hand(assembly)][-1])[-2:]
+    first, last = numbers([*by_hand(assembly.riser)][-1])[-2:]
     assert [first, last] == pytest.approx(run.end.effective_tension[[0, -1]] / 1e3, rel=1e-3)
-    assert run.position[-1] == pytest.approx(assembly.line.to_global(assembly.line.x), abs=1e-9)
+    assert run.position[-1] == pytest.approx(assembly.riser.line.to_global(assembly.riser.line.x), abs=1e-9)
 
 
 def test_a_riser_that_its_weight_stretches_to_its_ends_is_not_taut() -> None:
     """Pulled straight, its lower part would be pressed: w L^2/(2 EA) = 12 mm, more than the 5 that the ends ask for."""
     assembly = build(scene(part(100.0), end=(0.0, 0.0, 100.155)), MPI.COMM_SELF)
     assert WET * 100.0**2 / (2.0 * PIPE["EA"]) > 0.005
-    assert assembly.catenary is not None
+    assert assembly.riser.catenary is not None
 
 
 def test_a_level_riser_as_long_as_its_span_is_taut_whatever_the_round_off() -> None:
-    elements = build(scene(), MPI.COMM_SELF).elements
+    elements = build(scene(), MPI.COMM_SELF).riser.elements
     for span in (150.0 - 3e-14, 150.0, 150.0 + 3e-14):
         tension = tensions_of_taut(elements, np.zeros(3), np.array([span, 0.0, 0.0]))
         assert tension == pytest.approx(0.0, abs=1e-6)
@@ -172,7 +172,7 @@ def test_a_row_of_attachments() -> None:
     row = {"from": 10.0, "to": 10.7, "spacing": 0.1, "mass": 5.0}
     given = scene(attachments=[row])
     assert given.line.attachments[0].arcs == pytest.approx(10.0 + 0.1 * np.arange(8))
-    last: PointAttachment = build(given, MPI.COMM_SELF).attachments[-1]
+    last: PointAttachment = build(given, MPI.COMM_SELF).riser.attachments[-1]
     assert (last.arc, last.mass) == (10.7, 5.0)
     again = scene(attachments=[row | {"to": 10.69}])
     assert len(again.line.attachments[0].arcs) == 7

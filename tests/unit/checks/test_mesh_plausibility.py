@@ -31,7 +31,7 @@ def sizes(along: float, across: float) -> Mapping:
 
 
 def warned(scene: Mapping) -> list[str]:
-    return list(mesh_warnings(built(scene)))
+    return list(mesh_warnings(built(scene).riser))
 
 
 def test_cells_and_elements_that_suit_are_not_reported() -> None:
@@ -64,8 +64,8 @@ def test_chain_on_soil_has_no_bend_to_be_resolved(mesh: Mapping | str) -> None:
     scene = on_block(LAY, mesh=mesh, model="sections")
     scene["line_types"]["flexible"] |= {"EI": 0.0}
     assembly = built(scene)
-    assert list(mesh_warnings(assembly)) == []
-    found = predicted_settlement(assembly)
+    assert list(mesh_warnings(assembly.riser)) == []
+    found = predicted_settlement(assembly.riser)
     assert found is not None
     assert (found.overshoot, found.deepest) == (1.0, found.by_weight)
     assert assembly.scene.soil is not None
@@ -105,13 +105,13 @@ def test_what_cells_miss_grows_with_their_size() -> None:
     assert missed(fine, fine) == pytest.approx(0.02)
     assert missed(half, fine) == pytest.approx(0.52)
     assert missed(Settled(0.0, 0.0, 1.0), Settled(0.0, 0.0, 1.0)) == 0.0
-    reported = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
+    reported = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))).riser)
     assert reported is not None
     line_with(reported, "0.5 m along", "0.012 m across", "0.0236 m touch", "2% less")
-    wide = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))))
+    wide = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))).riser)
     assert wide is not None
     assert int(wide.rsplit("%")[0].rsplit(" ")[-1]) > 20
-    assert reported_resolution(built({**touchdown(LAY), "contact": {"method": "node"}})) is None
+    assert reported_resolution(built({**touchdown(LAY), "contact": {"method": "node"}}).riser) is None
 
 
 def stage_warnings(scene: Mapping, folder: Path) -> list[str]:

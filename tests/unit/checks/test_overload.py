@@ -64,15 +64,15 @@ def test_place_load_and_capacity() -> None:
     arc, z, load, capacity = (float(each) for each in found.groups())
     at_rest = State.at_rest(0.0, assembly.size)
     depth = _depth(assembly, at_rest)
-    assert arc == pytest.approx(assembly.line.arc[depth.argmax()], rel=1e-3)
+    assert arc == pytest.approx(assembly.riser.line.arc[depth.argmax()], rel=1e-3)
     assert z == pytest.approx(0.5 * D - depth.max(), abs=1e-3)
     assert load >= W
     assert capacity == pytest.approx(6.73 * 300.0 * D, rel=1e-3)
 
 
 def _depth(assembly: Assembly, state: State) -> Array:
-    assert assembly.seabed is not None
-    return assembly.seabed.depth(state)
+    assert assembly.riser.seabed is not None
+    return assembly.riser.seabed.depth(state)
 
 
 @pytest.mark.parametrize("seabed", [clay(1500.0), {"kind": "spring", "stiffness": 1.0e3}, {"kind": "rigid"}])
@@ -123,7 +123,7 @@ def bearing(**soil: object) -> float | None:
     scene = on_clay(500.0)
     if "layers" in soil:
         del scene["soil"]["law"]
-    found = surface_bearing(built(scene | {"soil": scene["soil"] | soil}))
+    found = surface_bearing(built(scene | {"soil": scene["soil"] | soil}).riser)
     return found.capacity if found is not None else None
 
 
@@ -134,12 +134,12 @@ def test_soil_is_compared_with_what_is_known_to_bear() -> None:
     assert bearing(layers=[{"to": 0.4, "law": CLAY}, {"law": SAND}]) == prandtl
     assert bearing(layers=[{"to": 0.2, "law": CLAY}, {"law": SAND}]) is None
     assert bearing(law=SAND) is None
-    assert surface_bearing(lying({"kind": "rigid"})) is None
+    assert surface_bearing(lying({"kind": "rigid"}).riser) is None
 
 
 def test_mean_over_a_length() -> None:
     """Of a force on one node: all of it over the length, or its own share of the riser where that is longer."""
-    line = lying({"kind": "rigid"}).line
+    line = lying({"kind": "rigid"}).riser.line
     force = np.where(np.arange(line.nodes) == 30, 900.0, 100.0)
     share = line.tributary_length[30]
     assert share == pytest.approx(0.5)

@@ -78,7 +78,7 @@ def test_section_changes_count_with_the_weaker_side() -> None:
     scene = pulled(static())
     scene["line_types"]["thick"] = ROPE | {"EA": 4.0e4, "outer_diameter": 0.1}
     scene["riser"]["segments"] = [{"line_type": name, "length": 5.0, "elements": 1} for name in ("pipe", "thick")]
-    plausibility = Plausibility(built(scene))
+    plausibility = Plausibility(built(scene).riser)
     assert plausibility.EA.tolist() == [1.0e4, 1.0e4, 4.0e4]
     assert plausibility.radius.tolist() == [0.01, 0.05, 0.05]
 
@@ -98,7 +98,7 @@ def test_compression_beyond_what_elements_bear_is_reported(EI: float, push: floa
     scene["line_types"]["pipe"] |= {"EI": EI}
     scene["riser"]["segments"] = [{"line_type": "pipe", "length": 10.0, "elements": 2}]
     assembly = built(scene)
-    seen, still = Plausibility(assembly), np.zeros((1, 3))
+    seen, still = Plausibility(assembly.riser), np.zeros((1, 3))
     seen.begin_stage(assembly.scene.stages[0])
     seen.EA = np.full(3, 1.0e9)
     tension = np.array([[1.0e4, -push, 20.0]])
@@ -128,7 +128,7 @@ def test_bending_is_blurred_from_a_tenth_of_the_largest_moment_where_it_is_smoot
 ) -> None:
     monkeypatch.setattr(module, "misfit", lambda *found: BendingMisfit(smooth, 1, steep, 1))
     assembly = built(pulled(static()))
-    seen = Plausibility(assembly)
+    seen = Plausibility(assembly.riser)
     seen.begin_stage(assembly.scene.stages[0])
     seen._largest = 100.0
     seen.look_closely(1.0, State.at_rest(1.0, assembly.size), np.empty(0))

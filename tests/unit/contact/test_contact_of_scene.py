@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly.assembly import Assembly
-from riser_soil.assembly.ground import contact_width, smoothing, stiffnesses
+from riser_soil.assembly.contact_laws import contact_width, smoothing, stiffnesses
 from riser_soil.assembly.scales import Scales
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.errors import SceneError
@@ -14,7 +14,7 @@ from riser_soil.results.settlement_trough import offsets_of
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.law import NormalLaw
-from tests.support.driven_stage import built
+from tests.support.driven_stage import built, soil_under
 from tests.support.said import telling
 from tests.support.scenes import Mapping, touchdown
 from tests.support.soil_loops import after, at
@@ -69,10 +69,10 @@ def torn_off(law: NormalLaw, touched: float) -> tuple[float, float]:
 
 def test_suction_has_its_cap_per_length_on_the_seabed_and_over_the_diameter_on_soil() -> None:
     assembly = with_contact(**HELD)
-    assert isinstance(assembly.seabed, SeabedContact)
-    assert assembly.soil_contact is not None
-    assert torn_off(assembly.seabed.law, 0.01) == pytest.approx((CAP, REACH), rel=1e-3)
-    assert torn_off(assembly.soil_contact.law, 0.01) == pytest.approx((CAP / D, REACH), rel=1e-3)
+    assert isinstance(assembly.riser.seabed, SeabedContact)
+    assert assembly.soil is not None
+    assert torn_off(assembly.riser.seabed.law, 0.01) == pytest.approx((CAP, REACH), rel=1e-3)
+    assert torn_off(assembly.soil.contact.law, 0.01) == pytest.approx((CAP / D, REACH), rel=1e-3)
 
 
 def test_suction_that_ends_before_its_cap_is_refused() -> None:
@@ -87,10 +87,10 @@ def test_friction_is_mobilised_by_a_thirtieth_of_the_diameter() -> None:
     """Under the pipe's weight, by the larger coefficient; on soil that weight lies on the width that touches."""
     assembly = with_contact(friction={"axial": 0.3, "lateral": 0.6})
     weight = assembly.scales.weight
-    assert assembly.friction is not None
-    friction = assembly.only.soil_friction
+    assert assembly.riser.friction is not None
+    friction = soil_under(assembly).friction
     assert friction is not None
-    np.testing.assert_allclose(assembly.friction._stiffness, 0.6 * weight / (D / 30.0))
+    np.testing.assert_allclose(assembly.riser.friction._stiffness, 0.6 * weight / (D / 30.0))
     width = contact_width(assembly.scales, E)
     assert friction._resistance.stiffness == pytest.approx(0.6 * weight / width / (D / 30.0))
 
@@ -100,12 +100,12 @@ def test_the_riser_bounces_on_the_stiffest_of_its_grounds() -> None:
     soil, alone = with_contact(), touchdown()
     del alone["soil"]
     springs = built(alone)
-    mass = float(springs.elements.mass.min())
+    mass = float(springs.riser.elements.mass.min())
     assert mass * (2.0 * np.pi / springs.contact_period) ** 2 == pytest.approx(1.0e5)
     series = 1.0 / (1.0 / (20.0 * E) + 1.0 / E)
     assert mass * (2.0 * np.pi / soil.contact_period) ** 2 == pytest.approx(series)
 
 
 def test_sections_across_the_riser_reach_three_diameters_to_either_side() -> None:
-    offsets = offsets_of(with_contact())
+    offsets = offsets_of(with_contact().riser)
     assert (len(offsets), offsets[0], offsets[30], offsets[-1]) == pytest.approx((61, -3.0 * D, 0.0, 3.0 * D))

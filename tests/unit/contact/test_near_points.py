@@ -13,7 +13,7 @@ from riser_soil.contact.integration_points import ENOUGH, LARGEST, divisions
 from riser_soil.contact.near_points import NearPoints, Surface, by_facet, fill_near, near_points, points_workspace
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array
-from tests.support.driven_stage import built
+from tests.support.driven_stage import built, soil_under
 from tests.support.scenes import LAY, touchdown
 from tests.support.soil_tops import top
 
@@ -123,7 +123,7 @@ def test_cells_far_larger_than_what_touches_have_no_more_points_along_than_they_
 
 def test_a_riser_on_stiff_clay_of_tetrahedra_has_no_more_points_along_than_it_needs() -> None:
     """It touches by millimetres on cells of half a metre: as many points along as across would be millions."""
-    contact = built(touchdown(LAY, kind="tet", su=1.0e6)).soil_contact
+    contact = soil_under(built(touchdown(LAY, kind="tet", su=1.0e6))).contact
     assert isinstance(contact, SurfaceContact)
     across, along = contact._parts[:, 0], contact._parts[:, 1]
     assert across.max() > 300

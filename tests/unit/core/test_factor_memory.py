@@ -39,7 +39,7 @@ def laid() -> Array:
     start = State.at_rest(0.0, assembly.size)
     run_stage(assembly, assembly.scene.stages[0], start, LayingCounter(), Timer.new())
     assert assembly.soil is not None
-    return assembly.soil.field.total.copy()
+    return assembly.soil.whole.field.total.copy()
 
 
 @pytest.mark.parametrize("place", [linear_systems, pytest.param(linear_solver, marks=pytest.mark.verify)])

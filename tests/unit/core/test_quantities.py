@@ -106,4 +106,4 @@ def test_a_riser_scaled_by_a_million_is_read_and_built(s: float) -> None:
     scene["solver"]["min_time_step"] = 1e-5 * math.sqrt(s)
     scene["contact"] = {"smoothing": 1e-3 * s}
     assembly = build(scene_from_mapping(scene), MPI.COMM_SELF)
-    assert assembly.line.arc[-1] == pytest.approx(30.0 * s)
+    assert assembly.riser.line.arc[-1] == pytest.approx(30.0 * s)

@@ -126,7 +126,7 @@ def test_with_an_angle_clay_and_raos_it_runs_as_it_is(
 def test_a_line_hangs_at_its_angle_from_where_it_should_touch_down(kind: str, depth: float) -> None:
     """By the program's own cable, which stretches, lies on the ground and has all the line's weights."""
     drafted = scene(kind, Wishes(depth=depth))
-    cable = build(drafted, communicator_of(drafted)).catenary
+    cable = build(drafted, communicator_of(drafted)).riser.catenary
     assert cable is not None
     angle = math.degrees(math.asin(cable.H / cable.tension[-1]))
     assert angle == pytest.approx(HANGING[kind], rel=2e-3)
@@ -138,7 +138,7 @@ def test_a_line_hangs_at_its_angle_from_where_it_should_touch_down(kind: str, de
 
 def test_a_lazy_wave_has_its_hog_and_sag_where_they_are_meant() -> None:
     drafted = scene("lazy-wave", Wishes(depth=400.0))
-    cable = build(drafted, communicator_of(drafted)).catenary
+    cable = build(drafted, communicator_of(drafted)).riser.catenary
     assert cable is not None
     z = cable.curve.position[:, 2]
     turns = [n for n in range(1, len(z) - 1) if z[n] > 1.0 and (z[n + 1] - z[n]) * (z[n] - z[n - 1]) < 0.0]

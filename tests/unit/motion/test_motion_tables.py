@@ -46,8 +46,8 @@ def at(scene: Scene, t: float) -> Kinematics:
     """The end at a time of the first stage."""
     assembly = build(scene, MPI.COMM_SELF)
     assembly.begin(scene.stages[0])
-    assert assembly.line.end.motion is not None
-    return assembly.line.end.motion(t)
+    assert assembly.riser.line.end.motion is not None
+    return assembly.riser.line.end.motion(t)
 
 
 def refusal(folder: Path, text: str | None, **more: Any) -> str:
@@ -85,7 +85,7 @@ def test_rotations_turn_the_support(tmp_path: Path) -> None:
     moved = scene(tmp_path, header + rows, rotation="fixed")
     assembly = build(moved, MPI.COMM_SELF)
     assembly.begin(moved.stages[0])
-    turning = assembly.line.end.turning
+    turning = assembly.riser.line.end.turning
     assert turning is not None
     assert turning(3.0).rotation == pytest.approx(np.radians([0.0, 30.0, 0.0]))
     assert turning(3.0).angular_velocity == pytest.approx(np.radians([0.0, 10.0, 0.0]))
@@ -187,7 +187,7 @@ def test_a_support_rocks_while_a_table_moves_it(tmp_path: Path) -> None:
     both = riser_scene(moving, pipe=PIPE, length=30.0, elements=3, start=ends[0], end=ends[1])
     assembly = build(scene_from_mapping(both, tmp_path), MPI.COMM_SELF)
     assembly.begin(assembly.scene.stages[0])
-    end = assembly.line.end
+    end = assembly.riser.line.end
     assert end.motion is not None
     assert end.turning is not None
     assert end.motion(1.0)[0] == pytest.approx([30.1, 0.0, 0.2])

@@ -81,7 +81,7 @@ def test_an_end_moves_as_the_water_does(tmp_path: Path) -> None:
         scene = scene_from_mapping(below_vessel(stage, waves=AIRY, rotation="fixed"), tmp_path)
         assembly = build(scene, MPI.COMM_SELF)
         assembly.begin(scene.stages[0])
-        motion, turning = assembly.line.end.motion, assembly.line.end.turning
+        motion, turning = assembly.riser.line.end.motion, assembly.riser.line.end.turning
         assert motion is not None
         assert turning is not None
         n, t, k = np.array([math.cos(math.radians(toward)), math.sin(math.radians(toward)), 0.0]), 17.3, w**2 / G

@@ -60,7 +60,7 @@ def scene(folder: Path, rows: str, **more: Any) -> Scene:
 def end_of(scene: Scene) -> End:
     assembly = build(scene, MPI.COMM_SELF)
     assembly.begin(scene.stages[0])
-    return assembly.line.end
+    return assembly.riser.line.end
 
 
 def by_hand(t: float, heading: float) -> tuple[Array, Array]:

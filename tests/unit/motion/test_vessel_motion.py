@@ -46,13 +46,13 @@ def begun(scene: Scene, stage: int = 0) -> Assembly:
 
 
 def displaced(assembly: Assembly, t: float) -> Array:
-    assert assembly.line.end.motion is not None
-    return assembly.line.end.motion(t)[0] - VESSEL_END
+    assert assembly.riser.line.end.motion is not None
+    return assembly.riser.line.end.motion(t)[0] - VESSEL_END
 
 
 def turned(assembly: Assembly, t: float) -> SupportRotation:
-    assert assembly.line.end.turning is not None
-    return assembly.line.end.turning(t)
+    assert assembly.riser.line.end.turning is not None
+    return assembly.riser.line.end.turning(t)
 
 
 @pytest.mark.parametrize(("surge", "reported"), [(6.0, 0), (14.0, 1)])
@@ -98,10 +98,10 @@ def test_modes_move_along_and_about_the_vessels_axes(mode: str, axis: int, sign:
     expected = np.cross(along, np.array(VESSEL_END) - REFERENCE) if sign else along
     assert displaced(assembly, t) == pytest.approx(size * expected, abs=1e-13)
     assert turned(assembly, t).rotation == pytest.approx(sign * size * along, abs=1e-14)
-    state = State.at_rest(t, assembly.line.size)
-    assembly.line.prescribe(t, state.u, state.v, state.a)
-    assert isinstance(assembly.line.frames, SpatialFrames)
-    spin = assembly.line.frames.R[-1] @ assembly.line.nodal(state.u)[-1, 3:]
+    state = State.at_rest(t, assembly.riser.line.size)
+    assembly.riser.line.prescribe(t, state.u, state.v, state.a)
+    assert isinstance(assembly.riser.line.frames, SpatialFrames)
+    spin = assembly.riser.line.frames.R[-1] @ assembly.riser.line.nodal(state.u)[-1, 3:]
     assert spin == pytest.approx(sign * size * along, abs=1e-13)
 
 
@@ -113,7 +113,7 @@ def test_response_to_a_sea_is_the_rao_times_its_components(tmp_path: Path) -> No
 
     w = np.linspace(0.3, 4.0, 100)
     floating = scene(tmp_path, table(w, [180.0], surge=rao), waves=JONSWAP)
-    vessels, waves = begun(floating).vessels, components_of(floating)
+    vessels, waves = begun(floating).riser.vessels, components_of(floating)
     assert vessels is not None
     assert waves is not None
     response = vessels.motion(floating.stages[0], "end", np.array(VESSEL_END)).response
@@ -127,7 +127,7 @@ def test_response_to_a_sea_is_the_rao_times_its_components(tmp_path: Path) -> No
 def test_rates_are_derivatives_and_it_starts_at_rest(tmp_path: Path) -> None:
     modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
     assembly = begun(scene(tmp_path, table(*EVERYWHERE, **modes), waves=JONSWAP, rotation="fixed"))
-    motion, turning, h = assembly.line.end.motion, assembly.line.end.turning, 1e-3
+    motion, turning, h = assembly.riser.line.end.motion, assembly.riser.line.end.turning, 1e-3
     assert motion is not None
     assert turning is not None
     for values, first in zip(motion(0.0), (VESSEL_END, [0.0] * 3, [0.0] * 3), strict=True):
@@ -159,7 +159,7 @@ def test_a_vessel_sails_on_through_stages(tmp_path: Path) -> None:
 def ends(floating: Scene) -> tuple[Assembly, list[tuple[Array, Array]]]:
     """Where each stage's motion puts the end as it begins and as it ends."""
     assembly, found = build(floating, MPI.COMM_SELF), []
-    line, state = assembly.line, State.at_rest(0.0, assembly.line.size)
+    line, state = assembly.riser.line, State.at_rest(0.0, assembly.riser.line.size)
     for stage in floating.stages:
         assembly.begin(stage)
         times = (0.0, 1.0 if stage.kind == "static" else stage.duration)
@@ -186,7 +186,7 @@ def test_after_a_break_it_swings_about_the_same_mean(name: str, tmp_path: Path) 
     between, change = BREAKS[name]
     stages = static(), aboard(12.6), between, aboard(30.0, "again", **change, ramp=2.0)
     assembly, found = ends(scene(tmp_path, table(*EVERYWHERE, **modes), *stages))
-    motion, turning = assembly.line.end.motion, assembly.line.end.turning
+    motion, turning = assembly.riser.line.end.motion, assembly.riser.line.end.turning
     assert motion is not None
     assert turning is not None
     assert np.abs(found[2][1] - VESSEL_END).max() > 0.1
@@ -256,8 +256,8 @@ def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> 
     text = table(np.linspace(0.3, 1.1, 27), [180.0], heave=rao)
     floating = scene(tmp_path, text, aboard(), aboard(name="sail on"), waves=JONSWAP)
     assembly = begun(floating)
-    assert assembly.vessels is not None
-    response = assembly.vessels.motion(floating.stages[0], "end", np.array(VESSEL_END)).response
+    assert assembly.riser.vessels is not None
+    response = assembly.riser.vessels.motion(floating.stages[0], "end", np.array(VESSEL_END)).response
     above = response.frequency > 1.1
     assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
     assert not np.any(response.amplitude[above])

@@ -23,9 +23,9 @@ def found(scene: Mapping) -> tuple[BendingMisfit, float]:
     reported: list[tuple[BendingMisfit, float]] = []
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        residual = elastic_residual(assembly, stepper)
-        moment = np.abs(residual[:, [2, -1]] if assembly.line.dimension == 2 else residual[:, [4, 10]])
-        reported.append((misfit(assembly.line, assembly.elements, stepper.now, residual), float(moment.max())))
+        residual, line = elastic_residual(assembly.riser, stepper), assembly.riser.line
+        moment = np.abs(residual[:, [2, -1]] if line.dimension == 2 else residual[:, [4, 10]])
+        reported.append((misfit(line, assembly.riser.elements, stepper.now, residual), float(moment.max())))
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:

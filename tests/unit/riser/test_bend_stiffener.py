@@ -59,7 +59,8 @@ def test_the_wall_in_it_bends_by_the_curvature_and_is_pressed_on_the_pipe(dimens
     (run,) = stage_histories(given)
     assembly = build(scene_from_mapping(given), MPI.COMM_SELF)
     I = np.pi / 64.0 * (0.18**4 - 0.16**4)
-    softer = np.minimum(np.append(np.inf, assembly.elements.EI_y), np.append(assembly.elements.EI_y, np.inf))
+    EI = assembly.riser.elements.EI_y
+    softer = np.minimum(np.append(np.inf, EI), np.append(EI, np.inf))
     assert run.end.wall is not None
     expected = PIPE["EI"] / I * 0.09 * run.end.bending_moment / softer
     assert run.end.wall.bending_stress == pytest.approx(expected, rel=1e-9, abs=1e-6 * expected.max())
@@ -71,7 +72,7 @@ def test_the_wall_in_it_bends_by_the_curvature_and_is_pressed_on_the_pipe(dimens
 def test_it_weighs_its_volume_less_the_water() -> None:
     """pi/4 (D^2 - d^2) over the cone's length; also where an element ends beyond its tip."""
     given = scene(elements=25, gravity=9.81, water={"density": 1000.0})
-    elements = build(scene_from_mapping(given), MPI.COMM_SELF).elements
+    elements = build(scene_from_mapping(given), MPI.COMM_SELF).riser.elements
     volume = quad(lambda x: 0.25 * np.pi * ((0.6 - 0.175 * x) ** 2 - 0.04), 0.0, 2.0)[0]
     bare = 9.81 * (50.0 - 1000.0 * np.pi * 0.01) * L
     assert float(elements.mass @ elements.length) == pytest.approx(50.0 * L + 1200.0 * volume, rel=1e-12)

@@ -244,7 +244,7 @@ def test_they_grow_in_the_first_static_stage_but_not_after_another_run() -> None
     first, second = assembly.scene.stages
     weights = []
     for given, stage in ((assembly.scene, first), (assembly.scene, second), (goes_on, first)):
-        (part,) = contents_of(given, assembly.line, assembly.elements, stage)
+        (part,) = contents_of(given, assembly.riser.line, assembly.riser.elements, stage)
         assert isinstance(part, InnerFlow)
         weights.append(matrices_of(part, 0.25).weight.sum())
     assert weights[1] > 0.0

@@ -87,13 +87,14 @@ def test_growth_is_integrated_along_the_elements() -> None:
 
 def test_growth_ends_where_the_profile_has_none() -> None:
     assembly, bare = built(hanging([[30.0, T, DENSITY], [40.0, 0.0, DENSITY]])), built(hanging(None))
-    z = assembly.line.x[:, 1]
+    z = assembly.riser.line.x[:, 1]
     above, below = (z[:-1] > 40.0) & (z[1:] > 40.0), (z[:-1] < 30.0) & (z[1:] < 30.0)
     assert above.any()
     assert below.any()
-    np.testing.assert_array_equal(assembly.elements.outer_diameter[above], D)
-    np.testing.assert_allclose(assembly.elements.outer_diameter[below], D + 2.0 * T, rtol=1e-12)
-    np.testing.assert_allclose(assembly.elements.mass[below] - bare.elements.mass[below], DENSITY * LAYER, rtol=1e-12)
+    np.testing.assert_array_equal(assembly.riser.elements.outer_diameter[above], D)
+    np.testing.assert_allclose(assembly.riser.elements.outer_diameter[below], D + 2.0 * T, rtol=1e-12)
+    grown, bare_mass = assembly.riser.elements.mass[below], bare.riser.elements.mass[below]
+    np.testing.assert_allclose(grown - bare_mass, DENSITY * LAYER, rtol=1e-12)
 
 
 def test_shape_and_growth_belong_together() -> None:
@@ -101,8 +102,8 @@ def test_shape_and_growth_belong_together() -> None:
     rows = [[-20.0, 0.1, 1600.0], [60.0, 0.0, 1600.0]]
     assembly, bare = built(hanging(rows)), built(hanging(None))
     growth, around = Growth(*np.array(rows).T), Surroundings(gravity=G, water=RHO)
-    ends = [with_growth(bare.elements, growth, each.line.x[:, 1], around) for each in (assembly, bare)]
-    own, first = (np.abs(each.weight / assembly.elements.weight - 1.0).max() for each in ends)
+    ends = [with_growth(bare.riser.elements, growth, each.riser.line.x[:, 1], around) for each in (assembly, bare)]
+    own, first = (np.abs(each.weight / assembly.riser.elements.weight - 1.0).max() for each in ends)
     assert own < 1e-7
     assert first > 1e-3
 

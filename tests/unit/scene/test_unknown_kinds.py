@@ -10,7 +10,7 @@ from mpi4py import MPI
 from pydantic import BaseModel
 
 from riser_soil.assembly import build
-from riser_soil.assembly.ground import seabed_law, stiffnesses
+from riser_soil.assembly.contact_laws import seabed_law, stiffnesses
 from riser_soil.assembly.motions import set_motion
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales

@@ -282,7 +282,7 @@ def test_strakes_take_from_the_vortices_and_add_to_the_drag() -> None:
     bare, straked = forces(vortex_force=force), forces(vortex_force=force, strakes=STRAKED)
     for name in (CROSS, IN_LINE):
         np.testing.assert_allclose(straked[name].lift, (1.0 - 0.8 * 0.9) * bare[name].lift, rtol=1e-14)
-    elements = built(scene(strakes=STRAKED)).elements
+    elements = built(scene(strakes=STRAKED)).riser.elements
     np.testing.assert_allclose(elements.drag, [[0.8 * 1.8 + 0.2 * 1.2, 0.05]] * 4, rtol=1e-14)
     assert forces(vortex_force=force, strakes={"drag": 1.8, "suppression": 1.0}) == {}
     by_default = forces(vortex_force=force, strakes={"drag": 1.8})[CROSS]

@@ -128,7 +128,7 @@ def test_a_free_end_beyond_the_grid_is_reported(reach: str, reported: int, tmp_p
     """30 m along x in three elements."""
     ends = {"start": prescribed(0.0, 0.0, 5.0, rotation="fixed"), "end": "free"}
     found = scene(tmp_path, HEADER + ROWS.replace("30", reach), ends=ends)
-    warnings = [warning for warning in ground_warnings(build(found, MPI.COMM_SELF)) if "seabed.grid" in warning]
+    warnings = [warning for warning in ground_warnings(build(found, MPI.COMM_SELF).riser) if "seabed.grid" in warning]
     assert len(warnings) == reported
     assert lines_with(warnings, "1 nodes", "first shape", "arc 30 to 30 m") == warnings
 
@@ -136,7 +136,7 @@ def test_a_free_end_beyond_the_grid_is_reported(reach: str, reported: int, tmp_p
 def test_an_end_below_the_ground(tmp_path: Path) -> None:
     """Springs bear at any depth: the end may lie there, and a warning says how deep. Other seabeds refuse it."""
     sunk = scene(tmp_path, HEADER + ROWS, ends=SUNK)
-    line_with(ground_warnings(build(sunk, MPI.COMM_SELF)), "riser.start.position:", "0.1 m below", "10 kN/m")
+    line_with(ground_warnings(build(sunk, MPI.COMM_SELF).riser), "riser.start.position:", "0.1 m below", "10 kN/m")
     clay = {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 2e3}}
     with pytest.raises(SceneError, match=r"riser.start.position: .* must not lie below the seabed"):
         scene(tmp_path, HEADER + ROWS, ends=SUNK, seabed=clay)

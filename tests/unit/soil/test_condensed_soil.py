@@ -22,7 +22,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import FirstStep, Watcher, before_commit, built
+from tests.support.driven_stage import FirstStep, Watcher, before_commit, built, soil_under
 from tests.support.said import line_with, telling
 from tests.support.scenes import LAY, Mapping, heave, touchdown
 
@@ -62,13 +62,13 @@ class Taken:
         with before_commit(self._tell):
             for stage in self.assembly.scene.stages:
                 before = run_stage(self.assembly, stage, before, Watcher(), Timer.new())
-        soil = self.assembly.recovered_soil()
+        soil = soil_under(self.assembly).recovered()
         assert soil is not None
         fields = soil.output_fields()
         self.reported.append({"displacement": fields.displacement, "von Mises": fields.von_mises})
 
     def _tell(self, system: System, step: AcceptedStep) -> None:
-        state, contact, line = step.solution.state, self.assembly.soil_contact, self.assembly.line
+        state, contact, line = step.solution.state, soil_under(self.assembly).contact, self.assembly.riser.line
         assert contact is not None
         self.reported.append(
             {
@@ -83,8 +83,8 @@ class Taken:
                 "all work": np.array([step.dissipated, step.work]),
             }
         )
-        if self.assembly.condensed is not None:
-            self.touched.append(len(self.assembly.condensed.top.reached.nodes))
+        if (condensed := soil_under(self.assembly).condensed) is not None:
+            self.touched.append(len(condensed.top.reached.nodes))
 
 
 SIZED: tuple[str, ...] = ("positions", "force on the riser", "contact force", "settlement", "displacement")
@@ -101,8 +101,8 @@ def taken(contact: str, kind: str, dimension: int, soil: str) -> Taken:
 @pytest.mark.parametrize(("contact", "kind", "dimension"), CASES)
 def test_the_answer_is_that_of_the_whole_soil(contact: str, kind: str, dimension: int) -> None:
     whole, condensed = (taken(contact, kind, dimension, soil) for soil in ("whole", "condensed"))
-    assert whole.assembly.condensed is None
-    assert condensed.assembly.condensed is not None
+    assert soil_under(whole.assembly).condensed is None
+    assert soil_under(condensed.assembly).condensed is not None
     assert len(whole.reported) == len(condensed.reported)
     sizes = {
         key: max(float(np.abs(reported[key]).max()) for reported in whole.reported if key in reported) for key in SIZED
@@ -116,16 +116,16 @@ def test_the_answer_is_that_of_the_whole_soil(contact: str, kind: str, dimension
 
 def test_few_dofs_are_solved_for() -> None:
     case = taken("surface", "tet", 2, "condensed")
-    assert case.assembly.condensed is not None
-    assert case.assembly.soil is not None
-    top = case.assembly.condensed.top
+    soil = soil_under(case.assembly)
+    assert soil.condensed is not None
+    top = soil.condensed.top
     assert 0 < max(case.touched) < len(top.points)
-    assert 0 < np.count_nonzero(~top.prescribed) <= 3 * max(case.touched) < 0.15 * case.assembly.soil.field.size
+    assert 0 < np.count_nonzero(~top.prescribed) <= 3 * max(case.touched) < 0.15 * soil.whole.field.size
 
 
 def test_its_energy_is_that_of_the_soil_recovered() -> None:
     case = taken("surface", "tet", 2, "condensed")
-    soil, condensed = case.assembly.recovered_soil(), case.assembly.condensed
+    soil, condensed = soil_under(case.assembly).recovered(), soil_under(case.assembly).condensed
     assert soil is not None
     assert condensed is not None
     rest = State.at_rest(0.0, case.assembly.size)
@@ -136,7 +136,7 @@ def test_its_energy_is_that_of_the_soil_recovered() -> None:
 
 def test_a_force_beside_counts_as_long_as_it_is_there() -> None:
     """One that was met on a way that the line search has not taken does not."""
-    condensed = first_step("surface").assembly.condensed
+    condensed = soil_under(first_step("surface").assembly).condensed
     assert condensed is not None
     size = first_step("surface").assembly.size
     pressed, rest = Forces.zeros(size), State.at_rest(0.0, size)
@@ -155,7 +155,7 @@ def first_step(contact: str) -> FirstStep:
 @pytest.mark.parametrize("contact", ["node", "surface", "surface with friction"])
 def test_the_tangent_is_the_slope_of_the_residual(contact: str) -> None:
     step = first_step(contact)
-    condensed = step.assembly.condensed
+    condensed = soil_under(step.assembly).condensed
     assert condensed is not None
     random = np.random.default_rng(3)
     x = 1e-5 * random.normal(size=step.free)
@@ -174,27 +174,28 @@ def test_the_tangent_is_the_slope_of_the_residual(contact: str) -> None:
 def test_a_force_where_none_was_expected_is_noticed_and_solved_for() -> None:
     """The dofs that bear the riser are taken away between two stages."""
     case = built(scene("surface", "hex", 2, "condensed"))
-    assert case.condensed is not None
+    condensed = soil_under(case).condensed
+    assert condensed is not None
     lay, move = case.scene.stages
     before = run_stage(case, lay, State.at_rest(0.0, case.size), Watcher(), Timer.new())
-    bearing = case.condensed.top.reached.nodes
-    settled = case.condensed.top.committed.copy()
-    case.condensed.top.reach(bearing[:2])
-    case.condensed._wanted[:] = False
+    bearing = condensed.top.reached.nodes
+    settled = condensed.top.committed.copy()
+    condensed.top.reach(bearing[:2])
+    condensed._wanted[:] = False
     system = System(case.comm, case.begin(move), Timer.new())
     system.forces(State.at_rest(0.0, case.size))
-    noticed = case.condensed.outgrown
+    noticed = condensed.outgrown
     system.destroy()
     assert noticed
-    case.condensed.rebuild(State.at_rest(0.0, case.size))
-    assert set(bearing) >= set(case.condensed.top.reached.nodes)
-    assert len(case.condensed.top.reached.nodes) > 2
-    np.testing.assert_array_equal(case.condensed.top.committed, settled)
+    condensed.rebuild(State.at_rest(0.0, case.size))
+    assert set(bearing) >= set(condensed.top.reached.nodes)
+    assert len(condensed.top.reached.nodes) > 2
+    np.testing.assert_array_equal(condensed.top.committed, settled)
     after = run_stage(case, move, before, Watcher(), Timer.new())
     assert after.t > 0.0
-    assert not case.condensed.outgrown
+    assert not condensed.outgrown
     undisturbed = taken("surface", "hex", 2, "whole")
-    np.testing.assert_allclose(case.line.x, undisturbed.assembly.line.x, rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(case.riser.line.x, undisturbed.assembly.riser.line.x, rtol=0.0, atol=1e-8)
 
 
 def test_a_saved_state_is_taken_over() -> None:
@@ -208,7 +209,7 @@ def test_a_saved_state_is_taken_over() -> None:
 
 
 def _fields(assembly: Assembly) -> tuple[Array, Array]:
-    soil = assembly.recovered_soil()
+    soil = soil_under(assembly).recovered()
     assert soil is not None
     found = soil.output_fields()
     return found.displacement, found.von_mises
@@ -219,10 +220,10 @@ def reason(mapping: Mapping, ranks: int = 1) -> str:
     assert assembly.soil is not None
     soil: Any = SimpleNamespace(
         grid=SimpleNamespace(nodes=SimpleNamespace(comm=SimpleNamespace(size=ranks))),
-        surface=assembly.soil.surface,
-        field=assembly.soil.field,
+        surface=assembly.soil.whole.surface,
+        field=assembly.soil.whole.field,
     )
-    return why_whole(assembly.scene, soil, assembly.line, assembly.scales.diameter)
+    return why_whole(assembly.scene, soil, assembly.riser.line, assembly.scales.diameter)
 
 
 def test_what_is_condensed_and_what_is_not() -> None:

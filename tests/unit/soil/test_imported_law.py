@@ -403,6 +403,6 @@ def test_forecasts_and_contact_take_the_stress_at_a_depth(own: Write, tmp_path: 
     assert soil is not None
     law = soil.top_law
     assert law.surface_modulus(0.3) == pytest.approx(100.0 * 0.15 * 5.0e3 * (1.0 + 1.2) / 3.0, rel=1e-9)
-    found = predicted_settlement(built(scene))
+    found = predicted_settlement(built(scene).riser)
     assert found is not None
     assert 0.0 < found.by_weight < 1.0

@@ -20,7 +20,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil import compliance as kept_compliance
 from riser_soil.soil.compliance import Compliance
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher, built
+from tests.support.driven_stage import Watcher, built, soil_under
 from tests.support.said import line_with
 from tests.support.scenes import LAY, Mapping, touchdown
 
@@ -62,7 +62,7 @@ def scene(law: Mapping = CLAY, size: float = 0.5) -> Mapping:
 
 
 def compliance(mapping: Mapping | None = None) -> Compliance:
-    condensed = built(mapping or scene()).condensed
+    condensed = soil_under(built(mapping or scene())).condensed
     assert condensed is not None
     return condensed.top.compliance
 
@@ -289,9 +289,9 @@ def laid() -> tuple[Array, Array]:
     """Where the riser is laid, and the displacement of the soil under it."""
     assembly = built(scene())
     state = run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
-    soil = assembly.recovered_soil()
+    soil = soil_under(assembly).recovered()
     assert soil is not None
-    return assembly.line.positions3(state), soil.output_fields().displacement
+    return assembly.riser.line.positions3(state), soil.output_fields().displacement
 
 
 def test_check_tells_what_is_at_hand(folder: Path) -> None:

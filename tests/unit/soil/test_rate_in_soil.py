@@ -21,7 +21,7 @@ from riser_soil.soil.von_mises import VonMises
 from riser_soil.solve.newton import balance_held
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.time_stepper import AcceptedStep
-from tests.support.driven_stage import built, take
+from tests.support.driven_stage import built, soil_under, take
 from tests.support.scenes import LAY, Mapping, heave, touchdown
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import distorted, moved, sheared, small_block
@@ -147,7 +147,7 @@ def test_a_rate_that_changes_nothing_is_reported(stages: list[Mapping], referenc
     """The end heaves by up to 0.3 m * 2 pi / 3 s = 0.628 m/s, over a diameter of 0.3 m."""
     scene = touchdown(*stages)
     scene["soil"]["law"]["rate"] = {"mu": 0.1, "reference": reference}
-    found = [text for text in ground_warnings(built(scene)) if "soil.law.rate" in text]
+    found = [text for text in ground_warnings(built(scene).riser) if "soil.law.rate" in text]
     assert (reported in found[0]) if reported else not found
 
 
@@ -157,8 +157,7 @@ def test_steps_tell_their_time_and_held_lines_leave_the_soil_none() -> None:
     scene["soil"]["law"]["rate"] = {"mu": 0.2, "reference": 1e-5}
     scene["soil"]["strain"] = "small"
     assembly, times = built(scene), list[float]()
-    soil, (lay, last) = assembly.soil, assembly.scene.stages
-    assert soil is not None
+    soil, (lay, last) = soil_under(assembly).whole, assembly.scene.stages
 
     def watch(system: System, step: AcceptedStep) -> None:
         times.append(step.solution.state.dt)

@@ -21,7 +21,7 @@ from riser_soil.seabed.laws import LAWS as SEABED_LAWS
 from riser_soil.soil.laws import LAWS as SOIL_LAWS
 from riser_soil.soil.soil import Soil
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher, built
+from tests.support.driven_stage import Watcher, built, soil_under
 from tests.support.said import telling
 from tests.support.scenes import LAY, Mapping, prescribed, riser_scene, static, touchdown
 from tests.support.soil_bench import assemble
@@ -69,7 +69,7 @@ def at_rest(scene: Mapping) -> Assembly:
 
 
 def shape(assembly: Assembly) -> Array:
-    return assembly.line.positions3(State.at_rest(0.0, assembly.size))
+    return assembly.riser.line.positions3(State.at_rest(0.0, assembly.size))
 
 
 def test_without_its_entry_a_law_is_no_part_of_the_language() -> None:
@@ -104,7 +104,7 @@ def test_run_on_a_new_soil_law() -> None:
     toy["soil"]["symmetry"] = "whole"
     known, new = at_rest(on_soil(ELASTIC, "whole")), at_rest(toy)
     np.testing.assert_array_equal(shape(new), shape(known))
-    assert new.contact_stiffness == known.contact_stiffness
+    assert new.riser.contact_stiffness == known.riser.contact_stiffness
 
 
 @pytest.mark.usefixtures("hardening")
@@ -114,9 +114,7 @@ def test_run_on_hardening_soil() -> None:
     clay = {"kind": "von-mises", "su": 600.0, "E_over_su": 300.0, "nu": 0.49}
     soft, hard = (at_rest(on_soil({"kind": "toy", **law, "H": H})) for H in (1.0e-3, 1.0e5))
     np.testing.assert_allclose(shape(soft), shape(at_rest(on_soil(clay))), atol=1e-6)
-    assert soft.soil is not None
-    assert hard.soil is not None
-    plastic = [float(assembly.output_fields().plastic_strain.max()) for assembly in (hard.soil, soft.soil)]
+    plastic = [float(soil_under(each).whole.output_fields().plastic_strain.max()) for each in (hard, soft)]
     assert 1e-4 < plastic[0] < 0.9 * plastic[1]
 
 
@@ -195,10 +193,10 @@ def test_run_on_a_new_seabed_law() -> None:
     assert isinstance(scene_from_mapping(lying()).seabed, HystereticSeabed)
     assembly = at_rest(lying())
     np.testing.assert_allclose(shape(assembly)[:, 2], shape(assembly)[0, 2], atol=1e-7)
-    assert assembly.seabed is not None
+    assert assembly.riser.seabed is not None
     plastic = (W - 400.0) / 2.0e4
-    np.testing.assert_allclose(assembly.seabed.memory[..., 0], plastic, rtol=1e-5)
-    stored = assembly.seabed.energy(State.at_rest(0.0, assembly.size)).potential
+    np.testing.assert_allclose(assembly.riser.seabed.memory[..., 0], plastic, rtol=1e-5)
+    stored = assembly.riser.seabed.energy(State.at_rest(0.0, assembly.size)).potential
     assert stored == pytest.approx(20.0 * (W**2 / 2.0e5 + 1.0e4 * plastic**2), rel=1e-5)
 
 

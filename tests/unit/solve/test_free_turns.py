@@ -74,7 +74,7 @@ def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[flo
     ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0), "end": "free"}
     assembly = built(riser_scene(static(), pipe=pipe, length=12.0, elements=6, **ends, dimension=3, **shape))
     assembly.begin(assembly.scene.stages[0])
-    line = assembly.line
+    line = assembly.riser.line
     line.prescribe_spin(True)
     turns = line.free_turns(State.at_rest(0.0, assembly.size))
     sizes = np.linalg.svd(turns / np.linalg.norm(turns, axis=1)[:, None], compute_uv=False)

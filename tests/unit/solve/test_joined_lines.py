@@ -113,7 +113,7 @@ def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> 
         rates, at = expected.before.v, slice(field.offset, field.offset + field.size)
         assert np.abs(rates[at]).max() > 1e-2, field.name
         np.testing.assert_allclose(found.before.v[at], rates[at], rtol=0.0, atol=1e-6, err_msg=field.name)
-    for mine, other in zip(compiled.assembly.by_line.values(), snes.assembly.by_line.values(), strict=True):
+    for mine, other in zip(compiled.assembly.lines.values(), snes.assembly.lines.values(), strict=True):
         place, wanted = mine.line.positions3(found.before), other.line.positions3(expected.before)
         np.testing.assert_allclose(place, wanted, rtol=0.0, atol=1e-8)
         sections, by_snes = (

@@ -23,7 +23,7 @@ from riser_soil.solve.step import Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher, before_commit, built
+from tests.support.driven_stage import Watcher, before_commit, built, soil_under
 from tests.support.scenes import LAY, Mapping, heave, touchdown
 
 SAME = 1e-8
@@ -54,7 +54,7 @@ def scene(case: str, newton: str) -> Mapping:
 def taken(case: str, newton: str) -> list[dict[str, Array]]:
     """What each accepted step of the dynamic stage tells."""
     assembly, reported = built(scene(case, newton)), list[dict[str, Array]]()
-    contact, line, condensed = assembly.soil_contact, assembly.line, assembly.condensed
+    contact, line, condensed = soil_under(assembly).contact, assembly.riser.line, soil_under(assembly).condensed
     assert contact is not None
     assert condensed is not None
 

@@ -15,7 +15,7 @@ from riser_soil.scene.stages import StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from tests.support.driven_stage import built, take
+from tests.support.driven_stage import built, soil_under, take
 from tests.support.pushed_pipe import D, slice_of_soil
 from tests.support.scenes import Mapping
 
@@ -62,12 +62,12 @@ def test_relaxation_that_leaves_another_pattern_of_contact_does_no_harm(monkeypa
     """The first attempt fails, and so does relaxation, after it has chosen candidates for a riser that is lifted."""
     scene = slice_of_soil(2)
     assembly, tried = built(scene), list[float]()
-    contact, usual = assembly.soil_contact, TimeStepper.advance
+    contact, usual = soil_under(assembly).contact, TimeStepper.advance
     assert contact is not None
 
     def relaxed(*_: object) -> RelaxationResult:
         lifted = State.at_rest(0.0, assembly.size)
-        lifted.u[assembly.line.translation_dofs[:, -1]] = D
+        lifted.u[assembly.riser.line.translation_dofs[:, -1]] = D
         candidates = contact.blocks()[SOIL].shape
         contact.rebuild(lifted)
         assert contact.blocks()[SOIL].shape != candidates
@@ -95,9 +95,9 @@ def test_relaxation_that_fails_on_its_way_leaves_clay_and_riser_as_they_were(mon
     def relaxed(comm: object, model: Model, *_: object) -> RelaxationResult:
         seen.append(gathered(owners(model)))
         pressed = State.at_rest(0.0, assembly.size)
-        pressed.u[assembly.line.translation_dofs[:, -1]] = -0.1 * D
+        pressed.u[assembly.riser.line.translation_dofs[:, -1]] = -0.1 * D
         assert assembly.soil is not None
-        pressed.u[assembly.soil.field.offset + assembly.soil.field.size - 1] = -0.1 * D
+        pressed.u[assembly.soil.whole.field.offset + assembly.soil.whole.field.size - 1] = -0.1 * D
         committing: list[Part | Field] = [*model.parts, *model.fields]
         for owner in committing:
             owner.commit(pressed)

@@ -112,7 +112,7 @@ def test_nothing_has_a_rate() -> None:
         assert not stepper.now.a.any()
 
     run_stage(assembly, stage, State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
-    assert assembly.line.x[-1] == pytest.approx([L, 0.0], abs=1e-12)
+    assert assembly.riser.line.x[-1] == pytest.approx([L, 0.0], abs=1e-12)
 
 
 CORNERS: list[tuple[Mapping, list[float]]] = [
@@ -161,7 +161,7 @@ def test_many_cycles_on_clay_that_forgets_are_reported(kind: str, duration: floa
     swing = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 0.01], "period": 10.0}}}
     given = touchdown(LAY, quasi_static(duration, motion=swing))
     given["soil"]["law"] = {"kind": kind, "su": 600.0, "E_over_su": 300.0, "nu": 0.49}
-    warnings = lines_with(ground_warnings(built(given)), "lets go", "mean stress")
+    warnings = lines_with(ground_warnings(built(given).riser), "lets go", "mean stress")
     assert len(warnings) == reported
     assert lines_with(warnings, "half of it", "0.69% shear strain", "10 cycles", "(limit 10)", "take iwan") == warnings
 
@@ -230,8 +230,8 @@ def test_hysteretic_ground_answers_as_its_law_does(tmp_path: Path) -> None:
     found: list[float] = []
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        assert assembly.seabed is not None
-        found.append(float(assembly.seabed.force_on_riser(stepper.now)[2]))
+        assert assembly.riser.seabed is not None
+        found.append(float(assembly.riser.seabed.force_on_riser(stepper.now)[2]))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
     formula = RandolphQuiggin(**law).of_pipe(D)
