@@ -16,7 +16,6 @@ import numpy as np
 from benchmarks.riser_only import timed
 from benchmarks.speed_page import parser_of, tell
 from benchmarks.stage import TimedStage, last_stage
-from riser_soil.assembly.sea import water_of
 from riser_soil.core.system import Timer
 from riser_soil.riser import stations
 from riser_soil.sea import wave_series
@@ -56,9 +55,11 @@ def row(count: int, series: Cost, sums: Cost) -> list[str]:
 def measure(count: int) -> tuple[Cost, Cost]:
     """Medians, of series and of plain sums, which take the place of the series in the same steps."""
     stage = last_stage(SCENE, (f"water.waves.jonswap.components={count}",), Timer.new())
-    series = water_of(stage.assembly.scene, stage.stage)
-    with patch("riser_soil.sea.waves.WaveField", PlainSums):
-        summed = water_of(stage.assembly.scene, stage.stage)
+    sea = stage.assembly.sea
+    assert sea is not None
+    series = sea.in_stage(stage.stage)
+    with patch("riser_soil.assembly.waves.WaveField", PlainSums):
+        summed = sea.in_stage(stage.stage)
     assert series is not None
     assert summed is not None
     sums = next(flow for flow in summed.flows if isinstance(flow, PlainSums))

@@ -12,6 +12,7 @@ import numpy as np
 from riser_soil.assembly.hang_off import hung_ends
 from riser_soil.assembly.line_assembly import LineAssembly, line_assembly
 from riser_soil.assembly.scales import Scales, of_several
+from riser_soil.assembly.sea import SeaAssembly, sea_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field, LineField, Model, Part, State
@@ -37,13 +38,14 @@ LAYING, LETTING_GO = "laying", "letting go"  # stages before those of the scene
 class Assembly:
     """A scene's fields and lasting parts; what the scene lacks is None.
 
-    lines: what belongs to each, by name, "" of a scene's only one. hung: bodies, and joints between them and lines.
-    stage: the last one begun.
+    lines: what belongs to each, by name, "" of a scene's only one. sea: the water that all share. hung: bodies, and
+    joints between them and lines. stage: the last one begun.
     """
 
     scene: Scene
     comm: Communicator
     lines: dict[str, LineAssembly]
+    sea: SeaAssembly | None = None
     hung: Hung | None = None
     stage: Stage | None = None
 
@@ -170,7 +172,7 @@ class Assembly:
         return [(own, own.seen(stage)) for own in self.lines.values()]
 
     def _hung_in(self, stage: Stage) -> list[Part]:
-        return [] if self.hung is None else self.hung.parts_in(self.scene, stage)
+        return [] if self.hung is None else self.hung.parts_in(self.scene, self.sea, stage)
 
     def state(self) -> Saved:
         """The state of the prescribed motions; fields and parts have states of their own."""
@@ -272,11 +274,11 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
         raise SceneError("vessel.offset: is to be put into the stages first, by riser_soil.scene.variants.at_offset")
     scene = sized(scene)
     spins = spinning(scene)
-    assembly = Assembly(scene, comm, {})
+    assembly = Assembly(scene, comm, {}, sea_of(scene))
     for name, view in by_line(scene).items():
         turns = name in spins if scene.lines else None
         with placing(name):
-            assembly.lines[name] = line_assembly(view, name or "riser", comm.rank == 0, turns)
+            assembly.lines[name] = line_assembly(view, assembly.sea, name or "riser", comm.rank == 0, turns)
     if scene.bodies or scene.joints:
         from riser_soil.assembly.bodies_and_joints import hung_of
 

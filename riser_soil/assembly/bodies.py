@@ -13,14 +13,15 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
+from riser_soil.sea.morison import WaterLoads
+from riser_soil.sea.morison_law import added_masses, drag_coefficients
+from riser_soil.sea.pipe import Pipe, alike, diameters, pipe_at
+from riser_soil.sea.vortex_law import Shedding
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Dry
-    from riser_soil.sea.morison import WaterLoads
-    from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.reynolds_drag import ReynoldsTables
-    from riser_soil.sea.vortex_law import Shedding
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,6 @@ class PipeInWater(Body):
 
     @cached_property
     def pipe(self) -> Pipe:
-        from riser_soil.sea.pipe import Pipe
-
         return Pipe(self.line)
 
     @property
@@ -113,23 +112,16 @@ class PipeInWater(Body):
         return {in_line: self._shedding(values) for in_line, values in given.items() if values[:, 0].any()}
 
     def _shedding(self, given: Array) -> Shedding:
-        from riser_soil.sea.vortex_law import Shedding
-
         (coefficient, middle, width), diameter = given.T.copy(), self.elements.outer_diameter
         return Shedding(0.5 * self.rho * diameter * coefficient, diameter, middle, width)
 
     @property
     def still(self) -> WaterLoads:
-        from riser_soil.sea.morison import WaterLoads
-        from riser_soil.sea.morison_law import drag_coefficients
-
         drag = drag_coefficients(self.rho, self.elements.outer_diameter, *self.elements.drag.T)
         return WaterLoads(self.pipe, drag, self.mass)
 
     @cached_property
     def mass(self) -> Array:
-        from riser_soil.sea.morison_law import added_masses
-
         return added_masses(self.rho, self.elements.outer_diameter, *self.elements.added_mass.T)
 
     @property
@@ -154,8 +146,6 @@ class ModulesInWater(Body):
 
     @cached_property
     def pipe(self) -> Pipe:
-        from riser_soil.sea.pipe import pipe_at
-
         return pipe_at(self.line, self.modules)
 
     @property
@@ -168,15 +158,10 @@ class ModulesInWater(Body):
 
     @property
     def still(self) -> WaterLoads:
-        from riser_soil.sea.morison import WaterLoads
-        from riser_soil.sea.pipe import alike
-
         return WaterLoads(self.pipe, alike(0.5 * self.rho * self._of("drag_area")), self.mass)
 
     @cached_property
     def mass(self) -> Array:
-        from riser_soil.sea.pipe import alike
-
         return alike(self._of("added_mass") * self.displaced)
 
     @property
@@ -185,8 +170,6 @@ class ModulesInWater(Body):
 
     @property
     def span(self) -> Array:
-        from riser_soil.sea.pipe import diameters
-
         return diameters(self.modules)[:, None]
 
     def dry(self, gravity: float) -> Dry:

@@ -10,8 +10,7 @@ import numpy as np
 
 from riser_soil.assembly.bodies_on_seabed import on_seabed
 from riser_soil.assembly.line_assembly import LineAssembly
-from riser_soil.assembly.sea import water_of
-from riser_soil.assembly.stage import loads_of_body
+from riser_soil.assembly.sea import SeaAssembly
 from riser_soil.bodies.body import BodyProperties, MovingBody
 from riser_soil.bodies.drag import BodyDrag
 from riser_soil.bodies.inertia import BodyInertia, MidpointBodyInertia
@@ -27,7 +26,7 @@ from riser_soil.scene.bodies import PointBody, SolidBody
 from riser_soil.scene.joints import Joint, JointPoint
 from riser_soil.scene.lines import arc_of, axis_across
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, MidpointScheme, Stage
+from riser_soil.scene.stages import DynamicStage, MidpointScheme, Stage, loads_on_body
 from riser_soil.sea.flows import Sea
 
 TURNED = 1e-9  # rad: what needs no stage to turn
@@ -80,37 +79,41 @@ class Hung:
         free = (name for name, body in self.bodies.items() if not body.prescribed.all())
         return {self.bodies[name]: self.weights[name].load for name in free}
 
-    def parts_in(self, scene: Scene, stage: Stage) -> list[Part]:
-        """Release the bodies, and return the parts of a stage of the scene: dynamic stages add inertia and drag."""
+    def parts_in(self, scene: Scene, sea: SeaAssembly | None, stage: Stage) -> list[Part]:
+        """Release the bodies, and return the parts of a stage of the scene."""
         self._hold(False)
-        parts = self.lasting
+        return [*self.lasting, *self.parts_of(scene, sea, stage)]
+
+    def parts_of(self, scene: Scene, sea: SeaAssembly | None, stage: Stage) -> list[Part]:
+        """Parts that a stage has beside the lasting ones: loads, and in dynamic stages inertia and drag."""
+        parts = list[Part]()
         for name, body in self.bodies.items():
             if isinstance(stage, DynamicStage):
                 inertia = MidpointBodyInertia if isinstance(stage.scheme, MidpointScheme) else BodyInertia
                 parts.append(inertia(body, self.given[name].mass_matrix()))
-            if drag := _drag(scene, stage, body, self.given[name]):
+            if sea is not None and (drag := _drag(sea, stage, body, self.given[name])):
                 parts.append(drag)
-            parts += loads_of_body(scene, body, stage)
+            if loads := loads_on_body(scene.stages, stage, name):
+                from riser_soil.assembly.loads import loads_of_body
+
+                parts.append(loads_of_body(body, loads, stage))
         return parts
 
 
-def _drag(scene: Scene, stage: Stage, body: MovingBody, given: BodyProperties) -> BodyDrag | None:
+def _drag(sea: SeaAssembly, stage: Stage, body: MovingBody, given: BodyProperties) -> BodyDrag | None:
     """What the water does to a body beyond carrying it, where it does anything in a stage."""
-    water, dynamic = scene.water, isinstance(stage, DynamicStage)
-    if water is None or not (dynamic or water.current is not None):
+    water = sea.water
+    if not isinstance(stage, DynamicStage) and not sea.moves_in(stage):
         return None
-    waves = water.waves is not None and dynamic
     drags = bool(given.drag.any() or given.spin_drag.any())
-    pushed = bool(given.volume or given.added_mass.any()) and (
-        waves or (dynamic and water.current is not None and water.current.history is not None)
-    )
+    pushed = bool(given.volume or given.added_mass.any()) and sea.accelerates_in(stage)
     if not drags and not pushed:
         return None
-    sea = water_of(scene, stage) or Sea(None)
-    buoyancy = scene.gravity * water.density * given.volume if waves else 0.0
+    waves = sea.has_waves_in(stage)
+    buoyancy = sea.scene.gravity * water.density * given.volume if waves else 0.0
     level = water.surface_level if water.surface_level is not None else np.inf
-    still = water.current is None and not waves
-    return BodyDrag(body, given, sea, water.density, buoyancy, level, still)
+    flow = sea.in_stage(stage) or Sea(None)
+    return BodyDrag(body, given, flow, water.density, buoyancy, level, not sea.moves_in(stage))
 
 
 def hung_of(scene: Scene, lines: Mapping[str, LineAssembly], active: bool) -> Hung:

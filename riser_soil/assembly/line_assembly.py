@@ -21,15 +21,17 @@ from riser_soil.assembly.riser import (
     springs_of,
 )
 from riser_soil.assembly.scales import Scales, scales_of
-from riser_soil.assembly.sea_loads import sea_loads
+from riser_soil.assembly.sea import SeaAssembly
 from riser_soil.assembly.shape import least_bend
-from riser_soil.assembly.stage import contents_of, dynamic_parts, loads_of
+from riser_soil.assembly.stage import loads_on_line
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.core.saved_state import Saved
+from riser_soil.riser.attachments import PointAttachment
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.wall_stress import Pressures, WallSections, walls_of
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage, pressure_in
@@ -42,9 +44,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_friction import SoilFriction
-    from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
-    from riser_soil.riser.wall_stress import Pressures, WallSections
 
 MOST_STRETCHED = 10.0  # lengths of the line: an end farther beyond its place is there by stretch that no pipe bears
 
@@ -57,7 +57,7 @@ class LineAssembly:
     catenary: the first shape, None for other ones.
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `parts`.
     pressures: inside and outside the pipe; None where the wall tension is not known. vessels: those that carry ends.
-    spins: whether nothing but inertia keeps it from spinning about its own axis.
+    spins: whether nothing but inertia keeps it from spinning about its own axis. sea: the water of the whole scene.
     soil: what it lies on, with their contact and friction. seabed: contact with the seabed, friction: on that.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     start_places: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow
@@ -73,6 +73,7 @@ class LineAssembly:
     pressures: Pressures | None
     vessels: Vessels | None
     spins: bool
+    sea: SeaAssembly | None = None
     soil: SoilAssembly | None = None
     seabed: SeabedContact | None = None
     friction: CoulombFriction | None = None
@@ -113,8 +114,6 @@ class LineAssembly:
         """Sections of the walls that bear stress; None where no line type has one."""
         if not self.elements.wall_outer_diameter.any():
             return None
-        from riser_soil.riser.wall_stress import walls_of
-
         return walls_of(self.elements)
 
     def code_checks(self) -> LineChecks | None:
@@ -197,13 +196,31 @@ class LineAssembly:
 
     def enter(self, stage: Stage, origins: Array) -> list[Part]:
         """Set the ends in motion from origins (2, 3) [m]; the line's parts in a stage as it sees it."""
-        self.stage, scene, line = stage, self.scene, self.line
-        set_motions(line, stage, self.vessels, origins)
-        line.prescribe_spin(self.spins and not isinstance(stage, DynamicStage))
-        parts = [*self.parts, *loads_of(scene, line, stage), *contents_of(scene, line, self.elements, stage)]
+        self.stage = stage
+        set_motions(self.line, stage, self.vessels, origins)
+        self.line.prescribe_spin(self.spins and not isinstance(stage, DynamicStage))
+        return [*self.parts, *self.parts_of(stage)]
+
+    def parts_of(self, stage: Stage) -> list[Part]:
+        """The line's parts that a stage, as it sees it, has beside the lasting ones."""
+        scene, line, elements, parts = self.scene, self.line, self.elements, list[Part]()
+        if loads := loads_on_line(scene, stage):
+            from riser_soil.assembly.loads import loads_of_line
+
+            parts.append(loads_of_line(line, loads, stage))
+        if (contents := scene.line.inner_flow) is not None:
+            from riser_soil.assembly.contents import contents_of
+
+            parts.append(contents_of(scene, contents, line, elements, stage))
         if isinstance(stage, DynamicStage):
-            parts += dynamic_parts(stage, line, self.elements, self.attachments)
-        return parts + sea_loads(scene, line, self.elements, stage, self.attachments)
+            from riser_soil.assembly.dynamics import dynamic_parts
+
+            parts += dynamic_parts(stage, line, elements, self.attachments)
+        if self.sea is not None and self.sea.acts_in(stage):
+            from riser_soil.assembly.sea_loads import sea_loads
+
+            parts += sea_loads(scene, self.sea, line, elements, stage, self.attachments)
+        return parts
 
     def pressure_change(self, t: float) -> float:
         """How much higher the pressure inside [Pa] is at t of the present stage than the contents' own."""
@@ -245,11 +262,13 @@ class LineAssembly:
         self.start_places = dict(saved)
 
 
-def line_assembly(scene: Scene, name: str, active: bool, spins: bool | None = None) -> LineAssembly:
+def line_assembly(
+    scene: Scene, sea: SeaAssembly | None, name: str, active: bool, spins: bool | None = None
+) -> LineAssembly:
     """Build a scene's line without its ground. spins: as of `LineAssembly`, where joints decide, too."""
     elements, attachments = elements_of(scene), attachments_of(scene)
     line, catenary = line_of(scene, elements, attachments, active, name)
     parts = [Beam(line, elements), *springs_of(scene.line, line), *attached_weight(line, attachments)]
-    pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
+    pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene, sea)
     turns = spins_freely(scene.line) if spins is None else spins
-    return LineAssembly(scene, line, elements, parts, catenary, attachments, pressures, vessels, turns)
+    return LineAssembly(scene, line, elements, parts, catenary, attachments, pressures, vessels, turns, sea)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
+from riser_soil.assembly.sea import SeaAssembly, sea_of
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.quantities import Vector
@@ -31,14 +32,15 @@ LOOKS = 98
 PER_PERIOD, MOST_LOOKS = 24, 20000
 
 
-def vessels_of(scene: Scene) -> Vessels | None:
+def vessels_of(scene: Scene, sea: SeaAssembly | None) -> Vessels | None:
     """The vessels that carry ends; None where there are none."""
     given = [stage.motion for stage in scene.stages if not isinstance(stage, StaticStage) and stage.motion is not None]
     if not any(each.vessel for motion in given for each in motion.by_end.values()):
         return None
     from riser_soil.assembly.vessels import Vessels
 
-    return Vessels(scene)
+    assert sea is not None  # the scene's checks have seen to it
+    return Vessels(scene, sea)
 
 
 def set_motions(line: Line, stage: Stage, vessels: Vessels | None, origins: Array) -> None:
@@ -155,7 +157,7 @@ def end_places(scene: Scene) -> Iterator[dict[str, Array]]:
     """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
     ends = {name: getattr(scene.line, name) for name in ("start", "end")}
     last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
-    end, vessels = End(prescribed=True), vessels_of(scene)
+    end, vessels = End(prescribed=True), vessels_of(scene, sea_of(scene))
     for stage in scene.stages:
         place = {}
         for name, origin in last.items():

@@ -13,24 +13,22 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State
 from riser_soil.errors import SceneError
 from riser_soil.riser import sections, shapes
+from riser_soil.riser.additions import Growth, Taper, with_growth, with_taper
+from riser_soil.riser.attachments import Attachments, PointAttachment
 from riser_soil.riser.line import UP, Line
 from riser_soil.riser.line_ends import End
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.springs import EndSpring
+from riser_soil.riser.wall_stress import HydrostaticPressure, Pressures
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.riser import Riser, RotationSpring, Support
 from riser_soil.scene.scene import Scene
 
-if TYPE_CHECKING:
-    from riser_soil.riser.wall_stress import HydrostaticPressure, Pressures
-
 MOST_SHAPES = 30  # tried for marine growth
 SETTLED = 1e-9  # of the riser's length: change of the first shape by which its growth is no other
 
-
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
 
 
@@ -51,8 +49,6 @@ def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections
 
     SceneError where shape and growth do not settle.
     """
-    from riser_soil.riser.additions import Growth, with_growth
-
     growth, attachments, grown = Growth(*given.T), attachments_of(scene), bare
     unstressed = unstressed_shape(scene.line, bare.arc)
     before: Array = np.full(bare.arc.size, np.inf)
@@ -80,8 +76,6 @@ def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surro
     """With the bend stiffeners of the ends that have one."""
     for end, is_last in ((riser.start, False), (riser.end, True)):
         if isinstance(end, Support) and end.bend_stiffener is not None:
-            from riser_soil.riser.additions import Taper, with_taper
-
             elements = with_taper(elements, Taper(**end.bend_stiffener.model_dump()), is_last, around)
     return elements
 
@@ -111,8 +105,6 @@ def attachments_of(scene: Scene) -> tuple[PointAttachment, ...]:
     """Everything attached to the riser, one by one."""
     if not scene.line.attachments:
         return ()
-    from riser_soil.riser.attachments import PointAttachment
-
     water = scene.water.density if scene.water else 0.0
     return tuple(
         PointAttachment(
@@ -132,8 +124,6 @@ def attached_weight(line: Line, attachments: Sequence[PointAttachment]) -> list[
     """The part of the attachments' weight less buoyancy, if there are any."""
     if not attachments:
         return []
-    from riser_soil.riser.attachments import Attachments
-
     return [Attachments(line, attachments)]
 
 
@@ -211,8 +201,6 @@ def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | No
     """Both pressures; None where the wall tension is not known."""
     if no_wall_tension(scene):
         return None
-    from riser_soil.riser.wall_stress import Pressures
-
     return Pressures(_inside(scene, line), _outside(scene), elements.pipe_bore, elements.pipe_diameter)
 
 
@@ -220,8 +208,6 @@ def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:
     given = scene.line.contents
     if given is None:
         return None
-    from riser_soil.riser.wall_stress import HydrostaticPressure
-
     ends = line.to_global(line.x[[0, -1]])[:, 2]
     level = float(ends.max()) if given.pressure_level is None else given.pressure_level
     return HydrostaticPressure(level, scene.gravity * given.density, given.pressure)
@@ -230,6 +216,4 @@ def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:
 def _outside(scene: Scene) -> HydrostaticPressure | None:
     if scene.water is None or scene.water.surface_level is None:
         return None
-    from riser_soil.riser.wall_stress import HydrostaticPressure
-
     return HydrostaticPressure(scene.water.surface_level, scene.gravity * scene.water.density)

@@ -8,37 +8,41 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from riser_soil.assembly.bodies import Body, ModulesInWater, PipeInWater
-from riser_soil.assembly.sea import water_of
+from riser_soil.assembly.sea import SeaAssembly
 from riser_soil.core.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.scene.water import Water
+from riser_soil.sea.morison import Morison, WaterLoads, pushed_masses, through
+from riser_soil.sea.stream_kernels import FlowAtStations
 
 NO_DRAG = ((1.0, 0.0),)
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Buoyancy
-    from riser_soil.sea.morison import Morison, WaterLoads
     from riser_soil.sea.reynolds_drag import ReynoldsTables
-    from riser_soil.sea.stream_kernels import FlowAtStations
     from riser_soil.sea.vortex_law import Shedding
     from riser_soil.sea.vortices import Vortices
 
 
 def sea_loads(
-    scene: Scene, line: Line, elements: Elements, stage: Stage, attachments: Sequence[PointAttachment] = ()
+    scene: Scene,
+    sea: SeaAssembly,
+    line: Line,
+    elements: Elements,
+    stage: Stage,
+    attachments: Sequence[PointAttachment] = (),
 ) -> list[Part]:
     """The parts "morison", "vortices", "vortices in line" and "buoyancy" of a stage, of the pipe and its modules."""
-    if scene.water is None:
-        return []
-    bodies: list[Body] = [PipeInWater(scene.water.density, line, elements, tables_of(scene, scene.water, elements))]
+    water = sea.water
+    bodies: list[Body] = [PipeInWater(water.density, line, elements, tables_of(scene, water, elements))]
     modules = [attachment for attachment in attachments if attachment.volume or attachment.drag_area]
     if modules:
-        bodies.append(ModulesInWater(scene.water.density, line, modules))
-    return [part for body in bodies for part in _BodyLoads(scene, scene.water, body, stage).parts()]
+        bodies.append(ModulesInWater(water.density, line, modules))
+    return [part for body in bodies for part in _BodyLoads(sea, body, stage).parts()]
 
 
 def tables_of(scene: Scene, water: Water, elements: Elements) -> ReynoldsTables | None:
@@ -57,8 +61,7 @@ def tables_of(scene: Scene, water: Water, elements: Elements) -> ReynoldsTables 
 class _BodyLoads:
     """Hydrodynamic loads on a body in a stage."""
 
-    scene: Scene
-    water: Water
+    sea: SeaAssembly
     body: Body
     stage: Stage
 
@@ -76,53 +79,35 @@ class _BodyLoads:
     def act(self) -> bool:
         """Whether the water does more than carry: in motion, or in a stage in which the riser moves."""
         if isinstance(self.stage, DynamicStage):
-            return self.body.drags or self.body.adds_mass or self.accelerates
-        return self.body.drags and self.water.current is not None
-
-    @property
-    def waves(self) -> bool:
-        return self.water.waves is not None and isinstance(self.stage, DynamicStage)
-
-    @property
-    def accelerates(self) -> bool:
-        """Whether the water itself does: by waves, or a current that changes."""
-        changes = self.water.current is not None and self.water.current.history is not None
-        return self.waves or (changes and isinstance(self.stage, DynamicStage))
+            return self.body.drags or self.body.adds_mass or self.sea.accelerates_in(self.stage)
+        return self.body.drags and self.sea.moves_in(self.stage)
 
     @cached_property
     def stream(self) -> FlowAtStations | None:
         """Water that moves."""
-        if self.water.current is None and not self.waves:
-            return None
-        return self._flow
+        return self._flow if self.sea.moves_in(self.stage) else None
 
     @cached_property
     def _flow(self) -> FlowAtStations:
         """The water around the pipe, which may stand still."""
-        from riser_soil.sea.stream_kernels import FlowAtStations
-
-        return FlowAtStations(self.body.pipe, water_of(self.scene, self.stage))
+        return FlowAtStations(self.body.pipe, self.sea.in_stage(self.stage))
 
     @cached_property
     def surface(self) -> FlowAtStations | None:
         """Water that has one, whether it moves or not."""
-        return None if self.water.surface_level is None else self._flow
+        return None if self.sea.water.surface_level is None else self._flow
 
     @property
     def morison(self) -> Morison:
-        from riser_soil.sea.morison import Morison, pushed_masses
-
         body, loads = self.body, self.body.still
         if self.stream is not None:
             loads = replace(loads, water=self.stream, dissipative=False)
-            if self.accelerates:
+            if self.sea.accelerates_in(self.stage):
                 loads = replace(loads, pushed=pushed_masses(body.mass, body.displaced))
         return Morison(loads if self.surface is None else replace(loads, water=self.surface, span=body.span))
 
     def _through(self, dissipative: bool) -> WaterLoads:
         """Loads of the water on a body that moves through it, on its wet part alone where the water has a surface."""
-        from riser_soil.sea.morison import through
-
         return through(self._flow, None if self.surface is None else self.body.span, dissipative)
 
     def _reynolds_drag(self, tables: ReynoldsTables) -> Morison:
@@ -140,4 +125,4 @@ class _BodyLoads:
         from riser_soil.sea.buoyancy import Buoyancy
 
         assert self.surface is not None
-        return Buoyancy(self.surface, self.body.dry(self.scene.gravity), flat=not self.waves)
+        return Buoyancy(self.surface, self.body.dry(self.sea.scene.gravity), flat=not self.sea.has_waves_in(self.stage))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.assembly.sea import components_of, wave_clock
+from riser_soil.assembly.sea import SeaAssembly, wave_clock
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.quantities import Vector
 from riser_soil.errors import SceneError
@@ -46,16 +46,15 @@ class Vessels:
     beyond: by the path of the table, where waves beyond its frequencies may matter a little.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, sea: SeaAssembly) -> None:
         self._scene = scene
         self._responses: dict[_Key, VesselResponse] = {}
         self._last: dict[str, tuple[VesselMotion, float]] = {}  # by the end: what moved it last, and for how long [s]
         self.beyond: dict[str, EnergyOutsideTable] = {}
-        waves = components_of(scene)
-        assert waves is not None  # the scene's checks have seen to it
+        assert sea.waves is not None  # the scene's checks have seen to it
         for path, vessel in _vessels(scene):
             if _key(vessel) not in self._responses:
-                self._responses[_key(vessel)] = self._response(path, vessel, waves)
+                self._responses[_key(vessel)] = self._response(path, vessel, sea.waves.components)
 
     def motion(self, stage: Stage, end: str, origin: Array) -> VesselMotion:
         """The motion of an end that is at origin (3,) as a stage begins; to be called in the order of the stages."""

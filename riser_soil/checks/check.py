@@ -78,11 +78,10 @@ def _counted(number: int, name: str) -> str:
 
 def reported_waves(assembly: Assembly) -> Iterator[str]:
     """What theory a regular wave follows, where the scene has one of finite height."""
-    water = assembly.scene.water
-    if water is not None and water.waves is not None:
+    if assembly.sea is not None and assembly.sea.waves is not None:
         from riser_soil.checks.wave_plausibility import reported_regular
 
-        yield from reported_regular(assembly.scene)
+        yield from reported_regular(assembly.sea.waves)
 
 
 def _title(assembly: Assembly) -> str:

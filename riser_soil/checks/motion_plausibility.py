@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.assembly.motions import LOOKS, end_places, instants, periods_of, set_motion, vessels_of
+from riser_soil.assembly.sea import sea_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser.line_ends import End
@@ -166,7 +167,7 @@ def _shock(path: str, name: str, unit: str, before: EndVelocities, after: EndVel
 
 def _courses(scene: Scene, name: str, support: Support) -> Iterator[VelocitiesByEnd]:
     """Velocities of an end in each stage."""
-    end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(scene)
+    end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(scene, sea_of(scene))
     for stage in scene.stages:
         set_motion(end, name, position, stage, vessels)
         yield _course(end, np.linspace(0.0, stage.end, LOOKS), support.rotation != "free")

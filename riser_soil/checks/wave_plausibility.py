@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.sea import steady_wave_of
 from riser_soil.checks.inventory import has_dynamics
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.wave_kinds import Airy, Regular, WaveKind
+from riser_soil.sea.components import wave_number
+
+if TYPE_CHECKING:
+    from riser_soil.assembly.waves import DrawnWaves
 
 # Height over Miche's breaking height from which linear theory is well off: Stokes's crests are a tenth higher there.
 STEEP = 0.5
@@ -24,8 +28,6 @@ OTHER_DEPTH = 0.05
 
 def wave_warnings(scene: Scene) -> Iterator[str]:
     """Warnings about the waves, each with its numbers."""
-    from riser_soil.sea.components import wave_number
-
     assert scene.water is not None
     assert scene.water.waves is not None
     waves, h = scene.water.waves, scene.water_depth
@@ -44,15 +46,14 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
         yield "water.waves: waves act in dynamic stages, and no stage is dynamic: nothing will come of them"
 
 
-def reported_regular(scene: Scene) -> Iterator[str]:
-    """The theory and shape of a regular wave of finite height, where the scene has one."""
-    waves = scene.water.waves if scene.water is not None else None
-    if waves is None or waves.regular is None:
+def reported_regular(waves: DrawnWaves) -> Iterator[str]:
+    """The theory and shape of a regular wave of finite height, where the waves are one."""
+    wave, given = waves.regular, waves.given.regular
+    if wave is None or given is None:
         return
     from riser_soil.sea.steady_wave import highest
 
-    wave = steady_wave_of(waves.regular, scene.gravity, scene.water_depth)
-    share = waves.regular.height / highest(wave.length, scene.water_depth)
+    share = given.height / highest(wave.length, waves.depth)
     yield (
         f"waves: {NAMES[wave.theory]}: {wave.length:.4g} m long, crest {wave.crest:.4g} m above and trough "
         f"{wave.trough:.4g} m below the mean surface, {share:.0%} of the height at which it breaks"

@@ -9,9 +9,11 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from riser_soil.assembly import Assembly, LineAssembly, build, sized
+from riser_soil.assembly.contents import contents_at
+from riser_soil.assembly.dynamics import dynamic_parts
 from riser_soil.assembly.packages import communicator_of
+from riser_soil.assembly.sea import sea_of
 from riser_soil.assembly.sea_loads import sea_loads
-from riser_soil.assembly.stage import contents_at, dynamic_parts
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Model, Part, State, Weights
 from riser_soil.core.system import System, Timer
@@ -332,8 +334,11 @@ def _of_line(own: LineAssembly) -> list[Part]:
     scene, line, elements, attached = own.scene, own.line, own.elements, own.attachments
     if scene.water is not None:
         scene = scene.model_copy(update={"water": scene.water.model_copy(update={"waves": None, "current": None})})
-    parts = dynamic_parts(MOVING, line, elements, attached) + sea_loads(scene, line, elements, MOVING, attached)
-    parts += contents_at(scene, line, elements, clock=0.0)
+    parts = dynamic_parts(MOVING, line, elements, attached)
+    if (still := sea_of(scene)) is not None:
+        parts += sea_loads(scene, still, line, elements, MOVING, attached)
+    if (contents := scene.line.inner_flow) is not None:
+        parts.append(contents_at(scene, contents, line, elements, clock=0.0))
     return [part for part in parts if "I" in part.traits.groups]
 
 

@@ -283,6 +283,11 @@ class Riser(BaseModel):
         return self._across
 
     @property
+    def inner_flow(self) -> Contents | None:
+        """Contents that flow or are uneven; None where there are none, or they count in mass and weight alone."""
+        return self.contents if self.contents is not None and self.contents.uneven_or_moving else None
+
+    @property
     def is_tied(self) -> bool:
         """Whether joints hold it between its ends."""
         return self._tied

@@ -219,8 +219,9 @@ class Scene(BaseModel):
         """Depth of the water for waves [m]; inf in a scene that has neither ground nor a depth."""
         if self.water is None or self.water.surface_level is None:
             return math.inf
-        down = self.water.surface_level - self.seabed_level if self.has_ground else math.inf
-        return self.water.depth or down
+        if self.water.depth:
+            return self.water.depth
+        return self.water.surface_level - self.seabed_level if self.has_ground else math.inf
 
     @property
     def contact_at(self) -> ContactAt:

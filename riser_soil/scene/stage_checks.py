@@ -195,7 +195,7 @@ def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
     path, remedy = ("stages", n, "scheme"), "choose another scheme"
     if scene.contact:
         yield Problem(path, "the midpoint rule would make energy out of contact", remedy)
-    if scene.line.contents is not None and scene.line.contents.uneven_or_moving:
+    if scene.line.inner_flow is not None:
         yield Problem(path, "the midpoint rule has no contents that flow or are uneven", remedy)
     for key, motion in stage.motion.by_end.items() if stage.motion else ():
         end = getattr(scene.line, key)

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.assembly.sea import water_of
 from riser_soil.scene.scene import Scene
+from tests.support.seas import water_of
 
 REFERENCE = [55.0, 4.0, -2.0]
 MODES = ("surge", "sway", "heave", "roll", "pitch", "yaw")

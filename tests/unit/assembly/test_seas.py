@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.assembly.sea import components_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.plane import resolved_dimension
@@ -21,6 +20,7 @@ from riser_soil.sea.components import Components
 from riser_soil.sea.flows import Sea
 from riser_soil.sea.waves import WaveField
 from tests.support.scenes import ON_SEABED
+from tests.support.seas import components_of
 
 SEA = {"Hs": 4.0, "Tp": 10.0, "components": 60}
 DEPTH = 100.0

@@ -10,7 +10,6 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build
-from riser_soil.assembly.sea import components_of
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
@@ -26,6 +25,7 @@ from riser_soil.scene.scene import Scene
 from tests.support.rao_tables import EVERYWHERE, MODES, REFERENCE, surface, table
 from tests.support.said import lines_with, telling
 from tests.support.scenes import AIRY, JONSWAP, VESSEL_END, Mapping, below_vessel, dynamic, static
+from tests.support.seas import components_of
 from tests.support.stage_histories import distance, stage_histories
 
 

@@ -12,7 +12,6 @@ import pytest
 from typer.testing import CliRunner
 
 from riser_soil import Scene, run
-from riser_soil.assembly.sea import components_of
 from riser_soil.commands.app import app
 from riser_soil.errors import SceneError
 from riser_soil.imported_scene import ImportedScene
@@ -24,6 +23,7 @@ from riser_soil.sea.components import wave_number
 from riser_soil.sea.spectra import mean_period
 from tests.support.orcaflex_data import data_text
 from tests.support.said import line_with, telling
+from tests.support.seas import components_of
 
 G = 9.80665
 

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.assembly.sea import components_of, water_of, wave_age, wave_clock
+from riser_soil.assembly.sea import wave_age, wave_clock
 from riser_soil.checks.wave_plausibility import wave_warnings
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.reader import read_scene
 from tests.support.scenes import CURRENT, MIDWATER, dynamic, in_water, static
+from tests.support.seas import components_of, water_of
 
 AIRY = {"airy": {"height": 3.0, "period": 8.0}}
 ROOT = Path(__file__).parents[3]
@@ -56,7 +57,8 @@ def test_current_is_there_at_once_where_dynamics_come_first() -> None:
 
 def test_a_current_imports_no_waves() -> None:
     code = (
-        "import sys; from tests.unit.scene.test_water_scene import *; s = in_water({'current': CURRENT});"
+        "import sys; from tests.support.seas import water_of; from tests.support.scenes import *;"
+        "s = in_water({'current': CURRENT});"
         "water_of(s, s.stages[1])(0.0, MIDWATER); print([m for m in sys.modules if 'riser_soil.sea.' in m])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)

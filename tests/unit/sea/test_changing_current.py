@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from riser_soil.assembly.sea import water_of
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.errors import SceneError
 from riser_soil.scene.plane import resolved_dimension
@@ -22,6 +21,7 @@ from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import sample
 from tests.support.scenes import MIDWATER, dynamic, in_water, riser_scene
+from tests.support.seas import water_of
 from tests.support.stage_histories import stage_histories
 
 LEVEL, TIME = np.array([-100.0, -20.0, 0.0]), np.array([10.0, 30.0, 35.0])

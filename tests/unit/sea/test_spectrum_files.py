@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.assembly.sea import components_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
@@ -22,6 +21,7 @@ from riser_soil.sea.components import Components
 from tests.support.netcdf_files import Variables, write_netcdf
 from tests.support.said import telling
 from tests.support.scenes import ON_SEABED
+from tests.support.seas import components_of
 
 FREQ = np.arange(0.04, 0.5, 0.005)
 DIR = np.arange(0.0, 360.0, 15.0)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import raschii
 
-from riser_soil.assembly.sea import components_of, water_of
+from riser_soil.assembly.sea import sea_of
 from riser_soil.checks.wave_plausibility import reported_regular, wave_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
@@ -31,6 +31,7 @@ from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.said import telling
 from tests.support.sample_line import sample
 from tests.support.scenes import in_water
+from tests.support.seas import components_of, water_of
 
 G, T, LEVEL, DIRECTION = 9.81, 10.0, 7.0, 0.6
 CASES = [
@@ -245,7 +246,10 @@ REGULAR = {"regular": {"height": 8.0, "period": 10.0, "direction_deg": 180.0}}
 
 def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> None:
     scene = in_water({"surface_level": 100.0, "waves": REGULAR})
-    (reported,) = reported_regular(scene)
+    sea = sea_of(scene)
+    assert sea is not None
+    assert sea.waves is not None
+    (reported,) = reported_regular(sea.waves)
     assert "fifth order: 160" in reported
     assert list(wave_warnings(scene)) == []
     assert resolved_dimension(scene) == 2
