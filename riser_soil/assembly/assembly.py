@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -100,6 +101,17 @@ class Assembly:
         parts = [part for own in self.lines.values() for part in own.parts]
         hung = [] if self.hung is None else self.hung.lasting
         return [*parts, *self.contacts, *self.frictions, *([] if self.soil is None else self.soil.parts), *hung]
+
+    @cached_property
+    def part_names(self) -> frozenset[str]:
+        """Names of all parts that stages of the scene are solved with."""
+        parts = [*self.lasting_parts, *(part for own in self.lines.values() for part in own.parts_of_stages)]
+        if self.hung is not None:
+            parts += [part for stage in self.scene.stages for part in self.hung.parts_of(self.scene, self.sea, stage)]
+        if self.soil is not None:
+            parts += [*self.soil.renewal, *(self.soil.in_motion if self.scene.has_dynamic_stage else [])]
+            parts += [] if self.soil.cushion is None else [self.soil.cushion]
+        return frozenset(part.name for part in parts)
 
     @property
     def size(self) -> int:

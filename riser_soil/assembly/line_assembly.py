@@ -201,6 +201,11 @@ class LineAssembly:
         self.line.prescribe_spin(self.spins and not isinstance(stage, DynamicStage))
         return [*self.parts, *self.parts_of(stage)]
 
+    @property
+    def parts_of_stages(self) -> list[Part]:
+        """The parts that any of the line's stages has beside the lasting ones."""
+        return [part for stage in self.scene.stages for part in self.parts_of(stage)]
+
     def parts_of(self, stage: Stage) -> list[Part]:
         """The line's parts that a stage, as it sees it, has beside the lasting ones."""
         scene, line, elements, parts = self.scene, self.line, self.elements, list[Part]()

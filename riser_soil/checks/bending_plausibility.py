@@ -113,8 +113,7 @@ def _stiffness(riser: LineAssembly) -> Array:
 def _uneven_neighbours(riser: LineAssembly) -> Iterator[str]:
     length, arc = riser.line.length, riser.line.arc
     ratio = np.maximum(length[1:] / length[:-1], length[:-1] / length[1:])
-    moves = any(stage.kind == "dynamic" for stage in riser.scene.stages)
-    if moves and ratio.size and ratio.max() > UNEVEN * (1.0 + 1e-9):
+    if riser.scene.has_dynamic_stage and ratio.size and ratio.max() > UNEVEN * (1.0 + 1e-9):
         e = int(ratio.argmax())
         shortest = WAVE_IN_ELEMENTS * max(length[e : e + 2])
         yield (

@@ -14,7 +14,7 @@ from riser_soil.assembly.soil_block import why_all
 from riser_soil.checks.bending_plausibility import proposal
 from riser_soil.checks.by_hand import by_hand
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory, worth
-from riser_soil.checks.inventory import built, left_out, no_new_mesh, unknowns
+from riser_soil.checks.inventory import Inventory, inventory, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
 from riser_soil.core.communicator import Communicator
@@ -64,7 +64,7 @@ def describe(scene: Scene, place: Callable[[str], str] = str) -> str:
     lines += [*reported_waves(assembly), *(f"warning: {warning}" for warning in warnings), _verdict(warnings)]
     for name, line in assembly.lines.items():
         lines += [*_unknowns(line, name, comm)]
-    lines += [*_hung(assembly), _memory_line(assembly), *_results(size), *_model(assembly.scene)]
+    lines += [*_hung(assembly), _memory_line(assembly), *_results(size), *_model(inventory(assembly))]
     return "\n".join(lines)
 
 
@@ -91,10 +91,10 @@ def _title(assembly: Assembly) -> str:
     return f"{assembly.scene.title}: {_counted(steps, 'load step')}, {what} in {dimension} dimensions"
 
 
-def _model(scene: Scene) -> Iterator[str]:
+def _model(known: Inventory) -> Iterator[str]:
     """What the model has, and in short what it hasn't; why, where the scene doesn't say so."""
-    yield "model: " + ", ".join(WORDS.get(name, name) for name in built(scene))
-    absent = left_out(scene)
+    yield "model: " + ", ".join(WORDS.get(name, name) for name in known.built)
+    absent = known.left_out
     without = [WORDS.get(name, name) for name in absent if name not in (*WITH_REASON, *WITHIN_SOIL)]
     without += [f"{WORDS.get(name, name)} ({absent[name]})" for name in WITH_REASON if name in absent]
     if without:
@@ -160,7 +160,7 @@ def _computed(scene: Scene) -> Iterator[str]:
     """At large strain or small, and why; and why all of the soil is computed, where it is."""
     assert scene.soil is not None
     asked = "as soil.strain asks" if scene.soil.strain == "large" else "as it yields under contact with its surface"
-    yield f"soil: at large strain, {asked}" if scene.soil_moves else f"soil: at small strain: {no_new_mesh(scene)}"
+    yield f"soil: at large strain, {asked}" if scene.soil_moves else f"soil: at small strain: {scene.why_small_strain}"
     if why := why_all(scene, scene.soil):
         yield f"soil: all of it is computed, not half: {why}"
 

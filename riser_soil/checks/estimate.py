@@ -16,7 +16,6 @@ from riser_soil.assembly import sized
 from riser_soil.assembly.assembly import LAID_IN
 from riser_soil.assembly.motions import corner_count
 from riser_soil.checks.factor_fill import factor_memory, nodes_of, operations
-from riser_soil.checks.inventory import built
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
 from riser_soil.scene.lines import by_line, on_soil
 from riser_soil.scene.plane import initial_ends, resolved_dimension
@@ -37,12 +36,6 @@ PER_UNKNOWN = 1.5e3  # bytes of multigrid and of GMRES' vectors
 PLANE = 3  # times as much has a cell in plane strain for an entry, as its law knows all components
 PER_LAYER = 60.0  # bytes of the factors of an unknown in a section, whose band is as wide as two nodes of each layer
 WITHIN = 1.3  # memory is at most this many times the forecast, or the forecast over this
-# Parts whose tangents are not symmetric, so that the soil's factor is twice as large.
-UNSYMMETRIC = {
-    *("inertia", "rotary inertia", "structural damping", "contents", "morison"),
-    *("vortices", "vortices in line"),
-    *("friction", "soil friction"),
-}
 # Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes,
 # somewhat more than one.
 PER_NODE = PER_PICTURE = sum(output.numbers for output in ALONG_RISER)
@@ -148,10 +141,15 @@ def _condensed(scene: Scene, soil: SoilScene) -> bool:
 
 
 def _symmetric(scene: Scene, soil: SoilScene) -> bool:
-    """Whether all tangents are symmetric."""
+    """Whether all tangents are symmetric, so that one triangle of the soil's factor is enough: inertia, damping,
+    friction, drag and flowing contents have others.
+    """
     middle = np.array([0.5 * soil.given_block.depth if soil.given_block else 1.0])
     lawful = all(law.at_points(middle, initial_stress(soil, middle)).symmetric for law in soil.laws)
-    return lawful and not UNSYMMETRIC & {*built(scene)}
+    rubs = scene.contact is not None and scene.contact.friction is not None
+    flows = any(view.line.inner_flow is not None for view in by_line(scene).values())
+    dragged = scene.water is not None and scene.water.current is not None
+    return lawful and not (scene.has_dynamic_stage or rubs or flows or dragged)
 
 
 def _sides(scene: Scene, soil: SoilScene) -> tuple[float, float, float]:

@@ -1,104 +1,18 @@
-"""Inventory of a scene: which parts it is built of, and which are left out and why."""
+"""Inventory of an assembled scene: which parts its stages solve with, and which are left out and why."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.assembly import Assembly
 from riser_soil.assembly.riser import no_wall_tension
 from riser_soil.assembly.seabed_reach import why_apart
-from riser_soil.assembly.soil_block import why_all
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
-from riser_soil.scene.lines import by_line, on_soil
-from riser_soil.scene.plane import resolved_dimension
-from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import varying_in
-
-
-def built(scene: Scene) -> tuple[str, ...]:
-    """Names of the parts that the scene's stages solve with."""
-    return tuple(name for name, reason in _reasons(scene).items() if not reason)
-
-
-def left_out(scene: Scene) -> dict[str, str]:
-    """Parts and results that the scene leaves out, each with its reason."""
-    reasons = [no_wall_tension(view) for view in by_line(scene).values()]
-    reasons_by_check = {**_reasons(scene), "half of the soil": _no_half(scene), "wall tension": _why_all(reasons)}
-    reasons_by_check["code check"] = "" if scene.code_check else "the scene has no code_check"
-    return {name: reason for name, reason in reasons_by_check.items() if reason}
-
-
-def _reasons(scene: Scene) -> dict[str, str]:
-    """Part -> why it is left out, empty where it is built: of several lines where one has it."""
-    each = [_reasons_of_line(view) for view in by_line(scene).values()]
-    found = {name: _why_all([reasons[name] for reasons in each]) for name in each[0]}
-    if not scene.lines:
-        return found
-    drag = "" if scene.bodies and scene.water is not None else "no body is in water"
-    bodies = "" if scene.bodies else "the scene has no bodies"
-    joints = "" if scene.joints else "the scene has no joints"
-    contact, friction = _on_seabed(scene)
-    return found | {
-        "bodies": bodies,
-        "body drag": drag,
-        "body contact": contact,
-        "body friction": friction,
-        "joints": joints,
-    }
-
-
-def _on_seabed(scene: Scene) -> tuple[str, str]:
-    """Why bodies have no contact with the seabed, and no friction on it; empty where they have."""
-    if not scene.bodies:
-        return ("the scene has no bodies",) * 2
-    if scene.seabed is None:
-        return ("the scene has no seabed",) * 2
-    apart = {name: why_apart(scene, name) for name in scene.bodies}
-    if all(apart.values()):
-        return ("; ".join(f"{name}: {reason}" for name, reason in apart.items()),) * 2
-    asked = scene.contact is not None and scene.contact.friction is not None
-    rubs = [body.contact.friction if body.contact is not None else None for body in scene.bodies.values()]
-    return "", "" if any(asked if own is None else own > 0.0 for own in rubs) else "no friction is asked for"
-
-
-def _why_all(reasons: Sequence[str]) -> str:
-    """The first of the reasons why each lacks something; empty where one has it."""
-    return reasons[0] if all(reasons) else ""
-
-
-def _reasons_of_line(scene: Scene) -> dict[str, str]:
-    ends = (scene.line.start, scene.line.end)
-    sprung = any(isinstance(e, Support) and isinstance(e.rotation, RotationSpring) for e in ends)
-    tensioned = any(isinstance(e, Support) and e.tensioner is not None for e in ends)
-    ground = scene.seabed is not None or scene.soil is not None
-    return {
-        "riser": "",
-        "springs": "" if sprung else "no end has a rotational spring",
-        "attachments": "" if scene.line.attachments else "nothing is attached to the riser",
-        "contents": _no_contents(scene),
-        "loads": "" if any(map(varying_in, scene.stages)) or tensioned else "no stage has loads",
-        "inertia": "" if has_dynamics(scene) else "no stage is dynamic",
-        "rotary inertia": _no_rotary_inertia(scene),
-        "structural damping": _no_structural_damping(scene),
-        "morison": _no_morison(scene),
-        "vortices": _no_vortices(scene),
-        "vortices in line": _no_vortices_in_line(scene),
-        "buoyancy": _no_buoyancy(scene),
-        "seabed": "" if scene.seabed is not None else "the scene has no seabed",
-        "friction": _no_friction(scene, "seabed"),
-        "soil friction": _no_friction(scene, "soil"),
-        "soil": "" if scene.soil is not None else "the scene has no soil",
-        "soil forms": "" if scene.soil is not None and scene.soil.forms is not None else "soil.forms is not asked for",
-        "soil inertia": _no_soil_inertia(scene),
-        "soil boundary": _no_soil_inertia(scene) or _no_soil_boundary(scene),
-        "new mesh": no_new_mesh(scene),
-        "cushion": _no_cushion(scene),
-        "contact": "" if ground else "the scene has neither seabed nor soil",
-    }
-
 
 DISSIPATING = (
     *("morison", "structural damping", "contact", "seabed", "friction"),
@@ -112,127 +26,172 @@ SPLIT = {
     "body_contact": ("body_contact", "body_contact_time_scheme"),
 }
 WORKING = ("soil forms", "loads", "contents", "morison", "vortices", "vortices in line", "buoyancy", "body drag")
+#: Parts that the inventory knows by another name.
+CALLED = {"start spring": "springs", "end spring": "springs", "body weight": "bodies"}
+
+Reason = str | Callable[[Scene], str]
+"""Why a part is left out, of any scene that lacks it or by the scene."""
 
 
-def dissipating(scene: Scene) -> tuple[str, ...]:
-    """Parts of the energy ledger that may dissipate."""
-    return tuple(account for name in _in_ledger(scene, DISSIPATING) for account in SPLIT.get(name, (name,)))
+@dataclass(frozen=True)
+class Inventory:
+    """Parts that the scene's stages solve with, by name; parts and results that are left out, each with its reason.
+
+    dissipating, working: accounts of the energy ledger, of parts that may dissipate and of those that may put energy
+    in, the supports among them.
+    """
+
+    built: tuple[str, ...]
+    left_out: dict[str, str]
+    dissipating: tuple[str, ...]
+    working: tuple[str, ...]
 
 
-def working(scene: Scene) -> tuple[str, ...]:
-    """Parts of the energy ledger that may put energy in, and the supports."""
-    return (*_in_ledger(scene, WORKING), "supports")
+def inventory(assembly: Assembly) -> Inventory:
+    """Inventory of an assembly that is complete."""
+    names, scene = {CALLED.get(name, name) for name in assembly.part_names}, assembly.scene
+    any_line = next(iter(assembly.lines.values())).scene
+    reasons = LINE_REASONS if not scene.lines else LINE_REASONS | BODY_REASONS
+    built = tuple(name for name in reasons if name in names or (name == "contact" and assembly.contacts))
+    left_out = {
+        name: _in_words(reason, scene if name in BODY_REASONS else any_line)
+        for name, reason in reasons.items()
+        if name not in built
+    }
+    dissipating = (account for name in _accounts(DISSIPATING, names) for account in SPLIT.get(name, (name,)))
+    return Inventory(
+        built,
+        left_out | _results_left_out(assembly),
+        tuple(dissipating),
+        (*_accounts(WORKING, names), "supports"),
+    )
 
 
-def _in_ledger(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
-    parts = {*built(scene)} - (set() if scene.soil is not None else {"contact"})
-    return tuple(name.replace(" ", "_") for name in names if name in parts)
+def _in_words(reason: Reason, scene: Scene) -> str:
+    return reason if isinstance(reason, str) else reason(scene)
 
 
-def has_dynamics(scene: Scene) -> bool:
-    return any(s.kind == "dynamic" for s in scene.stages)
+def _accounts(given: tuple[str, ...], names: set[str]) -> list[str]:
+    return [name.replace(" ", "_") for name in given if name in names]
+
+
+def _results_left_out(assembly: Assembly) -> dict[str, str]:
+    """What is no part, and why it is not computed."""
+    found = {} if assembly.scene.code_check else {"code check": "the scene has no code_check"}
+    if assembly.soil is not None and assembly.soil.whole.grid.mirror is not None:
+        found["half of the soil"] = "by symmetry"
+    if all(own.pressures is None for own in assembly.lines.values()):
+        found["wall tension"] = no_wall_tension(next(iter(assembly.lines.values())).scene)
+    return found
+
+
+def _static_or(reason: str) -> Callable[[Scene], str]:
+    """The reason for a part that is absent of a scene whose stages are dynamic."""
+    return lambda scene: reason if scene.has_dynamic_stage else "no stage is dynamic"
 
 
 def _no_contents(scene: Scene) -> str:
-    given = scene.line.contents
-    if given is None:
+    if scene.line.contents is None:
         return "the riser is empty"
-    return "" if given.uneven_or_moving else "even contents at rest count in the riser's mass and weight"
-
-
-def _no_cushion(scene: Scene) -> str:
-    if scene.soil is None:
-        return "the scene has no soil"
-    if scene.soil.given_block is not None and scene.soil.given_block.feature is not None:
-        return "the soil's top is not level"
-    return "" if scene.stages[0].kind == "static" else "the riser is not laid in a static stage"
-
-
-def no_new_mesh(scene: Scene) -> str:
-    if scene.soil is None:
-        return "the scene has no soil"
-    if scene.soil.is_linear:
-        return "the soil is elastic"
-    if scene.soil.inertia:
-        return "soil with inertia is computed at small strain"
-    if scene.soil.forms is not None:
-        return "terms of soil.forms are added at small strain"
-    if scene.soil.strain == "small":
-        return "soil.strain: small keeps the cells where they are"
-    return "" if scene.soil_moves else "at contact.method: node cells stay where they are"
-
-
-def _no_soil_inertia(scene: Scene) -> str:
-    if scene.soil is None:
-        return "the scene has no soil"
-    if not scene.soil.inertia:
-        return "soil.inertia is not asked for"
-    return "" if has_dynamics(scene) else "no stage is dynamic"
-
-
-def _no_soil_boundary(scene: Scene) -> str:
-    return "" if scene.soil is not None and scene.soil.absorbing else "soil.absorbing is not asked for"
-
-
-def _no_half(scene: Scene) -> str:
-    """The scene's sizes are chosen."""
-    own = on_soil(scene)
-    return "by symmetry" if own is not None and own.soil is not None and not why_all(own, own.soil) else ""
-
-
-def _no_friction(scene: Scene, ground: str) -> str:
-    if scene.contact is None or scene.contact.friction is None:
-        return "no friction is asked for"
-    if getattr(scene, ground) is None:
-        return f"the scene has no {ground}"
-    return "contact at nodes has none on soil" if ground == "soil" and scene.contact.at_nodes else ""
-
-
-def _no_rotary_inertia(scene: Scene) -> str:
-    if not has_dynamics(scene):
-        return "no stage is dynamic"
-    given = any(t.rotary_inertia for t in scene.used_line_types.values())
-    return "" if given or resolved_dimension(scene) == 3 else "no line type has rotary inertia"
-
-
-def _no_structural_damping(scene: Scene) -> str:
-    if not has_dynamics(scene):
-        return "no stage is dynamic"
-    damped = any(t.damping and t.damping.ratio for t in scene.used_line_types.values())
-    return "" if damped else "no line type has damping"
+    return "even contents at rest count in the riser's mass and weight"
 
 
 def _no_morison(scene: Scene) -> str:
     if scene.water is None:
         return "the scene has no water"
-    if not has_dynamics(scene) and scene.water.current is None:
+    if not scene.has_dynamic_stage and scene.water.current is None:
         return "no stage is dynamic, and still water does not load a riser at rest"
-    types, attachments = scene.used_line_types.values(), scene.line.attachments
-    resist = any(t.drag or t.added_mass or t.strakes for t in types)
-    resist = resist or any(a.drag_area or a.added_mass for a in attachments)
-    changes = scene.water.current is not None and scene.water.current.history is not None
-    if resist or ((scene.water.waves or changes) and has_dynamics(scene)):
-        return ""
     return "no line type has drag or added mass, nor any attachment"
 
 
-def _no_vortices(scene: Scene) -> str:
-    if not has_dynamics(scene):
-        return "no stage is dynamic"
-    return "" if any(t.vortices[0] for t in scene.used_line_types.values()) else "no line type has a vortex_force"
-
-
-def _no_vortices_in_line(scene: Scene) -> str:
-    if not has_dynamics(scene):
-        return "no stage is dynamic"
-    acts = any(t.in_line_vortices[0] for t in scene.used_line_types.values())
-    return "" if acts else "no line type has a vortex_force.in_line"
-
-
 def _no_buoyancy(scene: Scene) -> str:
-    if scene.water is None:
-        return "the scene has no water"
-    return "the water has no surface: all is submerged" if scene.water.surface_level is None else ""
+    return "the scene has no water" if scene.water is None else "the water has no surface: all is submerged"
+
+
+def _no_friction(ground: str) -> Callable[[Scene], str]:
+    def reason(scene: Scene) -> str:
+        if scene.contact is None or scene.contact.friction is None:
+            return "no friction is asked for"
+        return f"the scene has no {ground}" if getattr(scene, ground) is None else "contact at nodes has none on soil"
+
+    return reason
+
+
+def _no_soil_inertia(scene: Scene) -> str:
+    if scene.soil is None:
+        return "the scene has no soil"
+    return "no stage is dynamic" if scene.soil.inertia else "soil.inertia is not asked for"
+
+
+def _no_soil_boundary(scene: Scene) -> str:
+    if scene.soil is None or not scene.soil.inertia or not scene.has_dynamic_stage:
+        return _no_soil_inertia(scene)
+    return "soil.absorbing is not asked for"
+
+
+def _no_new_mesh(scene: Scene) -> str:
+    if scene.soil is None:
+        return "the scene has no soil"
+    return scene.why_small_strain or "contact at nodes makes none anew"
+
+
+def _no_cushion(scene: Scene) -> str:
+    if scene.soil is None:
+        return "the scene has no soil"
+    laid = scene.stages[0].kind == "static"
+    return "the soil's top is not level" if laid else "the riser is not laid in a static stage"
+
+
+def _no_body_contact(scene: Scene) -> str:
+    if not scene.bodies:
+        return "the scene has no bodies"
+    if scene.seabed is None:
+        return "the scene has no seabed"
+    return "; ".join(f"{name}: {why_apart(scene, name)}" for name in scene.bodies)
+
+
+def _no_body_friction(scene: Scene) -> str:
+    apart = not scene.bodies or scene.seabed is None or all(why_apart(scene, name) for name in scene.bodies)
+    return _no_body_contact(scene) if apart else "no friction is asked for"
+
+
+def _no_body_drag(scene: Scene) -> str:
+    return "no body has drag" if scene.bodies and scene.water is not None else "no body is in water"
+
+
+#: Why parts of a line are left out, where they are: of the scene as the line sees it.
+LINE_REASONS: dict[str, Reason] = {
+    "riser": "",
+    "springs": "no end has a rotational spring",
+    "attachments": "nothing is attached to the riser",
+    "contents": _no_contents,
+    "loads": "no stage has loads",
+    "inertia": "no stage is dynamic",
+    "rotary inertia": _static_or("no line type has rotary inertia"),
+    "structural damping": _static_or("no line type has damping"),
+    "morison": _no_morison,
+    "vortices": _static_or("no line type has a vortex_force"),
+    "vortices in line": _static_or("no line type has a vortex_force.in_line"),
+    "buoyancy": _no_buoyancy,
+    "seabed": "the scene has no seabed",
+    "friction": _no_friction("seabed"),
+    "soil friction": _no_friction("soil"),
+    "soil": "the scene has no soil",
+    "soil forms": "soil.forms is not asked for",
+    "soil inertia": _no_soil_inertia,
+    "soil boundary": _no_soil_boundary,
+    "new mesh": _no_new_mesh,
+    "cushion": _no_cushion,
+    "contact": "the scene has neither seabed nor soil",
+}
+#: The same of bodies and joints: of the whole scene.
+BODY_REASONS: dict[str, Reason] = {
+    "bodies": "the scene has no bodies",
+    "body drag": _no_body_drag,
+    "body contact": _no_body_contact,
+    "body friction": _no_body_friction,
+    "joints": "the scene has no joints",
+}
 
 
 def unknowns(comm: Communicator, field: Field) -> int:

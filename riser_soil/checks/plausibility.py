@@ -10,7 +10,6 @@ import numpy as np
 
 from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.checks.bending_plausibility import bending_warnings
-from riser_soil.checks.inventory import has_dynamics
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.line_checks import path_of_line
 from riser_soil.scene.problem import dotted
@@ -93,7 +92,7 @@ def _moves(scene: Scene) -> bool:
     """Whether ends move in any stage, or waves come in a dynamic one."""
     waves = scene.water is not None and scene.water.waves is not None
     moved = (stage.move if isinstance(stage, StaticStage) else stage.motion for stage in scene.stages)
-    return any(each is not None for each in moved) or (waves and has_dynamics(scene))
+    return any(each is not None for each in moved) or (waves and scene.has_dynamic_stage)
 
 
 def _light_pipes(riser: LineAssembly) -> Iterator[str]:

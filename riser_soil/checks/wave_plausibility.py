@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.checks.inventory import has_dynamics
 from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.wave_kinds import Airy, Regular, WaveKind
@@ -42,7 +41,7 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
             yield from _steep_sea(place, scene.gravity, train)
         yield from _shallow(train, k, h)
     yield from _other_depth(scene)
-    if not has_dynamics(scene):
+    if not scene.has_dynamic_stage:
         yield "water.waves: waves act in dynamic stages, and no stage is dynamic: nothing will come of them"
 
 

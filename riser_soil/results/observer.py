@@ -16,7 +16,7 @@ import numpy as np
 
 from riser_soil import __version__
 from riser_soil.assembly import Assembly, LineAssembly
-from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
+from riser_soil.checks.inventory import inventory, unknowns
 from riser_soil.core import outputs
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.environment import versions
@@ -98,6 +98,7 @@ class Observer:
         self._hung = hung_reader(assembly)
         self._buffer: list[BufferedStep] = []  # steps not yet written
         self._plausibility = {name: Plausibility(line) for name, line in lines.items()}
+        self._inventory = inventory(assembly)
         self._checkpoints = CheckpointSchedule(_checkpoint_settings(assembly), assembly.comm)
         self._about = about(assembly) if recorder is not None and _checkpoint_settings(assembly) is not None else None
 
@@ -153,10 +154,10 @@ class Observer:
 
     def _enter(self, stage: Stage, start: Energy) -> None:
         """Prepare ledger, readers and checks for a stage. start: energy stored at its beginning."""
-        scene, static = self._assembly.scene, not isinstance(stage, DynamicStage)
+        static = not isinstance(stage, DynamicStage)
         self._stage = stage
         self._schedule.begin_stage(stage.kind)
-        self._balance = EnergyLedger(start, static, dissipating(scene), working(scene))
+        self._balance = EnergyLedger(start, static, self._inventory.dissipating, self._inventory.working)
         self._relaxed = 0
         for reader in self._instants.values():
             reader.begin_stage(stage.name)
@@ -390,16 +391,17 @@ def _code_checks(assembly: Assembly) -> dict[str, tuple[CodeCheckFacts, ...]]:
 def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
     """Facts about a run before its first step; collective."""
     lying = assembly.line_on_soil if "settlement_across" in assembly.scene.output.fields else None
+    known = inventory(assembly)
     return RunFacts(
         title=assembly.scene.title,
         version=__version__,
         ranks=assembly.comm.size,
-        built=built(assembly.scene),
-        left_out=left_out(assembly.scene),
+        built=known.built,
+        left_out=known.left_out,
         warnings=tuple(warnings),
         versions=versions(),
-        dissipating=dissipating(assembly.scene),
-        working=working(assembly.scene),
+        dissipating=known.dissipating,
+        working=known.working,
         riser_dofs=sum(unknowns(assembly.comm, field) for field in assembly.moving),
         soil_dofs=unknowns(assembly.comm, assembly.soil.whole.field) if assembly.soil is not None else 0,
         diameter=assembly.scales.diameter,

@@ -78,7 +78,7 @@ def _wanting(scene: Scene, line: LineType) -> Iterator[tuple[str, str]]:
 
 
 def _mass_needed(scene: Scene, line: LineType) -> str | None:
-    if any(stage.kind == "dynamic" for stage in scene.stages):
+    if scene.has_dynamic_stage:
         return "a dynamic stage needs the mass"
     if scene.gravity > 0.0 and line.submerged_weight is None:
         return "the weight follows from the mass, unless submerged_weight is given"
@@ -94,7 +94,7 @@ def _diameter_needed(scene: Scene, line: LineType) -> str | None:
         return "the pressure outside acts on it, and the code check of a steel pipe asks for that"
     if scene.water and scene.gravity > 0.0 and line.submerged_weight is None:
         return "buoyancy follows from the outer diameter, unless submerged_weight is given"
-    if line.rotary_inertia is True and any(stage.kind == "dynamic" for stage in scene.stages):
+    if line.rotary_inertia is True and scene.has_dynamic_stage:
         return "rotary inertia follows from the diameters, unless it is given in kg.m"
     if scene.water and scene.water.marine_growth:
         return "marine growth lies around the outer diameter"

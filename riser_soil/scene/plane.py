@@ -79,7 +79,7 @@ def leaving_the_plane(scene: Scene, plane: VerticalPlane | None = None) -> Itera
     yield from (path for path, point in positions(scene) if not plane.holds_point(point))
     yield from (path for path, vector in _vectors(scene) if not plane.holds_vector(vector))
     yield from (path for path, axis in _axes(scene) if not plane.holds_axis(axis))
-    if any(stage.kind == "dynamic" for stage in scene.stages):
+    if scene.has_dynamic_stage:
         yield from (("line_types", name, "vortex_force") for name, t in scene.used_line_types.items() if t.sheds)
 
 

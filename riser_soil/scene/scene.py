@@ -21,7 +21,7 @@ from riser_soil.scene.output import Output
 from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.seabed import ContactAt, Seabed, SpringSeabed, profile_height
 from riser_soil.scene.soil import SoilScene
-from riser_soil.scene.stages import Stage
+from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.scene.vessel_offset import OffsetVessel
 from riser_soil.scene.water import Water
 
@@ -207,12 +207,29 @@ class Scene(BaseModel):
         return self.soil is not None and self.soil.path_dependent
 
     @property
+    def has_dynamic_stage(self) -> bool:
+        return any(isinstance(stage, DynamicStage) for stage in self.stages)
+
+    @property
     def soil_moves(self) -> bool:
         """Whether the scene has soil at large strain, whose cells move with it."""
-        if self.soil is None or self.soil.is_linear or self.soil.inertia or self.soil.forms:
-            return False
-        on_surface = self.contact is not None and not self.contact.at_nodes
-        return self.soil.strain == "large" or (self.soil.strain == "auto" and on_surface)
+        return self.soil is not None and not self.why_small_strain
+
+    @property
+    def why_small_strain(self) -> str:
+        """Why soil is computed at small strain; empty where it is computed at large strain, or there is none."""
+        if self.soil is None:
+            return ""
+        if self.soil.is_linear:
+            return "the soil is elastic"
+        if self.soil.inertia:
+            return "soil with inertia is computed at small strain"
+        if self.soil.forms is not None:
+            return "terms of soil.forms are added at small strain"
+        if self.soil.strain == "small":
+            return "soil.strain: small keeps the cells where they are"
+        at_nodes = self.contact is None or self.contact.at_nodes
+        return "at contact.method: node cells stay where they are" if self.soil.strain == "auto" and at_nodes else ""
 
     @property
     def water_depth(self) -> float:

@@ -15,13 +15,14 @@ from scipy.optimize import brentq
 from riser_soil.assembly import build
 from riser_soil.bodies.seabed_contact import BodyContact
 from riser_soil.checks.check import describe
-from riser_soil.checks.inventory import left_out
+from riser_soil.checks.inventory import inventory
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import SceneError
 from riser_soil.results.read import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.catenaries import pulls
+from tests.support.driven_stage import built_of
 from tests.support.left_run import leave_after
 from tests.support.line_scenes import lines_scene, mooring, pin
 from tests.support.run_on_ranks import ran as ran_on
@@ -233,15 +234,15 @@ def test_nothing_is_built_for_bodies_that_can_not_get_to_the_bed() -> None:
     bed = {"seabed": {"kind": "rigid", "level": -100.5}, "contact": {}}
     assert contacts_of(mooring() | bed) == {}
     floats = scene_from_mapping(mooring() | bed)
-    assert "floats" in left_out(floats)["body contact"]
+    assert "floats" in inventory(built_of(floats)).left_out["body contact"]
     assert "body contact" not in line_with(describe(floats).splitlines(), "model: riser,")
     hangs = between_chains(span=50.0, length=LONG) | {"seabed": {"kind": "rigid", "level": -400.0}}
-    assert "too short" in left_out(scene_from_mapping(hangs))["body contact"]
+    assert "too short" in inventory(built_of(scene_from_mapping(hangs))).left_out["body contact"]
     assert contacts_of(hangs) == {}
     assert [*contacts_of(between_chains(span=50.0, length=LONG))] == ["clump"]
     touches = scene_from_mapping(between_chains(span=50.0, length=LONG))
-    assert "body contact" not in left_out(touches)
-    assert left_out(touches)["body friction"] == "no friction is asked for"
+    assert "body contact" not in inventory(built_of(touches)).left_out
+    assert inventory(built_of(touches)).left_out["body friction"] == "no friction is asked for"
 
 
 def contact_of(scene: dict[str, Any]) -> BodyContact:

@@ -11,8 +11,9 @@ import pytest
 
 from meshes.block import main as mesh
 from riser_soil.checks.check import describe
-from riser_soil.checks.inventory import built, left_out
+from riser_soil.checks.inventory import inventory
 from riser_soil.scene.reader import scene_from_mapping
+from tests.support.driven_stage import built_of
 from tests.support.said import line_with, lines_with
 from tests.support.scenes import LAY, Mapping, heave, prescribed, riser_scene, touchdown
 
@@ -44,16 +45,16 @@ def with_value(mapping: Mapping, *path: str | int, value: Any) -> Mapping:
 
 def test_a_whole_scene() -> None:
     mapping = touchdown(LAY, heave(1.0))
-    lines, scene = report(mapping).splitlines(), scene_from_mapping(mapping)
+    lines, parts = report(mapping).splitlines(), inventory(built_of(scene_from_mapping(mapping)))
     assert line_with(lines, "2 load steps", "riser", "2 dimensions").startswith(mapping["title"])
-    assert built(scene) == ("riser", "inertia", "morison", "seabed", "soil", "new mesh", "cushion", "contact")
+    assert parts.built == ("riser", "inertia", "morison", "seabed", "soil", "new mesh", "cushion", "contact")
     assert lines[1].startswith("by hand, at rest as a cable: H = ")
     assert lines[-2] == "model: riser, inertia, drag and added mass, seabed, soil, large strain of soil, " + (
         "laying on a cushion, contact"
     )
-    assert [*left_out(scene)][:2] == ["springs", "attachments"]
+    assert [*parts.left_out][:2] == ["springs", "attachments"]
     assert lines[-1].startswith("not in the model: rotational springs at the ends, attachments, internal flow, ")
-    assert lines[-1].endswith(f", true wall tension ({left_out(scene)['wall tension']})")
+    assert lines[-1].endswith(f", true wall tension ({parts.left_out['wall tension']})")
     line_with(lines, "riser:", "36 elements", "0.5 to 1.5 m", "107 unknowns")  # 37 nodes of 3, less two positions
     line_with(lines, "contact stiffness", "seabed", "1e+05 N/m2")
     line_with(lines, "warning:", "soil.mesh.size_at_riser 0.5 m", "2.1 times", "0.234 m")
@@ -85,7 +86,7 @@ def test_unknowns_of_the_soil_are_those_that_are_free() -> None:
 
 def reasons(mapping: Mapping) -> Mapping:
     """Why parts are left out."""
-    return left_out(scene_from_mapping(mapping))
+    return inventory(built_of(scene_from_mapping(mapping))).left_out
 
 
 def test_reasons_of_what_is_left_out() -> None:
@@ -111,7 +112,7 @@ def test_vortices_are_shed_in_motion_and_make_the_scene_spatial() -> None:
     shed = with_value(without_soil(heave(1.0)), "line_types", "flexible", "vortex_force", value={})
     line_with([reasons(without_soil(heave(1.0)))["vortices"]], "line type", "vortex_force")
     spatial = with_value(shed, "dimension", value="auto")
-    assert {"morison", "vortices"} <= {*built(scene_from_mapping(spatial))}
+    assert {"morison", "vortices"} <= {*inventory(built_of(scene_from_mapping(spatial))).built}
     assert "riser in 3 dimensions" in report(spatial)
     line_with([reasons(with_value(shed, "stages", value=[LAY]))["vortices"]], "no stage", "dynamic")
 
@@ -126,7 +127,7 @@ def test_vortices_are_shed_in_motion_and_make_the_scene_spatial() -> None:
 )
 def test_statics_have_what_their_water_does(water: Mapping, parts: tuple[str, ...]) -> None:
     scene = with_value(without_soil(), "water", value=water)
-    assert built(scene_from_mapping(scene)) == parts
+    assert inventory(built_of(scene_from_mapping(scene))).built == parts
     if not water:
         line_with([reasons(scene)["buoyancy"]], "no surface", "submerged")
 
@@ -134,7 +135,7 @@ def test_statics_have_what_their_water_does(water: Mapping, parts: tuple[str, ..
 def test_springs_and_loads_are_built_when_asked_for() -> None:
     lift = {"name": "lift", "kind": "static", "loads": [{"at": 10.0, "force": [0.0, 0.0, 1.0e3]}]}
     sprung = with_value(without_soil(lift), "riser", "end", "rotation", value={"stiffness": 1.0e4})
-    assert built(scene_from_mapping(sprung)) == ("riser", "springs", "loads", "seabed", "contact")
+    assert inventory(built_of(scene_from_mapping(sprung))).built == ("riser", "springs", "loads", "seabed", "contact")
 
 
 def test_attachments_are_counted_and_weighed() -> None:

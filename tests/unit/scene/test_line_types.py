@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly.riser import elements_of
-from riser_soil.checks.inventory import built, left_out
+from riser_soil.checks.inventory import inventory
 from riser_soil.riser import sections
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
+from tests.support.driven_stage import built_of
 from tests.support.scenes import dynamic, prescribed, riser_scene, static
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e4, "GJ": 1.0e4, "mass": 50.0, "outer_diameter": 0.4, "inner_diameter": 0.2}
@@ -31,15 +32,15 @@ def scene(**pipe: object) -> Scene:
 def test_rotary_inertia(given: bool | float, expected: float) -> None:
     made = scene(rotary_inertia=given)
     assert elements_of(made).rotary_inertia == pytest.approx(np.full(3, expected))
-    assert ("rotary inertia" in built(made)) == (expected > 0.0)
+    assert ("rotary inertia" in inventory(built_of(made)).built) == (expected > 0.0)
 
 
 def test_damping() -> None:
     """Stiffness-proportional: beta w / 2 is the ratio at w = 2 pi frequency."""
     made = scene(damping={"ratio": 0.02, "frequency": 0.5})
     assert 0.5 * elements_of(made).damping * (2.0 * np.pi * 0.5) == pytest.approx(np.full(3, 0.02))
-    assert "structural damping" in built(made)
-    assert left_out(scene(damping={"ratio": 0.0, "frequency": 0.5}))["structural damping"]
+    assert "structural damping" in inventory(built_of(made)).built
+    assert inventory(built_of(scene(damping={"ratio": 0.0, "frequency": 0.5}))).left_out["structural damping"]
 
 
 IN_WALL = ("wall_outer_diameter", "wall_inner_diameter", "allowable_stress")

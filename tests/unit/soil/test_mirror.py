@@ -12,7 +12,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly import sized
 from riser_soil.assembly.soil_block import why_all
-from riser_soil.checks.inventory import left_out
+from riser_soil.checks.inventory import inventory
 from riser_soil.core.arrays import Array
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import Forces, State
@@ -23,6 +23,7 @@ from riser_soil.soil.law import PLASTIC_STRAIN, STRESS
 from riser_soil.soil.mirror import Mirror
 from riser_soil.soil.slices import slice_grid
 from riser_soil.soil.soil import Soil
+from tests.support.driven_stage import built_of
 from tests.support.said import line_with
 from tests.support.scenes import Mapping, touchdown
 from tests.support.soil_bench import assemble
@@ -152,7 +153,7 @@ def test_a_scene_keeps_the_whole(why: str) -> None:
     scene = scene_from_mapping(KEPT[why])
     assert scene.soil is not None
     assert why_all(scene, scene.soil) == why
-    assert "half of the soil" not in left_out(scene)
+    assert "half of the soil" not in inventory(built_of(scene)).left_out
 
 
 def test_a_riser_askew_keeps_the_whole() -> None:
@@ -165,4 +166,4 @@ def test_a_riser_askew_keeps_the_whole() -> None:
 
 def test_half_is_left_out_where_all_is_symmetric() -> None:
     scene = sized(scene_from_mapping(on_soil(block="auto", mesh="auto")))
-    assert left_out(scene)["half of the soil"] == "by symmetry"
+    assert inventory(built_of(scene)).left_out["half of the soil"] == "by symmetry"
