@@ -19,6 +19,8 @@ from riser_soil.sea import spectra
 from riser_soil.sea.components import Components
 from riser_soil.sea.flows import Sea
 from riser_soil.sea.waves import WaveField
+from tests.support.driven_stage import built
+from tests.support.line_scenes import mooring, shaken
 from tests.support.scenes import ON_SEABED
 from tests.support.seas import components_of
 
@@ -177,3 +179,33 @@ def test_a_record_is_judged_by_the_waves_left_in(tmp_path: Path) -> None:
     ((_, train),) = given.waves.each
     assert train.height == pytest.approx(4.0 / np.sqrt(2.0), rel=1e-5)
     assert given.waves.ramp == pytest.approx(8.0, rel=0.05)
+
+
+def test_bodies_in_waves_over_a_grid_have_the_depth_that_is_given(tmp_path: Path) -> None:
+    """Over a grid of heights each of several lines has a seabed of its own, and the waves have one depth."""
+    rows = [f"{x}, {y}, {-100.0 - 0.01 * x}" for x in (-150, 150) for y in (-150, 150)]
+    (tmp_path / "heights.csv").write_text("\n".join(["x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")
+    seabed = {"kind": "spring", "stiffness": 1.0e5, "grid": str(tmp_path / "heights.csv")}
+    water = {"density": 1025.0, "surface_level": 0.0, "depth": 100.0, "waves": {"airy": {"height": 1.0, "period": 6.0}}}
+    assembly = built(mooring(shaken(), seabed=seabed, water=water))
+    assert "body drag" in assembly.part_names
+    assert assembly.sea is not None
+    assert assembly.sea.waves is not None
+    assert assembly.sea.waves.depth == 100.0
+
+
+def test_all_that_floats_has_the_same_waves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are drawn once, and not anew for each stage, line or body."""
+    waves = {"jonswap": {"Hs": 2.0, "Tp": 8.0, "components": 5}}
+    water = {"density": 1025.0, "surface_level": 0.0, "depth": 100.0, "waves": waves}
+    drawn, usual = list[float](), spectra.components
+
+    def draw(Hs: float, *given: Any) -> Components:
+        drawn.append(Hs)
+        return usual(Hs, *given)
+
+    monkeypatch.setattr(spectra, "components", draw)
+    assembly = built(mooring(shaken(), shaken() | {"name": "again"}, water=water))
+    for stage in assembly.scene.stages:
+        assembly.begin(stage)
+    assert drawn == [2.0]
