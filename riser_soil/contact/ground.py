@@ -99,6 +99,11 @@ class DeformedSurface:
         self.corners = self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)  # without those beside strips
 
     @property
+    def moves(self) -> bool:
+        """Whether the geometry follows the soil, as at large strain."""
+        return bool(self._surface.moves)
+
+    @property
     def has_quads(self) -> bool:
         """Whether facets have four nodes."""
         return self.corners.shape[1] == len(QUAD)
@@ -139,7 +144,7 @@ class DeformedSurface:
     @property
     def measured(self) -> Array:
         """Points (np, 3) of the surface where areas are taken [m]."""
-        return self.settled if self._surface.moves else self.at_first
+        return np.asarray(self._surface.points + self._surface.placed)
 
     @property
     def settled(self) -> Array:

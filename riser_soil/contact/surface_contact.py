@@ -66,8 +66,8 @@ class SurfaceState:
 class SurfaceContact(SoilContact):
     """Part "contact": between the pipe's cylinder and the soil's surface, see `SoilContact`.
 
-    A point of the soil's surface bears the pressure p(−gap) times its area where the step starts (before all steps, at
-    small strain), along the normal from the pipe's curved axis, and the element under whose axis it lies bears the
+    A point of the soil's surface bears the pressure p(−gap) times its area where the soil is placed (before all steps,
+    at small strain), along the normal from the pipe's curved axis, and the element under whose axis it lies bears the
     opposite through its shape functions: neither the riser's nodes nor those of the soil are special. All forces derive
     from the potential ∫ ψ(−gap) dA: the tangent is symmetric, and the forces on riser and soil sum to zero in all
     directions. Where the soil moves, the surface across the riser is a smooth curve through the nodes (strip8 of
@@ -102,6 +102,7 @@ class SurfaceContact(SoilContact):
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts[:, :2].prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
+        self._stored: float | None = None  # [J] at the accepted state on soil that moves, once one is known
 
     def evaluate(self, state: State) -> SurfaceState:
         """Riser and soil at a state. What the trial keeps does not hold the trial: Python would find so large a cycle
@@ -227,9 +228,15 @@ class SurfaceContact(SoilContact):
         """What the force at the end of the step took out beyond the change of its potential; by the time scheme what
         it took beyond the work of the law along the step, all of it without suction.
         """
-        first, last = self.evaluate(before).pressed, self.evaluate(after).pressed
+        last = self.evaluate(after).pressed
+        if self._soil.moves:  # by the areas of the step's end; those of its start have stored what was stored
+            first = self._evaluate(self.line.trial(before))
+            stored = first.potential if self._stored is None else self._stored
+        else:
+            first = self.evaluate(before).pressed
+            stored = first.potential
         taken = last.work(last.on_riser, first)
-        lost = taken - last.potential + first.potential
+        lost = taken - last.potential + stored
         by_scheme = taken - self._by_law(first.points, last.points) if self.law.columns else lost
         return Work(dissipated=lost, by_scheme=by_scheme)
 
@@ -245,6 +252,10 @@ class SurfaceContact(SoilContact):
     def commit(self, state: State) -> None:
         """Keep the history of the points."""
         super().commit(state)
+        if not self.active:
+            return
+        if self._soil.moves:
+            self._stored = self.evaluate(state).pressed.potential
         if self.law.columns:
             pressed = self.evaluate(state).pressed
             self._memory.keep(pressed.points.number, pressed.history)
@@ -322,11 +333,13 @@ class SurfaceContact(SoilContact):
         """The soil's surface has other nodes than those (np, 3) before: what is remembered of points, here and by
         others, goes over to those that lie there now.
         """
-        settled, axis = self._soil.settled, self.axis(self.line.trial(State.at_rest(0.0, self._soil.end)))
+        settled, here = self._soil.settled, self.line.trial(State.at_rest(0.0, self._soil.end))
+        axis = self.axis(here)
         near = np.flatnonzero((gaps_of(axis, before)[0][self._soil.facets] < self.radius).any(axis=1))
         numbers, *places = points_of(self.surface(before), self.surface(settled), near)
         for memory in (self._memory, *memories):
             memory.go_over(numbers, *places)
+        self._stored = self._evaluate(here).potential
         self.line.forget()
 
     def clearance(self, state: State) -> Array:
@@ -357,12 +370,16 @@ class SurfaceContact(SoilContact):
 
     def state(self) -> Saved:
         """That of the pattern, and the history of the points."""
-        return super().state() | (gathered({"points": self._memory}) if self.active else {})
+        if not self.active:
+            return super().state()
+        stored = {} if self._stored is None else {"stored": np.array(self._stored)}
+        return super().state() | gathered({"points": self._memory}) | stored
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
         if self.active:
             self._memory.restore(within(saved, "points"))
+            self._stored = float(saved["stored"]) if "stored" in saved else None
 
 
 class SurfaceInLoop(LoopContact):

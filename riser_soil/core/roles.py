@@ -78,6 +78,17 @@ class Limited(Protocol):
 
 
 @runtime_checkable
+class UpdatedLagrangian(Protocol):
+    """A part that is linear about a geometry, which follows the motion from solution to solution where it `moves`."""
+
+    moves: bool
+
+    def place(self, state: State) -> None:
+        """Take the geometry of a state of the step, where it is one that the thing can have; collective."""
+        ...
+
+
+@runtime_checkable
 class Yielding(Protocol):
     """A part whose tangent all but vanishes where it flows."""
 
@@ -86,7 +97,7 @@ class Yielding(Protocol):
         ...
 
 
-ROLES = (Adaptive, Predictor, Stateful, Starting, MomentumCorrecting, Renewing, Limited, Yielding)
+ROLES = (Adaptive, Predictor, Stateful, Starting, MomentumCorrecting, Renewing, Limited, UpdatedLagrangian, Yielding)
 
 
 def with_role(parts: Iterable[Part], role: type) -> list[Any]:

@@ -59,8 +59,8 @@ class SurfaceAnswer(NamedTuple):
 class CondensedTop:
     """Field "surface": the dofs of the soil's top, of which those that are not reached follow the others.
 
-    They are prescribed: their increments are zero, and mean nothing. points, facets, committed: as in `SoilTop`.
-    beside: dofs that are free to move, but are not reached.
+    They are prescribed: their increments are zero, and mean nothing. points, facets, committed, placed: as in
+    `SoilTop`. beside: dofs that are free to move, but are not reached.
     """
 
     name = "surface"
@@ -70,7 +70,7 @@ class CondensedTop:
     def __init__(self, soil: Soil) -> None:
         top = soil.surface
         self.points, self.facets, self.global_index = top.points, top.facets, top.global_index
-        self.committed: Array = np.zeros_like(top.points)
+        self.committed, self.placed = np.zeros_like(top.points), np.zeros_like(top.points)
         self.size, self.offset = top.size, 0
         self.owned: BoolArray = np.ones(top.size, dtype=bool)
         self._held, self._soil = top.prescribed, soil

@@ -1,6 +1,6 @@
 """Large strain: stress and history of cells whose nodes a step has moved, and their transfer to a new mesh.
 
-Within a step strain is linear about the geometry at its start. Once the step is accepted the law is asked again, with
+Within a step strain is linear about a geometry, see `Soil.place`. Once it is accepted the law is asked again, with
 its history turned along by the step's spin, for strain by gradients of the geometry half way: these vanish where cells
 move as rigid bodies, by angles of any size, and follow volumes to third order. T. J. R. Hughes & J. Winget, Finite
 rotation effects in numerical integration of rate constitutive equations arising in large-deformation analysis,

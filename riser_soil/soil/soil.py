@@ -11,7 +11,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
-from riser_soil.core.roles import Limited, Yielding
+from riser_soil.core.roles import Limited, UpdatedLagrangian, Yielding
 from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
@@ -33,8 +33,8 @@ class Soil:
     """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step); in group F
     for soil with inertia, see `inertia`.
 
-    Each step is linear about the geometry where it starts: that at first, or for soil at large strain (`moves`) the one
-    that the steps before have left, see `large_strain`. Strength belongs to the material and moves along.
+    Each step is linear about a geometry: that at first, or for soil at large strain (`moves`) the one on which it is
+    placed last, see `place` and `large_strain`. Strength belongs to the material and moves along.
 
     law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3],
     or by layers. start: "geostatic": vertical stress the weight above, horizontal K0 times that, in equilibrium with
@@ -70,7 +70,8 @@ class Soil:
         depth, self._zero_depth = level - grid.nodes.points[:, 2], ZERO_DEPTH * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._zero_depth, depth, 0.0)  # of the nodes, before anything moved
         self._initial, self._unit_weight, self.law = on_all_ranks(grid.nodes.comm, self._material)
-        self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=(Limited, Stateful, Yielding))
+        roles = Limited, Stateful, UpdatedLagrangian, Yielding
+        self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=roles)
         self._asked = fields.of_law(self.law.columns)
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._found = _at_rest(self.law, self._initial)
@@ -178,6 +179,16 @@ class Soil:
         self._load = self._held + self._weight()
         return found
 
+    def place(self, state: State) -> None:
+        """Take gradients, weight and areas of contact at large strain where a state of the step has the nodes; where
+        they are accepted, if a cell would fold there. Collective.
+        """
+        if self.inadmissible(state):
+            state = State.at_rest(state.t, state.u.size)
+        self.cells.renew(self.points + self.field.own(state.u).reshape(-1, 3))
+        self.surface.placed = self.surface.displacement(state)
+        self._load, self._last = self._held + self._weight(), None
+
     @property
     def points(self) -> Array:
         """Where this rank's nodes are (n, 3) [m]."""
@@ -220,7 +231,7 @@ class Soil:
         self._move_to(before, after, np.ones(len(number), dtype=bool) if made is None else made[number])
         if len(top):
             moved = points[top] - self.mesh.points[top]
-            self.surface.committed = self.surface.sign.reshape(-1, 3) * moved
+            self.surface.committed = self.surface.placed = self.surface.sign.reshape(-1, 3) * moved
         self._stored = self._stores(self._found)
 
     def _move_to(self, before: Array, after: Array, made: BoolArray) -> None:

@@ -1,4 +1,4 @@
-"""A rank's cells of soil as they lie where a step starts: strain, forces, stiffness and means, by kernels of UFL."""
+"""A rank's cells of soil as they were placed last: strain, forces, stiffness and means, by kernels of UFL."""
 
 from __future__ import annotations
 

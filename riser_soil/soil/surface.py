@@ -15,8 +15,8 @@ class SoilTop:
     points (np, 3) [m]: undeformed. facets (nf, nv): indexes into points, counter-clockwise from above, of 4 corners or
     of 3 and then the midpoints of the sides 12, 23, 31. global_index, sign, prescribed (3 np,): of its dofs, x, y, z of
     each point; see `core.part.Field`. volume (nf,): number of the named volume below each facet. committed (np, 3) [m]:
-    displacement since the geostatic start at the last accepted step. moves: whether the geometry follows that, as at
-    large strain.
+    displacement since the geostatic start at the last accepted step; placed (np, 3) [m]: the one where areas are taken,
+    none at small strain, see `Soil.place`. moves: whether the geometry follows that, as at large strain.
     """
 
     name = "surface"
@@ -35,6 +35,7 @@ class SoilTop:
         self.points, self.facets, self.volume, self.moves = points, facets, volume, moves
         self.global_index, self.sign, self.prescribed = global_index, sign, prescribed
         self.committed: Array = np.zeros_like(points)
+        self.placed: Array = np.zeros_like(points)
         self.size = points.size
         self.offset = 0
         self.owned: BoolArray = np.zeros(self.size, dtype=bool)
@@ -51,13 +52,18 @@ class SoilTop:
         return np.abs(self.committed.ravel() + state.u[local(self)])
 
     def commit(self, state: State) -> None:
-        self.committed = self.displacement(state)
+        self._settle(self.displacement(state))
 
     def state(self) -> Saved:
         return {"committed": self.committed}
 
     def restore(self, saved: Saved) -> None:
-        self.committed = saved["committed"].copy()
+        self._settle(saved["committed"].copy())
+
+    def _settle(self, displacement: Array) -> None:
+        self.committed = displacement
+        if self.moves:
+            self.placed = displacement
 
     def describe(self, entry: int) -> str:
         node, direction = divmod(entry, 3)

@@ -6,6 +6,7 @@ The riser's own loop (`chain`) and PETSc's SNES (`snes`) call them.
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import numpy as np
 
@@ -60,10 +61,12 @@ class StepIteration:
         numbering = self.system.numbering
         self._x, self._f, self._norm = numbering.zeros(), numbering.zeros(), ResidualNorm(self.system)
 
-    def solve(self, step: Step, at_equilibrium: bool) -> Solution:
-        """Solve a step or raise NotConvergedError; at_equilibrium: see `Newton`. Collective."""
-        self._begin(step, at_equilibrium)
-        if self.settings.linear_start and (self._moves or not self._continues()):
+    def solve(
+        self, step: Step, at_equilibrium: bool, refined: bool = False, tolerance: float = 0.0
+    ) -> Solution:
+        """Solve a step or raise NotConvergedError; at_equilibrium, refined, tolerance: see `Newton`. Collective."""
+        self._begin(step, at_equilibrium, max(tolerance, self.settings.tolerance))
+        if self.settings.linear_start and not refined and (self._moves or not self._continues()):
             self._start_linearly()
         if failure := self._iterate():
             raise NotConvergedError(failure)
@@ -208,13 +211,14 @@ class StepIteration:
             self._x = x
         self.loop.renew()
 
-    def _begin(self, step: Step, at_equilibrium: bool) -> None:
+    def _begin(self, step: Step, at_equilibrium: bool, tolerance: float) -> None:
         self._trials = StepTrials(self.system, step)
         self._x = self.system.numbering.to_global(step.guess)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._moves
         answers = at_equilibrium or guessed  # one like round-off has an answer, too
-        self._convergence = Convergence(limits_of(self.settings, near, False, answers))
+        settings = replace(self.settings, tolerance=tolerance)
+        self._convergence = Convergence(limits_of(settings, near, False, answers))
         self._convergence.most = self.loop.max_iterations
 
     def residual(self, x: Array) -> Array:

@@ -24,6 +24,7 @@ from riser_soil.solve.newton import Newton, balance_held
 from riser_soil.solve.step import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import CommittedStep, Scheme
+from riser_soil.solve.updated_geometry import UpdatedGeometry
 
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
@@ -90,6 +91,7 @@ class TimeStepper:
         self._predictors: list[Predictor] = [*system.model.lines, *with_role(parts, Predictor)]
         self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
         self._renewing: list[Renewing] = with_role(parts, Renewing)
+        self._geometry = UpdatedGeometry(system)
         self._patterns_held: Patterns = {}  # of the matrix in which lines are held
         if isinstance(before, State):
             self._begin(before)
@@ -155,6 +157,7 @@ class TimeStepper:
             try:
                 return self._attempt(control, cuts)
             except NotConvergedError as failure:
+                self._geometry.place(self.before, self.before.u)
                 cuts += 1
                 if cuts - 1 == most_cuts or not control.cut():
                     raise SolveError(
@@ -172,6 +175,7 @@ class TimeStepper:
     def next_step(self, control: Control) -> Step:
         """The step to be solved next, its increments predicted."""
         t, dt = control.target, control.dt
+        self._geometry.place(self.before, self._past.increments(dt))
         start = self._start(dt)
         history = self._history if start is self.before else self.system.forces(start)
         return Step(self.scheme, start, t, dt, history, self._predict(t, dt))
@@ -186,7 +190,7 @@ class TimeStepper:
 
     def _solve(self, step: Step) -> Solution:
         """By Newton's method; stable in statics."""
-        solution = self.newton.solve(step)
+        solution = self._geometry.solve(self.newton, step)
         if not self.scheme.dynamic:
             self.newton.require_stable(solution)
         return solution

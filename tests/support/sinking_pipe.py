@@ -50,8 +50,9 @@ def sinking_into_tetrahedra(across: int, depth: float, steps: int, **more: Any) 
 @dataclass(frozen=True, eq=False)
 class Sunk:
     """Step by step: embedment over D, loads down and to the side (+y) per length over su D, Newton iterations, the
-    stage's t, lift: area of the section times the height to which it has risen from level ground, over D³; new meshes
-    that it took; and the area of the slice's section over that at first.
+    stage's t, lift: area of the section times the height to which it has risen from level ground, over D³, and R: load
+    down with which each step was solved, as V; new meshes that it took; and the area of the slice's section over that
+    at first.
     """
 
     w: Array
@@ -60,6 +61,7 @@ class Sunk:
     iterations: Array
     t: Array
     lift: Array
+    R: Array
     renewals: int
     area: float
 
@@ -82,15 +84,17 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
         if friction is not None:
             forces.append(friction.force_on_soil(stepper.before))
         _, side, up = np.sum(forces, axis=0) / bearing
-        rows.append((step.t * deepest, -up, side, step.solution.iterations, step.t, lifted(soil.surface) / D**3))
+        borne = -step.solution.forces.end[contact.line.translation_dofs[:, -1]].sum() / bearing
+        solved = step.solution.iterations, step.t
+        rows.append((step.t * deepest, -up, side, *solved, lifted(soil.surface) / D**3, borne))
 
     state = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages[: followed + 1]:
         rows.clear()
         state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
-    w, V, H, iterations, t, lift = np.array(rows).T
+    w, V, H, iterations, t, lift, borne = np.array(rows).T
     renewals = 0 if ground.mesh_renewal is None else ground.mesh_renewal.count
-    return Sunk(w, V, H, iterations, t, lift, renewals, float(soil.cells.volumes.sum() / first))
+    return Sunk(w, V, H, iterations, t, lift, borne, renewals, float(soil.cells.volumes.sum() / first))
 
 
 def lifted(surface: SoilSurface) -> float:

@@ -15,6 +15,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
+from riser_soil.errors import SolveError
+from riser_soil.solve import updated_geometry
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built, soil_under
 from tests.support.on_ranks import mpirun
@@ -66,6 +68,19 @@ def test_a_pipe_sinks_to_a_fifth_of_its_diameter(scene: Mapping, lost: float) ->
     assert found.renewals > 0
     assert found.iterations.mean() < 5.0
     assert found.area == pytest.approx(1.0, abs=lost)
+
+
+@pytest.mark.parametrize("scene", [sinking(4, 0.1, 8), sinking_into_tetrahedra(4, 0.1, 8)], ids=["hex", "tet"])
+def test_the_line_is_in_balance_with_the_forces_that_are_shown(scene: Mapping) -> None:
+    """At the end of a last step in which the surface under the pipe grows by some per cent."""
+    found = sink(scene)
+    assert found.R[-1] == pytest.approx(found.V[-1], rel=1.5e-3)
+
+
+def test_a_geometry_that_does_not_settle_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(updated_geometry, "LAG", -1.0)
+    with pytest.raises(SolveError, match="geometry changes the forces on it by more than -1 of the largest, 8 times"):
+        sink(sinking(4, 0.1, 2))
 
 
 @pytest.mark.verify

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import State
+from riser_soil.core.part import Forces, State
 from riser_soil.soil.families import point_volumes
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
@@ -111,6 +111,41 @@ def test_pressure_is_that_of_the_volume_that_there_is(kind: str) -> None:
     np.testing.assert_allclose(now.sum(axis=1) / volume.sum(axis=1), 1.0 - 1e-3, rtol=1e-12)
     found = -stress(soil)[:, :3].mean(axis=1)
     np.testing.assert_allclose(found, -soil.law.bulk * np.log(1.0 - 1e-3), rtol=5e-3)
+
+
+def nodal_forces(soil: Soil, u: Array) -> Array:
+    """On all nodes (n, 3) at increments u (n, 3)."""
+    forces = Forces.zeros(u.size)
+    soil.residual(State(1.0, u.ravel(), u.ravel(), u.ravel()), forces)
+    return forces.end.reshape(-1, 3)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_forces_are_those_on_the_geometry_of_the_state_that_it_is_placed_at(kind: str) -> None:
+    """The strain H is by gradients there, and forces f at places x of a volume V do the work f x = sigma V."""
+    soil = moving(kind, LAWS[0].at_points)
+    first, H = soil.points.copy(), 1e-4 * np.random.default_rng(5).normal(size=(3, 3))
+    at = first * [1.1, 0.95, 0.9]
+    u, placed = at @ H.T, (at - first).ravel()
+    there = nodal_forces(soil, u)
+    soil.place(State(1.0, placed, placed, placed))
+    found = nodal_forces(soil, u)
+    strain = 0.5 * (H + H.T)
+    stress = 2.0 * soil.law.shear[0] * strain
+    stress += (soil.law.bulk[0] - 2.0 / 3.0 * soil.law.shear[0]) * np.trace(strain) * np.eye(3)
+    volume = float(point_volumes(soil.grid.family, at, soil.grid.nodes.cells).sum())
+    np.testing.assert_allclose(found.T @ at, stress * volume, rtol=1e-9)
+    soil.place(State.at_rest(1.0, u.size))
+    np.testing.assert_allclose(nodal_forces(soil, u), there, rtol=1e-9, atol=1e-9 * np.abs(there).max())
+
+
+def test_it_is_not_placed_where_a_cell_would_fold() -> None:
+    soil, rng = moving("hex", LAWS[0].at_points), np.random.default_rng(5)
+    u = 1e-4 * rng.normal(size=soil.points.shape)
+    before, folds = nodal_forces(soil, u), 3.0 * rng.normal(size=u.size)
+    assert "would fold" in soil.inadmissible(State(1.0, folds, folds, folds))
+    soil.place(State(1.0, folds, folds, folds))
+    np.testing.assert_array_equal(nodal_forces(soil, u), before)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -107,10 +107,12 @@ def test_a_riser_askew_has_no_sections() -> None:
     ],
 )
 def test_one_section_is_a_slice_of_one_cell(kind: str, strain: str) -> None:
-    """Pressed in by D/12, on new meshes at large strain; where cells come to touch round-off is magnified."""
+    """Pressed in by D/12, on new meshes at large strain; where cells come to touch round-off is magnified, and their
+    gradients are made anew from a strain of 1e-4 on.
+    """
     law = CLAY | {"kind": kind}
     scenes = [sinking(6, 1.0 / 12.0, 10, law, strain=strain, model=model) for model in ("block", "sections")]
     found = [sink(scene | {"solver": {"load_steps": 10, "tolerance": 1e-11}}) for scene in scenes]
-    np.testing.assert_allclose(found[1].V, found[0].V, rtol=1e-4)
+    np.testing.assert_allclose(found[1].V, found[0].V, rtol=2e-4)
     assert found[0].renewals == found[1].renewals
     assert (found[0].renewals > 0) == (strain == "large")
