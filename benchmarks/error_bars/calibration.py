@@ -10,11 +10,12 @@ from mpi4py import MPI
 
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import Mapping
-from riser_soil.accuracy.chain import bars_of, comparison_runs, peaks_of, run_values
+from riser_soil.accuracy.chain import bars_of, comparison_runs, run_values
 from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar
 from riser_soil.core.compiled import seconds_of_work
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.variants.key_results import key_results
+from riser_soil.variants.peaks import peaks_of
 
 CERTAIN = 0.25  # of the true error: what the reference may be off where a ratio is told
 UNKNOWN = math.nan, math.inf  # reference that could not be computed

@@ -23,7 +23,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from benchmarks.error_bars.scenes import Mapping
-from riser_soil.accuracy.chain import peaks_of, values_of
+from riser_soil.accuracy.chain import values_of
 from riser_soil.accuracy.error_bars import Values
 from riser_soil.accuracy.search import first_statics
 from riser_soil.assembly import build, sized
@@ -33,6 +33,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.stages import LAID_IN
+from riser_soil.variants.peaks import peaks_of
 from riser_soil.variants.settings import refined, settings_of
 
 FILE, ON_SOIL = (Path(__file__).with_name(f"references{more}.json") for more in ("", "_on_soil"))

@@ -13,30 +13,20 @@ as they cost little there, and the penalty is varied with them.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, error_bars
 from riser_soil.accuracy.extreme_differences import extremes_of, without_windows
 from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
-from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.motions import periods_of
-from riser_soil.core.snapshot import Instants, SoilSnapshot, instants_at
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
-from riser_soil.results.hung_figures import hung_reader, looked_at
-from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.results.schedule import Schedule
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RigidSeabed
-from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
-from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from riser_soil.stages import StatelessObserver, solve_stages
+from riser_soil.scene.stages import DynamicStage, StaticStage
 from riser_soil.variants.key_results import SETTLEMENT, KeyResult, key_results
+from riser_soil.variants.peaks import peaks_of
 from riser_soil.variants.settings import is_firm, refined, settings_of
-
-Envelopes = dict[str, CurveEnvelope]  # of moments and tensions, by line
 
 
 class Variation(NamedTuple):
@@ -73,23 +63,16 @@ def comparison_runs(scene: Scene, comm: Any, varying: Sequence[Variation] | None
     known = {setting.name for setting in settings_of(scene)} - ({"penalty"} if is_firm(scene) else set())
     if scene.soil is not None and "soil_mesh" not in known:
         chain.append(ComparisonRun("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
-    now = _recording_all(scene)
+    now = _without_output_times(scene)
     for source, factors in variations(scene) if varying is None else varying:
-        varied_by = {name: factor for name, factor in factors.items() if name in known}
-        step = _step(now, source, varied_by)
-        if step is None:
+        own = {name: factor for name, factor in factors.items() if name in known}
+        if not own:
             continue
         if any(before.extremes is None for before in chain):
-            chain.append(ComparisonRun(source, step.finer, None, "a coarser run before failed"))
+            chain.append(ComparisonRun(source, own[next(iter(own))], None, "a coarser run before failed"))
             continue
-        computed = _run(step, comm)
-        if computed.extremes is None and step.scene is not None and step.finer > 1.0:
-            coarser = _step(now, source, {name: 1.0 / factor for name, factor in varied_by.items()})
-            assert coarser is not None
-            if (other := _run(coarser, comm)).extremes is not None:
-                computed, step = other, coarser
-        chain.append(computed)
-        now = step.scene or now
+        compared, now = _compared(now, source, own, comm)
+        chain.append(compared)
     return chain
 
 
@@ -147,92 +130,31 @@ def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
     return {key: key_result.value for key, key_result in key_results(peaks.as_summary(which)).items()}
 
 
-@dataclass(frozen=True)
-class NextScene:
-    """Next scene of a chain; None where it can't be varied, for the `reason`. finer: its ratio of fineness."""
-
-    source: str
-    finer: float
-    scene: Scene | None
-    reason: str = ""
-
-
-def _step(scene: Scene, source: str, factors: Mapping[str, float]) -> NextScene | None:
-    """The next scene; None where it has none of the settings."""
-    if not factors:
-        return None
+def _compared(scene: Scene, source: str, factors: Mapping[str, float], comm: Any) -> tuple[ComparisonRun, Scene]:
+    """Comparison run of a scene that is finer by factors, and its scene; the scene itself where it can't be varied."""
     first = next(setting for setting in settings_of(scene) if setting.name == next(iter(factors)))
     try:
         other = refined(scene, factors)
     except SceneError as err:
-        return NextScene(source, factors[first.name], None, str(err))
-    reached = first.fineness(other) / first.fineness(scene)
-    if max(reached, 1.0 / reached) < LEAST_RATIO:
-        return NextScene(source, reached, None, f"{first.in_words(scene)} can't be varied")
-    return NextScene(source, reached, other)
-
-
-def _run(step: NextScene, comm: Any) -> ComparisonRun:
-    if step.scene is None:
-        return ComparisonRun(step.source, step.finer, None, step.reason)
+        return ComparisonRun(source, factors[first.name], None, str(err)), scene
+    finer = first.fineness(other) / first.fineness(scene)
+    if max(finer, 1.0 / finer) < LEAST_RATIO:
+        return ComparisonRun(source, finer, None, f"{first.in_words(scene)} can't be varied"), scene
     try:
-        return ComparisonRun(step.source, step.finer, extremes_of(peaks_of(step.scene, comm)))
+        return ComparisonRun(source, finer, extremes_of(peaks_of(other, comm))), other
     except (*OF_ALL, *OF_ONE) as err:
         if isinstance(err, OF_ONE) and comm.size > 1:
-            raise  # the others are within the comparison run still
+            raise  # the other ranks are still within the comparison run
         reason = str(err).partition("\n")[0]
-        return ComparisonRun(step.source, step.finer, None, f"its coarser run failed: {reason}")
+    failed = ComparisonRun(source, finer, None, f"its coarser run failed: {reason}")
+    if finer > 1.0:
+        coarser = _compared(scene, source, {name: 1.0 / factor for name, factor in factors.items()}, comm)
+        if coarser[0].extremes is not None:
+            return coarser
+    return failed, other
 
 
-def _recording_all(scene: Scene) -> Scene:
+def _without_output_times(scene: Scene) -> Scene:
     """The scene without output times, by which automatic steps would be shortened."""
     output = scene.output.model_copy(update={"interval": None, "xdmf_interval": None})
     return scene.model_copy(update={"output": output})
-
-
-def peaks_of(scene: Scene, comm: Any, envelopes: Envelopes | None = None) -> RunPeaks:
-    """Peaks of a scene, computed without a results folder, on rank 0; collective. Raises the errors of a run.
-
-    envelopes: to be filled on rank 0, by lines, where they are wanted.
-    """
-    assembly = build(sized(scene), comm)
-    observer = PeakObserver(assembly, envelopes)
-    solve_stages(assembly, observer)
-    return observer.peaks
-
-
-class PeakObserver(StatelessObserver):
-    """Observer of a comparison run. peaks: those that the summary of a run would have, on rank 0."""
-
-    def __init__(self, assembly: Assembly, envelopes: Envelopes | None = None) -> None:
-        self._assembly = assembly
-        self._instants = {line: InstantReader(own) for line, own in assembly.lines.items()}
-        self._hung = hung_reader(assembly)
-        output, soil = assembly.scene.output, assembly.soil
-        self._schedule = Schedule(output.interval, output.xdmf_interval)
-        self.peaks = RunPeaks(None if soil is None else soil.whole.output_mesh(), assembly.name_on_soil)
-        self._envelopes = envelopes
-        if envelopes is not None:
-            envelopes.update({line: CurveEnvelope() for line in self._instants})
-
-    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        first = not self.peaks.stages
-        self._schedule.begin_stage(stage.kind)
-        self.peaks.begin_stage(stage.name, stage.kind, stage.end, self._instants)
-        if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
-            self._record(0.0, stepper)  # not in envelopes, as it is the result of no step
-
-    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
-        """Record a committed step; collective where there is soil."""
-        known = self._assembly.soil if self._schedule.due(step.t, last).pictures else None
-        soil = None if known is None else known.recovered().output_fields()
-        if self._assembly.comm.rank == 0:
-            instants = self._record(step.t, stepper, soil)
-            if self._envelopes is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
-                for line, instant in instants.items():
-                    self._envelopes[line].add(instants_at(instant, 0))
-
-    def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Instants:
-        instants = {line: reader.instant_of([reader.look(stepper)]) for line, reader in self._instants.items()}
-        self.peaks.record([t], instants, soil, looked_at(self._hung, stepper.now))
-        return instants

@@ -112,77 +112,65 @@ def error_bars(
     run: RunValues, chain: Sequence[ComparisonRun], rigid: bool, soil: SoilOfRun | None = None
 ) -> list[ErrorBar]:
     """Error bars of all key results. rigid: whether the ground is a rigid floor."""
-    return [_bar(each, run, chain, orders(each.name, rigid), soil) for each in run.key_results.values()]
+    comparison = _Comparison(run, chain, rigid, soil)
+    return [comparison.bar(each) for each in run.key_results.values()]
+
+
+@dataclass(frozen=True, eq=False)
+class _Comparison:
+    """A run, its comparison runs and its ground."""
+
+    run: RunValues
+    chain: Sequence[ComparisonRun]
+    rigid: bool
+    soil: SoilOfRun | None
+
+    def bar(self, key_result: KeyResult) -> ErrorBar:
+        order, soil = orders(key_result.name, self.rigid), self.soil
+        errors, unknown = self._errors(key_result)
+        sampling, safety = sampling_errors(key_result, self.run), _safety(soil)
+        shares = {s: safety[s] * (sampling.get(s, 0.0) + errors.get(s, 0.0)) for s in sampling | errors}
+        if soil is not None and soil.fine is not None and "soil" in errors:
+            shares["soil"] = self._by_slice(key_result, errors["soil"], soil, soil.fine)
+        if unknown:
+            return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
+        smallest = SMALLEST if soil is None else SMALLEST_ON_SOIL
+        return ErrorBar(key_result, math.hypot(*shares.values()) + smallest * key_result.scale, shares, "", order)
+
+    def _by_slice(self, key_result: KeyResult, error: float, soil: SoilOfRun, fine: Values) -> float:
+        """The soil's share of a bar, from a slice and the error by a coarser run."""
+        settled = self.run.key_results.get(f"{key_result.stage}: {SETTLEMENT}")
+        if settled is None or settled.key not in fine:
+            return BY_SLICE["soil"] * MOST_ENLARGED * error
+        of_slice = abs(fine[settled.key] - settled.value)
+        if key_result.name == SETTLEMENT:
+            return math.hypot(SLICE * of_slice, (IN_MOTION if key_result.stage in soil.moving else AT_REST) * error)
+        coarser = self._errors(settled)[0].get("soil", 0.0)
+        enlarged = min(max(of_slice / coarser, 1.0), MOST_ENLARGED) if coarser > 0.0 else MOST_ENLARGED
+        return BY_SLICE["soil"] * enlarged * error
+
+    def _errors(self, key_result: KeyResult) -> tuple[dict[str, float], list[str]]:
+        """Errors by source, without safety, in the quantity's unit; and reasons why some are not known."""
+        key, scale, order = key_result.key, key_result.scale, orders(key_result.name, self.rigid)
+        errors, unknown, fineness = dict[str, float](), list[str](), dict[str, float]()
+        before: Extremes | None = self.run.peaks
+        for other in self.chain:
+            source, so_far = other.source, fineness.get(other.source, 1.0)
+            if before is not None and key in before and other.extremes is not None and key in other.extremes:
+                change = difference(before[key], other.extremes[key])
+                error = change / divisor(other, order[source], change / scale if scale > 0.0 else 0.0)
+                errors[source] = max(errors.get(source, 0.0), error * so_far ** order[source])
+            else:
+                unknown.append(f"{source}: {other.reason or 'a coarser run does not have it'}")
+            fineness[source] = so_far * other.finer
+            before = other.extremes
+        return errors, unknown
 
 
 def _safety(soil: SoilOfRun | None) -> Mapping[str, float]:
     if soil is None:
         return SAFETY
     return SAFETY | ON_SOIL | (BY_SLICE if soil.fine is not None else ON_PATH if soil.path_dependent else {})
-
-
-def _bar(
-    key_result: KeyResult,
-    run: RunValues,
-    chain: Sequence[ComparisonRun],
-    order: Mapping[str, float],
-    soil: SoilOfRun | None,
-) -> ErrorBar:
-    errors, unknown = _errors_by_source(key_result, run, chain, order)
-    sampling, safety = sampling_errors(key_result, run), _safety(soil)
-    shares = {s: safety[s] * (sampling.get(s, 0.0) + errors.get(s, 0.0)) for s in sampling | errors}
-    if soil is not None and soil.fine is not None and "soil" in errors:
-        shares["soil"] = _by_slice(key_result, run, chain, order, soil)
-    if unknown:
-        return ErrorBar(key_result, None, shares, "; ".join(unknown), order)
-    smallest = SMALLEST if soil is None else SMALLEST_ON_SOIL
-    return ErrorBar(key_result, math.hypot(*shares.values()) + smallest * key_result.scale, shares, "", order)
-
-
-def _by_slice(
-    key_result: KeyResult,
-    run: RunValues,
-    chain: Sequence[ComparisonRun],
-    order: Mapping[str, float],
-    soil: SoilOfRun,
-) -> float:
-    """The soil's share of a bar, from a slice and a coarser run."""
-    assert soil.fine is not None
-    error = _errors_by_source(key_result, run, chain, order)[0]["soil"]
-    settled = run.key_results.get(f"{key_result.stage}: {SETTLEMENT}")
-    if settled is None or settled.key not in soil.fine:
-        return BY_SLICE["soil"] * MOST_ENLARGED * error
-    finer = abs(soil.fine[settled.key] - settled.value)
-    if key_result.name == SETTLEMENT:
-        return math.hypot(SLICE * finer, (IN_MOTION if key_result.stage in soil.moving else AT_REST) * error)
-    coarser = _errors_by_source(settled, run, chain, order)[0].get("soil", 0.0)
-    enlarged = min(max(finer / coarser, 1.0), MOST_ENLARGED) if coarser > 0.0 else MOST_ENLARGED
-    return BY_SLICE["soil"] * enlarged * error
-
-
-def _errors_by_source(
-    key_result: KeyResult, run: RunValues, chain: Sequence[ComparisonRun], order: Mapping[str, float]
-) -> tuple[dict[str, float], list[str]]:
-    """Errors by source, without safety, in the quantity's unit; and reasons why some are not known."""
-    key, scale = key_result.key, key_result.scale
-    errors, unknown, fineness = dict[str, float](), list[str](), dict[str, float]()
-    before: Extremes | None = run.peaks
-    for comparison_run in chain:
-        source, so_far = comparison_run.source, fineness.get(comparison_run.source, 1.0)
-        if (
-            before is not None
-            and key in before
-            and comparison_run.extremes is not None
-            and key in comparison_run.extremes
-        ):
-            change = difference(before[key], comparison_run.extremes[key])
-            error = change / divisor(comparison_run, order[source], change / scale if scale > 0.0 else 0.0)
-            errors[source] = max(errors.get(source, 0.0), error * so_far ** order[source])
-        else:
-            unknown.append(f"{source}: {comparison_run.reason or 'a coarser run does not have it'}")
-        fineness[source] = so_far * comparison_run.finer
-        before = comparison_run.extremes
-    return errors, unknown
 
 
 def divisor(comparison_run: ComparisonRun, order: float, change: float) -> float:

@@ -10,7 +10,7 @@ from pathlib import Path
 from riser_soil.accuracy.assessment import AssessedQuantity, Outcomes, assess, with_known_reference, worst
 from riser_soil.accuracy.cheapest_setting import CostAndError, Quantities, cheapest
 from riser_soil.accuracy.refinements import Refinements
-from riser_soil.accuracy.study_points import POINTS, Factors, PointOutcome, StudyPoint, compute
+from riser_soil.accuracy.study_points import POINTS, Factors, PointOutcome, compute
 
 TARGETS = (0.01, 0.001)
 
@@ -43,9 +43,8 @@ class Study:
 
     def compute(self, points: Iterable[Factors], jobs: int) -> None:
         """Compute points that have no outcome yet, `jobs` at a time."""
-        wanted = [point for point in points if point not in self.outcomes]
-        runs = [StudyPoint(point, self.refinements.scene_at(point)) for point in wanted]
-        for outcome in compute(runs, self.folder / POINTS, jobs, self._print):
+        scenes = {point: self.refinements.scene_at(point) for point in points if point not in self.outcomes}
+        for outcome in compute(scenes, self.folder / POINTS, jobs, self._print):
             self.outcomes[outcome.factors] = outcome
 
     def _print(self, outcome: PointOutcome, before: bool) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any, TypeVar
 
-from riser_soil.accuracy.chain import Envelopes, Variation, bars_of, comparison_runs, peaks_of, run_values, variations
+from riser_soil.accuracy.chain import Variation, bars_of, comparison_runs, run_values, variations
+from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.assembly.graded_segments import broken, graded
 from riser_soil.assembly.motions import periods_of
@@ -19,6 +21,7 @@ from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.variants.key_results import key_results
+from riser_soil.variants.peaks import peaks_of
 from riser_soil.variants.settings import refined, resolved
 
 MOST_STATIC_RUNS = 3  # that grade the mesh
@@ -27,6 +30,7 @@ LONGER = Variation("time", {"time_step": 0.5})  # of the trial, whose steps are 
 ATTEMPTS, EACH = 3, 2.0  # runs of a scene that fails; ratio of elements and of steps from one to the next
 HELPING = ("elements", "time_step")
 _Value = TypeVar("_Value")
+Envelopes = dict[str, CurveEnvelope]  # by line
 OfLines = dict[str, tuple[Segment, ...]]
 EVEN, LEAST, BROKEN = 24, 4, 2  # elements of a riser; least number in a segment, and in a part of a segment
 # Time steps in the shortest period of a motion, times the root of the accuracy, as errors fall with the square of the
@@ -94,9 +98,9 @@ def first_statics(scene: Scene) -> Sequence[Any]:
 
 def _computed(scene: Scene, comm: Any, attempts: int = ATTEMPTS) -> tuple[Scene, Envelopes, RunPeaks]:
     """The scene, finer where it fails otherwise, with envelopes and peaks of its run."""
-    envelopes: Envelopes = {}
+    envelopes: Envelopes = defaultdict(CurveEnvelope)
     try:
-        return scene, envelopes, peaks_of(scene, comm, envelopes)
+        return scene, envelopes, peaks_of(scene, comm, lambda line, instant: envelopes[line].add(instant))
     except SolveError:
         if attempts == 1:
             raise

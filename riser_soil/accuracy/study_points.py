@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,9 +14,9 @@ from riser_soil.results.folder import SCENE, SUMMARY
 from riser_soil.scene.scene import Scene
 from riser_soil.variants import pool
 from riser_soil.variants.key_results import KeyResult, key_results
-from riser_soil.variants.one_run import Task, known, task
+from riser_soil.variants.one_run import Task, task
 from riser_soil.variants.pool import Workers
-from riser_soil.variants.runs_folder import Outcome, prepare_attempts
+from riser_soil.variants.runs_folder import Outcome
 from riser_soil.variants.variant import variant_of
 
 POINTS = "points"  # folder of the points' runs
@@ -51,58 +51,42 @@ class PointOutcome:
         return self.status == 0
 
 
-@dataclass(frozen=True, eq=False)
-class StudyPoint:
-    """A run of the study, and its scene."""
-
-    factors: Factors
-    scene: Scene
-
-    def task(self, runs: Path, alone: bool) -> Task:
-        """The run to be computed. Fields beside the positions are not recorded, and error bars are not estimated."""
-        output = self.scene.output.model_copy(update={"fields": ()})
-        variant = variant_of(self.scene.model_copy(update={"output": output, "error_bars": False}))
-        return task(variant.key[:LETTERS], variant, runs.absolute(), keep=KEPT, final=FINAL, alone=alone)
-
-    def outcome(self, runs: Path, ended: Outcome) -> PointOutcome:
-        """Outcome of the point, whose run has ended."""
-        try:
-            summary = json.loads((runs / ended.name / SUMMARY).read_text(encoding="utf-8"))
-        except (OSError, ValueError):  # of a run that failed before its first step
-            summary = {"stages": [], "processor_seconds": None}
-        steps = sum(stage["steps"] for stage in summary["stages"])
-        found = key_results(summary) if ended.done else {}
-        cpu = math.nan if summary["processor_seconds"] is None else summary["processor_seconds"]
-        reason = _PLACE.sub("", ended.reason)
-        return PointOutcome(self.factors, ended.status, reason, cpu, ended.alone, steps, found)
-
-
 OnEnd = Callable[[PointOutcome, bool], None]
 """Called as each point ends, with its outcome and whether that was known before."""
 
 
-def compute(points: Sequence[StudyPoint], runs: Path, jobs: int, on_end: OnEnd) -> list[PointOutcome]:
-    """Outcomes of points, as they end. runs: folder of all points; jobs: how many run at a time."""
+def compute(scenes: Mapping[Factors, Scene], runs: Path, jobs: int, on_end: OnEnd) -> list[PointOutcome]:
+    """Outcomes of points with these scenes, as they end. runs: folder of all points; jobs: how many run at a time."""
+    tasks = {factors: point_task(scene, runs, alone=jobs == 1) for factors, scene in scenes.items()}
     found: list[PointOutcome] = []
-    todo: dict[str, list[StudyPoint]] = {}  # by the names of their runs: counts that are rounded make some equal
-    tasks: dict[str, Task] = {}
 
-    def end(point: StudyPoint, ended: Outcome, before: bool) -> None:
-        found.append(point.outcome(runs, ended))
-        on_end(found[-1], before)
+    def end(ended: Outcome, before: bool = False) -> None:
+        """Counts that are rounded may give several points the same scene, and one run."""
+        for factors in (each for each in tasks if tasks[each]["name"] == ended.name):
+            found.append(point_outcome(factors, ended, runs))
+            on_end(found[-1], before)
 
-    for point in points:
-        each = point.task(runs, alone=jobs == 1)
-        if (earlier := known(each)) is not None:
-            end(point, earlier, True)
-        else:
-            tasks[each["name"]] = each
-            todo.setdefault(each["name"], []).append(point)
-
-    def on_run(ended: Outcome) -> None:
-        for point in todo[ended.name]:
-            end(point, ended, False)
-
-    if tasks:
-        pool.compute([*tasks.values()], Workers(jobs), on_run, lambda: prepare_attempts(runs))
+    earlier, todo = pool.divided([*tasks.values()])
+    for each in earlier.values():
+        end(each, before=True)
+    pool.compute(todo, Workers(jobs), end)
     return found
+
+
+def point_task(scene: Scene, runs: Path, alone: bool) -> Task:
+    """Run of a point. Fields beside the positions are not recorded, and error bars are not estimated."""
+    output = scene.output.model_copy(update={"fields": ()})
+    variant = variant_of(scene.model_copy(update={"output": output, "error_bars": False}))
+    return task(variant.key[:LETTERS], variant, runs.absolute(), keep=KEPT, final=FINAL, alone=alone)
+
+
+def point_outcome(factors: Factors, ended: Outcome, runs: Path) -> PointOutcome:
+    """Outcome of a point whose run has ended."""
+    try:
+        summary = json.loads((runs / ended.name / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError):  # of a run that failed before its first step
+        summary = {"stages": [], "processor_seconds": None}
+    steps = sum(stage["steps"] for stage in summary["stages"])
+    cpu = math.nan if summary["processor_seconds"] is None else summary["processor_seconds"]
+    results = key_results(summary) if ended.done else {}
+    return PointOutcome(factors, ended.status, _PLACE.sub("", ended.reason), cpu, ended.alone, steps, results)

@@ -1,4 +1,4 @@
-"""Calibration of a scene on measured resistance by penetration: from a file to a folder with what was found."""
+"""Calibration of a scene on measured resistance by penetration, from a file to a folder with results."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def calibrate(
     relative: bool = False,
     force: bool = False,
 ) -> Fit:
-    """Find numbers of a scene with which its pipe segment meets the measured resistance; leave all in a folder.
+    """Fit numbers of a scene so that its pipe segment has the measured resistance, and leave results in a folder.
 
     data: CSV file with w [m], V [N/m]. wanted: `path=low:high`, the scene's own number being the first guess.
     step: largest step of the pipe over its diameter. relative: errors grow with V. SceneError, before anything is
-    computed, for what is wrong; the folder is only made once all is found.
+    computed, for wrong input; the folder is made at the end.
     """
     folder = Path(folder)
     if world().size > 1:
@@ -67,7 +67,7 @@ def calibrate(
 
 
 def parameter(scene: Scene, wanted: str) -> FitParameter:
-    """A number to be found as written after --fit: `soil.law.su=1e3:10e3`."""
+    """Parameter of an option --fit, as `soil.law.su=1e3:10e3`."""
     name, _, bounds = wanted.partition("=")
     low, colon, high = bounds.partition(":")
     try:
@@ -90,6 +90,7 @@ def parameter(scene: Scene, wanted: str) -> FitParameter:
 
 
 def refuse_twice(names: Sequence[str]) -> None:
+    """SceneError where no parameter is named, or one is twice."""
     if not names:
         raise SceneError("--fit: missing: name at least one number of the scene, such as --fit soil.law.su=1e3:10e3")
     for name in names:
@@ -98,7 +99,7 @@ def refuse_twice(names: Sequence[str]) -> None:
 
 
 def refuse_too_deep(measured: MeasuredResistance, diameter: float, data: Path | str) -> None:
-    """A pipe is not pressed in by more than its diameter, in soil at small strain least of all."""
+    """SceneError for a penetration of more than a diameter."""
     deepest = float(measured.w.max())
     if deepest > diameter:
         allowed = f"w reaches {deepest:g} m, more than the pipe's diameter of {diameter:g} m"
@@ -106,6 +107,7 @@ def refuse_too_deep(measured: MeasuredResistance, diameter: float, data: Path | 
 
 
 def refuse_too_many(parameters: Sequence[FitParameter], measured: MeasuredResistance, data: Path | str) -> None:
+    """SceneError for as many parameters as rows, or more."""
     if len(measured.w) <= len(parameters):
         allowed = f"{len(measured.w)} rows can't determine {len(parameters)} parameters"
         raise SceneError(f"{data}: {allowed}; measure more, or find fewer")

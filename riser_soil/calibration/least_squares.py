@@ -16,8 +16,8 @@ DIFFERENCE = 0.01  # of a scaled parameter, for derivatives: well above the solv
 CLOSE = 1e-3  # change of a scaled parameter at which the search ends
 FLAT = 1e-4  # relative change of the sum of squares at which it ends
 MOST_STEPS = 30
-LEAST_SHARE = 0.1  # of the largest datum: smaller ones have no smaller errors
-DEPENDENT = 1e-6  # least singular value of the Jacobian over the largest with which all parameters count as found
+LEAST_SHARE = 0.1  # of the largest datum: smaller data have the error of this share
+DEPENDENT = 1e-6  # least ratio of singular values of the Jacobian with which parameters are independent
 
 Model = Callable[[Mapping[str, float]], Array]
 
@@ -45,7 +45,7 @@ class FitParameter:
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """A number found, and the interval of confidence CONFIDENCE: (-inf, inf) where the data don't tell it."""
+    """A fitted number and its interval of confidence CONFIDENCE, (-inf, inf) where the data do not determine it."""
 
     parameter: FitParameter
     value: float
@@ -65,8 +65,7 @@ class FittedParameter:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Parameters found, the model's values (n,) there, the root of the mean square of the misfit, and whether the
-    search came to its end."""
+    """Fitted parameters and the model's values (n,) there. misfit: root mean square. converged: of the search."""
 
     parameters: tuple[FittedParameter, ...]
     values: Array
@@ -83,7 +82,7 @@ def fit(
     *,
     relative: bool = False,
 ) -> Fit:
-    """The parameters whose model is nearest to data (n,).
+    """Fit parameters of a model to data (n,) by least squares.
 
     on_run: called at each step with the number of runs so far, the misfit and the parameters. relative: errors grow
     with the data, those below LEAST_SHARE of the largest excepted; else they are of one size.
@@ -108,7 +107,7 @@ def fit(
 
 
 def error_sizes(data: Array) -> Array:
-    """To which the errors of data (n,) are taken to be in proportion (n,)."""
+    """Sizes (n,) to which errors of data (n,) are proportional."""
     size = np.abs(data)
     return np.asarray(np.maximum(size, LEAST_SHARE * size.max()))
 

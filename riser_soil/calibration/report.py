@@ -1,4 +1,4 @@
-"""What a calibration tells: on the screen, and in its folder a scene, a table, numbers and a picture."""
+"""Results of a calibration: on the screen, and in its folder a scene, a table, numbers and a picture."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ FILES = (SCENE, TABLE, CURVE, NUMBERS, PICTURE)
 
 
 def printed(runs: int, misfit: float, parameters: Mapping[str, float]) -> None:
-    """A step of the search."""
+    """Print a step of the search."""
     values = ", ".join(f"{name} = {value:.5g}" for name, value in parameters.items())
     print(f"{runs:3d} runs, misfit {misfit:.4g} N/m: {values}", flush=True)
 
 
 def result_lines(fit: Fit) -> list[str]:
-    """What was found, a line for each parameter, and what to doubt."""
+    """Lines for the screen: misfit, a line a parameter, warnings."""
     lines = [f"misfit {fit.misfit:.4g} N/m (root mean square) after {fit.runs} runs"]
     for each in fit.parameters:
         low, high = each.interval
@@ -50,7 +50,7 @@ def write_folder(
     fit: Fit,
     diameter: float,
 ) -> None:
-    """All files together, none of them by halves. place: of the table."""
+    """Write all files, together or none. place: folder of the table."""
     values = {each.parameter.name: each.value for each in fit.parameters}
     smooth = segment.resistance(values, path, place / TABLE)
     with written_together(folder, FILES) as made:
@@ -62,7 +62,7 @@ def write_folder(
 
 
 def as_dict(fit: Fit) -> dict[str, object]:
-    """The numbers of calibration.json; null stands for a bound of an interval that the data don't tell."""
+    """Content of calibration.json; the interval is null where the data do not determine it."""
     found = {
         each.parameter.name: {
             "value": each.value,

@@ -1,7 +1,7 @@
-"""What cases differ in: the axes of a case file, each with the values by which a case can lie on it.
+"""Axes of a case file: the parameters that are varied, each with its points.
 
-Short forms of the case file become paths of the scene: `sea_states`, `directions` and `seeds` those of the waves that
-the base scene has, `offsets` that of the vessel.
+Short keys of the case file become paths of the scene: `sea_states`, `directions` and `seeds` those of the base scene's
+waves, `offsets` that of the vessel.
 """
 
 from __future__ import annotations
@@ -28,8 +28,10 @@ _TRAINS = ALONE[1]
 
 @dataclass(frozen=True)
 class Point:
-    """Where a case can lie on an axis: its part of the case's name, what the axis calls it, what it sets; its part of
-    the name that cases have in common which differ in seeds alone, by default its name where it sets no seed.
+    """Point of an axis. name: its part of the case's name. label: its name on the axis. values: that it sets, by paths.
+
+    in_common: its part of the name of a group of cases that differ in seeds alone; by default its name if it sets no
+    seed, else nothing.
     """
 
     name: str
@@ -39,6 +41,7 @@ class Point:
 
     @property
     def group(self) -> str:
+        """Its part of the name of a group of cases that differ in seeds alone."""
         if self.in_common is not None:
             return self.in_common
         return "" if any(map(is_seed, self.values)) else self.name
@@ -46,14 +49,14 @@ class Point:
 
 @dataclass(frozen=True)
 class CaseAxis:
-    """One thing in which cases differ."""
+    """A parameter, or several together, that cases vary."""
 
     name: str
     points: Sequence[Point]
 
     @property
     def paths(self) -> set[str]:
-        """All that it sets."""
+        """Paths of all values that its points set."""
         return {path for point in self.points for path in point.values}
 
 
@@ -63,20 +66,20 @@ def is_seed(path: str) -> bool:
 
 
 def axes_of(file: Path, case_file: Cases, base: Document) -> list[CaseAxis]:
-    """In their order, the last one's values changing first. base: the scene's, with what all cases have.
+    """Axes in their order, the last one's points changing first. base: the base scene, with the values of all cases.
 
-    Raises SceneError for what the base scene can't have, and for a path that two axes set.
+    Raises SceneError for a key that does not suit the base scene, and for a path that two axes set.
     """
     short = _short_names([*case_file.product, *(path for row in case_file.table for path in row.values)])
-    found = [*_of_table(case_file, short), *_of_waves(file, case_file, base)]
+    axes = [*_of_table(case_file, short), *_of_waves(file, case_file, base)]
     if case_file.offsets is not None:
-        found.append(_of_offsets(file, case_file.offsets, base))
+        axes.append(_of_offsets(file, case_file.offsets, base))
     if case_file.soil:
-        found.append(CaseAxis("soil", [Point(name, name, values) for name, values in case_file.soil.items()]))
-    found += [CaseAxis(path, _points(path, values, short)) for path, values in case_file.product.items()]
-    found.sort(key=lambda axis: axis.name == SEED)  # it changes first
-    _refuse_twice(file, found)
-    return found
+        axes.append(CaseAxis("soil", [Point(name, name, values) for name, values in case_file.soil.items()]))
+    axes += [CaseAxis(path, _points(path, values, short)) for path, values in case_file.product.items()]
+    axes.sort(key=lambda axis: axis.name == SEED)  # it changes first
+    _refuse_twice(file, axes)
+    return axes
 
 
 def _refuse_twice(file: Path, axes: Sequence[CaseAxis]) -> None:
@@ -111,14 +114,14 @@ def _of_waves(file: Path, case_file: Cases, base: Document) -> Iterator[CaseAxis
 
 @dataclass(frozen=True)
 class _Waves:
-    """The waves of the base scene, as a key of the case file needs them."""
+    """Waves of the base scene, for a key of the case file."""
 
     file: Path
     key: str
     base: Document
 
     def path(self, key: str) -> str:
-        """Path in the scene of a key of the waves; a whole path is left as it is."""
+        """Path in the scene of a key of the waves; a path in the scene stays as it is."""
         return key if "." in key else f"water.waves.{self._kind}.{key}"
 
     @property
@@ -152,7 +155,7 @@ def _of_offsets(file: Path, given: float | str | Mapping[str, Sequence[float]], 
 
 
 def _of_depth(file: Path, share: str, base: Document) -> float:
-    """A share of the water depth, as `5 %` [m]."""
+    """Distance [m] by a share of the water depth, as `5 %`."""
     surface, level = (_under(base.data, *path) for path in (("water", "surface_level"), ("seabed", "level")))
     uneven = any(_under(base.data, "seabed", key) is not None for key in ("profile", "grid", "slope_deg"))
     depth = surface - (level or 0.0) if _is_number(surface) and not uneven else _under(base.data, "water", "depth")
@@ -189,7 +192,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _under(data: Any, *keys: str) -> Any:
-    """What is at a path of mappings; None where it ends before."""
+    """Value at a path of mappings; None where there is none."""
     for key in keys:
         data = data.get(key) if isinstance(data, dict) else None
     return data
@@ -208,7 +211,7 @@ def _name(values: Overrides, short: Mapping[str, str]) -> str:
 
 
 def _value_name(path: str, value: Any, number: int | None, short: Mapping[str, str]) -> str:
-    """`Hs=6.5`, `kind=rigid`; of lists and mappings the number among the values: `position_2`."""
+    """Name of a value: `Hs=6.5`, `kind=rigid`; for lists and mappings by its number among the values: `position_2`."""
     if isinstance(value, list | dict) and number is not None:
         return f"{short[path]}_{number}"
     text = f"{value:g}" if isinstance(value, float) and float(f"{value:g}") == value else str(value)
@@ -216,15 +219,15 @@ def _value_name(path: str, value: Any, number: int | None, short: Mapping[str, s
 
 
 def _short_names(paths: Sequence[str]) -> dict[str, str]:
-    """The last words of each path that tell it from the others; numbers of lists don't tell alone."""
+    """Short names by paths: the last keys that are unique, of which the first is no index of a list."""
     unique = list(dict.fromkeys(paths))
-    found = {}
+    names = {}
     for path in unique:
         words = path.split(".")
         endings = (words[-n:] for n in range(1, len(words) + 1))
-        telling = (e for e in endings if not e[0].isdecimal() and sum(_ends(other, e) for other in unique) == 1)
-        found[path] = re.sub(r"[^\w]+", "_", "_".join(next(telling, words)), flags=re.ASCII)
-    return found
+        distinct = (e for e in endings if not e[0].isdecimal() and sum(_ends(other, e) for other in unique) == 1)
+        names[path] = re.sub(r"[^\w]+", "_", "_".join(next(distinct, words)), flags=re.ASCII)
+    return names
 
 
 def _ends(path: str, words: list[str]) -> bool:

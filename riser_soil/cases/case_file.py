@@ -1,4 +1,4 @@
-"""The case file: a base scene, in what its cases differ, and what is made of their results."""
+"""Case file: a base scene, the parameters that cases vary, and how their results are evaluated."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from riser_soil.variants.variant import Overrides
 
 MOST_LETTERS = 100
 MOST_SEEDS = 1000
-WAYS = ("sea_states", "directions", "offsets", "soil", "seeds", "table", "product")  # in which cases may differ
+WAYS = ("sea_states", "directions", "offsets", "soil", "seeds", "table", "product")  # keys by which cases vary
 _NAME = re.compile(rf"[A-Za-z0-9_+=][\w.+=-]{{,{MOST_LETTERS - 1}}}", re.ASCII)
 PERCENT = re.compile(r"(\d+(?:\.\d*)?) *%")
 _NEEDS = f"the case file is empty; it needs base, and one of {', '.join(WAYS)}"
@@ -45,7 +45,7 @@ def _name_given(text: str) -> str:
 
 
 def is_name(text: str) -> bool:
-    """Whether it can be the name of a case, and of its folder."""
+    """Whether a text can be the name of a case, and of its folder."""
     return _NAME.fullmatch(text) is not None
 
 
@@ -62,7 +62,7 @@ class TableRow(BaseModel):
 
 
 def _rows(given: Any, info: ValidationInfo) -> Any:
-    """The rows of a CSV file in place of its name."""
+    """Rows of the table: those of a CSV file where its name is given."""
     if not isinstance(given, str):
         return given
     file = (Path((info.context or {}).get("folder", ".")) / given).absolute()
@@ -76,7 +76,7 @@ def _rows(given: Any, info: ValidationInfo) -> Any:
 
 
 def _row(place: str, paths: list[str], cells: list[str]) -> dict[str, Any]:
-    """An empty cell leaves the base scene's value."""
+    """A row of the table by its cells; an empty cell means the base scene's value."""
     if len(cells) != len(paths):
         raise wrong_file(f"{place}: the row has {len(cells)} values for {len(paths)} columns; complete it")
     try:
@@ -88,16 +88,16 @@ def _row(place: str, paths: list[str], cells: list[str]) -> dict[str, Any]:
 
 
 def _sea_states(given: Any, info: ValidationInfo) -> Any:
-    """The sea states of a CSV file by their names, in place of the file's name."""
+    """Sea states by their names: those of a CSV file where its name is given."""
     if not isinstance(given, str):
         return given
-    found: dict[str, Any] = {}
+    states: dict[str, Any] = {}
     for row in _rows(given, info):
         name = row.get("name") or "-".join(f"{key}={value}" for key, value in row["set"].items())
-        if name in found:
+        if name in states:
             raise wrong_file(f"{given}: two sea states are named {name}; give each a name of its own")
-        found[name] = row["set"]
-    return found
+        states[name] = row["set"]
+    return states
 
 
 def _axis_of(value: Any) -> str | None:
@@ -174,7 +174,7 @@ class WantedExtremes(BaseModel):
 
 
 class Cases(BaseModel):
-    """A case file: what all cases have, and in what they differ."""
+    """A case file: values of all cases, and the parameters that they vary."""
 
     model_config = FROZEN
 
@@ -218,7 +218,7 @@ class Cases(BaseModel):
 
 
 def read_case_file(file: Path) -> Cases:
-    """The case file; SceneError has one line per problem found. Plain YAML: nothing in it is ever executed."""
+    """Read a case file; SceneError has one line per problem. It is plain YAML: nothing in it is executed."""
     document = refuse_others(parse(read_text(file), str(file), _NEEDS), "case file")
     try:
         cases = Cases.model_validate(document.data, context={"folder": file.parent})

@@ -1,6 +1,6 @@
-"""Files of all cases: cases.csv, a row for each; extremes.csv, a row for each quantity; cases.nc; cases.png.
+"""Files of all cases: cases.csv, a row a case; extremes.csv, a row a quantity; cases.nc; cases.png.
 
-Beside them characteristic.csv, a row for each quantity of each group of cases that differ in their seeds alone.
+characteristic.csv has a row for each quantity of each group of cases that differ in their seeds alone.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ TABLE, EXTREMES, CHARACTERISTIC, DATA, PLOT = "cases.csv", "extremes.csv", "char
 FILES = (TABLE, EXTREMES, CHARACTERISTIC, DATA, PLOT)
 
 def write_files(table: CaseTable, extremes: Sequence[CharacteristicExtreme], folder: Path) -> None:
-    """All files together."""
+    """Write all files, together or none."""
     with written_together(folder, FILES) as made:
         _write(made / TABLE, _rows(table))
         _write(made / EXTREMES, _extremes(table))
@@ -36,7 +36,7 @@ def write_files(table: CaseTable, extremes: Sequence[CharacteristicExtreme], fol
 
 
 def _draw(table: CaseTable, png: Path) -> None:
-    """The key results of the last stage that the table tells of."""
+    """Draw the key results of the last stage in the table."""
     names = [case.name for case in table.cases]
     stage = next((value.stage for value in reversed(table.quantities.values())), "no stage")
     shown = {key: each for key, each in table.quantities.items() if each.stage == stage and not each.in_time}
@@ -90,8 +90,10 @@ def _number(value: float) -> str:
 
 
 def dataset(table: CaseTable) -> xarray.Dataset:
-    """Dimension `case`: its name; `set_…`, what it differs in from the base scene; status, reason, seconds; a variable
-    for each quantity, nan where a case failed.
+    """Dataset of all cases by the dimension `case`, their name.
+
+    `set_…`: values that differ from the base scene. status, reason, seconds. A variable a quantity, nan where a case
+    failed.
     """
     names = [case.name for case in table.cases]
     outcomes = [table.outcomes[name] for name in names]
@@ -115,7 +117,7 @@ def dataset(table: CaseTable) -> xarray.Dataset:
 
 
 def _given_values(values: Sequence[Any]) -> Any:
-    """Numbers as such, nan where the base scene's holds; what is not all numbers as text."""
+    """Values of one path: numbers, nan where it is the base scene's; as text if not all are numbers."""
     if all(value is None or (isinstance(value, int | float) and not isinstance(value, bool)) for value in values):
         return np.array([np.nan if value is None else value for value in values], "f8")
     return _texts(["" if v is None else v if isinstance(v, str) else json.dumps(v, ensure_ascii=False) for v in values])
@@ -126,5 +128,5 @@ def _texts(values: Sequence[str]) -> Any:
 
 
 def _identifier(text: str) -> str:
-    """`heave_top_tension_mean`."""
+    """Name of a variable: `heave_top_tension_mean`."""
     return re.sub(r"\W+", "_", text).strip("_")

@@ -27,26 +27,26 @@ class CaseTable:
 
     @cached_property
     def paths(self) -> list[str]:
-        """Paths of all values in which cases differ from the base scene."""
+        """Paths of all values that cases set."""
         return list(dict.fromkeys(path for case in self.cases for path in case.values))
 
     @cached_property
     def axes(self) -> list[str]:
-        """Names of what cases differ in, where that isn't a path of the scene."""
+        """Names of axes that are no path of the scene."""
         known = dict.fromkeys(axis for case in self.cases for axis in case.labels)
         return [axis for axis in known if axis not in self.paths]
 
     @cached_property
     def quantities(self) -> dict[str, CaseValue]:
         """Quantities of all cases by their keys, each as the first case that has it."""
-        found: dict[str, CaseValue] = {}
+        first: dict[str, CaseValue] = {}
         for values in self.values.values():
-            for key, value in values.items():
-                found.setdefault(key, value)
-        return found
+            first = {**first, **values, **first}
+        return first
 
     @property
     def failed(self) -> list[Outcome]:
+        """Outcomes of cases that failed."""
         return [self.outcomes[case.name] for case in self.cases if not self.outcomes[case.name].done]
 
     def column(self, key: str) -> Array:

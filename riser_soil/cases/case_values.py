@@ -23,9 +23,9 @@ _SIGNS = {"tension": "positive in tension", "contact force": "positive where the
 
 
 class Sample(NamedTuple):
-    """An extreme of a dynamic stage without its transient: one of many seeds'.
+    """Extreme of a dynamic stage without its transient: a sample of one seed.
 
-    value: in SI; least: whether it is the least value, else the largest. duration: that it is the extreme of [s].
+    value: in SI. least: whether it is the least value, else the largest. duration: time that it is the extreme of [s].
     """
 
     value: float
@@ -35,8 +35,9 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True)
 class CaseValue:
-    """stage and name of a quantity, its unit (SI), and its value in one case; what counts of it in characteristic
-    extremes, None where nothing does.
+    """Value of a quantity of a stage in one case, in its unit (SI).
+
+    sample: for characteristic extremes, None where it has none.
     """
 
     stage: str
@@ -51,12 +52,12 @@ class CaseValue:
 
     @property
     def in_time(self) -> bool:
-        """Whether it is of the statistics in time, and no extreme."""
+        """Whether it is a statistic in time, and no extreme."""
         return self.name.endswith((MEAN, DEVIATION))
 
     @property
     def sign(self) -> str:
-        """What its sign means; of a standard deviation, a utilisation or a magnitude nothing."""
+        """Meaning of its sign; empty for standard deviations, utilisations and magnitudes."""
         if self.name.endswith((DEVIATION, _spoken(_USED))):
             return ""
         return next((sign for word, sign in _SIGNS.items() if word in self.name), "")
@@ -67,7 +68,7 @@ def _spoken(figure: str) -> str:
 
 
 def case_values(folder: Path, since: float) -> list[CaseValue]:
-    """Key results and statistics in a run's folder; those of several lines and bodies carry their names.
+    """Key results and statistics in a run's folder; with several lines and bodies their names come first.
 
     since: time of the last dynamic stage [s] from which on it counts in statistics and samples.
     """
@@ -82,7 +83,7 @@ def case_values(folder: Path, since: float) -> list[CaseValue]:
 
 
 def _utilisations(stages: Sequence[Mapping[str, Any]]) -> Iterator[KeyResult]:
-    """Largest ones of each stage and line: of limits, of stress, and by codes."""
+    """Largest utilisations of each stage and line: of limits, of stress, and by codes."""
     known = [figure.name for _, figure in outputs.figures(()) if figure.name.endswith(_USED)]
     for stage in stages:
         place, side = ("final", "value") if stage["kind"] == "static" else ("extremes", "max")
@@ -102,7 +103,7 @@ class _LastDynamic:
 
     @classmethod
     def of(cls, run: Run, since: float) -> _LastDynamic | None:
-        """None of a run without one."""
+        """The last dynamic stage of a run; None where it has none."""
         stages = run.summary["stages"]
         number = max((n for n, stage in enumerate(stages) if stage["kind"] == "dynamic"), default=None)
         return None if number is None else cls(run, number, since)
@@ -114,13 +115,13 @@ class _LastDynamic:
 
     @property
     def records(self) -> Array:
-        """(nt,) which of the run's records count."""
+        """Whether each of the run's records (nt,) counts."""
         start = beginning(self.run, self.number) + self.since
         return np.asarray((self.run["stage"] == self.number) & (self.run.time >= start))
 
     def sample(self, result: KeyResult) -> Sample | None:
-        """What a key result has after the transient: itself, as steps have it; where that falls into the transient,
-        the extreme of the records.
+        """Sample of a key result after the transient: its value at time steps, or, if that is within the transient, the
+        extreme of the records.
         """
         duration = self.stage["time"] - self.since
         if result.stage != self.stage["name"] or result.which not in ("min", "max") or duration <= 0.0:
@@ -161,13 +162,13 @@ _RECORDED: dict[str, tuple[str, Callable[[Any], Any]]] = {  # figures by what is
 
 
 def _statistics(run: Run, since: float) -> Iterator[CaseValue]:
-    """Mean and standard deviation of what is recorded; nan, where nothing touches, doesn't count."""
+    """Mean and standard deviation of recorded series; nan, where nothing touches, does not count."""
     last = _LastDynamic.of(run, since)
     if last is None:
         return
-    seen = last.records
+    counted = last.records
     for name, unit, series in _series(run):
-        values = series[seen]
+        values = series[counted]
         values = values[np.isfinite(values)]
         if values.size:
             yield CaseValue(last.stage["name"], name + MEAN, unit, float(values.mean()))
@@ -175,7 +176,7 @@ def _statistics(run: Run, since: float) -> Iterator[CaseValue]:
 
 
 def _series(run: Run) -> Iterator[tuple[str, str, Array]]:
-    """Name, unit and records (nt,) of what a run may have recorded; moments are those at nodes."""
+    """Name, unit and records (nt,) of recorded series; moments are those at nodes."""
     height = run["position"][-1][:, 2]
     upper = 0 if height[0] > height[-1] else -1
     for name, unit, variable, of in (

@@ -29,7 +29,7 @@ from riser_soil.statistics.extremes import FEWEST, Interval, LocationScale, fit_
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Cases that differ in the seed of their waves alone. labels: by the axes on which they have one in common."""
+    """Cases that differ in the seed of their waves alone. labels: those that they have in common, by axes."""
 
     name: str
     labels: Mapping[str, str]
@@ -37,7 +37,7 @@ class Group:
 
 
 def groups_of(cases: Sequence[Case]) -> list[Group]:
-    """All cases in their groups, in their order."""
+    """Groups of cases, in the cases' order."""
     found: dict[str, list[Case]] = {}
     for case in cases:
         found.setdefault(case.group, []).append(case)
@@ -51,7 +51,9 @@ def _in_common(cases: Sequence[Case]) -> dict[str, str]:
 
 @dataclass(frozen=True, eq=False)
 class CharacteristicExtreme:
-    """One quantity of one group: the extremes of its seeds (n,) in SI, each over `simulated` [s], and what follows."""
+    """Characteristic extreme of a quantity of a group. samples: extremes of its seeds (n,) in SI, each over `simulated`
+    [s].
+    """
 
     group: Group
     stage: str
@@ -69,12 +71,12 @@ class CharacteristicExtreme:
 
     @property
     def of_seeds(self) -> float:
-        """The extreme of all seeds."""
+        """Extreme of all seeds."""
         return float(self.samples.min() if self.least else self.samples.max())
 
     def worse_than(self, other: CharacteristicExtreme) -> bool:
-        """Whether this value is worse than another of the same quantity: the characteristic one, or else the extreme of
-        all seeds.
+        """Whether this extreme is worse than another of the same quantity: by the characteristic values, or by those of
+        all seeds where there is none.
         """
         mine, others = (
             each.of_seeds if math.isnan(each.characteristic.value) else each.characteristic.value
@@ -164,7 +166,7 @@ def row_of(found: CharacteristicExtreme, axes: Sequence[str]) -> dict[str, Any]:
 
 
 def governing(extremes: Sequence[CharacteristicExtreme]) -> list[CharacteristicExtreme]:
-    """For each quantity its worst group, by the characteristic value where there is one."""
+    """Worst extreme of each quantity, by the characteristic value where there is one."""
     found: dict[str, CharacteristicExtreme] = {}
     for each in extremes:
         if each.key not in found or each.worse_than(found[each.key]):
@@ -173,7 +175,7 @@ def governing(extremes: Sequence[CharacteristicExtreme]) -> list[CharacteristicE
 
 
 def governing_table(extremes: Sequence[CharacteristicExtreme]) -> Table:
-    """For the screen: of each quantity its worst group, in units as engineers read them."""
+    """Table for the screen: the worst group of each quantity, in engineering units."""
     wanted, fitted = extremes[0].wanted, any(math.isfinite(each.scale) for each in extremes)
     over = f" in {wanted.duration:g} s" if fitted else ""
     table = Table(title=f"{extremes[0].stage}: extremes{over}, each under what governs", title_justify="left")
@@ -208,7 +210,7 @@ def _figures(value: float) -> str:
 
 
 def warnings_of(extremes: Sequence[CharacteristicExtreme], cases: Sequence[Case]) -> Iterator[str]:
-    """Where seeds are too few for a fit, or some have no extreme after the transient."""
+    """Warnings where seeds are too few for a fit."""
     few = {each.group.name for each in extremes if len(each.samples) < FEWEST}
     seeded = any(is_seed(path) for case in cases for path in case.values)
     if few and seeded:

@@ -1,4 +1,4 @@
-"""From a case file, a base scene with overrides along axes, to its cases, checked scenes."""
+"""Expansion of a case file: all combinations of points of its axes, each a checked variant of the base scene."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ _PLACE = "<case>"  # of a mistake, before it is known which cases have it
 
 @dataclass(frozen=True)
 class Case:
-    """A run to be had. values: by their paths, in what it differs from the base scene; labels: by its axes, what each
-    calls its value; group: what it has in common with cases that differ in their seed alone. variant: its scene.
+    """A case. values: by paths, that differ from the base scene. labels: of its points, by axes. variant: its scene.
+
+    group: name of the group of cases that differ from it in their seed alone.
     """
 
     name: str
@@ -34,7 +35,7 @@ class Case:
 
     @property
     def group_labels(self) -> tuple[str, ...]:
-        """What its axes call its values, but for that of the seeds."""
+        """Labels on all axes but that of the seeds."""
         return tuple(label for axis, label in self.labels.items() if not is_seed(axis))
 
 
@@ -57,7 +58,7 @@ def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[C
 
 
 def _problem(file: Path, line: str, names: Sequence[str]) -> str:
-    """A line for one mistake, however many cases have it; one of the base scene has its own place."""
+    """One line for a mistake, however many cases have it; one of the base scene has its own place."""
     others = f" and {len(names) - 1} more" if len(names) > 1 else ""
     return line.replace(_PLACE, f"{file}: case {names[0]}{others}:", 1)
 

@@ -20,12 +20,13 @@ Labels = tuple[str, ...]
 
 
 class CaseProgress:
-    """How many cases of each group have ended, run and wait, and the time left. Use in a `with` statement.
+    """Number of cases of each group that are done, run and wait, and the remaining time. Use in a `with` statement.
 
-    groups: of each case by its name, labels of what it differs in, but for its seed; as many of the first ones make
-    rows as the screen has room for. todo: names of the cases that are computed in this call. running: names of those
-    that run now. The table goes to standard error, so that what the command prints can be piped; lines go to standard
-    output, on a terminal those of failed cases alone.
+    groups: labels of each case by its name, without that of the seed; as many of the first ones make rows as the screen
+    has room for. todo: names of the cases that are computed in this call. running: names of those that run now.
+
+    The table goes to standard error, so that the command's output can be piped. Lines go to standard output, on a
+    terminal those of failed cases alone.
     """
 
     def __init__(
@@ -57,19 +58,19 @@ class CaseProgress:
 
     @property
     def ended(self) -> int:
-        """Cases that have ended, those of earlier calls included."""
+        """Number of cases that have ended, those of earlier calls included."""
         return self.count - len(self._todo) + len(self._outcomes)
 
     def add(self, outcome: Outcome) -> None:
-        """One more has ended."""
+        """Count a case that has ended."""
         self._outcomes[outcome.name] = outcome
         if not (outcome.done and self._on_terminal):
             print(f"{self.ended} of {self.count}: {outcome.name}: {_ending_in_words(outcome)}", flush=True)
 
     def table(self) -> Table:
-        """A row for each group, and one for all of them with the time left."""
+        """Table with a row for each group, one for all of them, and the remaining time."""
         running = self._running() & self._todo - self._outcomes.keys()
-        table = Table(title=f"cases: {self.ended} of {self.count} ended{self._left()}", title_justify="left")
+        table = Table(title=f"cases: {self.ended} of {self.count} ended{self._remaining()}", title_justify="left")
         table.add_column("cases", no_wrap=True)
         for head in ("done", "running", "waiting", "failed", "s each"):
             table.add_column(head, justify="right")
@@ -89,8 +90,8 @@ class CaseProgress:
         mean = f"{sum(outcome.seconds for outcome in ended) / len(ended):.3g}" if ended else ""
         return [str(done), str(runs or ""), str(waiting or ""), f"[red]{failed}[/]" if failed else "", mean]
 
-    def _left(self) -> str:
-        """By the mean over this call: cases that run side by side end in bunches."""
+    def _remaining(self) -> str:
+        """Remaining time in words, by the mean over this call, as cases that run side by side end in bunches."""
         if not self._outcomes:
             return ""
         seconds = (time.monotonic() - self._start) / len(self._outcomes) * (len(self._todo) - len(self._outcomes))
@@ -98,7 +99,7 @@ class CaseProgress:
 
 
 def _rows(groups: Mapping[str, Labels], most: int) -> dict[str, set[str]]:
-    """Names of the cases of each row: by as many labels as make no more rows than that."""
+    """Names of the cases of each row; rows are by as many labels as give at most so many rows."""
     depth = max(map(len, groups.values()), default=0)
     while depth and len({labels[:depth] for labels in groups.values()}) > most:
         depth -= 1

@@ -13,9 +13,9 @@ from riser_soil.cases.progress import CaseProgress
 from riser_soil.errors import Interruption, SceneError, WriteError
 from riser_soil.results.whole_file import unusable
 from riser_soil.variants import pool
-from riser_soil.variants.one_run import Task, known, task
+from riser_soil.variants.one_run import Task, task
 from riser_soil.variants.pool import Workers
-from riser_soil.variants.runs_folder import OUTCOME, Outcome, claimed, prepare_attempts, running
+from riser_soil.variants.runs_folder import OUTCOME, Outcome, claimed, running
 
 CASES = "cases"  # folder of the cases' runs
 
@@ -35,10 +35,9 @@ def run_cases(
     _refuse_foreign(folder / CASES, cases)
     with claimed(folder, CASES, "load cases") as runs:
         tasks = [task(case.name, case.variant, runs, limit=limit) for case in cases]
-        outcomes = {each["name"]: outcome for each in tasks if (outcome := known(each))}
-        todo = [each for each in tasks if each["name"] not in outcomes]
+        outcomes, todo = pool.divided(tasks)
         says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
-        outcomes |= _computed(cases, todo, workers, folder) if todo else {}
+        outcomes |= _computed(cases, todo, workers, folder)
         table = case_table(f"Load cases of {file.name}", runs, cases, outcomes, case_file.statistics.since)
         extremes = characteristic_extremes(table, case_file.extremes)
         write_files(table, extremes, folder)
@@ -54,22 +53,23 @@ def _refuse_foreign(runs: Path, cases: Sequence[Case]) -> None:
 
 
 def _computed(cases: Sequence[Case], todo: Sequence[Task], workers: Workers, folder: Path) -> dict[str, Outcome]:
-    found = {}
+    outcomes = dict[str, Outcome]()
 
     def begin() -> None:
-        """The tables of an earlier call go before the first case changes."""
-        prepare_attempts(folder / CASES)
+        """Remove the tables of an earlier call before the first case changes."""
         try:
             for name in FILES:
                 (folder / name).unlink(missing_ok=True)
         except OSError as err:
             raise unusable(folder, err) from err
 
+    if not todo:
+        return outcomes
     groups = {case.name: case.group_labels for case in cases}
     with CaseProgress(groups, {each["name"] for each in todo}, lambda: running(folder / CASES)) as progress:
 
         def on_end(outcome: Outcome) -> None:
-            found[outcome.name] = outcome
+            outcomes[outcome.name] = outcome
             progress.add(outcome)
 
         try:
@@ -79,7 +79,7 @@ def _computed(cases: Sequence[Case], todo: Sequence[Task], workers: Workers, fol
             raise
         except WriteError as err:
             raise WriteError(f"{err}; {_kept(progress, folder)}") from err
-    return found
+    return outcomes
 
 
 def _kept(progress: CaseProgress, folder: Path) -> str:

@@ -8,10 +8,11 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
 from dataclasses import dataclass
+from pathlib import Path
 
 from riser_soil.errors import WriteError
-from riser_soil.variants.one_run import Task, run_variant
-from riser_soil.variants.runs_folder import Outcome
+from riser_soil.variants.one_run import Task, known, run_variant
+from riser_soil.variants.runs_folder import Outcome, prepare_attempts
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,12 @@ class Workers:
     scheduler: str | None = None
 
 
+def divided(tasks: Sequence[Task]) -> tuple[dict[str, Outcome], list[Task]]:
+    """Outcomes of earlier runs by their names, and the tasks that have to be computed, each name once."""
+    earlier = {each["name"]: outcome for each in tasks if (outcome := known(each)) is not None}
+    return earlier, [*{each["name"]: each for each in tasks if each["name"] not in earlier}.values()]
+
+
 def compute(
     tasks: Sequence[Task], workers: Workers, on_end: Callable[[Outcome], None], begin: Callable[[], None] = lambda: None
 ) -> None:
@@ -30,8 +37,15 @@ def compute(
     begin: called when the workers are there, before they get a task. Raises WriteError where the disk is full, as the
     next runs would fail for it, too.
     """
-    with closing(outcomes(tasks, workers, begin)) as found:
-        for outcome in found:
+    if not tasks:
+        return
+
+    def prepare() -> None:
+        prepare_attempts(Path(tasks[0]["runs"]))
+        begin()
+
+    with closing(outcomes(tasks, workers, prepare)) as ended:
+        for outcome in ended:
             if outcome.status == WriteError.exit_status:
                 raise WriteError(f"{outcome.name}: {outcome.reason}")
             on_end(outcome)

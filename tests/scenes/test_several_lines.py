@@ -16,7 +16,6 @@ from mpi4py import MPI
 from scipy.optimize import brentq
 
 from riser_soil.accuracy.barred_run import run_with_error_bars
-from riser_soil.accuracy.chain import peaks_of
 from riser_soil.accuracy.search import first_setting
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.assembly import build
@@ -37,6 +36,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.statistics.records import records_of
 from riser_soil.variants.key_results import key_results
+from riser_soil.variants.peaks import peaks_of
 from riser_soil.variants.settings import SETTINGS, settings_of, varied
 from riser_soil.whole_run import run
 from tests.support.catenaries import spans

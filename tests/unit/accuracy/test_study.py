@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from riser_soil.accuracy import findings
 from riser_soil.accuracy.findings import Study
 from riser_soil.accuracy.study import study
 from riser_soil.accuracy.study_page import words
-from riser_soil.accuracy.study_points import PointOutcome, StudyPoint, compute
+from riser_soil.accuracy.study_points import Factors, PointOutcome, compute, point_task
 from riser_soil.commands.app import app
 from riser_soil.errors import ResultsError, SceneError, SolveError, WriteError
 from riser_soil.scene.reader import scene_from_mapping
@@ -55,8 +55,8 @@ def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, 
     """A study whose runs are formulas of the sizes of elements and steps, 1 in the scene; failures by `fails`."""
     fails: Callable[[float, float], bool] = given.pop("fails", lambda h, dt: False)
 
-    def compute(points: Sequence[StudyPoint], runs: Path, jobs: int, on_end: Any) -> list[PointOutcome]:
-        return [outcome(point.factors) for point in points]
+    def compute(scenes: Mapping[Factors, Scene], runs: Path, jobs: int, on_end: Any) -> list[PointOutcome]:
+        return [outcome(factors) for factors in scenes]
 
     def outcome(factors: tuple[float, ...]) -> PointOutcome:
         h, dt = (1.0 / factor for factor in factors)
@@ -172,13 +172,13 @@ def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest
     """It runs with steps of a quarter: 0.0025 s, elements of a quarter, too. What failed is a row."""
     found = {"heave: top tension": KeyResult("heave", "top tension", "N", 100.0, 0.0)}
 
-    def outcome(point: StudyPoint) -> PointOutcome:
-        if point.scene.line.element_count < 4 * 36:
-            return PointOutcome(point.factors, 3, "folded", 1.0, True)
-        return PointOutcome(point.factors, 0, "", 1.0, True, 1, found)
+    def outcome(factors: Factors, scene: Scene) -> PointOutcome:
+        if scene.line.element_count < 4 * 36:
+            return PointOutcome(factors, 3, "folded", 1.0, True)
+        return PointOutcome(factors, 0, "", 1.0, True, 1, found)
 
-    def compute(points: Sequence[StudyPoint], runs: Path, jobs: int, on_end: Any) -> list[PointOutcome]:
-        return [outcome(point) for point in points]
+    def compute(scenes: Mapping[Factors, Scene], runs: Path, jobs: int, on_end: Any) -> list[PointOutcome]:
+        return [outcome(*each) for each in scenes.items()]
 
     monkeypatch.setattr(findings, "compute", compute)
     made = study(scene(), tmp_path / "t", levels=3, says=lambda _: None)
@@ -246,14 +246,15 @@ def test_how_a_point_ends(
 ) -> None:
     """One that was killed, or found the disk full, is run again; one whose scene fails is not. Its summary stays."""
     monkeypatch.setattr(one_run, "command", lambda made: [sys.executable, "-c", FAKE, str(made), str(status)])
-    point, told = StudyPoint((2.0, 1.0), scene()), list[bool]()
+    point: dict[Factors, Scene] = {(2.0, 1.0): scene()}
+    told = list[bool]()
     if status == 4:
         with pytest.raises(WriteError, match="buried"):
-            compute([point], tmp_path, 1, lambda outcome, before: told.append(before))
+            compute(point, tmp_path, 1, lambda outcome, before: told.append(before))
         assert not list(tmp_path.glob("*/*"))
         return
     for _ in range(2):
-        (found,) = compute([point], tmp_path, 1, lambda outcome, before: told.append(before))
+        (found,) = compute(point, tmp_path, 1, lambda outcome, before: told.append(before))
         assert (found.status, found.reason, found.alone) == (137 if status == -9 else status, reason, True)
         assert found.cpu == pytest.approx(cpu, nan_ok=True)
     assert told == [False, not again]
@@ -264,9 +265,9 @@ def test_how_a_point_ends(
 
 def test_a_scene_that_differs_is_another_run(tmp_path: Path) -> None:
     scenes = (scene().model_copy(update={"gravity": g}) for g in (9.8, 9.81))
-    one, other = (StudyPoint((1.0,), each).task(tmp_path, True) for each in scenes)
+    one, other = (point_task(each, tmp_path, True) for each in scenes)
     assert one["name"] != other["name"]
-    twice = StudyPoint((2.0,), scene().model_copy(update={"error_bars": True, "gravity": 9.8})).task(tmp_path, True)
+    twice = point_task(scene().model_copy(update={"error_bars": True, "gravity": 9.8}), tmp_path, True)
     assert twice["name"] == one["name"], "a study estimates no error bars"
 
 
@@ -336,7 +337,7 @@ def test_the_command_refuses_bad_input(
 
 def test_a_run_that_fails_tells_why(tmp_path: Path) -> None:
     given = YAML(typ="safe").load(SMALL) | {"solver": {"max_iterations": 1, "min_load_step": 1.0}}
-    (outcome,) = compute([StudyPoint((1.0,), scene_from_mapping(given))], tmp_path, 1, lambda outcome, before: None)
+    (outcome,) = compute({(1.0,): scene_from_mapping(given)}, tmp_path, 1, lambda outcome, before: None)
     assert outcome.status == 3
     assert "no stable equilibrium" in outcome.reason
     assert 0.0 < outcome.cpu < HANGS

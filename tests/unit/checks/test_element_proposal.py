@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 from mpi4py import MPI
 
-from riser_soil.accuracy.chain import peaks_of
 from riser_soil.assembly import build
 from riser_soil.checks.bending_plausibility import asked_lengths, proposal, segments_for
 from riser_soil.checks.check import describe
@@ -21,6 +20,7 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.variants.key_results import key_results
+from riser_soil.variants.peaks import peaks_of
 from tests.support.said import line_with
 
 ROOT = Path(__file__).parents[3]
