@@ -97,7 +97,7 @@ def _refuse_strangers(client: Client, address: str) -> None:
 
 @contextmanager
 def _quiet_logs() -> Iterator[None]:
-    """Dask tells of workers that come and go, which the table of cases tells as far as it matters."""
+    """No log of workers that come and go: the outcomes of runs have what matters of it."""
     logging.disable(logging.CRITICAL)
     try:
         yield

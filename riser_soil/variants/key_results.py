@@ -1,17 +1,17 @@
-"""Key results of a run, by stage: what an engineer reads first in its summary, and what its error is part of.
+"""Key results of a run by stages, and the scales of their errors.
 
-In a static stage they are the values at its end, in others the extremes over the stage; the soil's settlement is
-the largest over the stage in both, as far as the soil was recorded.
+In a static stage they are the values at its end, in others the extremes over the stage. The soil's settlement is the
+largest in the records of either.
 
-Errors are told relative to a scale, at least the value's own size and never less than a floor, as a quantity that
-passes through zero has no relative error:
+Errors are relative to a scale. It is the value's size, but at least a floor, as a quantity that passes through zero has
+no relative error:
 
 | quantity | floor of its scale |
 |---|---|
-| forces | 0.1 of the largest key result force of the stage; of several lines of a line's own, or 1e-3 of all |
-| arc length of the touchdown point, place of a body | the distance of the line's ends, as they count from anywhere |
-| bending moment | 1e-9 of that largest force times that distance, above round-off alone |
-| curvature, settlement | 1e-6 over that distance, 1e-7 of it, likewise |
+| forces | 0.1 of the line's largest force in the stage; with several lines at least 1e-3 of all lines' |
+| arc length of the touchdown point, place of a body | the distance of the line's ends, as their origin is arbitrary |
+| bending moment | 1e-9 of that largest force times that distance, to be above round-off |
+| curvature, settlement | 1e-6 over that distance, 1e-7 of that distance, for the same reason |
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ from typing import Any
 
 from riser_soil.core.outputs import upper_end
 
-FORCE_FLOOR = 0.1  # of the largest key result force
-OF_ALL_LINES = 0.01  # of that of all lines, which that of one counts as at least: free ends have none but round-off
+FORCE_FLOOR = 0.1  # of the largest force among the key results
+OF_ALL_LINES = 0.01  # least of a line's largest force, over that of all lines: free ends have round-off alone
 MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
 
 SETTLEMENT, TOUCHDOWN = "soil settlement", "touchdown arc"  # the latter least or largest in stages that move
 
 SummaryPart = Mapping[str, Any]
-Known = tuple[str, str, float, str, str]
+Value = tuple[str, str, float, str, str]  # name, unit, value, figure, which
 
 
 @dataclass(frozen=True)
 class KeyResult:
     """A key result of one stage: value and floor of its scale in `unit` (SI).
 
-    figure, which: the summary's figure that it is, and whether its min or max; of a static stage, the value at its end.
-    of: the line or body, of several.
+    figure: its name in the summary. which: whether it is the figure's min or max; in a static stage it is the value at
+    the end. of: the line or body, if there are several.
     """
 
     stage: str
@@ -52,28 +52,28 @@ class KeyResult:
 
     @property
     def scale(self) -> float:
-        """What errors are told relative to, in `unit`."""
+        """Size to which errors are relative, in `unit`."""
         return max(abs(self.value), self.floor)
 
     @property
     def key(self) -> str:
-        """What it is called among those of a run."""
+        """Name among the key results of a run."""
         return f"{self.stage}: {self.label}"
 
     @property
     def label(self) -> str:
-        """What it is called among those of a stage."""
+        """Name among the key results of a stage."""
         return f"{self.of} {self.name}".strip()
 
     def relative(self, difference: float) -> float:
-        """Size of a difference in `unit` over the scale; 0 for none, inf where there is no scale."""
+        """Size of a difference in `unit` over the scale; inf where the scale is zero, but 0 for no difference."""
         if difference == 0.0:
             return 0.0
         return abs(difference) / self.scale if self.scale > 0.0 else math.inf
 
 
 def key_results(summary: SummaryPart) -> dict[str, KeyResult]:
-    """Key results by their keys, stage by stage, of a summary.json's content; those that it has."""
+    """Key results by their keys, stage by stage, in a summary.json's content."""
     return {each.key: each for stage in summary["stages"] for each in _of_whole_stage(stage)}
 
 
@@ -88,7 +88,7 @@ def _of_whole_stage(stage: SummaryPart) -> Iterator[KeyResult]:
 
 
 def _of_body(stage: SummaryPart, body: str, position: SummaryPart, length: float) -> Iterator[KeyResult]:
-    """Where it is, at the end of a static stage, else at most and at least; length: of the floor [m]."""
+    """Coordinates of a body at the end of a static stage, else their extremes. length: floor of their scale [m]."""
     sides = {"": "final"} if stage["kind"] == "static" else {"least ": "min", "largest ": "max"}
     for words, key in sides.items():
         for axis, value in zip("xyz", position[key], strict=True):
@@ -96,12 +96,12 @@ def _of_body(stage: SummaryPart, body: str, position: SummaryPart, length: float
 
 
 def _by_line(stage: SummaryPart) -> dict[str, SummaryPart]:
-    """A stage as each of several lines has it, by name; that of the only one by ""."""
+    """Summary of a stage by lines; that of the only line by ""."""
     return {line: {**stage, **own} for line, own in stage.get("lines", {"": {}}).items()}
 
 
 def _of_stage(stage: SummaryPart, line: str, least: float) -> list[KeyResult]:
-    """least: what its largest force counts as, at least [N]."""
+    """Key results of a line. least: for its largest force in floors of scales [N]."""
     values, length = list(_values(stage)), _span(stage["final"])
     force = max(_largest_force(values), least)
     floors = {"N": FORCE_FLOOR * force, "N.m": MOMENT_FLOOR * force * length, "m": SETTLEMENT_FLOOR * length}
@@ -116,7 +116,7 @@ def _of_stage(stage: SummaryPart, line: str, least: float) -> list[KeyResult]:
     ]
 
 
-def _largest_force(values: Sequence[Known]) -> float:
+def _largest_force(values: Sequence[Value]) -> float:
     return max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
 
 
@@ -125,8 +125,8 @@ def _span(final: SummaryPart) -> float:
     return math.dist(final["start"]["position"], final["end"]["position"])
 
 
-def _values(stage: SummaryPart) -> Iterator[Known]:
-    """Name, unit, value, figure, and min or max of the known ones."""
+def _values(stage: SummaryPart) -> Iterator[Value]:
+    """Values of a stage that are known."""
     upper = upper_end(stage["final"])
     for name, unit, path, which in (
         ("top tension", "N", (upper, "effective_tension"), "max"),
@@ -140,8 +140,8 @@ def _values(stage: SummaryPart) -> Iterator[Known]:
     yield from _contact(stage)
 
 
-def _contact(stage: SummaryPart) -> Iterator[Known]:
-    """Those of a riser that touches; one that never does has no touchdown point, and a contact force of 0."""
+def _contact(stage: SummaryPart) -> Iterator[Value]:
+    """Values by contact; a riser that never touches has no touchdown point, and a contact force of 0."""
     if stage["kind"] == "static":
         yield from _known(TOUCHDOWN, "m", _value(stage, ("touchdown_arc",), "max"), "touchdown_arc", "max")
     else:
@@ -154,17 +154,17 @@ def _contact(stage: SummaryPart) -> Iterator[Known]:
     yield from _known(SETTLEMENT, "m", settled, "max_settlement", "max")
 
 
-def _known(name: str, unit: str, value: float | None, figure: str, which: str) -> Iterator[Known]:
+def _known(name: str, unit: str, value: float | None, figure: str, which: str) -> Iterator[Value]:
     if value is not None and math.isfinite(value):
         yield name, unit, value, figure, which
 
 
 def _value(stage: SummaryPart, path: tuple[str, ...], which: str) -> float | None:
-    """A figure at the end of a static stage, or an extreme, min or max, of another; None where there is none."""
+    """A figure at the end of a static stage, or its min or max in another; None where there is none."""
     static = stage["kind"] == "static"
-    found: Any = stage["final" if static else "extremes"]
+    value: Any = stage["final" if static else "extremes"]
     for key in path:
-        found = found.get(key) if found is not None else None
-    if isinstance(found, dict):
-        found = found["value" if static else which]
-    return found
+        value = value.get(key) if value is not None else None
+    if isinstance(value, dict):
+        value = value["value" if static else which]
+    return value

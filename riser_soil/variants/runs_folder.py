@@ -108,7 +108,7 @@ def settle(made: Path, runs: Path, outcome: Outcome) -> Outcome:
 
 
 def prepare_attempts(runs: Path) -> None:
-    """Make the folder of attempts, without those that a killed call has left. SceneError or WriteError as a run has."""
+    """Make an empty folder of attempts. Raises SceneError or WriteError where that can't be."""
     try:
         _clear_attempts(runs)
         (runs / ATTEMPTS).mkdir(parents=True)

@@ -1,9 +1,8 @@
-"""Settings of a scene that its accuracy hangs on, and the scene with one of them turned.
+"""Settings of a scene that determine its accuracy, and variants of the scene that are finer in them.
 
-A setting is turned by a factor of fineness: 2 gives twice the elements, half the time step (automatic steps: the
-tolerance that halves them, an eighth), cells of the soil of half the size, twice the penalty. A setting that a scene
-lacks is not among its settings: soil of a mesh file has no mesh to vary, a bed of springs or of hysteretic clay no
-penalty.
+A setting is varied by a factor of fineness: 2 gives twice the elements, half the time step (of automatic steps: an
+eighth of the tolerance, which halves them), cells of the soil of half the size, twice the penalty. A scene has only
+some settings: soil of a mesh file has no mesh to vary, a bed of springs or of hysteretic clay no penalty.
 """
 
 from __future__ import annotations
@@ -26,46 +25,46 @@ if TYPE_CHECKING:
     from riser_soil.assembly.scales import Scales
 
 LOCAL_ORDER = 3  # of the local error of automatic steps in their size
-FIRM = 50.0  # times the automatic penalty on soil: some 2e-4 of a settlement is left to it, 1e-2 to the automatic one
+FIRM = 50.0  # firm penalty over the automatic one on soil: penetration is 2e-4 of a settlement, not 1e-2
 
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """A setting of a scene that costs time and gives accuracy.
+    """A setting of a scene.
 
-    there: whether a scene has it. turned: the scene with it finer by a factor. fineness: of the scene in it, in units
-    of its own (elements, 1/s, 1/m, N/m2); its ratio between two scenes is what was reached where counts are rounded.
-    in_words: the setting in words.
+    exists: whether a scene has it. finer: the scene with it finer by a factor. fineness: of a scene in it (elements,
+    1/s, 1/m, N/m2); the ratio of two scenes' fineness differs from the factor where counts are rounded. in_words: the
+    scene's setting in words.
     """
 
     name: str
     words: str
-    there: Callable[[Scene], bool]
-    turned: Callable[[Scene, float], Scene]
+    exists: Callable[[Scene], bool]
+    finer: Callable[[Scene, float], Scene]
     fineness: Callable[[Scene], float]
     in_words: Callable[[Scene], str]
 
 
 def settings_of(scene: Scene) -> tuple[Setting, ...]:
-    """Those that the scene has."""
-    return tuple(setting for setting in SETTINGS if setting.there(scene))
+    """Settings that the scene has."""
+    return tuple(setting for setting in SETTINGS if setting.exists(scene))
 
 
 def varied(scene: Scene, setting: Setting, factor: float) -> Scene:
     """The scene with the setting finer by a factor, the scene itself for 1; SceneError where that can't be.
 
-    Stage names, loads, block and all else stay. What is `auto` is turned as the number that it stands for.
+    All else stays. A setting that is `auto` is varied from the number that it means.
     """
     if factor == 1.0:
         return scene
-    turned = setting.turned(resolved(scene), factor)
-    if _elements(turned) > MOST_ELEMENTS:
+    finer = setting.finer(resolved(scene), factor)
+    if _elements(finer) > MOST_ELEMENTS:
         raise SceneError(f"{setting.words}, {factor:g} times as fine: more than {MOST_ELEMENTS} elements")
-    return turned
+    return finer
 
 
 def refined(scene: Scene, factors: Mapping[str, float]) -> Scene:
-    """The scene with settings finer by factors, by their names; those that it lacks are left out.
+    """The scene finer by factors, by names of settings; those that it does not have are ignored.
 
     SceneError where one can't be.
     """
@@ -75,14 +74,14 @@ def refined(scene: Scene, factors: Mapping[str, float]) -> Scene:
 
 
 def settings_in_words(scene: Scene, settings: Iterable[Setting] | None = None) -> str:
-    """Settings of the scene in words; settings: those to tell, all that it has by default."""
+    """The scene's settings in words. settings: to be named, by default all."""
     return ", ".join(setting.in_words(scene) for setting in (settings_of(scene) if settings is None else settings))
 
 
 def resolved(scene: Scene) -> Scene:
-    """The scene with numbers where settings are `auto`; nothing else changes by that.
+    """The scene with numbers where settings are `auto`, which gives the same results.
 
-    Of soil beside a rigid seabed, and of several lines, all get the largest of their penalties.
+    With soil beside a rigid seabed, and with several lines, all have the largest of their penalties.
     """
     return _with_stiffness(_with_tolerance(_with_sizes(scene)))
 
@@ -153,7 +152,7 @@ def _finer_elements(scene: Scene, factor: float) -> Scene:
 
 
 def _cut(segment: Segment, factor: float) -> Segment:
-    """At least one element is left; graded lengths stay graded."""
+    """A segment with finer elements, at least one; graded lengths stay graded."""
     if segment.elements is not None:
         return segment.model_copy(update={"elements": max(1, round(segment.elements * factor))})
     given = segment.element_length
@@ -167,7 +166,7 @@ def _shorter_steps(scene: Scene, factor: float) -> Scene:
 
 
 def _stepped(stage: Stage, factor: float) -> Stage:
-    """A given step is at most the stage's duration."""
+    """A stage with shorter steps; given ones are at most its duration."""
     if not isinstance(stage, DynamicStage):
         return stage
     if stage.time_step != "auto":
@@ -177,7 +176,7 @@ def _stepped(stage: Stage, factor: float) -> Stage:
 
 
 def _finer_soil(scene: Scene, factor: float) -> Scene:
-    """All sizes of the cells; the strip where they do not grow keeps its width."""
+    """The scene with smaller cells of the soil; the strip of cells of one size keeps its width."""
     soil = scene.soil
     assert soil is not None
     assert isinstance(soil.mesh, GeneratedMesh)  # resolved
@@ -192,7 +191,7 @@ def _finer_soil(scene: Scene, factor: float) -> Scene:
 
 
 def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
-    """On soil alone at most a firm one, if it is not firmer: stiffer ones are no more accurate."""
+    """The scene with a stiffer penalty; on soil alone it becomes at most firm, as a stiffer one is no more accurate."""
     contact, before = scene.contact, _penalty(scene)
     assert contact is not None
     stiffness = max(before, min(before * factor, _firm(scene))) if factor > 1.0 else before * factor
@@ -201,11 +200,11 @@ def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
 
 
 def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
-    """The penalty's corner for a stiffer rigid seabed, as changed keys of `contact`.
+    """Smoothing of the penalty for a stiffer rigid seabed, as changed keys of `contact`.
 
-    Where the automatic corner would be wider than what the riser sinks in by its weight, it is just that, also where it
-    was that before. Where an end is held on the seabed a wider one presses the riser by a force that grows with the
-    penalty, to no limit.
+    If the automatic smoothing would be wider than the penetration by the riser's weight, it becomes that penetration,
+    also if it was that before. Beside an end that is fixed on the seabed a wider one presses the riser by a force that
+    grows with the penalty without limit.
     """
     from riser_soil.assembly.contact_laws import NARROWEST_CORNER
 
@@ -228,12 +227,12 @@ def _penalty(scene: Scene) -> float:
 
 
 def is_firm(scene: Scene) -> bool:
-    """Whether the penalty of contact with soil is so stiff that a stiffer one tells nothing."""
+    """Whether the penalty of contact with soil is so stiff that a stiffer one has no effect."""
     return _has_penalty(scene) and _penalty(scene) > 0.5 * _firm(scene)
 
 
 def _firm(scene: Scene) -> float:
-    """Where a rigid seabed has the same penalty there is no limit: beside a held end its error falls slowly."""
+    """Firm penalty on soil [N/m2]; inf with a rigid seabed, where its error beside a fixed end falls slowly."""
     if scene.soil is None or isinstance(scene.seabed, RigidSeabed):
         return math.inf
     assert scene.contact is not None

@@ -41,7 +41,7 @@ def extremes(scene: Scene) -> Iterator[ExtremeScene]:
     """The scene as it is, then those that make sense for it."""
     yield ExtremeScene(BASE, scene)
     for setting in SETTINGS:
-        for factor, apart in FACTORS[setting.name] if setting.there(scene) else ():
+        for factor, apart in FACTORS[setting.name] if setting.exists(scene) else ():
             against = BASE if apart else None
             yield ExtremeScene(
                 f"{setting.words}, {factor:.3g} times as fine", varied(scene, setting, factor), against, apart
