@@ -17,6 +17,7 @@ from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.assembly.assembly import LAID_IN, LETTING_GO
 from riser_soil.assembly.motions import corners
 from riser_soil.assembly.stage import scheme_of, times_to_hit
+from riser_soil.checks.overload import overload
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.part import Model, State
@@ -25,6 +26,7 @@ from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, 
 from riser_soil.core.system import System, Timer, total
 from riser_soil.errors import SolveError
 from riser_soil.interruption import agreeing, asked_to_end, end_together, uninterrupted
+from riser_soil.results.end_of_run import take_up_end_of_run
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage
 from riser_soil.solve.adaptive_steps import AutoSteps, from_last_to_first
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
@@ -100,8 +102,6 @@ def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
     The counter is that of the steps of laying, None where nothing was laid.
     """
     if assembly.scene.initial is not None:
-        from riser_soil.results.end_of_run import take_up_end_of_run
-
         return take_up_end_of_run(assembly), None
     rest, stage = State.at_rest(0.0, assembly.size), assembly.laying
     if stage is None:
@@ -242,8 +242,6 @@ def _overload(assembly: Assembly) -> str:
     """Words on bearing capacity where a solve failed; empty where the ground bears the riser."""
     if not assembly.contacts:
         return ""
-    from riser_soil.checks.overload import overload
-
     return overload(assembly)
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
-from riser_soil.sea.morison import WaterLoads
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe, alike, diameters, pipe_at
 from riser_soil.sea.vortex_law import Shedding
@@ -60,8 +59,8 @@ class Body(ABC):
 
     @property
     @abstractmethod
-    def still(self) -> WaterLoads:
-        """Its loads in still water."""
+    def drag(self) -> Array:
+        """Coefficients of drag (ne, 2), normal and tangential, see `WaterLoads`."""
 
     @property
     @abstractmethod
@@ -116,9 +115,8 @@ class PipeInWater(Body):
         return Shedding(0.5 * self.rho * diameter * coefficient, diameter, middle, width)
 
     @property
-    def still(self) -> WaterLoads:
-        drag = drag_coefficients(self.rho, self.elements.outer_diameter, *self.elements.drag.T)
-        return WaterLoads(self.pipe, drag, self.mass)
+    def drag(self) -> Array:
+        return drag_coefficients(self.rho, self.elements.outer_diameter, *self.elements.drag.T)
 
     @cached_property
     def mass(self) -> Array:
@@ -157,8 +155,8 @@ class ModulesInWater(Body):
         return any(module.added_mass for module in self.modules)
 
     @property
-    def still(self) -> WaterLoads:
-        return WaterLoads(self.pipe, alike(0.5 * self.rho * self._of("drag_area")), self.mass)
+    def drag(self) -> Array:
+        return alike(0.5 * self.rho * self._of("drag_area"))
 
     @cached_property
     def mass(self) -> Array:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import lru_cache
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -11,11 +10,9 @@ import numpy as np
 from riser_soil.assembly.sea import SeaAssembly, sea_of
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.core.arrays import Array, as_list
-from riser_soil.core.quantities import Vector
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_ends import End, Motion, SupportRotation
-from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
-from riser_soil.scene.rao import TRANSLATIONS
+from riser_soil.riser.line_ends import End
+from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, QuasiStaticStage, Stage, StaticStage, TimedStage, varying_in
@@ -23,7 +20,6 @@ from riser_soil.solve.adaptive_steps import from_last_to_first
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.motion.rigid_body import SixDegreeMotion
 
 # Times at which a stage is looked at, at least: a prime number of intervals, as whole periods would always find the
 # same.
@@ -63,94 +59,17 @@ def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessel
     end.motion = end.turning = None
     if isinstance(stage, StaticStage):
         target = getattr(stage.move, name, None)
-        _move(end, origin, target)
-        if target is not None and vessels is not None:
+        if target is None:
+            return
+        from riser_soil.assembly.end_motions import move_to
+
+        move_to(end, origin, np.asarray(target))
+        if vessels is not None:
             vessels.move(name, np.asarray(target) - origin)
     elif stage.motion is not None and name in stage.motion.by_end:
-        for way in stage.motion.by_end[name].ways.values():  # rotation last: a table beside it has none of its own
-            _set(end, name, origin, stage, way, vessels)
-        if isinstance(stage, QuasiStaticStage):
-            _slow(end)
+        from riser_soil.assembly.end_motions import move_by
 
-
-def _move(end: End, origin: Array, target: Vector | None) -> None:
-    if target is not None:
-        from riser_soil.motion.prescribed import SmoothMove
-
-        end.motion = SmoothMove(origin, np.asarray(target))
-
-
-def _slow(end: End) -> None:
-    """Without rates."""
-    from riser_soil.motion.prescribed import SlowMotion, SlowTurning
-
-    end.motion = SlowMotion(end.motion) if end.motion is not None else None
-    end.turning = SlowTurning(end.turning) if end.turning is not None else None
-
-
-def _set(end: End, name: str, origin: Array, stage: Stage, way: MotionKind, vessels: Vessels | None) -> None:
-    """One way of moving an end, or of turning it."""
-    match way:
-        case Harmonic():
-            end.motion = _harmonic(origin, way)
-        case ArcMotion():
-            end.motion = _arc(origin, way)
-        case Rotation():
-            end.turning = _rocking(way)
-        case Table():
-            _carry(end, origin, _table(way, stage))
-        case VesselHistory():
-            _sail(end, origin, way, stage)
-        case Vessel():
-            assert vessels is not None
-            vessel = vessels.motion(stage, name, origin)
-            _carry(end, vessel.attachment.mean, vessel)
-        case _:
-            assert_never(way)
-
-
-def _harmonic(origin: Array, given: Harmonic) -> Motion:
-    from riser_soil.motion.prescribed import HarmonicMotion
-
-    return HarmonicMotion(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
-
-
-def _arc(origin: Array, given: ArcMotion) -> Motion:
-    from riser_soil.motion.prescribed import AngleOscillation, SwingingEnd
-
-    swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
-    return SwingingEnd(origin, np.array(given.hub), np.array(given.axis), swing)
-
-
-def _rocking(given: Rotation) -> Callable[[float], SupportRotation]:
-    from riser_soil.motion.prescribed import AngleOscillation, RockingSupport
-
-    swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
-    return RockingSupport(np.array(given.axis) / np.linalg.norm(given.axis), swing)
-
-
-def _table(given: Table | VesselHistory, stage: Stage) -> SixDegreeMotion:
-    from riser_soil.motion.prescribed import TabulatedMotion
-
-    values = np.hstack([given.displacements, given.rotations])
-    straight = isinstance(stage, QuasiStaticStage)
-    return TabulatedMotion(np.array(given.columns.values["t"]), values, given.ramp, straight)
-
-
-def _sail(end: End, origin: Array, given: VesselHistory, stage: Stage) -> None:
-    """With a vessel at which the end is at origin (3,) as the stage begins."""
-    from riser_soil.motion.rigid_body import CarriedFrame, CarriedPoint, RigidBody
-
-    once = lru_cache(maxsize=2)(_table(given, stage))  # a step asks again and again for its beginning and its end
-    body = RigidBody(once, np.array([given.axes(mode) for mode in TRANSLATIONS]).T)
-    end.motion, end.turning = CarriedPoint(body, origin, np.array(given.reference)), CarriedFrame(body)
-
-
-def _carry(end: End, origin: Array, six: SixDegreeMotion) -> None:
-    from riser_soil.motion.rigid_body import CarriedEnd, CarriedSupport
-
-    once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end
-    end.motion, end.turning = CarriedEnd(origin, once), CarriedSupport(once)
+        move_by(end, name, origin, stage, stage.motion.by_end[name], vessels)
 
 
 def end_places(scene: Scene) -> Iterator[dict[str, Array]]:

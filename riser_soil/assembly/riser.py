@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from riser_soil.errors import SceneError
 from riser_soil.riser import sections, shapes
 from riser_soil.riser.additions import Growth, Taper, with_growth, with_taper
 from riser_soil.riser.attachments import Attachments, PointAttachment
+from riser_soil.riser.catenary import Catenary
 from riser_soil.riser.line import UP, Line
 from riser_soil.riser.line_ends import End
 from riser_soil.riser.sections import Elements
@@ -27,9 +28,6 @@ from riser_soil.scene.scene import Scene
 
 MOST_SHAPES = 30  # tried for marine growth
 SETTLED = 1e-9  # of the riser's length: change of the first shape by which its growth is no other
-
-if TYPE_CHECKING:
-    from riser_soil.riser.catenary import Catenary
 
 
 def elements_of(scene: Scene) -> sections.Elements:

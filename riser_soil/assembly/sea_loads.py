@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -99,12 +99,10 @@ class _BodyLoads:
 
     @property
     def morison(self) -> Morison:
-        body, loads = self.body, self.body.still
-        if self.stream is not None:
-            loads = replace(loads, water=self.stream, dissipative=False)
-            if self.sea.accelerates_in(self.stage):
-                loads = replace(loads, pushed=pushed_masses(body.mass, body.displaced))
-        return Morison(loads if self.surface is None else replace(loads, water=self.surface, span=body.span))
+        body, water = self.body, self.surface or self.stream
+        pushed = pushed_masses(body.mass, body.displaced) if self.sea.accelerates_in(self.stage) else None
+        span = None if self.surface is None else body.span
+        return Morison(WaterLoads(body.pipe, body.drag, body.mass, water, pushed, span, self.stream is None))
 
     def _through(self, dissipative: bool) -> WaterLoads:
         """Loads of the water on a body that moves through it, on its wet part alone where the water has a surface."""

@@ -10,6 +10,7 @@ import numpy as np
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.core.arrays import Array
 from riser_soil.riser import sections, shapes
+from riser_soil.riser.catenary import Catenary, catenary
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.scene import Scene
@@ -17,7 +18,6 @@ from riser_soil.scene.shapes import ArcShape, PointsShape
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
-    from riser_soil.riser.catenary import Catenary
 
 # The least radius H/w of a first shape's bends, over the elements' length, and over the length (EI/w)^(1/3) that a line
 # needs to bend under its own weight: sharper than elements and pipe can follow.
@@ -117,8 +117,6 @@ def catenary_between(
     """The riser as a catenary between two points (3,) [m], on the ground where there is one, from its surface where one
     of them lies below springs; near: as of `catenary`.
     """
-    from riser_soil.riser.catenary import catenary
-
     ends, level = np.array([start, end]), resting_level(scene, elements, np.array([start, end]))
     if scene.laid_from_below:
         ends[:, 2] = np.maximum(ends[:, 2], level)

@@ -80,8 +80,6 @@ def _long_in_the_bend(riser: LineAssembly) -> Iterator[str]:
     """
     if riser.catenary is None:
         return
-    from riser_soil.riser.catenary import bend_of_curvature, curvature
-
     line, H, T = riser.line, riser.catenary.H, riser.catenary.tension
     w = np.abs(riser.elements.weight)
     middle = 0.5 * (T[1:] + T[:-1])

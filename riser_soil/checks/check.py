@@ -17,6 +17,7 @@ from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, s
 from riser_soil.checks.inventory import Inventory, inventory, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
+from riser_soil.checks.wave_plausibility import reported_regular
 from riser_soil.core.communicator import Communicator
 from riser_soil.scene.scene import Scene
 
@@ -79,8 +80,6 @@ def _counted(number: int, name: str) -> str:
 def reported_waves(assembly: Assembly) -> Iterator[str]:
     """What theory a regular wave follows, where the scene has one of finite height."""
     if assembly.sea is not None and assembly.sea.waves is not None:
-        from riser_soil.checks.wave_plausibility import reported_regular
-
         yield from reported_regular(assembly.sea.waves)
 
 
@@ -141,15 +140,15 @@ def _unknowns(riser: LineAssembly, name: str, comm: Communicator) -> Iterator[st
         net = sum(attachment.net_weight for attachment in riser.attachments)
         yield f"{_counted(len(riser.attachments), 'attachment')}: weight less buoyancy {net:.4g} N in all"
     if riser.soil is not None:
+        from riser_soil.checks.soil_edge import edge_report
+        from riser_soil.checks.soil_mesh import mesh_report
+
         soil = riser.soil.whole
         cells = comm.allreduce(soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(comm, soil.field)} unknowns"
         yield from _computed(riser.scene)
         yield from _condensed(riser.scene, riser.soil)
         yield from resolution(riser)
-        from riser_soil.checks.soil_edge import edge_report
-        from riser_soil.checks.soil_mesh import mesh_report
-
         yield from mesh_report(riser)
         yield from edge_report(riser)
     for ground, stiffness in riser.contact_stiffness.items():

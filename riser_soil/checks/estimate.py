@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from riser_soil.assembly import sized
 from riser_soil.assembly.assembly import LAID_IN
 from riser_soil.assembly.motions import corner_count
+from riser_soil.assembly.soil_block import block_of
 from riser_soil.checks.factor_fill import factor_memory, nodes_of, operations
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
 from riser_soil.scene.lines import by_line, on_soil
@@ -23,10 +23,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import MeshFile, SoilScene
 from riser_soil.scene.soil_law import initial_stress
 from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage
-
-if TYPE_CHECKING:
-    from riser_soil.soil.grading import BlockSpec
-
+from riser_soil.soil.grading import BlockSpec
 
 # Bytes of: a process with the packages that every scene needs, what dolfinx and gmsh add, element and matrix arrays of
 # an unknown of the riser, all that a cell has for one entry of its matrix (mesh, value, place, matrix entry, tangent,
@@ -244,8 +241,6 @@ def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
 
 
 def _block(scene: Scene, soil: SoilScene) -> BlockSpec:
-    from riser_soil.assembly.soil_block import block_of
-
     own = on_soil(scene)
     assert own is not None
     start, end = initial_ends(own.line)

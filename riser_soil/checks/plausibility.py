@@ -10,6 +10,9 @@ import numpy as np
 
 from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.checks.bending_plausibility import bending_warnings
+from riser_soil.checks.code_plausibility import code_check_warnings
+from riser_soil.checks.motion_plausibility import motion_warnings, refuse_unreachable
+from riser_soil.checks.wave_plausibility import wave_warnings
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.line_checks import path_of_line
 from riser_soil.scene.problem import dotted
@@ -54,8 +57,6 @@ def _options_without_petsc(assembly: Assembly) -> Iterator[str]:
 def refuse_impossible(scene: Scene) -> None:
     """Raises SceneError where motions take ends to where their lines can't be."""
     if any(not isinstance(stage, StaticStage) for stage in scene.stages):
-        from riser_soil.checks.motion_plausibility import refuse_unreachable
-
         refuse_unreachable(scene)
 
 
@@ -73,18 +74,12 @@ def _of_one(riser: LineAssembly) -> Iterator[str]:
 
         yield from ground_warnings(riser)
     if riser.scene.code_check:
-        from riser_soil.checks.code_plausibility import code_check_warnings
-
         yield from code_check_warnings(riser.scene)
     yield from _beyond_the_rao(riser)
     yield from _loads_that_end(riser.scene)
     if riser.scene.water is not None and riser.scene.water.waves is not None:
-        from riser_soil.checks.wave_plausibility import wave_warnings
-
         yield from wave_warnings(riser.scene)
     if _moves(riser.scene):
-        from riser_soil.checks.motion_plausibility import motion_warnings
-
         yield from motion_warnings(riser.scene)
 
 

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from riser_soil.errors import ResultsError, RiserSoilError
+from riser_soil.errors import ResultsError
 from riser_soil.report.report_file import ReportFile
 from riser_soil.results import Run
 from riser_soil.scene.scene import Scene
@@ -37,13 +37,10 @@ class LoadCase:
     given: Mapping[str, str] = field(default_factory=dict)
     line: str = ""
 
-    @cached_property
+    @property
     def scene(self) -> Scene | None:
-        """The checked scene; None where it can't be read, as when one of its files is gone."""
-        try:
-            return self.run.read_scene()
-        except (RiserSoilError, OSError):
-            return None
+        """The checked scene; None where it can't be read."""
+        return self.run.checked_scene
 
     @cached_property
     def data(self) -> dict[str, Any]:

@@ -153,5 +153,6 @@ def _at(run: Run, values: Array, arcs: Sequence[float]) -> Array:
 
 
 def _su(run: Run) -> float:
-    ground = run.scene.get("soil") or run.scene.get("seabed") or {}
-    return float((ground.get("law") or {}).get("su", np.nan))
+    """Undrained shear strength at the ground's surface [Pa]; nan where it has none, or the scene can't be read."""
+    su = None if run.checked_scene is None else run.checked_scene.surface_strength
+    return np.nan if su is None else su

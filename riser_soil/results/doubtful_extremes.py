@@ -130,7 +130,7 @@ class TimeResolution:
     """Estimates of the time step's error in the extremes of n figures."""
 
     def __init__(self, n: int) -> None:
-        from riser_soil.results.course import Course  # compiled code is imported where there are stages
+        from riser_soil.results.course import Course, follow  # compiled code is imported where there are stages
 
         none, unknown = np.zeros((2, n)), np.full((2, n), -np.inf)
         course = Course(
@@ -150,13 +150,11 @@ class TimeResolution:
             rival_error=none.copy(),
             rival_steps=none.copy(),
         )
-        self._course = course
+        self._follow, self._course = follow, course
 
     def update(self, t: Array | float, values: Array) -> None:
         """t: s; values (n,) after a step, or times (nt,) and values (nt, n) after steps in turn. nan does not count."""
-        from riser_soil.results.course import follow
-
-        follow(self._course, np.atleast_1d(t), np.atleast_2d(values))
+        self._follow(self._course, np.atleast_1d(t), np.atleast_2d(values))
 
     @property
     def _less(self) -> Array:

@@ -135,17 +135,15 @@ class Extremes:
     """Smallest and largest of every figure, with their times and places along the riser; nan does not count."""
 
     def __init__(self) -> None:
-        from riser_soil.results.course import Extent  # compiled code is imported where there are stages
+        from riser_soil.results.course import Extent, extend  # compiled code is imported where there are stages
 
         none, nowhere = np.full(_SIZE, np.inf), np.full(len(_PLACED), np.nan)
         unknown = np.full(_SIZE, np.nan)
-        self._extent = Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy())
+        self._extend, self._extent = extend, Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy())
 
     def update(self, t: Array | float, vector: Array) -> None:
         """t: s (static stages: load factor); vector: from `pack`; both of one instant, or of many in turn."""
-        from riser_soil.results.course import extend
-
-        extend(self._extent, _AT_PLACED, np.atleast_1d(t), np.atleast_2d(vector))
+        self._extend(self._extent, _AT_PLACED, np.atleast_1d(t), np.atleast_2d(vector))
 
     def nested(self) -> dict[str, Any]:
         """{min, max, t_min, t_max} of each figure, and {arc_min, arc_max} [m] of those that sit somewhere along the

@@ -16,7 +16,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.errors import ResultsError
+from riser_soil.errors import ResultsError, RiserSoilError
 from riser_soil.results import folder as run_folder
 from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import reading
@@ -199,6 +199,14 @@ class Run:
 
         scene = read_scene(str(self.folder / run_folder.SCENE))
         return by_line(scene)[self._group[:-1]] if self._group else scene
+
+    @cached_property
+    def checked_scene(self) -> Scene | None:
+        """The checked scene; None where it can't be read, as when one of its files is gone."""
+        try:
+            return self.read_scene()
+        except (RiserSoilError, OSError):
+            return None
 
     @property
     def finished(self) -> bool:

@@ -211,6 +211,15 @@ class Scene(BaseModel):
         return any(isinstance(stage, DynamicStage) for stage in self.stages)
 
     @property
+    def surface_strength(self) -> float | None:
+        """Undrained shear strength at the surface of the soil, without soil of the seabed [Pa]; None where it has none."""
+        if self.soil is not None:
+            found = self.soil.top_law.undrained_strength(0.0)
+            return None if found is None else float(found)
+        strength = None if self.seabed is None else self.seabed.undrained_strength
+        return None if strength is None else strength.su
+
+    @property
     def soil_moves(self) -> bool:
         """Whether the scene has soil at large strain, whose cells move with it."""
         return self.soil is not None and not self.why_small_strain

@@ -10,6 +10,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_layers import boundaries
+from riser_soil.soil.layered import LayeredWeight, in_layers, law_by_depth, of_layers
 
 SEA_WATER, STANDARD_GRAVITY = 1025.0, 9.80665
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from riser_soil.scene.scene import Scene
     from riser_soil.soil.grid import DistributedMesh
     from riser_soil.soil.law import Formula
-    from riser_soil.soil.layered import LayeredWeight
 
 
 def law_of(given: SoilScene, grid: DistributedMesh, shallowest: float = 0.0) -> Callable[[Array, Array], Formula]:
@@ -28,8 +28,6 @@ def law_of(given: SoilScene, grid: DistributedMesh, shallowest: float = 0.0) -> 
     if given.layers is None:
         law = given.top_law
         return lambda depth, initial: law.at_points(np.maximum(depth, shallowest), initial)
-    from riser_soil.soil.layered import law_by_depth, of_layers
-
     laws, bottoms = [layer.law for layer in given.layers], boundaries(given.layers)
     if volumes(given):
         return lambda depth, initial: of_layers(
@@ -45,8 +43,6 @@ def strength_of(given: SoilScene, shallowest: float = 0.0) -> Callable[[IntArray
     """What tells the undrained shear strength (n,) [Pa] of undisturbed soil in volumes (n,) at depths (n,) [m];
     infinite of soil that has none. shallowest: as in `law_of`.
     """
-    from riser_soil.soil.layered import in_layers
-
     laws, bottoms, by_volume = given.laws, boundaries(given.layers or ()), bool(volumes(given))
 
     def strength(volume: IntArray, depth: Array) -> Array:
@@ -65,8 +61,6 @@ def weight_of(given: SoilScene) -> float | LayeredWeight:
     """Submerged unit weight [N/m3]."""
     if given.layers is None or volumes(given):
         return given.submerged_unit_weight
-    from riser_soil.soil.layered import LayeredWeight
-
     own = [layer.submerged_unit_weight for layer in given.layers]
     return LayeredWeight(boundaries(given.layers), tuple(given.submerged_unit_weight if w is None else w for w in own))
 
@@ -81,8 +75,6 @@ def initial_stress(given: SoilScene, depth: Array) -> Array:
 
 def density_of(given: SoilScene, scene: Scene) -> Callable[[Array], Array]:
     """What tells the density (n,) [kg/m3] of soil and pore water at depths (n,) [m]."""
-    from riser_soil.soil.layered import LayeredWeight
-
     own, weight = given.density, weight_of(given)
     layers = weight if isinstance(weight, LayeredWeight) else LayeredWeight((), (weight,))
     water = SEA_WATER if scene.water is None else scene.water.density

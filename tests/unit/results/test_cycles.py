@@ -16,14 +16,13 @@ from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.cycles import COLUMNS, secant_stiffness
 from tests.support.said import telling
+from tests.support.scenes import LAY, dynamic, touchdown
 
 PERIOD, SU = 2.0, 3.0e3
 STIFFNESS, HEAVE = 4.0e5, (0.01, 0.02, 0.005)  # N/m2; amplitude [m] in each cycle
 ARC = np.array([0.0, 10.0, 20.0])
-SCENE = {
-    "soil": {"law": {"kind": "von-mises", "su": SU}},
-    "stages": [{"name": "lay"}, {"name": "heave", "motion": {"end": {"harmonic": {"period": PERIOD}}}}],
-}
+HEAVING = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 0.02], "period": PERIOD}}}
+SCENE = touchdown(LAY, dynamic(7.0, 0.05, "heave", motion=HEAVING), su=SU)
 
 
 @pytest.fixture
@@ -72,6 +71,18 @@ def test_ground_without_strength_and_another_period(folder: Path) -> None:
     found = secant_stiffness(Run(folder), [0.0], stage="heave", period=2.0 * PERIOD)
     assert found.height[:, 0] == pytest.approx([2.0 * max(HEAVE)])
     assert np.isnan(found.over_su).all()
+
+
+def test_strength_is_that_of_the_surface(folder: Path) -> None:
+    """Of the first layer, and of a seabed of clay where there is no soil."""
+    soil = dict(SCENE["soil"])
+    law = soil.pop("law")
+    layers = [{"to": 0.5, "law": law}, {"law": law | {"su": 2.0 * SU}}]
+    write_scene(folder, SCENE | {"soil": soil | {"layers": layers}})
+    assert secant_stiffness(Run(folder), [0.0]).over_su[0, 0] == pytest.approx(STIFFNESS / SU)
+    clay = {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 2.0 * SU}}
+    write_scene(folder, SCENE | {"soil": None, "seabed": clay})
+    assert secant_stiffness(Run(folder), [0.0]).over_su[0, 0] == pytest.approx(0.5 * STIFFNESS / SU)
 
 
 @pytest.mark.parametrize(
