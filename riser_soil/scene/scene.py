@@ -212,7 +212,7 @@ class Scene(BaseModel):
 
     @property
     def surface_strength(self) -> float | None:
-        """Undrained shear strength at the surface of the soil, without soil of the seabed [Pa]; None where it has none."""
+        """Undrained shear strength [Pa] at the surface of the soil, else of the seabed; None where it has none."""
         if self.soil is not None:
             found = self.soil.top_law.undrained_strength(0.0)
             return None if found is None else float(found)
