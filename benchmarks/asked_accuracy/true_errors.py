@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,9 +13,8 @@ from typing import Any
 from benchmarks.error_bars.references import Reference
 from riser_soil.core.compiled import seconds_of_work
 from riser_soil.errors import SolveError
-from riser_soil.results.folder import SUMMARY
 from riser_soil.scene.scene import Scene
-from riser_soil.variants.key_results import key_results
+from riser_soil.variants.key_results import key_results_in
 from riser_soil.whole_run import run
 
 ACCURACY, ON_SOIL = 0.01, 0.1  # asked; where there is soil
@@ -55,7 +53,7 @@ def accuracy_of(scene: Mapping[str, Any]) -> float:
 
 def true_errors(folder: Path, reference: Reference, accuracy: float = ACCURACY) -> TrueErrors:
     """Of the run in a folder; inf for a quantity that it lacks."""
-    found = key_results(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
+    found = key_results_in(folder)
     errors, left_out = dict[str, float](), 0
     for key, (true, uncertainty) in reference.items():
         if key in found and found[key].relative(uncertainty) > CERTAIN * accuracy:

@@ -14,9 +14,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from riser_soil.accuracy.extrapolation import Limit, limit
 from riser_soil.accuracy.refinements import Refinements
 from riser_soil.accuracy.study_points import Factors, PointOutcome
+from riser_soil.variants.extrapolation import Limit, limit
 from riser_soil.variants.key_results import KeyResult
 
 INTERACTION = 2.0  # factor on the corner's difference from its prediction, in the reference's uncertainty
@@ -55,7 +55,7 @@ class AssessedQuantity:
 
     def error_of(self, other: KeyResult) -> float:
         """Relative error of the quantity in another run."""
-        return self.reference.relative(other.value - self.reference.value)
+        return self.reference.error(other)
 
     def share(self, number: int, factor: float = 1.0) -> float:
         """Relative error by one setting at a level of its refinement series."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -16,11 +15,10 @@ from riser_soil.assembly.packages import communicator_of
 from riser_soil.core import compiled
 from riser_soil.errors import Interruption
 from riser_soil.interruption import handling_signals
-from riser_soil.results.folder import SUMMARY
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.summary import add_to_summary
 from riser_soil.scene.scene import Scene
-from riser_soil.variants.key_results import key_results
+from riser_soil.variants.key_results import key_results_in
 from riser_soil.whole_run import run
 
 INTERRUPTED = "while its error bars were computed; {} has the whole run, without them"
@@ -56,7 +54,7 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
 
 def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:
     """Values of a finished run. peaks: gathered while it ran."""
-    return run_values(key_results(json.loads((folder / SUMMARY).read_text(encoding="utf-8"))), peaks)
+    return run_values(key_results_in(folder), peaks)
 
 
 def write_bars(folder: Path, bars: list[ErrorBar], seconds: dict[str, float], **more: Any) -> None:

@@ -16,7 +16,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, error_bars
-from riser_soil.accuracy.extreme_differences import extremes_of, without_windows
 from riser_soil.accuracy.fine_slice import has_many_slices, settlements_on_fine_cells
 from riser_soil.assembly.motions import periods_of
 from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
@@ -24,6 +23,7 @@ from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.stages import DynamicStage, StaticStage
+from riser_soil.variants.extreme_differences import extremes_of, without_windows
 from riser_soil.variants.key_results import SETTLEMENT, KeyResult, key_results
 from riser_soil.variants.peaks import peaks_of
 from riser_soil.variants.settings import is_firm, refined, settings_of

@@ -31,7 +31,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from riser_soil.accuracy.extreme_differences import Extremes, difference
+from riser_soil.variants.extreme_differences import Extremes, difference
 from riser_soil.variants.key_results import SETTLEMENT, KeyResult
 
 SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalty": "penalty"}

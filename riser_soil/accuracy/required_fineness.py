@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, sampling_errors
-from riser_soil.accuracy.extreme_differences import difference
+from riser_soil.variants.extreme_differences import difference
 
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # exponents of the fineness in the computing time
 MARGIN = 0.8  # largest bar aimed at, over the accuracy

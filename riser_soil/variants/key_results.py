@@ -16,12 +16,15 @@ no relative error:
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from riser_soil.core.outputs import upper_end
+from riser_soil.results.folder import SUMMARY
 
 FORCE_FLOOR = 0.1  # of the largest force among the key results
 OF_ALL_LINES = 0.01  # least of a line's largest force, over that of all lines: free ends have round-off alone
@@ -65,11 +68,20 @@ class KeyResult:
         """Name among the key results of a stage."""
         return f"{self.of} {self.name}".strip()
 
+    def error(self, other: KeyResult) -> float:
+        """Relative difference of another run's result, this one being the reference; inf where there is no scale."""
+        return self.relative(other.value - self.value)
+
     def relative(self, difference: float) -> float:
         """Size of a difference in `unit` over the scale; inf where the scale is zero, but 0 for no difference."""
         if difference == 0.0:
             return 0.0
         return abs(difference) / self.scale if self.scale > 0.0 else math.inf
+
+
+def key_results_in(folder: Path) -> dict[str, KeyResult]:
+    """Key results by their keys of the run in a folder."""
+    return key_results(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
 
 
 def key_results(summary: SummaryPart) -> dict[str, KeyResult]:

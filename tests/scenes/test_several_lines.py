@@ -546,7 +546,7 @@ def test_an_accuracy_asked_of_several_lines_is_reached(tmp_path: Path) -> None:
     assert len({line.element_count for line in chosen.lines.values()}) > 1
     finer = varied(varied(chosen, ELEMENTS, 2.0), TIME_STEP, 2.0)
     true = key_results(peaks_of(finer, MPI.COMM_SELF).as_summary("peaks"))
-    off = [each.relative(each.value - true[key].value) for key, each in key_results(found.summary).items()]
+    off = [each.error(true[key]) for key, each in key_results(found.summary).items()]
     assert max(off) < 0.05
 
 

@@ -21,7 +21,7 @@ from riser_soil.results.read import Run
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from riser_soil.variants.key_results import KeyResult, key_results
+from riser_soil.variants.key_results import key_results
 from riser_soil.whole_run import run
 from tests.robustness.limited_process import Ending, Job, Limits, ended, import_all
 from tests.robustness.stress.bounds import Answer, between, bounds
@@ -89,7 +89,7 @@ def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Ans
     theirs = key_results(other.run.summary)
     for key, mine in key_results(run.summary).items():
         if key in theirs and mine.unit == "N":
-            apart = theirs[key].relative(mine.value - theirs[key].value)
+            apart = theirs[key].error(mine)
             yield between(f"{key}, apart from that {other.extreme.name} [-]", apart, 0.0, extreme.apart)
 
 
@@ -104,11 +104,7 @@ def _at_rest(run: Run) -> Iterator[Answer]:
     names = ("top tension", "force at end", "force at start")
     for now in found:
         if now.stage in moving and now.name in names and now.label in before:
-            yield between(f"{now.key}, apart from rest [-]", _apart(now, before[now.label]), 0.0, AT_REST)
-
-
-def _apart(now: KeyResult, before: KeyResult) -> float:
-    return before.relative(now.value - before.value)
+            yield between(f"{now.key}, apart from rest [-]", before[now.label].error(now), 0.0, AT_REST)
 
 
 def _own_warnings(stressed: StressedScene, base: StressedScene) -> str | None:

@@ -22,7 +22,6 @@ from benchmarks.error_bars.scenes import CLAY, SCENES
 from riser_soil.accuracy import chain
 from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.error_bars import ComparisonRun, ErrorBar, RunValues, SoilOfRun, divisor, error_bars, orders
-from riser_soil.accuracy.extreme_differences import Extreme, difference, without_windows
 from riser_soil.commands.app import app
 from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
@@ -30,6 +29,7 @@ from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.variants import settings
+from riser_soil.variants.extreme_differences import Extreme, difference, without_windows
 from riser_soil.variants.key_results import SETTLEMENT, KeyResult
 from riser_soil.variants.settings import SETTINGS, resolved, settings_in_words, varied
 from tests.support.said import line_with

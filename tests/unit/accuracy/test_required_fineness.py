@@ -9,7 +9,6 @@ from typing import Any, cast
 import pytest
 
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues
-from riser_soil.accuracy.extreme_differences import without_windows
 from riser_soil.accuracy.required_fineness import (
     cost_ratio,
     largest,
@@ -20,6 +19,7 @@ from riser_soil.accuracy.required_fineness import (
 )
 from riser_soil.accuracy.search import TriedSetting
 from riser_soil.accuracy.target_run import _next_factors
+from riser_soil.variants.extreme_differences import without_windows
 from riser_soil.variants.key_results import KeyResult
 
 VALUE = 1000.0

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from riser_soil.accuracy.extrapolation import limit, observed_order
+from riser_soil.variants.extrapolation import limit, observed_order
 
 SIZES = (1.0, 0.6, 0.25, 0.2, 0.07)  # unequal ratios
 
