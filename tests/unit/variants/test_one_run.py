@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 import sys
 import threading
 import time
@@ -22,6 +23,7 @@ from riser_soil.variants.run_process import die_with
 from riser_soil.variants.runs_folder import ATTEMPTS, OUTCOME, Outcome, attempt, claimed, settle
 from riser_soil.variants.variant import Variant
 from tests.support.case_files import SMALL
+from tests.support.on_ranks import environment
 from tests.support.said import line_with, telling
 
 FINISHED = "import sys; open(sys.argv[1] + '/summary.json', 'w').write('{\"finished\": true}')"
@@ -205,3 +207,8 @@ def test_a_folder_is_of_one_call_at_a_time_and_goes_if_it_is_empty(tmp_path: Pat
     (tmp_path / "mine" / "letter.txt").touch()
     with pytest.raises(SceneError, match=telling("holds something else than a study, letter.txt")):
         claimed(tmp_path / "mine", "runs", "a study").__enter__()
+
+
+def test_runs_of_this_machine_need_no_dask() -> None:
+    code = "import sys; import riser_soil.cases.sweep; sys.exit('distributed' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], env=environment()).returncode == 0
