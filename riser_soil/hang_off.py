@@ -1,8 +1,8 @@
 """Hang-off: ends' places, or segments' lengths, with which lines at rest have the angles or tensions asked for.
 
-The cable without bending stiffness tells where to begin. The scene itself is then taken through its first static stage,
-with bending, ends, joints and ground as in any run, and the secant method, of several ends Powell's hybrid method,
-closes the rest.
+The first guess is that of a cable without bending stiffness. Each evaluation of the residual solves the scene's first
+static stage, with bending, ends, joints and ground as in any run. The root is found by the secant method for one end,
+by Powell's hybrid method for several.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from riser_soil.scene.scene import Scene
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, solve_stages
 
-ANGLE, TENSION = 0.002, 2e-5  # deg; of the tension asked for: a fifth of what is promised
-MOST = 12  # static solves by end
-DIFFERENCE = 1e-3  # of a value, by which slopes are found where there are several
-LONGEST_STEP = 0.1  # of all values, of the first step from where the slopes are found
+ANGLE, TENSION = 0.002, 2e-5  # tolerances: in degrees, and relative; a fifth of those in the documentation
+MOST_SOLVES = 12  # largest number of static solves for each end
+DIFFERENCE = 1e-3  # relative, of a value, for derivatives with several ends
+FIRST_STEP = 0.1  # largest relative length of the first step
 
 
 @dataclass(frozen=True)
 class FoundEnd:
-    """What was asked for at an end, the value [m] found, and what the riser has there."""
+    """Solved end. value: its coordinate or length [m]. reached: angle [deg] or tension [N] of the riser there."""
 
     hung: HungEnd
     value: float
@@ -55,7 +55,7 @@ class FoundEnd:
 
 @dataclass(frozen=True)
 class HungScene:
-    """The scene in numbers; what was found at its ends, and the static solves that it took."""
+    """The scene with solved hang-offs. solves: number of static solves."""
 
     scene: Scene
     ends: tuple[FoundEnd, ...]
@@ -63,7 +63,7 @@ class HungScene:
 
     @property
     def in_words(self) -> str:
-        """What was found for each end, a line each."""
+        """The solution in words, a line for each end."""
         return "\n".join(f"{each.in_words} ({self.solves} static solves)" for each in self.ends)
 
     @property
@@ -74,117 +74,123 @@ class HungScene:
 
 
 def hung(scene: Scene) -> HungScene | None:
-    """The scene with what its hang-offs ask for solved; None where none is asked for; collective.
+    """The scene with its hang-offs solved, None where it has none; collective.
 
-    Raises SceneError where no values give it, SolveError where none were found.
+    Raises SceneError where there is no solution, SolveError where none was found.
     """
     ends = hung_ends(scene)
     if not ends:
         return None
-    return _HangOffSearch(ends, communicator_of(scene)).found()
+    return _HangOffSearch(ends, communicator_of(scene)).solve()
 
 
 class _HangOffSearch:
-    """The search for values (ends,) [m] by Powell's hybrid method, from those of cables, then from those of cables
-    whose aims are shifted by what the lines miss, if that is nearer.
+    """Root of the residual of values (ends,) [m].
+
+    The search begins with the values of cables, or of cables whose aims are shifted by the residual, if that is nearer.
     """
 
     def __init__(self, ends: Sequence[HungEnd], comm: Communicator) -> None:
         self._ends, self._comm = ends, comm
         self._asked = np.array([each.asked.asked for each in ends])
-        self._close = np.array([ANGLE if each.asked.angle is not None else TENSION * each.asked.asked for each in ends])
+        angles = np.array([each.asked.angle is not None for each in ends])
+        self._tolerance = np.where(angles, ANGLE, TENSION * self._asked)
         self._low, self._high = np.transpose([each.bounds for each in ends])
-        self._tried: list[tuple[Array, Array]] = []  # values and what they miss, over what may be missed
+        self._evaluated: list[tuple[Array, Array]] = []  # values and their residuals
 
-    def found(self) -> HungScene:
-        """What is close enough, or SolveError."""
+    def solve(self) -> HungScene:
+        """The scene with the values of the root, or SolveError."""
         from scipy.optimize import root
 
         values = np.array([first_value(each) for each in self._ends])
-        if (off := self._off(values)).any():
-            values = min(self._shifted(values, off), key=lambda each: float(np.linalg.norm(self._off(each))))
-        if self._off(values).any():
-            root(self._off, values, jac=self._slopes, options={"factor": LONGEST_STEP, "xtol": 0.0})
-        values, off = self._nearest
-        if self._missed(off).any():
+        if (residual := self._residual(values)).any():
+            guesses = self._shifted(values, residual)
+            values = min(guesses, key=lambda each: float(np.linalg.norm(self._residual(each))))
+        if self._residual(values).any():
+            root(self._residual, values, jac=self._jacobian, options={"factor": FIRST_STEP, "xtol": 0.0})
+        values, residual = self._nearest
+        if _beyond_tolerance(residual).any():
             raise self._failure()
-        ends = zip(self._ends, as_list(values), as_list(self._asked + off * self._close), strict=True)
+        ends = zip(self._ends, as_list(values), as_list(self._asked + residual * self._tolerance), strict=True)
         scene = settled(self._ends, as_list(values))
-        return HungScene(scene, tuple(FoundEnd(*each) for each in ends), len(self._tried))
+        return HungScene(scene, tuple(FoundEnd(*each) for each in ends), len(self._evaluated))
 
-    def _shifted(self, values: Array, off: Array) -> list[Array]:
+    def _shifted(self, values: Array, residual: Array) -> list[Array]:
         """The values, and those of cables with shifted aims, where there are such cables."""
         try:
-            return [values, self._by_cables(self._asked - off * self._close)]
+            return [values, self._by_cables(self._asked - residual * self._tolerance)]
         except SceneError:
             return [values]
 
     def _by_cables(self, asked: Array) -> Array:
         return np.array([by_cable(*each) for each in zip(self._ends, asked, strict=True)])
 
-    def _off(self, values: Array) -> Array:
-        """What lines at rest have beyond what was asked for, over what may be missed (ends,); 0 where all is close."""
+    def _residual(self, values: Array) -> Array:
+        """Angles or tensions at rest less those asked for, over the tolerance (ends,); 0 if all are within it."""
         values = np.clip(values, self._low, self._high)
-        for known, off in self._tried:
+        for known, residual in self._evaluated:
             if np.array_equal(known, values):
-                return self._missed(off)
-        if len(self._tried) == MOST * len(self._ends):
+                return _beyond_tolerance(residual)
+        if len(self._evaluated) == MOST_SOLVES * len(self._ends):
             raise self._failure()
         reached = _reached(self._ends, with_values(self._ends, as_list(values)), self._comm)
-        self._tried.append((values, (reached - self._asked) / self._close))
-        return self._missed(self._tried[-1][1])
-
-    def _missed(self, off: Array) -> Array:
-        return off.copy() if np.any(np.abs(off) > 1.0) else np.zeros_like(off)
+        self._evaluated.append((values, (reached - self._asked) / self._tolerance))
+        return _beyond_tolerance(self._evaluated[-1][1])
 
     @property
     def _nearest(self) -> tuple[Array, Array]:
-        return min(self._tried, key=lambda each: float(np.abs(each[1]).max()))
+        return min(self._evaluated, key=lambda each: float(np.abs(each[1]).max()))
 
-    def _slopes(self, values: Array) -> Array:
-        """Derivative of the ends' errors by the values that are solved for [1/m] (ends, ends): of one end from the last
-        two values tried, of several ends by one solve for each.
+    def _jacobian(self, values: Array) -> Array:
+        """Derivative of the residual by the values [1/m] (ends, ends): for one end by the last two evaluations, for
+        several by one evaluation each.
         """
-        off = self._off(values)
-        others = self._tried[:-3:-1] if len(values) == 1 else []
-        for other, seen in others:
+        residual = self._residual(values)
+        others = self._evaluated[:-3:-1] if len(values) == 1 else []
+        for other, of_other in others:
             if other != values:
-                return (seen - off)[:, None] / (other - values)
+                return (of_other - residual)[:, None] / (other - values)
         step = DIFFERENCE * values
-        return np.transpose([(self._off(values + step * unit) - off) / (step @ unit) for unit in np.eye(len(values))])
+        columns = [(self._residual(values + step * unit) - residual) / (step @ unit) for unit in np.eye(len(values))]
+        return np.transpose(columns)
 
     def _failure(self) -> SolveError:
-        values, off = self._nearest
-        worst = int(np.argmax(np.abs(off)))
-        missing, missed = self._ends[worst], off[worst] * self._close[worst]
+        values, residual = self._nearest
+        worst = int(np.argmax(np.abs(residual)))
+        missing, missed = self._ends[worst], residual[worst] * self._tolerance[worst]
         return SolveError(
-            f"{missing.path}: {missing.request} was not reached in {len(self._tried)} static solves: with "
+            f"{missing.path}: {missing.request} was not reached in {len(self._evaluated)} static solves: with "
             f"{values[worst]:.6g} m it is off by {missed:.3g} {missing.asked.unit}; take finer elements or a stiffer "
             "solver.tolerance"
         )
 
 
+def _beyond_tolerance(residual: Array) -> Array:
+    """The residual, or zero where all of it is within the tolerance."""
+    return residual.copy() if np.any(np.abs(residual) > 1.0) else np.zeros_like(residual)
+
+
 def _reached(ends: Sequence[HungEnd], scene: Scene, comm: Communicator) -> Array:
-    """The lines' own angles [deg] or tensions [N] (ends,) at the end of the first stage, the vessel at no offset;
+    """Angles [deg] or tensions [N] of lines (ends,) at the end of the first stage, without the vessel's offset;
     collective.
     """
     assembly = build(sized(scene.model_copy(update={"vessel": None})), comm)
     last = _LastStep(assembly, ends)
     solve_stages(assembly, last, assembly.scene.stages[:1])
-    return np.array(comm.bcast(last.seen))
+    return np.array(comm.bcast(last.values))
 
 
 class _LastStep(StatelessObserver):
-    """Sees the angles or tensions at the last step of a stage; on rank 0."""
+    """Observer of angles [deg] or tensions [N] at the last step of a stage, on rank 0."""
 
     def __init__(self, assembly: Assembly, ends: Sequence[HungEnd]) -> None:
-        self._assembly, self._ends, self.seen = assembly, ends, list[float]()
+        self._assembly, self._ends, self.values = assembly, ends, list[float]()
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         if last and self._assembly.comm.rank == 0:
-            self.seen = [self._seen(hung, stepper) for hung in self._ends]
+            self.values = [self._value(hung, stepper) for hung in self._ends]
 
-    def _seen(self, hung: HungEnd, stepper: TimeStepper) -> float:
+    def _value(self, hung: HungEnd, stepper: TimeStepper) -> float:
         riser, at_end = riser_snapshot(self._assembly.lines[hung.line], stepper), hung.name == "end"
         if hung.asked.angle is None:
             return float(riser.effective_tension[-1 if at_end else 0])

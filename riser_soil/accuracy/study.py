@@ -15,11 +15,10 @@ from riser_soil.accuracy.study_points import POINTS
 from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError, WriteError
 from riser_soil.scene.scene import Scene
 from riser_soil.variants.runs_folder import claimed
-from riser_soil.variants.settings import Setting, resolved, settings_of
+from riser_soil.variants.settings import HELPING, Setting, resolved, settings_of
 
 TRIES = 3  # largest number of settings run for a target, each predicted to reach it
 FINER = 2  # largest number of levels by which a scene that fails is refined
-HELPING = ("elements", "time_step")  # settings that are refined where a scene fails
 LEAST_LEVELS, MOST_LEVELS = 3, 9
 
 

@@ -38,10 +38,10 @@ class Group:
 
 def groups_of(cases: Sequence[Case]) -> list[Group]:
     """Groups of cases, in the cases' order."""
-    found: dict[str, list[Case]] = {}
+    by_name: dict[str, list[Case]] = {}
     for case in cases:
-        found.setdefault(case.group, []).append(case)
-    return [Group(name, _in_common(own), own) for name, own in found.items()]
+        by_name.setdefault(case.group, []).append(case)
+    return [Group(name, _in_common(own), own) for name, own in by_name.items()]
 
 
 def _in_common(cases: Sequence[Case]) -> dict[str, str]:
@@ -91,8 +91,8 @@ class CharacteristicExtreme:
     @cached_property
     def characteristic(self) -> Interval:
         """Value at the wanted fractile, with its limits of confidence, the lower one first."""
-        found = self._at(self._longer - math.log(-math.log(self.wanted.fractile)))
-        return Interval(found.value, *sorted((found.low, found.high)))
+        at = self._at(self._longer - math.log(-math.log(self.wanted.fractile)))
+        return Interval(at.value, *sorted((at.low, at.high)))
 
     @property
     def location(self) -> float:
@@ -121,7 +121,7 @@ class CharacteristicExtreme:
 
 def characteristic_extremes(table: CaseTable, wanted: WantedExtremes) -> list[CharacteristicExtreme]:
     """Characteristic extremes of each group with extremes in a dynamic stage, quantities in the table's order."""
-    return [found for group in groups_of(table.cases) for found in _of_group(table, group, wanted)]
+    return [each for group in groups_of(table.cases) for each in _of_group(table, group, wanted)]
 
 
 def _of_group(table: CaseTable, group: Group, wanted: WantedExtremes) -> Iterator[CharacteristicExtreme]:
@@ -139,39 +139,39 @@ def _sample(table: CaseTable, case: Case, key: str) -> Sample | None:
     return None if value is None or value.sample is None or not math.isfinite(value.sample.value) else value.sample
 
 
-def row_of(found: CharacteristicExtreme, axes: Sequence[str]) -> dict[str, Any]:
+def row_of(extreme: CharacteristicExtreme, axes: Sequence[str]) -> dict[str, Any]:
     """A row of characteristic.csv; nan where seeds are too few."""
-    interval = found.characteristic
+    interval = extreme.characteristic
     return {
-        "group": found.group.name,
-        **{axis: found.group.labels.get(axis, "") for axis in axes},
-        "quantity": found.key,
-        "unit": found.unit,
-        "extreme": "least" if found.least else "largest",
-        "seeds": len(found.samples),
-        "simulated [s]": found.simulated,
-        "mean": float(found.samples.mean()),
-        "standard deviation": float(found.samples.std(ddof=1)) if len(found.samples) > 1 else math.nan,
-        "of seeds": found.of_seeds,
-        "duration [s]": found.wanted.duration,
-        "most probable": found.most_probable,
-        "fractile": found.wanted.fractile,
+        "group": extreme.group.name,
+        **{axis: extreme.group.labels.get(axis, "") for axis in axes},
+        "quantity": extreme.key,
+        "unit": extreme.unit,
+        "extreme": "least" if extreme.least else "largest",
+        "seeds": len(extreme.samples),
+        "simulated [s]": extreme.simulated,
+        "mean": float(extreme.samples.mean()),
+        "standard deviation": float(extreme.samples.std(ddof=1)) if len(extreme.samples) > 1 else math.nan,
+        "of seeds": extreme.of_seeds,
+        "duration [s]": extreme.wanted.duration,
+        "most probable": extreme.most_probable,
+        "fractile": extreme.wanted.fractile,
         "characteristic": interval.value,
         "low": interval.low,
         "high": interval.high,
-        "confidence": found.wanted.confidence,
-        "location": found.location,
-        "scale": found.scale,
+        "confidence": extreme.wanted.confidence,
+        "location": extreme.location,
+        "scale": extreme.scale,
     }
 
 
 def governing(extremes: Sequence[CharacteristicExtreme]) -> list[CharacteristicExtreme]:
     """Worst extreme of each quantity, by the characteristic value where there is one."""
-    found: dict[str, CharacteristicExtreme] = {}
+    worst: dict[str, CharacteristicExtreme] = {}
     for each in extremes:
-        if each.key not in found or each.worse_than(found[each.key]):
-            found[each.key] = each
-    return list(found.values())
+        if each.key not in worst or each.worse_than(worst[each.key]):
+            worst[each.key] = each
+    return list(worst.values())
 
 
 def governing_table(extremes: Sequence[CharacteristicExtreme]) -> Table:
@@ -189,20 +189,20 @@ def governing_table(extremes: Sequence[CharacteristicExtreme]) -> Table:
     by_group: dict[str, list[CharacteristicExtreme]] = {}
     for each in governing(extremes):
         by_group.setdefault(each.group.name, []).append(each)
-    for name, found in by_group.items():
+    for name, worst in by_group.items():
         table.add_section()
         table.add_row(f"[bold]{escape(name)}")
-        for each in found:
+        for each in worst:
             table.add_row(*_cells(each)[: len(heads) + 1])
     return table
 
 
-def _cells(found: CharacteristicExtreme) -> list[str]:
-    unit, scale = shown(found.unit.replace(".", " "))
-    numbers = (found.of_seeds, found.most_probable, *found.characteristic)
+def _cells(extreme: CharacteristicExtreme) -> list[str]:
+    unit, scale = shown(extreme.unit.replace(".", " "))
+    numbers = (extreme.of_seeds, extreme.most_probable, *extreme.characteristic)
     of_seeds, most_probable, characteristic, low, high = (_figures(scale * value) for value in numbers)
     interval = f"{low} to {high}" if low and high else ""
-    return [escape(f"{found.name} [{unit}]"), of_seeds, most_probable, characteristic, interval]
+    return [escape(f"{extreme.name} [{unit}]"), of_seeds, most_probable, characteristic, interval]
 
 
 def _figures(value: float) -> str:
