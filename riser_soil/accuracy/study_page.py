@@ -66,31 +66,30 @@ def _image(study: Study, content: Mapping[str, Any]) -> str:
 
 
 def plotted(study: Study, content: Mapping[str, Any]) -> WorkPrecision:
-    """What the plot shows; failed points have no place in it."""
+    """Data of the plot, without failed points."""
     refinements = study.refinements
     places = {tuple(each["factors"].values()): each for each in content["points"] if each["status"] == 0}
-    lines, seen = [], set()
+    lines, in_series = [], set()
     for number, setting in enumerate(refinements.settings):
         points = [point for point in refinements.along(number) if point in places]
-        seen.update(points)
-        found = [places[point] for point in points]
+        in_series.update(points)
         orders = [each["knobs"][setting.name]["order"] for each in content["quantities"].values() if each["judged"]]
-        lines.append(
-            SettingLine(setting.words, _order_s([each for each in orders if each is not None]), *_places(found))
-        )
-    others = [each for point, each in places.items() if point not in seen]
+        observed = _order_range([order for order in orders if order is not None])
+        lines.append(SettingLine(setting.words, observed, *_columns([places[point] for point in points])))
+    others = [each for point, each in places.items() if point not in in_series]
     front = [places[tuple(point)] for point in content["pareto_front"]]
     scene = places[refinements.base]
-    doubts = [each["uncertainty"] / each["scale"] for each in content["quantities"].values() if each["judged"]]
-    here, doubt = (scene["cpu"], scene["error"]), max(doubts, default=0.0)
-    return WorkPrecision(lines, *_places(others)[:2], *_places(front)[:2], here, doubt, TARGETS)
+    uncertain = [each["uncertainty"] / each["scale"] for each in content["quantities"].values() if each["judged"]]
+    here, uncertainty = (scene["cpu"], scene["error"]), max(uncertain, default=0.0)
+    return WorkPrecision(lines, *_columns(others)[:2], *_columns(front)[:2], here, uncertainty, TARGETS)
 
 
-def _places(points: Sequence[Mapping[str, Any]]) -> tuple[list[float], list[float], list[bool]]:
+def _columns(points: Sequence[Mapping[str, Any]]) -> tuple[list[float], list[float], list[bool]]:
+    """Processor times [s], errors, and whether each was timed alone."""
     return [p["cpu"] for p in points], [p["error"] for p in points], [p["timed_alone"] for p in points]
 
 
-def _order_s(orders: Sequence[float]) -> str:
+def _order_range(orders: Sequence[float]) -> str:
     """The range of the orders observed of the quantities."""
     if not orders:
         return "no order"

@@ -30,9 +30,10 @@ class SettingLine:
 
 @dataclass(frozen=True, eq=False)
 class WorkPrecision:
-    """What is drawn. other, front: further points, and the Pareto front from cheap to dear, seconds [s] and errors.
+    """Data of a work-precision plot. other, front: further points, and the Pareto front from cheap to expensive, by
+    processor time [s] and relative error.
 
-    scene: the scene's own seconds and error. doubt: relative uncertainty of the reference. targets: relative errors.
+    scene: processor time and error of the scene. uncertainty: relative, of the reference. targets: relative errors.
     """
 
     lines: Sequence[SettingLine]
@@ -41,7 +42,7 @@ class WorkPrecision:
     front_seconds: Sequence[float]
     front_errors: Sequence[float]
     scene: tuple[float, float]
-    doubt: float
+    uncertainty: float
     targets: Sequence[float]
 
 
@@ -54,8 +55,8 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
     axes.step(shown.front_seconds, _seen(shown.front_errors), "k-", where="post", linewidth=0.8, label="Pareto front")
     axes.plot(*[[each] for each in (shown.scene[0], max(shown.scene[1], LEAST))], "ko", fillstyle="none", markersize=15)
     axes.annotate("scene as it is", (shown.scene[0], max(shown.scene[1], LEAST)), (12, 8), textcoords="offset points")
-    if shown.doubt > LEAST:
-        axes.axhline(shown.doubt, color="0.4", linestyle=":", label="largest uncertainty of a reference")
+    if shown.uncertainty > LEAST:
+        axes.axhline(shown.uncertainty, color="0.4", linestyle=":", label="largest uncertainty of a reference")
     for target in shown.targets:
         axes.axhline(target, color="C2", linewidth=0.6)
     axes.set(xscale="log", yscale="log", xlabel="processor time [s]")

@@ -10,8 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from riser_soil.assembly import sized
+from riser_soil.assembly.assembly import AUTO_TOLERANCE
+from riser_soil.assembly.contact_laws import NARROWEST_CORNER, stiffnesses
+from riser_soil.assembly.riser import elements_of
+from riser_soil.assembly.scales import Scales, of_several, scales_of
 from riser_soil.core.quantities import MOST_ELEMENTS
 from riser_soil.errors import SceneError
 from riser_soil.scene.lines import by_line, risers, with_segments
@@ -20,9 +24,6 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.soil import CellSizes, GeneratedMesh, MeshFile
 from riser_soil.scene.stages import DynamicStage, Stage
-
-if TYPE_CHECKING:
-    from riser_soil.assembly.scales import Scales
 
 HELPING = ("elements", "time_step")  # names of settings that are refined where a scene fails
 LOCAL_ORDER = 3  # of the local error of automatic steps in their size
@@ -84,20 +85,12 @@ def resolved(scene: Scene) -> Scene:
 
     With soil beside a rigid seabed, and with several lines, all have the largest of their penalties.
     """
-    return _with_stiffness(_with_tolerance(_with_sizes(scene)))
-
-
-def _with_sizes(scene: Scene) -> Scene:
-    from riser_soil.assembly import sized
-
-    return sized(scene)
+    return _with_stiffness(_with_tolerance(sized(scene)))
 
 
 def _with_tolerance(scene: Scene) -> Scene:
     if not any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages):
         return scene
-    from riser_soil.assembly.assembly import AUTO_TOLERANCE
-
     tolerance = AUTO_TOLERANCE * _scales(scene).diameter
 
     def with_number(stage: Stage) -> Stage:
@@ -111,23 +104,18 @@ def _with_tolerance(scene: Scene) -> Scene:
 def _with_stiffness(scene: Scene) -> Scene:
     if not _has_penalty(scene) or scene.contact is None or scene.contact.stiffness != "auto":
         return scene
-    from riser_soil.assembly.contact_laws import stiffnesses
-
-    found: list[float] = []
+    values: list[float] = []
     for view in by_line(scene).values():
         of_each = stiffnesses(view, scene.contact, _scales(view))
         if not isinstance(scene.seabed, RigidSeabed):
             of_each.pop("seabed", None)  # a bed of springs has its own
-        found += of_each.values()
-    contact = scene.contact.model_copy(update={"stiffness": max(found)})
+        values += of_each.values()
+    contact = scene.contact.model_copy(update={"stiffness": max(values)})
     return scene.model_copy(update={"contact": contact})
 
 
 def _scales(scene: Scene) -> Scales:
     """Typical sizes of all lines together."""
-    from riser_soil.assembly.riser import elements_of
-    from riser_soil.assembly.scales import of_several, scales_of
-
     return of_several(scales_of(elements_of(view)) for view in by_line(scene).values())
 
 
@@ -207,8 +195,6 @@ def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
     also if it was that before. Beside an end that is fixed on the seabed a wider one presses the riser by a force that
     grows with the penalty without limit.
     """
-    from riser_soil.assembly.contact_laws import NARROWEST_CORNER
-
     contact = scene.contact
     if contact is None or scene.soil is not None:
         return {}
@@ -243,7 +229,7 @@ def _firm(scene: Scene) -> float:
 
 def _across(scene: Scene) -> float:
     """Size of the cells across the riser [m]."""
-    soil = _with_sizes(scene).soil
+    soil = sized(scene).soil
     assert soil is not None
     assert isinstance(soil.mesh, GeneratedMesh)
     return soil.mesh.across
