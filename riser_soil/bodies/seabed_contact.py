@@ -173,13 +173,9 @@ class BodyContact(CompiledPart):
         found: BodyContactData = self._data
         return found
 
-    def find(self, state: State) -> None:
-        """Find its forces at a trial state, for parts whose kernels read them."""
-        self._found(state)
-
     def force_on_body(self, state: State) -> Array:
         """Sum of the forces on the body (3,) [N], global axes; zero on a rank that does not evaluate it."""
-        return -self._found(state).forces.end[0, :3] if self.active else np.zeros(3)
+        return -self.find(state).end[0, :3] if self.active else np.zeros(3)
 
     def penetration(self, state: State) -> float:
         """The deepest point's penetration [m], 0 above the ground."""

@@ -165,4 +165,4 @@ class BodyFriction(SeabedFriction):
 
     def force_on_body(self, state: State) -> Array:
         """Sum of the forces on the body (3,) [N], global axes; zero on a rank that does not evaluate it."""
-        return -self._found(state).forces.end[0, :3] if self.active else np.zeros(3)
+        return -self.find(state).end[0, :3] if self.active else np.zeros(3)

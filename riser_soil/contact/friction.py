@@ -7,8 +7,9 @@ which stands square to the plane. Directions are stored in arrays (d, r), axial 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import BoundPart, CompiledPart
+from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import (
@@ -141,12 +142,6 @@ def write_start(part: Any, at: Configuration) -> Any:
     """Write the places and directions from which a step starts, where the contact's forces have been found."""
 
 
-class GroundContact(Protocol):
-    """The contact whose normal forces friction reads."""
-
-    def find(self, state: State) -> None: ...
-
-
 class SeabedFriction(CompiledPart):
     """Base of the parts of friction at the points of a contact with a seabed, whose normal forces they read; group E.
 
@@ -157,7 +152,7 @@ class SeabedFriction(CompiledPart):
     traits = Traits("E", symmetric=False, path_dependent=True, gradual=True, roles=(Stateful,))
     after_forces = True
 
-    def __init__(self, field: MovingNodes, contact: GroundContact, mu: Array, slid: Array) -> None:
+    def __init__(self, field: MovingNodes, contact: CompiledPart, mu: Array, slid: Array) -> None:
         super().__init__(field)
         self._contact, self._mu, self._slid = contact, mu, slid
         self._begun = False  # whether it is known what a step starts from
@@ -177,11 +172,9 @@ class SeabedFriction(CompiledPart):
             self._write_start()
             self._begun = True
 
-    def _go_to(self, state: State) -> BoundPart:
-        """The contact's forces come first."""
-        self.renew_kernel_data(state.t, state.t)
-        self._contact.find(state)
-        return super()._go_to(state)
+    @property
+    def reads(self) -> Sequence[CompiledPart]:
+        return (self._contact,)
 
     def state(self) -> Saved:
         """What the next step starts from, if there was one, and the slip of the points."""
@@ -240,7 +233,7 @@ class CoulombFriction(SeabedFriction):
         """Sum of the friction on the riser (3,) [N], global axes."""
         if not self.line.active:
             return np.zeros(3)
-        return np.asarray(-self.line.basis @ self._found(state).forces.end_q[:, ::2].sum(axis=(0, 1)))
+        return np.asarray(-self.line.basis @ self.find(state).end_q[:, ::2].sum(axis=(0, 1)))
 
 
 def mobilised_within(

@@ -97,10 +97,6 @@ class SeabedContact(CompiledPart, RiserContact):
             self._covering.renew(self._data.cover)
             self._covered_from = self.line.x
 
-    def find(self, state: State) -> None:
-        """Find its forces at a trial state, for parts whose kernels read them."""
-        self._found(state)
-
     @cached_property
     def _results_vector(self) -> Array:
         return np.zeros(size_of(self.line.nodes, self.share.size))
@@ -113,10 +109,10 @@ class SeabedContact(CompiledPart, RiserContact):
     def results(self, state: State) -> Array:
         """Results at an accepted state in one vector, in the order of `ContactResults`."""
         if self.active:
-            found = self._found(state).found
-            if self._written_trial != found:
+            self.find(state)
+            if self._written_trial != self._alone.found:
                 self._write_results()
-                self._written_trial = found
+                self._written_trial = self._alone.found
         return self._results_vector.copy()
 
     def _results(self, state: State) -> ContactResults:

@@ -14,7 +14,7 @@ from riser_soil.core.communicator import Communicator, all_of, any_of, sum_of
 from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix, Patterns
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import GROUPS, Energy, Field, Forces, MatrixBlock, Model, Part, State, Weights, Work, local
+from riser_soil.core.part import Energy, Field, Forces, MatrixBlock, Model, Part, State, Weights, Work, local
 from riser_soil.core.roles import Adaptive, require_roles, with_role
 from riser_soil.core.saved_state import Saved
 
@@ -137,15 +137,10 @@ class System:
             at = local(field)
             field.prescribe(state.t, state.u[at], state.v[at], state.a[at])
 
-    def forces(self, state: State, groups: str = GROUPS) -> Forces:
-        """This rank's residual by group (local arrays; shares of shared dofs are summed by the numbering).
-
-        groups: those that are wanted; parts without forces in them are left out.
-        """
+    def forces(self, state: State) -> Forces:
+        """This rank's residual by group (local arrays; shares of shared dofs are summed by the numbering)."""
         forces = Forces.zeros(self.numbering.size)
         for part in self._active:
-            if not set(groups).intersection(part.traits.groups):
-                continue
             since = time.perf_counter()
             part.residual(state, forces)
             self.clock.add(part.name, since)

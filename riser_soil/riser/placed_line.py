@@ -1,4 +1,4 @@
-"""A line by its kernel data, where kernels that ask for it find it: where it is accepted, and at trial states."""
+"""A line by its kernel data, where kernels that ask for it find it: at states, placed once for all that ask in turn."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Packed, bound
-from riser_soil.core.part import State
-from riser_soil.riser.configuration import base_of, place, workspace_for, write_rates
+from riser_soil.core.part import State, Weights
+from riser_soil.riser.configuration import base_of, maps_for, place, workspace_for, write_maps, write_rates
 from riser_soil.riser.moving_nodes import MovingNodes
+from riser_soil.riser.part_kernels import LineWeights
 
 
 class LineBase:
@@ -28,16 +29,18 @@ class LineBase:
             self._updated = self._line.x
 
 
-class PlacedTrial:
-    """A line at a trial state, placed once for all that ask in turn. count: of the states that it was placed at."""
+class PlacedLine:
+    """A line at a state. count: of the states that it was placed at; at accepted states only its rates are new."""
 
     def __init__(self, line: MovingNodes, base: LineBase) -> None:
         self._line, self._base, self.at, shape = line, base, workspace_for(line), (line.nodes, line.ndof)
         values = [np.zeros(shape) for _ in range(3)]
-        self._place = bound(place, self.at, base.packed, *map(Packed, values))
+        u, v, a = map(Packed, values)
+        self._place, self._put_rates = bound(place, self.at, base.packed, u, v, a), bound(write_rates, self.at, v, a)
         self._u, self._v, self._a = (each.ravel() for each in values)
         self._state: State | None = None
         self._from: Array | None = None  # the places of the nodes where the line was accepted
+        self._moved = False  # whether it has moved from there
         self.count = 0
 
     def move(self, state: State) -> None:
@@ -46,53 +49,51 @@ class PlacedTrial:
         if state is self._state and line.x is self._from:
             return
         self._base.update()
-        self._u[:], self._v[:], self._a[:] = state.u[line.part], state.v[line.part], state.a[line.part]
-        self._place()
+        u, moved = state.u[line.part], self._moved
+        self._v[:], self._a[:], self._moved = state.v[line.part], state.a[line.part], bool(u.any())
+        if moved or self._moved or line.x is not self._from:
+            self._u[:] = u
+            self._place()
+        else:
+            self._put_rates()
         self._state, self._from = state, line.x
         self.count += 1
 
     def forget(self) -> None:
-        """Place it anew when it is asked for next."""
+        """Count it as placed anew when it is asked for next."""
         self._state = None
 
 
-class PlacedLine:
-    """The accepted configuration `at` of a line, placed once for all that ask in turn, with rates as each asks for.
+class LineTrials:
+    """A line at a trial state, `now`, and where a step begins, `then`, in which its parts are evaluated.
 
-    base: what it follows from, for trials too, as it was updated last.
+    base: the accepted configuration that both follow from. start, end: times [s] of the step. maps, weights: of the
+    tangent that was asked for last.
     """
 
     def __init__(self, line: MovingNodes) -> None:
-        self._line, self.at, shape = line, workspace_for(line), (line.nodes, line.ndof)
-        self._base = LineBase(line)
-        self.base, self.update = self._base.packed, self._base.update
-        self._rates, still = (np.zeros(shape), np.zeros(shape)), Packed(np.zeros(shape))
-        self._place = bound(place, self.at, self.base, still, still, still)
-        self._put = bound(write_rates, self.at, *map(Packed, self._rates))
-        self._stand = bound(write_rates, self.at, still, still)
-        self._at: Array | None = None  # the places of its nodes as they were when it was placed
-        self._with: tuple[Array | None, Array | None] = None, None  # the rates that it has there
+        self.base = LineBase(line)
+        self.now, self.then = PlacedLine(line, self.base), PlacedLine(line, self.base)
+        self.start = self.end = np.nan
+        self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
+        self._write_maps = bound(write_maps, self.now.at, self.maps)
+        self._mapped = -1  # the count of `now` for which they hold
 
-    def move(self, state: State, velocities_alone: bool = False) -> None:
-        """With the rates of an accepted state of all local dofs; its accelerations may not matter."""
-        self._renew()
-        v, a = self._with
-        if v is state.v and (a is state.a or velocities_alone):
-            return
-        for kept, given in zip(self._rates, (state.v, state.a), strict=True):
-            kept.ravel()[:] = given[self._line.part]
-        self._put()
-        self._with = state.v, state.a
+    def step_to(self, t: float) -> None:
+        """Times of the step that ends at t: it starts at the time that was asked for before."""
+        if t != self.end:
+            self.start, self.end = (t if np.isnan(self.end) else self.end), t
 
-    def stand(self) -> None:
-        """Without rates."""
-        self._renew()
-        self._stand()
-        self._with = None, None
+    def differentiate(self, weights: Weights) -> None:
+        """Find the maps at the trial state."""
+        if (weights.inertia, weights.force) != self.weights.value:
+            self.weights.renew(LineWeights(float(weights.inertia), float(weights.force)))
+        kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
+        if self._mapped != self.now.count or (kept.shift_v, kept.shift_a) != shifts:
+            self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
+            self._write_maps()
+            self._mapped = self.now.count
 
-    def _renew(self) -> None:
-        """Place it, unless it is where it was."""
-        if self._at is not self._line.x:
-            self.update()
-            self._place()
-            self._at, self._with = self._line.x, (None, None)
+    def forget(self) -> None:
+        """What has been found does not hold any more: the parts' kernel data have changed, or others have used them."""
+        self.now.forget()

@@ -16,7 +16,8 @@ from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import State
 from riser_soil.riser.configuration import Configuration, PlanarConfiguration, write_moment_maps
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart, LineTrials, overrides
+from riser_soil.riser.line_part import LinePart, LineParts, overrides
+from riser_soil.riser.placed_line import LineTrials
 from riser_soil.riser.section_kernels import (
     SectionForces,
     SectionInput,
@@ -29,7 +30,7 @@ from riser_soil.riser.sections import Elements
 NOTHING = np.empty((0, 0))
 
 
-def element_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array:
+def element_residual(line: Line, parts: Iterable[LinePart | LineParts], state: State) -> Array:
     """Sum over parts (ne, 2 ndof)."""
     return _total((part.element_forces(state) for part in parts), (line.length.size, 2 * line.ndof))
 

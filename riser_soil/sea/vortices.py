@@ -78,7 +78,7 @@ class Vortices(CompiledPart):
 
     def begin_stage(self, state: State) -> None:
         """Shed as behind a pipe at rest, then as behind one in this motion."""
-        self._go_to(state)
+        self._alone.go_to(state)
         self._shed_at_rest()
         self.commit(state)
 

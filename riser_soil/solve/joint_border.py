@@ -20,7 +20,7 @@ from riser_soil.bodies.joints import JointPlaces, Joints, Laws, add_tangent, con
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Forces, Part, State
+from riser_soil.core.part import Part, State
 from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.part_kernels import Border, LineForces, LineWeights
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
@@ -200,9 +200,6 @@ class JointBorder(Coupling):
 
     def account(self, energy: Packed) -> list[Bound]:
         return [Bound(add_energy_of_joints, self._packed, energy)]
-
-    def add_bulk_forces(self, state: State, forces: Forces) -> None:
-        self._joints.residual(state, forces)
 
 
 def _sides_of(joints: Joints, line: PackedLine) -> Sides:

@@ -9,9 +9,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cached_property
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,15 +20,15 @@ from riser_soil.core.part import Energy, Forces, Part, State, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart, acting_on
+from riser_soil.riser.line_part import LineParts, joined
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
-from riser_soil.solve.accepted_lines import CompiledMass, LineResults
 from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
+from riser_soil.solve.line_results import LineResults
 from riser_soil.solve.line_system import Coupling, LineSystem
 from riser_soil.solve.newton_settings import NewtonSettings, limits_of
-from riser_soil.solve.packed_line import KernelParts, PackedLine
+from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import largest_at
 from riser_soil.solve.step import Solution, Step, reported
 from riser_soil.solve.step_results import StepResults
@@ -45,24 +44,18 @@ def line_solver(system: System) -> LineSolver | None:
     """The solver of lines and bodies, joined or not, one of them on condensed soil or none; None where one of
     their parts has no kernels.
     """
-    fields = [field for field in system.model.lines if isinstance(field, MovingNodes)]
-    parts = [_with_kernels(acting_on(field, system.model.parts)) for field in fields]
-    known: list[Any] = [part for each in parts for part in each.parts]
-    make = _couplings_of(system, [part for part in system.model.parts if part not in known])
-    if make is None or len(fields) < len(system.model.lines):
+    fields, parts = system.model.lines, joined(system.model.parts)
+    of_line = {part.line: part for part in parts if isinstance(part, LineParts)}
+    make = _couplings_of(system, [part for part in parts if not isinstance(part, LineParts)])
+    if make is None:
         return None
-    weights = Packed(LineWeights(0.0, 0.0))
-    lines = [
-        PackedLine(field, own, system.prescribed[field.part], system.levers[field.part], weights)
-        for field, own in zip(fields, parts, strict=True)
-    ]
+    weights, lines = Packed(LineWeights(0.0, 0.0)), list[PackedLine]()
+    for field in fields:
+        if not isinstance(field, MovingNodes):
+            return None
+        own, at = of_line.get(field) or LineParts(field, []), field.part
+        lines.append(PackedLine(own, system.prescribed[at], system.levers[at], weights))
     return LineSolver(system, LineSystem(lines, make(lines), weights))
-
-
-def _with_kernels(parts: Sequence[LinePart]) -> KernelParts:
-    """Those that have kernels."""
-    asked = [(part, part.kernel_data()) for part in parts]
-    return KernelParts([(part, data) for part, data in asked if data is not None])
 
 
 def _couplings_of(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedLine]], list[Coupling]] | None:
@@ -120,7 +113,7 @@ class LineSolver(StepResults):
         since = time.perf_counter()
         begun = self._begun(step)
         for line in self._lines:
-            line.parts.update(step.before.t, begun.t)
+            line.parts.renew(step.before.t, begun.t)
         for results in self._results.values():
             results.forget()
         failure, norms = self._iterate(step, begun, self._limits(step, settings, at_equilibrium))
@@ -217,39 +210,26 @@ class LineSolver(StepResults):
         since = time.perf_counter()
         for packed in self._lines:
             packed.keep()
-        kept = [part for packed in self._lines for part in packed.parts.committed]
+        kept = [part for packed in self._lines for part in packed.committed]
         self.system.commit(state, [*kept, *(part for each in self._couplings for part in each.parts)])
         for results in self._results.values():
             results.commit()
         self.system.clock.add("line solver", since)
 
-    @cached_property
-    def mass(self) -> CompiledMass:
-        """Inverse of the mass of lines and bodies."""
-        return CompiledMass(self._lines)
-
-    def bulk_forces(self, state: State) -> Forces:
-        """Forces of groups I and F at an accepted state, those of group E zero."""
-        found = self.mass.bulk_forces(state)
-        for each in self._couplings:
-            each.add_bulk_forces(state, found)
-        return found
-
     def element_residual(self, line: Line, state: State) -> Array:
         known = self._results.get(line)
-        return super().element_residual(line, state) if known is None else known.element_residual(state)
+        found = None if known is None else known.element_residual(state)
+        return super().element_residual(line, state) if found is None else found
 
     def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
         known = self._results.get(line)
-        return super().section_forces(line, elements, state) if known is None else known.section_forces(elements, state)
+        found = None if known is None else known.section_forces(elements, state)
+        return super().section_forces(line, elements, state) if found is None else found
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:
         known = self._results.get(contact.line)
-        return super().contact_results(contact, state) if known is None else known.contact_results(contact, state)
-
-    def nodal_residual(self, line: Line, state: State) -> Array | None:
-        known = self._results.get(line)
-        return super().nodal_residual(line, state) if known is None else known.nodal_residual(state)
+        found = None if known is None else known.contact_results(contact)
+        return super().contact_results(contact, state) if found is None else found
 
     def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
@@ -261,7 +241,7 @@ class LineSolver(StepResults):
         work = dict(self._no_work)
         self.packed.account(before)
         for packed in self._lines:
-            packed.parts.add_work(before, solution.state, as_list(packed.work), work)
+            packed.add_work(before, solution.state, work)
         energy = Energy(*as_list(self.packed.energy))
         for each in self._couplings:
             energy += each.add_account(before, solution.state, work)

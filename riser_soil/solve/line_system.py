@@ -14,7 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.bound import Bound, Packed, in_turn
-from riser_soil.core.part import Energy, Forces, State, Weights, Work
+from riser_soil.core.part import Energy, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.solve import step_kernels as kernels
@@ -98,9 +98,6 @@ class Coupling:
 
     def put_increments(self, weights: Weights, u: Array, v: Array, a: Array) -> None:
         """Write the increments of dofs beside the lines, and add what rates follow from them, all local."""
-
-    def add_bulk_forces(self, state: State, forces: Forces) -> None:
-        """Add the border's forces of groups I and F at an accepted state."""
 
     def add_account(self, before: State, state: State, work: dict[str, Work]) -> Energy:
         """Add what the border's parts have turned over in the step solved last; the energy stored beside the lines."""
@@ -232,5 +229,5 @@ class LineSystem:
     def account(self, before: State) -> None:
         """Find the energy at the end of the step solved last, and the work in it."""
         for line in self.lines:
-            line.placed.move(before)
+            line.move_start(before)
         self._account()

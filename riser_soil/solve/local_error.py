@@ -28,7 +28,8 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.time_scheme import GeneralizedAlpha, InverseMass, Scheme
+from riser_soil.solve.inverse_mass import InverseMass
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
 CONTACT = GeneralizedAlpha.newmark(0.5, 1.0)
 FAR = 4.0  # times the last step: how far ahead its jerk is trusted

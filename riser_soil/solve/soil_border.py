@@ -179,7 +179,7 @@ class SoilBorder(Coupling):
 
     def account(self, energy: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
-        return self._touching.account(self._motion, Packed(self._packed.placed.at))
+        return self._touching.account(self._motion, Packed(self._packed.begun))
 
     def begin(self, before: State, step_to: float, guess: Array) -> None:
         if self._soil.outgrown:

@@ -52,14 +52,12 @@ class Dofs(NamedTuple):
 
 
 class MatrixWorkspace(NamedTuple):
-    """Workspace for the tangent: element matrices K (ne, n, n), and their rows (ne, n); what is conjugate to the
-    tangents (ne, 2, d), and its turning (ne, 2, r, r); the matrix as in `banded`, its pivots and its band.
+    """Workspace for the tangent: element matrices K (ne, n, n), and their rows (ne, n); the matrix as in `banded`, its
+    pivots and its band.
     """
 
     K: Array
     rows: IntArray
-    conjugate: Array
-    turning: Array
     ab: Array
     pivots: IntArray
     band: Size
@@ -202,17 +200,14 @@ def improve(workspace: MatrixWorkspace, step: StepData, dofs: Dofs) -> None:
         u[k] -= 0.0 if fixed[k] else change[k]
 
 
-def matrix_workspace(nodes: int, ndof: int, dimension: int = 0) -> MatrixWorkspace:
-    """Workspace for the tangent of a line, or of a body, one node; with room for its turning, where it has a dimension.
-    """
-    ends, r, size = min(nodes, 2), ndof - dimension if dimension else 0, nodes * ndof
+def matrix_workspace(nodes: int, ndof: int) -> MatrixWorkspace:
+    """Workspace for the tangent of a line, or of a body, one node."""
+    ends, size = min(nodes, 2), nodes * ndof
     elements = nodes + 1 - ends
     matrix, band = banded.workspace(size, ends * ndof - 1)
     return MatrixWorkspace(
         np.empty((elements, ends * ndof, ends * ndof)),
         ndof * np.arange(elements)[:, None] + np.arange(ends * ndof),
-        np.empty((nodes - 1, 2, dimension)),
-        np.empty((nodes - 1, 2, r, r)),
         matrix,
         np.empty(size, dtype=np.int64),
         band,

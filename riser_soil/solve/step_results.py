@@ -6,15 +6,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State, Work
+from riser_soil.core.part import Energy, Forces, Part, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.line_part import LinePart, LineParts, acting_on, joined
 from riser_soil.riser.section_forces import element_residual, nodal_residual, section_vector, viscous_residual
 from riser_soil.riser.sections import Elements
-from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.inverse_mass import InverseMass
 from riser_soil.solve.step import Solution
-from riser_soil.solve.time_scheme import InverseMass
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -26,6 +25,7 @@ class StepResults:
 
     def __init__(self, system: System) -> None:
         self.system = system
+        self._acting: dict[Line, list[LinePart | LineParts]] = {}
 
     def commit(self, state: State) -> None:
         """Accept the state of the step solved last."""
@@ -39,18 +39,27 @@ class StepResults:
 
     @cached_property
     def mass(self) -> InverseMass:
-        """Inverse of the lines' mass."""
-        return RiserMass(self.system)
+        """Inverse of the mass of lines and bodies, and of soil with inertia."""
+        return InverseMass(self.system)
 
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E zero."""
-        return self.system.forces(state, "IF")
+        forces = Forces.zeros(self.system.numbering.size)
+        for part in self._bulk:
+            part.residual(state, forces)
+        return forces
+
+    @cached_property
+    def _bulk(self) -> list[Part | LineParts]:
+        return joined(part for part in self.system.model.parts if part.active and part.traits.groups != "E")
 
     def element_residual(self, line: Line, state: State) -> Array:
         """Residual of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has
         it, until the next call.
         """
-        return element_residual(line, acting_on(line, self.system.model.parts), state)
+        if line not in self._acting:
+            self._acting[line] = joined(acting_on(line, self.system.model.parts))
+        return element_residual(line, self._acting[line], state)
 
     def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
         """Section forces of a line at an accepted state, see `SectionForces.within`; on the rank that has it."""

@@ -26,20 +26,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import MomentumCorrecting
-from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System, total
-
-
-class InverseMass(Protocol):
-    """Inverse of the lines' mass, see `RiserMass`."""
-
-    def accelerations(self, t: float, force: Array) -> Array: ...
-
-    def kinetic_energy(self, state: State) -> float: ...
-
-    def state(self) -> Saved: ...
-
-    def restore(self, saved: Saved) -> None: ...
+from riser_soil.solve.inverse_mass import InverseMass
 
 
 @dataclass(eq=False)

@@ -18,15 +18,15 @@ from riser_soil.core.bound import Packed
 from riser_soil.core.part import Energy, Forces, Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.line_part import MASS_ALONE, LineParts, acting_on
 from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.convergence import CONVERGED, StopLimits
+from riser_soil.solve.inverse_mass import mass_of
 from riser_soil.solve.line_solver import line_solver
 from riser_soil.solve.line_system import LineSystem
-from riser_soil.solve.packed_line import KernelParts, PackedLine
-from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step_results import StepResults
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
@@ -59,9 +59,8 @@ class Compiled:
 
     def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
-        numbers, free = KernelParts([(part, part.kernel_data()) for part in parts]), np.zeros(line.size, dtype=bool)
-        weights = Packed(LineWeights(0.0, 0.0))
-        self.line = PackedLine(line, numbers, free, np.ones(line.size), weights)
+        free, weights = np.zeros(line.size, dtype=bool), Packed(LineWeights(0.0, 0.0))
+        self.line = PackedLine(LineParts(line, parts), free, np.ones(line.size), weights)
         self.riser = LineSystem([self.line], [], weights)
         for part in parts:
             part.renew_kernel_data(before.t, state.t)
@@ -137,24 +136,30 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
 
 
 def require_mass(at: Sample, parts: list[Any]) -> None:
-    """Inverse of the mass, kinetic energy and bulk forces at an accepted state are those of the parts' methods."""
+    """Inverse of the mass, kinetic energy and bulk forces at an accepted state are those of the parts one by one."""
     system, accepted = System(MPI.COMM_SELF, Model([at.line], parts), Timer.new()), at.state(3, size=0.0)
     loop = line_solver(system)
     assert loop is not None
-    found, expected = loop.mass, RiserMass(system)
-    force = at.state(4).v
+    inertial = [part for part in parts if "I" in part.traits.groups]
+    mass, force = mass_of(at.line.nodes, at.line.prescribed, system.levers), at.state(4).v
     for _ in range(2):  # the second time projectors are known
-        accelerations = expected.accelerations(accepted.t, force)
-        scale = np.abs(accelerations).max()
-        np.testing.assert_allclose(found.accelerations(accepted.t, force), accelerations, rtol=0.0, atol=1e-10 * scale)
-    assert found.kinetic_energy(accepted) == pytest.approx(expected.kinetic_energy(accepted), rel=1e-12)
-    forces = system.forces(accepted, "IF")
+        mass.K[...] = 0.0
+        for part in inertial:
+            part.tangent(State.at_rest(accepted.t, at.line.size), MASS_ALONE, {at.line.name: mass.K})
+        accelerations = mass.accelerations(force)
+        found, scale = loop.mass.accelerations(accepted.t, force), np.abs(accelerations).max()
+        np.testing.assert_allclose(found, accelerations, rtol=0.0, atol=1e-10 * scale)
+    expected = Forces.zeros(at.line.size)
+    for part in parts:
+        if "E" not in part.traits.groups:
+            part.residual(accepted, expected)
     for name, group in vars(loop.bulk_forces(accepted)).items():
-        scale = np.abs(forces.force).max()
-        np.testing.assert_allclose(group, getattr(forces, name), rtol=0.0, atol=1e-12 * scale)
+        scale = np.abs(expected.force).max()
+        np.testing.assert_allclose(group, getattr(expected, name), rtol=0.0, atol=1e-12 * scale)
     other = at.state(5, size=0.0, t=0.7)
     for instant in (accepted, other, State(other.t, other.u, 2.0 * other.v, other.a)):  # what was placed last, or not
-        assert found.kinetic_energy(instant) == pytest.approx(expected.kinetic_energy(instant), rel=1e-12)
+        kinetic = sum(part.energy(instant).kinetic for part in inertial)
+        assert loop.mass.kinetic_energy(instant) == pytest.approx(kinetic, rel=1e-12)
     for instant in (accepted, other):
         require_element_residual(loop, at.line, parts, instant)
     system.destroy()

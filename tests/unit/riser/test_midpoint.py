@@ -10,8 +10,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LineTrials
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia, over_steps
+from riser_soil.riser.placed_line import LineTrials
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.solve.time_scheme import Midpoint
 from tests.support.dense_chain import residual, tangent

@@ -11,7 +11,7 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import GROUPS, Forces, Model, State, Weights
+from riser_soil.core.part import Forces, Model, State, Weights
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.newton import Newton
@@ -125,9 +125,9 @@ def test_forces_of_a_full_step_are_evaluated_once(monkeypatch: pytest.MonkeyPatc
     system, z = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 20.0, weight=2.0)]), Timer.new()), np.zeros(4)
     evaluated, forces = list[State](), system.forces
 
-    def counted(state: State, groups: str = GROUPS) -> Forces:
+    def counted(state: State) -> Forces:
         evaluated.append(state)
-        return forces(state, groups)
+        return forces(state)
 
     monkeypatch.setattr(system, "forces", counted)
     newton = Newton(system, NewtonSettings(1e-10, 20, 1e-12, line_search=True))

@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 from riser_soil.core.part import Model
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.riser_mass import RiserMass, projectors
+from riser_soil.solve.inverse_mass import InverseMass, projectors
 from tests.support.toy_chain import Chain, Inertia, Springs
 
 
@@ -18,7 +18,7 @@ def test_against_a_dense_solve(prescribed: bool) -> None:
     inertia, springs = Inertia(chain, 2.0), Springs(chain, 1.0, 30.0)
     system = System(MPI.COMM_SELF, Model([chain], [springs, inertia]), Timer.new())
     force = np.array([1.0, -2.0, 0.5, 3.0, 0.1])
-    a = RiserMass(system).accelerations(0.0, force)
+    a = InverseMass(system).accelerations(0.0, force)
     expected = force / inertia.nodal()
     expected[0] *= not prescribed
     assert a == pytest.approx(expected, rel=1e-14)
@@ -28,7 +28,7 @@ def test_against_a_dense_solve(prescribed: bool) -> None:
 def test_massless_dofs_stay() -> None:
     chain = Chain(np.arange(3.0))
     system = System(MPI.COMM_SELF, Model([chain], [Inertia(chain, 0.0)]), Timer.new())
-    assert RiserMass(system).accelerations(0.0, np.ones(3)) == pytest.approx(np.zeros(3))
+    assert InverseMass(system).accelerations(0.0, np.ones(3)) == pytest.approx(np.zeros(3))
     system.destroy()
 
 

@@ -1,4 +1,4 @@
-"""Inverse of the mass: of the lines, and of soil with inertia.
+"""Inverse of the mass: of lines and bodies, and of soil with inertia.
 
 Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme). A line's element matrices,
 projected onto what moves, are a banded matrix.
@@ -16,9 +16,10 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.communicator import any_of
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import LineField, Part, State, Weights, local
+from riser_soil.core.part import LineField, Part, State, local
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
+from riser_soil.riser.line_part import MASS_ALONE, LineParts, joined
 from riser_soil.solve import step_kernels as kernels
 from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace, StepData, matrix_workspace
 
@@ -182,18 +183,17 @@ def _multiply(left: Array, right: Array, out: Array) -> None:
             out[i, j] = total
 
 
-MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
-
-
-class RiserMass:
-    """Inverse of the mass of the lines, their own and the added one, and of other fields, on free dofs; collective over
-    all ranks.
+class InverseMass:
+    """Inverse of the mass of lines and bodies, their own and the added one, and of other fields, on free dofs;
+    collective over all ranks.
     """
 
     def __init__(self, system: System) -> None:
-        self._system, self._parts = system, _with_inertia(system)
+        self._system = system
+        parts = [part for part in system.model.parts if part.active and "I" in part.traits.groups]
+        self._parts = joined(parts)
         lines = {line.name for line in system.model.lines}
-        others = [part for part in self._parts if not lines & part.blocks().keys()]
+        others = [part for part in parts if not lines & part.blocks().keys()]
         self._others = OtherMass(system, others) if any_of(system.comm, bool(others)) else None
 
     @cached_property
@@ -208,20 +208,23 @@ class RiserMass:
         out, comm = np.zeros_like(force), self._system.comm
         if self._others is not None:
             self._others.write_accelerations(force, out)
+        rest = State.at_rest(t, force.size)
         for line, mass in self._lines:
-            out[local(line)] = comm.bcast(self._of_line(line, mass, t, force) if comm.rank == 0 else None)
+            out[local(line)] = comm.bcast(self._of_line(line, mass, rest, force) if comm.rank == 0 else None)
         return out
 
-    def _of_line(self, line: LineField, mass: LineMass | NodeMass, t: float, force: Array) -> Array:
-        mass.K[...], state = 0.0, State.at_rest(t, force.size)
+    def _of_line(self, line: LineField, mass: LineMass | NodeMass, rest: State, force: Array) -> Array:
+        mass.K[...] = 0.0
         for part in self._parts:
-            if line.name not in part.blocks():
-                continue
-            part.tangent(state, MASS_ONLY, {line.name: mass.K})
+            if isinstance(part, LineParts):
+                if part.line.name == line.name:
+                    part.mass(rest, mass.K)
+            elif line.name in part.blocks():
+                part.tangent(rest, MASS_ALONE, {line.name: mass.K})
         return mass.accelerations(force[local(line)])
 
     def kinetic_energy(self, state: State) -> float:
-        """Kinetic energy [J] at an accepted state."""
+        """Kinetic energy [J] at a state."""
         mine = sum(part.energy(state).kinetic for part in self._parts)
         return float(self._system.comm.allreduce(mine))
 
@@ -248,7 +251,7 @@ class OtherMass:
         for part in parts:
             for key, block in part.blocks().items():
                 values = block.zeros()
-                part.tangent(state, MASS_ONLY, {key: values})
+                part.tangent(state, MASS_ALONE, {key: values})
                 rows, cols = np.broadcast_to(block.rows[:, :, None], block.shape), block.cols[:, None, :]
                 at = rows.ravel(), np.broadcast_to(cols, block.shape).ravel()
                 self._mass = self._mass + coo_matrix((values.ravel(), at), shape=self._mass.shape).tocsr()
@@ -278,7 +281,3 @@ class OtherMass:
 
     def _product(self, a: Array, b: Array) -> float:
         return self._system.sum([float(a @ b)])[0]
-
-
-def _with_inertia(system: System) -> list[Part]:
-    return [part for part in system.model.parts if part.active and "I" in part.traits.groups]
