@@ -32,6 +32,7 @@ from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import largest_at
 from riser_soil.solve.step import Solution, Step, reported
 from riser_soil.solve.step_results import StepResults
+from riser_soil.solve.step_trial import StepTrial
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
@@ -111,13 +112,13 @@ class LineSolver(StepResults):
     def solve(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> Solution | str:
         """Solve a step; why that can't be done where it can't. at_equilibrium: see `Newton`."""
         since = time.perf_counter()
-        begun = self._begun(step)
+        trial = StepTrial(self.system, step)
         for line in self._lines:
-            line.parts.renew(step.before.t, begun.t)
+            line.parts.renew(step.before.t, trial.begun.t)
         for results in self._results.values():
             results.forget()
-        failure, norms = self._iterate(step, begun, self._limits(step, settings, at_equilibrium))
-        solution = None if failure else Solution(self._state(step, begun), self._forces(), norms)
+        failure, norms = self._iterate(trial, self._limits(step, settings, at_equilibrium))
+        solution = None if failure else Solution(self._end(trial), self._forces(), norms)
         # The last trial is the step's end, but of a scheme that balances forces elsewhere.
         self._solved = solution.state if solution is not None and step.scheme.step_over_trial == 1.0 else None
         if self._solved is not None:
@@ -131,28 +132,17 @@ class LineSolver(StepResults):
         left = [each.leave_to_parts(before) for each in self._couplings]
         return any(left)
 
-    def _begun(self, step: Step) -> State:
-        """Where the step is balanced: the first guess, and rates of no increments but those that are prescribed."""
-        scheme, still = step.scheme, step.scheme.trial(step.before, step.t, step.dt, self._nothing)
-        begun = State(step.t, step.guess.copy(), still.v, still.a)
-        self.system.prescribe(begun)
-        if scheme.step_over_trial == 1.0:
-            return begun
-        alone = replace(begun, u=np.where(self.system.prescribed, begun.u, 0.0))
-        return replace(scheme.balanced_at(step.before, alone, step.dt), u=begun.u / scheme.step_over_trial)
-
-    def _iterate(self, step: Step, begun: State, limits: StopLimits) -> tuple[str, list[float]]:
+    def _iterate(self, trial: StepTrial, limits: StopLimits) -> tuple[str, list[float]]:
         """Why the step is not solved, "" where it is; norms of the residual on the way."""
-        scheme, past = step.scheme, step.scheme.past(step.start)
         for _ in range(MOST_STARTS):
             for each in self._couplings:
-                each.begin(step.before, begun.t, begun.u)
-            self.packed.begin(begun, past, scheme.weights(step.dt), limits)
+                each.begin(trial.step.before, trial.begun.t, trial.begun.u)
+            self.packed.begin(trial.begun, trial.past, trial.weights, limits)
             ending, convergence = self.packed.solve(), self.packed.convergence
             self.iterations += convergence.iterations
             if ending == CONVERGED:
                 holds = self.packed.all_couplings(attrgetter("holds"))
-                return self._tangle(step, begun) or ("" if holds else OUTGROWN), convergence.norms
+                return self._tangle(trial) or ("" if holds else OUTGROWN), convergence.norms
             if ending != OUTGROWN:
                 break
             for each in self._couplings:
@@ -163,35 +153,27 @@ class LineSolver(StepResults):
         """A smooth motion takes an iteration, which answers its load."""
         smooth, gradual = self.system.smooth, self.system.gradual and self.packed.all_couplings(attrgetter("gradual"))
         answers = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
-        limits, ratio = limits_of(settings, smooth, gradual, answers), step.scheme.step_over_trial
-        if ratio == 1.0:
-            return limits
-        # Newton's own norm is that of the balance by the increments of the whole step, see `balance_of`.
-        return limits._replace(tolerance=limits.tolerance / ratio, floor=limits.floor / ratio)
+        return limits_of(settings, smooth, gradual, answers, step.scheme.step_over_trial)
 
-    def _tangle(self, step: Step, begun: State) -> str:
+    def _tangle(self, trial: StepTrial) -> str:
         """Why the solution is not an admissible state of a line; "" where it is."""
-        end = None if step.scheme.step_over_trial == 1.0 else self._state(step, begun)
+        end = None if trial.step.scheme.step_over_trial == 1.0 else self._end(trial)
         for packed in self._lines:
             if isinstance(line := packed.line, Line):
-                reason = line.folding(*packed.folding) if end is None else line.inadmissible(end, step.before)
+                reason = line.folding(*packed.folding) if end is None else line.inadmissible(end, trial.step.before)
                 if reason:
                     return reason
         return ""
 
-    def _state(self, step: Step, begun: State) -> State:
+    def _end(self, trial: StepTrial) -> State:
         """The state found at the step's end."""
-        u, v, a = self._nothing.copy(), begun.v, begun.a
+        u, v, a = self._nothing.copy(), trial.begun.v.copy(), trial.begun.a.copy()
         for packed in self._lines:
             at, found = packed.line.part, packed.step
             u[at], v[at], a[at] = found.u.ravel(), found.v.ravel(), found.a.ravel()
-        if step.scheme.step_over_trial != 1.0:
-            end = step.scheme.trial(step.before, step.t, step.dt, step.scheme.step_over_trial * u)
-            self.system.prescribe(end)
-            return end
         for each in self._couplings:
-            each.put_increments(step.scheme.weights(step.dt), u, v, a)
-        return State(step.t, u, v, a, dt=step.dt)
+            each.put_increments(trial.weights, u, v, a)
+        return trial.end_of(replace(trial.begun, u=u, v=v, a=a))
 
     def _forces(self) -> Forces:
         """Those of the last trial; on the free dofs of soil they are in balance."""

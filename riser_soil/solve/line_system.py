@@ -176,16 +176,15 @@ class LineSystem:
         self.write_tangent = in_turn(*bulk, *joined, *contact, *fill, *sizes)
         self.correct = in_turn(*factors, *improve)
 
-    def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:
+    def begin(self, state: State, past: Array, weights: Weights, limits: StopLimits) -> None:
         """Begin a step.
 
-        state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`;
-        both of all local dofs.
+        state, past, weights: see `StepTrial`; of all local dofs.
         """
         for line in self.lines:
             at = line.line.part
             own = State(state.t, state.u[at], state.v[at], state.a[at])
-            line.begin(own, None if past is None else past[at], weights)
+            line.begin(own, past[at], weights)
         given = LineWeights(weights.inertia, weights.force)
         if given != self._weights.value:
             self._weights.renew(given)

@@ -44,15 +44,19 @@ class NewtonSettings:
 
 
 @lru_cache(maxsize=8)
-def limits_of(settings: NewtonSettings, starts_near: bool, gradual: bool, answers_load: bool) -> StopLimits:
-    """starts_near: whether the guess continues a smooth motion, as in time steps without contact. The tangent can be
+def limits_of(
+    settings: NewtonSettings, starts_near: bool, gradual: bool, answers_load: bool, step_over_trial: float = 1.0
+) -> StopLimits:
+    """The settings are of the balance by the increments of the whole step, the limits by those to the trial.
+
+    starts_near: whether the guess continues a smooth motion, as in time steps without contact. The tangent can be
     reused, and one iteration is a must: a motion that continues by its first guess alone would keep its errors.
-    gradual: see `System`.
+    gradual: see `System`; step_over_trial: see `Scheme`.
     """
     beside = BESIDE_CLAY if gradual else 0.0
     return StopLimits(
-        settings.tolerance,
-        settings.floor,
+        settings.tolerance / step_over_trial,
+        settings.floor / step_over_trial,
         settings.reuse if starts_near else beside,
         settings.max_iterations,
         max(settings.least_iterations, int(starts_near)),

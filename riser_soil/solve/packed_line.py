@@ -132,11 +132,11 @@ class PackedLine:
             kernel = has_work(part.kernel_data())
             work[part.name] += Work(*next(compiled)) if kernel else part.work(before, after)
 
-    def begin(self, state: State, past: Array | None, weights: Weights) -> None:
+    def begin(self, state: State, past: Array, weights: Weights) -> None:
         """Begin a step. state, past: as of `LineSystem`, of this line's dofs."""
         self._trials.base.update()
         u, v, a, earlier = self._start
-        u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, 0.0 if past is None else past
+        u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, past
         maps = self._maps.value
         if (maps.shift_v, maps.shift_a) != (weights.shift_v, weights.shift_a):
             self._maps.renew(maps._replace(shift_v=weights.shift_v, shift_a=weights.shift_a))

@@ -25,7 +25,7 @@ from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.residual_norm import ResidualNorm, above_round_off
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
 from riser_soil.solve.step import NotConvergedError, Solution, Step, reported
-from riser_soil.solve.step_trial import StepTrials
+from riser_soil.solve.step_trial import StepTrial
 
 TIGHT, LOOSEST = 1e-10, 1e-2  # shares of the residual that a linear system solved by iterations may leave
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
@@ -42,7 +42,9 @@ class StepIteration:
 
     def __init__(self, system: System, settings: NewtonSettings) -> None:
         self.system, self.settings, self.iterations = system, settings, 0
-        self._trials: StepTrials | None = None
+        self._trial: StepTrial | None = None
+        self._state: State | None = None  # of the unknowns that were tried last
+        self._known: State | None = None  # the state at which the forces were found last
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self._limited: list[Limited] = with_role(system.model.parts, Limited)
         self._elastic = ElasticShare(with_role(system.model.parts, Yielding))
@@ -70,15 +72,39 @@ class StepIteration:
             self._start_linearly()
         if failure := self._iterate():
             raise NotConvergedError(failure)
-        state = self._step.of(self._x)
-        self._step.require_admissible(self._limited)
-        return Solution(state, self._step.forces, self._convergence.norms)
+        end = self._step.end_of(self._at(self._x))
+        self._require_admissible(end)
+        return Solution(end, self._forces, self._convergence.norms)
 
     @property
-    def _step(self) -> StepTrials:
+    def _step(self) -> StepTrial:
         """The step that is being solved."""
-        assert self._trials is not None
-        return self._trials
+        assert self._trial is not None
+        return self._trial
+
+    def _at(self, x: Array) -> State:
+        """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
+        found = np.zeros(self.system.numbering.size)
+        self.system.numbering.to_local(x, found)
+        u = self._step.with_prescribed(found)
+        if self._state is None or (u != self._state.u).any():
+            self._state = self._step.state_at(u)
+        return self._state
+
+    def _balance(self, state: State) -> Array:
+        """Local residual at a state."""
+        if state is not self._known:
+            self._forces, self._known = self.system.forces(state), state
+        return self._step.balance(self._forces)
+
+    def _require_admissible(self, end: State) -> None:
+        """Raise NotConvergedError where the step's end is none of a line's states or of the parts' with limits."""
+        step = self._step.step
+        before = step.before if step.scheme.dynamic else None
+        reasons = [line.inadmissible(end, before) for line in self.system.model.lines]
+        reasons += [part.inadmissible(end) for part in self._limited]
+        for reason in filter(None, reasons):
+            raise NotConvergedError(reason)
 
     @property
     def _moves(self) -> bool:
@@ -90,10 +116,13 @@ class StepIteration:
 
         A motion that is prescribed puts nothing there but through the stretch of the elements beside it.
         """
-        guess, add = self._step.step.guess, self.system.numbering.add_to_global
-        tried = self._step.with_prescribed(guess), np.zeros_like(guess)
-        going_on, still = (self._norm_of(add(self._step.residual_of(u)[1])) for u in tried)
+        guess, add = self._step.begun.u, self.system.numbering.add_to_global
+        going_on, still = (self._norm_of(add(self._balance(self._unmoved(u)))) for u in (guess, np.zeros_like(guess)))
         return going_on < still
+
+    def _unmoved(self, u: Array) -> State:
+        """State of the increments u, those of the prescribed dofs included, without rates of their own."""
+        return replace(self._step.still, u=u)
 
     def _start_linearly(self) -> None:
         """First iteration by the tangent where the step starts: the linear response to its loads and prescribed motion,
@@ -102,18 +131,18 @@ class StepIteration:
         An end that is moved alone stretches the element beside it by far, and its false tension spoils what follows. In
         a time step on soil the motion continued presses the pipe far into it, or off it.
         """
-        guess = self._step.step.guess
-        still = np.zeros_like(guess)
-        _, probed = self._step.residual_of(PROBE * self._step.with_prescribed(still))
-        start, residual = self._step.residual_of(still)
+        still = np.zeros(self.system.numbering.size)
+        probed = self._balance(self._unmoved(PROBE * self._step.with_prescribed(still)))
+        start = self._unmoved(still)
+        residual = self._balance(start)
         self._assemble(start)
         while self._outgrown():
             self._renew(start)
             self._assemble(start)
         self._convergence.first = 1
         self._convergence.add(self._respond_to(residual + (probed - residual) / PROBE, still))
-        if not self._moves and any_of(self.system.comm, bool(guess.any())):
-            self._prefer_guess(self._step.with_prescribed(guess))
+        if not self._moves and any_of(self.system.comm, bool(self._step.step.guess.any())):
+            self._prefer_guess(self._step.begun.u)
 
     def _prefer_guess(self, guess: Array) -> None:
         """Take the guess, with the tangent's response, where it is nearer to balance than the linear response alone: in
@@ -121,7 +150,7 @@ class StepIteration:
         """
         linear = self._x
         left = self._norm_of(self.residual(linear))
-        norm = self._respond_to(self._step.residual_of(guess)[1], guess)
+        norm = self._respond_to(self._balance(self._unmoved(guess)), guess)
         if self._norm_of(self.residual(self._x)) < left:
             self._convergence.norms[-1] = norm
         else:
@@ -155,7 +184,7 @@ class StepIteration:
         while True:
             ending = self._run()
             if ending == OUTGROWN:
-                self._renew(self._step.balanced)
+                self._renew(self._at(self._x))
             elif ending == TOO_MANY and not self._elastic.in_vain and self._still_falls():
                 self._convergence.most += self.loop.max_iterations
             elif not self.loop.again:
@@ -207,23 +236,25 @@ class StepIteration:
         self.loop.release()
         self.system.renew_pattern()
         self._make_vectors()
-        if self._trials is not None and (x := self._trials.renumbered()) is not None:
-            self._x = x
+        if self._trial is not None:
+            self._trial.begin_anew()
+        if self._state is not None:
+            self._x, self._state = self.system.numbering.to_global(self._state.u), None
         self.loop.renew()
 
     def _begin(self, step: Step, at_equilibrium: bool, tolerance: float) -> None:
-        self._trials = StepTrials(self.system, step)
-        self._x = self.system.numbering.to_global(step.guess)
+        self._trial, self._state, self._known = StepTrial(self.system, step), None, None
+        self._x = self.system.numbering.to_global(self._trial.begun.u)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._moves
         answers = at_equilibrium or guessed  # one like round-off has an answer, too
         settings = replace(self.settings, tolerance=tolerance)
-        self._convergence = Convergence(limits_of(settings, near, False, answers))
+        self._convergence = Convergence(limits_of(settings, near, False, answers, step.scheme.step_over_trial))
         self._convergence.most = self.loop.max_iterations
 
     def residual(self, x: Array) -> Array:
         """Residual of the unknowns, both (owned,); collective."""
-        return self._step.residual(x)
+        return self.system.numbering.add_to_global(self._balance(self._at(x)))
 
     def shortened(self, x: Array, y: Array) -> Array:
         """The step -y from x, whose residual is known, to the length that the line search finds: a part of y."""
@@ -243,7 +274,7 @@ class StepIteration:
     def _assemble(self, state: State) -> None:
         self.system.assemble(state, self._step.weights)
         if self._step.weights.inertia == 0.0:
-            prescribe_free_turns(self.system, state, self.settings.tolerance * self._norm.in_play(self._step.forces))
+            prescribe_free_turns(self.system, state, self._tolerated)
 
     def _outgrown(self) -> bool:
         """Whether something in the tangent assembled last had no place in the pattern; collective."""
@@ -257,8 +288,7 @@ class StepIteration:
         """
         if self._convergence.keeps_tangent:
             return
-        self._step.of(x)
-        self._assemble(self._step.balanced)
+        self._assemble(self._at(x))
         if self._outgrown():
             raise OutgrownError
 
@@ -269,7 +299,7 @@ class StepIteration:
         """
         self._x, self._f = x, f
         self._convergence.add(self._norm.of(f))
-        ending = self._convergence.ending(self._norm.in_play(self._step.forces), self._at_round_off, small)
+        ending = self._convergence.ending(self._norm.in_play(self._forces), self._at_round_off, small)
         if ending == CONVERGED and self._outgrown():
             raise OutgrownError
         return self._yields() if ending == ITERATING else ending
@@ -285,8 +315,7 @@ class StepIteration:
 
     def _at_round_off(self) -> bool:
         """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
-        self._step.of(self._x)
-        magnitudes = self.system.magnitudes(self._step.balanced, self._step.weights)
+        magnitudes = self.system.magnitudes(self._at(self._x), self._step.weights)
         sizes = self.system.numbering.sizes_to_global(magnitudes)
         return not any_of(self.system.comm, bool(above_round_off(self._f, sizes)))
 
@@ -301,12 +330,17 @@ class StepIteration:
         before = convergence.norms[-2] if convergence.iterations > convergence.first else 0.0
         if not 0.0 < norm < before:
             return LOOSEST
-        enough = self.settings.tolerance * self._norm.in_play(self._step.forces) / norm
+        enough = self._tolerated / norm
         return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSEST)
+
+    @property
+    def _tolerated(self) -> float:
+        """Norm of the residual [N] that counts as small beside the forces in play; collective."""
+        return self._convergence.limits.tolerance * self._norm.in_play(self._forces)
 
     def negligible(self) -> float:
         """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
-        return BELOW * self.settings.tolerance * self._norm.in_play(self._step.forces)
+        return BELOW * self._tolerated
 
     def _reason(self, why: str) -> str:
         """Why the step did not converge, with where it is out of balance."""

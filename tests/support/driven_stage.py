@@ -24,8 +24,9 @@ from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_settings import NewtonSettings
+from riser_soil.solve.step import Step
 from riser_soil.solve.step_control import Control
-from riser_soil.solve.step_trial import balance_of
+from riser_soil.solve.step_trial import StepTrial
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
@@ -126,10 +127,9 @@ class FirstStep:
         return state
 
     def residual(self, x: Array) -> Array:
-        forces, past = self.system.forces(self.state(x)), self.scheme.past(self._start)
-        nothing, weights = np.zeros(self.assembly.size), self.scheme.weights(self._dt)
-        local = balance_of(self.scheme, weights, forces, nothing if past is None else past)
-        return self.system.numbering.add_to_global(local)
+        guess = np.zeros(self.assembly.size)
+        trial = StepTrial(self.system, Step(self.scheme, self._before, self._dt, self._dt, self._start, guess))
+        return self.system.numbering.add_to_global(trial.balance(self.system.forces(self.state(x))))
 
     def slope(self, x: Array, direction: Array, h: float) -> Array:
         """Derivative of the residual at x along a direction, by differences of fourth order in the step h."""

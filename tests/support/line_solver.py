@@ -65,7 +65,8 @@ class Compiled:
         for part in parts:
             part.renew_kernel_data(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
-        self.riser.begin(State(state.t, state.u, v, a), None, WEIGHTS, StopLimits(0.0, 0.0, 0.0, 1, 0, False))
+        once = StopLimits(0.0, 0.0, 0.0, 1, 0, False)
+        self.riser.begin(State(state.t, state.u, v, a), np.zeros(line.size), WEIGHTS, once)
         self.riser.evaluate()
         self.riser.write_tangent()
 
@@ -175,7 +176,7 @@ def require_tangles(dimension: int) -> None:
         state = at.state(1, size=0.0)
         line.nodal(state.u)[node, -1] = turn
         compiled = Compiled(at, parts, state, state)
-        compiled.riser.begin(state, None, WEIGHTS, anything)
+        compiled.riser.begin(state, np.zeros(line.size), WEIGHTS, anything)
         assert compiled.riser.solve() == CONVERGED
         reported.append(line.folding(*compiled.line.folding))
         assert reported[-1] == line.inadmissible(state, at.state(1, size=0.0))

@@ -20,6 +20,7 @@ from riser_soil.solve.newton import solver_of
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.step import Step
+from riser_soil.solve.step_trial import StepTrial
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
@@ -111,9 +112,9 @@ def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.Monke
     """Each second one, so that both go on from what the other has left."""
     usual, asked = LineSolver._iterate, []
 
-    def iterate(loop: LineSolver, step: Step, still: State, limits: StopLimits) -> tuple[str, list[float]]:
-        asked.append(step.t)
-        return usual(loop, step, still, limits) if len(asked) % 2 else ("left to Newton", [])
+    def iterate(loop: LineSolver, trial: StepTrial, limits: StopLimits) -> tuple[str, list[float]]:
+        asked.append(trial.step.t)
+        return usual(loop, trial, limits) if len(asked) % 2 else ("left to Newton", [])
 
     monkeypatch.setattr(LineSolver, "_iterate", iterate)
     assert_same(taken("in a plane", "compiled"), by_snes("in a plane"))
