@@ -15,8 +15,8 @@ from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import Timer
 from riser_soil.soil.law import PLASTIC_STRAIN
 from riser_soil.soil.soil import Soil
+from riser_soil.solve.direct_solver import use_mumps
 from riser_soil.solve.kept_factors import KeptFactors
-from riser_soil.solve.linear_solver import use_mumps
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.snes import SnesLoop
 

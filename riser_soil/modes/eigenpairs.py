@@ -19,7 +19,7 @@ from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SolveError
-from riser_soil.solve.linear_solver import use_mumps
+from riser_soil.solve.direct_solver import use_mumps
 
 SPARE = 10  # modes beyond those asked for, on which the part of K that is not symmetric is tried, too
 FEW = 300  # dofs with mass, up to which the problem is a dense one

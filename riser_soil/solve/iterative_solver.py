@@ -19,7 +19,7 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import local
 from riser_soil.core.system import System
-from riser_soil.solve.linear_solver import LinearSystems
+from riser_soil.solve.linear_solver import LinearSolver
 from riser_soil.solve.petsc_options import PREFIX, defaults
 from riser_soil.solve.python_context import PythonContext
 
@@ -40,7 +40,7 @@ def solid_of(system: System) -> SoilField | None:
     return cast("SoilField | None", system.whole_soil)
 
 
-class IterativeSolver(PythonContext, LinearSystems):
+class IterativeSolver(PythonContext, LinearSolver):
     """Linear solver of a system with a solid, and the context of its preconditioner; collective."""
 
     factorises: ClassVar[bool] = False

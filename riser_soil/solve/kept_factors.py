@@ -22,7 +22,8 @@ from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.saved_state import Saved
-from riser_soil.solve.linear_solver import LinearSystems, use_mumps
+from riser_soil.solve.direct_solver import use_mumps
+from riser_soil.solve.linear_solver import LinearSolver
 from riser_soil.solve.python_context import PythonContext
 
 FEWEST = 10  # iterations that a solve may take in any case, where new factors want some, too
@@ -34,7 +35,7 @@ TOO_LONG = PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT
 BROKEN = PETSc.KSP.ConvergedReason.DIVERGED_BREAKDOWN
 
 
-class KeptFactors(PythonContext, LinearSystems):
+class KeptFactors(PythonContext, LinearSolver):
     """Linear solver of a system's tangents, one after the other; collective.
 
     symmetric: whether the tangents are. workspace: for fill-in; it grows where it was too little. factorisations,

@@ -14,7 +14,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.banded import SingularError
 from riser_soil.core.communicator import all_of
 from riser_soil.core.system import System
-from riser_soil.solve.chain import ChainFactors
+from riser_soil.solve.bordered_band import BorderedBand
 from riser_soil.solve.python_context import PythonContext
 
 
@@ -23,7 +23,7 @@ class RiserAboveSoil(PythonContext):
 
     def __init__(self, system: System) -> None:
         self._system, self._rows = system, system.line_rows
-        self._factors = ChainFactors(system.matrix, self._rows)
+        self._factors = BorderedBand(system.matrix, self._rows)
 
     def serve(self, ksp: PETSc.KSP) -> None:
         """Solve what this KSP is asked for."""

@@ -24,7 +24,8 @@ from riser_soil.core.communicator import Communicator, all_of, largest_of
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.part import local
 from riser_soil.core.system import System
-from riser_soil.solve.linear_solver import LinearSystems, factorise_directly
+from riser_soil.solve.direct_solver import factorise_directly
+from riser_soil.solve.linear_solver import LinearSolver
 from riser_soil.solve.python_context import PythonContext
 from riser_soil.solve.section_factors import Entries, SectionFactors, coupled_apart, entries_between
 
@@ -40,7 +41,7 @@ def sections_of(system: System) -> SoilField | None:
     return None if getattr(soil, "section", None) is None else cast("SoilField", soil)
 
 
-class SectionSolver(PythonContext, LinearSystems):
+class SectionSolver(PythonContext, LinearSolver):
     """Linear solver of a system with soil in sections, and the context of its preconditioner; collective."""
 
     def __init__(self, system: System, soil: SoilField, workspace: Workspace) -> None:

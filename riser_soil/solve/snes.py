@@ -5,7 +5,7 @@ all that is set here (`petsc_options`). Three things are the project's own as lo
 
 - the test: a residual is small beside the forces in play, which SNES's tolerances don't know;
 - the line search: it goes backwards, too, where the energy climbs, which none of PETSc's does;
-- the linear solvers: sections, kept factors, a riser that touches nothing, for which PETSc has none (`linear_systems`).
+- the linear solvers: sections, kept factors, a riser that touches nothing, for which PETSc has none (`tangent_solver`).
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.convergence import CONVERGED, DIVERGED, ITERATING, NOT_FINITE, NOT_SOLVED, TOO_MANY
 from riser_soil.solve.linear_solver import complaint, raised
-from riser_soil.solve.linear_systems import TangentSolver
 from riser_soil.solve.newton_loop import Balance, Loop
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.petsc_options import PREFIX, Given, as_text, defaults, refuse_unread, set_from_options
+from riser_soil.solve.tangent_solver import TangentSolver
 
 REASON = PETSc.SNES.ConvergedReason
 UNLIMITED = 10**6  # iterations: the balance says when there are too many
@@ -50,7 +50,7 @@ class SnesLoop(Loop):
             self._tangents = TangentSolver(system, settings.linear, given)
             before_soil = settings.has_soil and not system.model.others  # whose solvers read options, too
             self._all_read = before_soil or not given.any
-            self.linear, self.again = self._tangents.systems, False
+            self.linear, self.again = self._tangents.solver, False
             self.factorises = self.linear.factorises
             self._create()
             self._options = stack.pop_all()

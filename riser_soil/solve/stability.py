@@ -24,7 +24,7 @@ from riser_soil.core.communicator import all_of, any_of
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
-from riser_soil.solve import chain
+from riser_soil.solve import bordered_band
 
 EPS = float(np.finfo(float).eps)
 NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
@@ -54,7 +54,7 @@ class PivotCounter:
         if system.whole_soil is None or any_of(system.comm, system.couples):
             return negative_pivots(system)
         rows = system.line_rows
-        mine = chain.negative_pivots(system.matrix, rows) if rows else 0
+        mine = bordered_band.negative_pivots(system.matrix, rows) if rows else 0
         return int(system.sum([float(mine)])[0]) + self._of_others(rows)
 
     def _of_others(self, rows: int) -> int:
@@ -93,16 +93,16 @@ def unstable_modes(
 def negative_pivots(system: System) -> int:
     """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
     if system.is_chain:
-        return chain.negative_pivots(system.matrix)
-    from riser_soil.solve import linear_solver
+        return bordered_band.negative_pivots(system.matrix, system.numbering.free)
+    from riser_soil.solve import direct_solver
 
-    return linear_solver.negative_pivots(system)
+    return direct_solver.negative_pivots(system)
 
 
 def _negative_pivots_behind(system: System, rows: int) -> int:
-    from riser_soil.solve import linear_solver
+    from riser_soil.solve import direct_solver
 
-    return linear_solver.negative_pivots_behind(system, rows)
+    return direct_solver.negative_pivots_behind(system, rows)
 
 
 def prescribe_free_turns(system: System, state: State, least: float) -> None:

@@ -20,7 +20,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.errors import MemoryShortageError
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve import linear_solver, linear_systems
+from riser_soil.solve import direct_solver, tangent_solver
 from riser_soil.stages import LayingCounter, run_stage
 from tests.support.said import line_with
 from tests.support.scenes import LAY, Mapping, touchdown
@@ -42,7 +42,7 @@ def laid() -> Array:
     return assembly.soil.whole.field.total.copy()
 
 
-@pytest.mark.parametrize("place", [linear_systems, pytest.param(linear_solver, marks=pytest.mark.verify)])
+@pytest.mark.parametrize("place", [tangent_solver, pytest.param(direct_solver, marks=pytest.mark.verify)])
 def test_too_little_workspace_grows_and_the_step_is_the_same(place: object, monkeypatch: pytest.MonkeyPatch) -> None:
     """Room below nothing is less than what MUMPS has foretold."""
     expected, rooms = laid(), []

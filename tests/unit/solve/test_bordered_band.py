@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.banded import SingularError
-from riser_soil.solve.bordered_band import BorderedBand, bandwidth
+from riser_soil.solve.bordered_band import BorderedBand
+from riser_soil.solve.direct_solver import BandSolver
 from riser_soil.solve.linear_solver import complaint
 from tests.support.said import line_with
 
@@ -31,14 +33,23 @@ def matrix(chain: int, border: int, band: int, touched: slice) -> Array:
     return out
 
 
-def solver(entries: Array, chain: int) -> tuple[PETSc.PC, PETSc.Mat]:
-    n = len(entries)
-    mat = PETSc.Mat().createAIJ((n, n), csr=_csr(entries), comm=PETSc.COMM_SELF)
-    pc = PETSc.PC().create(PETSc.COMM_SELF)
-    pc.setOperators(mat)
-    pc.setType(PETSc.PC.Type.PYTHON)
-    pc.setPythonContext(BorderedBand(mat, chain))
-    return pc, mat
+class Stored:
+    """A matrix as the solver reads it."""
+
+    def __init__(self, entries: Array) -> None:
+        self.stored, self.changes, self.entries = self, 0, entries
+
+    def csr(self) -> tuple[Array, Array, Array]:
+        return _csr(self.entries)
+
+    def scale(self, factor: float) -> None:
+        self.entries, self.changes = factor * self.entries, self.changes + 1
+
+
+def solver(entries: Array, chain: int, border: int) -> tuple[BorderedBand, Stored]:
+    """Of the first rows."""
+    matrix: Any = Stored(entries)
+    return BorderedBand(matrix, chain, border), matrix
 
 
 def _csr(entries: Array) -> tuple[Array, Array, Array]:
@@ -54,16 +65,19 @@ def _csr(entries: Array) -> tuple[Array, Array, Array]:
 def test_it_solves(chain: int, border: int, band: int, touched: slice) -> None:
     entries = matrix(chain, border, band, touched)
     load = np.random.default_rng(8).normal(size=chain + border)
-    pc, mat = solver(entries, chain)
-    assert bandwidth(mat, chain) == band
-    given, found = mat.createVecs()
+    factors, stored = solver(entries, chain, border)
     for scale in (1.0, 2.0):  # the factors are renewed with the matrix
-        pc.setOperators(mat)
-        given.setArray(load)
-        pc.apply(given, found)
-        expected = np.linalg.solve(scale * entries, load)
-        assert np.abs(found.getArray() - expected).max() < 1e-9 * np.abs(expected).max()
-        mat.scale(2.0)
+        found, expected = factors.solve(load), np.linalg.solve(scale * entries, load)
+        assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+        stored.scale(2.0)
+
+
+def test_the_band_alone_is_solved() -> None:
+    """Of a matrix with further rows, which don't count."""
+    entries, load = matrix(30, 7, 3, slice(10, 15)), np.random.default_rng(8).normal(size=30)
+    factors, _ = solver(entries, 30, 0)
+    expected = np.linalg.solve(entries[:30, :30], load)
+    assert np.abs(factors.solve(load) - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("row", [4, 33])
@@ -71,10 +85,16 @@ def test_a_singular_matrix_is_reported(row: int) -> None:
     """In the band, and in the border."""
     entries = matrix(30, 7, 3, slice(10, 15))
     entries[row] = 0.0
-    pc, mat = solver(entries, 30)
+    factors, _ = solver(entries, 30, 7)
+    size = np.arange(2, dtype=PETSc.IntType)
+    mat = PETSc.Mat().createAIJ((1, 1), csr=(size, size[:1], np.ones(1)), comm=PETSc.COMM_SELF)
+    pc = PETSc.PC().create(PETSc.COMM_SELF)
+    pc.setOperators(mat)
+    BandSolver(factors).work_for(pc)
     with pytest.raises((SingularError, PETSc.Error)) as failure:
         pc.setUp()
     line_with(complaint(failure.value), "linear solver failed", "matrix is singular")
+    pc.destroy()
     mat.destroy()
 
 
@@ -89,6 +109,8 @@ LEFT_OVER = """
 import numpy as np
 from petsc4py import PETSc
 from riser_soil.solve.bordered_band import BorderedBand
+from riser_soil.solve.direct_solver import BandSolver
+from tests.unit.solve.test_bordered_band import Stored
 
 class Solver:
     def __init__(self):
@@ -98,7 +120,7 @@ class Solver:
         self.snes.setFunction(self.function, self.f)
         self.snes.setJacobian(lambda *_: None, mat)
         self.snes.getKSP().setType("preonly")
-        BorderedBand(mat, 2).work_for(self.snes.getKSP().getPC())
+        BandSolver(BorderedBand(Stored(2.0 * np.eye(3)), 2, 1)).work_for(self.snes.getKSP().getPC())
 
     def function(self, snes, x, f):
         f.setArray(2.0 * x.getArray(readonly=True) - 6.0)
@@ -116,6 +138,6 @@ print(*solver.x.getArray(readonly=True))
 )
 def test_python_ends_well_with_solvers_left_over(end: str, in_use: int) -> None:
     """Of those destroyed, nothing is kept."""
-    counted = f"{end}\nprint(len(BorderedBand.in_use))"
+    counted = f"{end}\nprint(len(BandSolver.in_use))"
     done = subprocess.run([sys.executable, "-c", LEFT_OVER % counted], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout.split()) == (0, ["3.0", "3.0", "3.0", str(in_use)]), done.stderr

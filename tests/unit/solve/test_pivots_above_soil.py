@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.system import System
-from riser_soil.solve import linear_solver, stability
+from riser_soil.solve import direct_solver, stability
 from riser_soil.solve.stability import PivotCounter
 from tests.support.above_soil import hanging
 from tests.support.driven_stage import FirstStep, built
@@ -27,7 +27,7 @@ def system() -> Iterator[System]:
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """What has been factorised: "whole" or "soil"."""
-    found, usual, behind = list[str](), stability.negative_pivots, linear_solver.negative_pivots_behind
+    found, usual, behind = list[str](), stability.negative_pivots, direct_solver.negative_pivots_behind
 
     def of_whole(system: System) -> int:
         found.append("whole")
@@ -38,7 +38,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         return behind(system, rows)
 
     monkeypatch.setattr(stability, "negative_pivots", of_whole)
-    monkeypatch.setattr(linear_solver, "negative_pivots_behind", of_soil)
+    monkeypatch.setattr(direct_solver, "negative_pivots_behind", of_soil)
     return found
 
 
@@ -52,9 +52,9 @@ def lower(system: System, first: int, count: int) -> None:
 def test_a_riser_over_soil_has_pivots_of_its_own(system: System, asked: list[str]) -> None:
     pivots = PivotCounter(system)
     lower(system, 3, 2)
-    assert pivots.count() == linear_solver.negative_pivots(system) == 2
+    assert pivots.count() == direct_solver.negative_pivots(system) == 2
     lower(system, 9, 1)
-    assert pivots.count() == linear_solver.negative_pivots(system) == 3
+    assert pivots.count() == direct_solver.negative_pivots(system) == 3
     assert asked == ["soil"]
 
 
@@ -62,7 +62,7 @@ def test_soil_that_has_changed_is_counted_again(system: System, asked: list[str]
     pivots = PivotCounter(system)
     assert pivots.count() == 0
     lower(system, system.line_rows + 5, 4)
-    assert pivots.count() == linear_solver.negative_pivots(system) == 4
+    assert pivots.count() == direct_solver.negative_pivots(system) == 4
     assert asked == ["soil", "soil"]
 
 

@@ -9,7 +9,7 @@ import pytest
 from petsc4py import PETSc
 
 from riser_soil.core.system import System
-from riser_soil.solve.linear_solver import exact_solver
+from riser_soil.solve.direct_solver import exact_solver
 from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from tests.support.above_soil import hanging
 from tests.support.driven_stage import FirstStep, built

@@ -10,16 +10,19 @@ from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import System
+from riser_soil.solve.direct_solver import DirectSolver
 from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
-from riser_soil.solve.linear_solver import LinearSystems, factorise_directly, keeps_factors
+from riser_soil.solve.linear_solver import LinearSolver
 from riser_soil.solve.newton_loop import Balance
 from riser_soil.solve.petsc_options import Given
 from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.section_solver import SectionSolver, sections_of
 
+LARGE = 4000  # unknowns from which on kept factors are cheaper than new ones
 
-def linear_systems(system: System, asked: str, by_options: bool) -> LinearSystems:
+
+def linear_solver(system: System, asked: str, by_options: bool) -> LinearSolver:
     """The solver that is asked for: "direct", "kept", "iterative", or "auto", by which sections are solved one by one;
     what there is nothing for is solved directly. by_options: PETSc's own, as the user's options name one.
     """
@@ -32,12 +35,19 @@ def linear_systems(system: System, asked: str, by_options: bool) -> LinearSystem
     sections = sections_of(system) if asked == "auto" else None
     if sections is not None:
         return SectionSolver(system, sections, Workspace())
-    if keeps_factors(system, asked):
+    if _keeps_factors(system, asked):
         return KeptFactors(comm, system.symmetric, Workspace())
     return DirectSolver(system, Workspace())
 
 
-class PetscSolver(LinearSystems):
+def _keeps_factors(system: System, asked: str) -> bool:
+    """Whether factors are kept from one tangent to the next: as asked ("kept", "direct"), or where that is cheaper."""
+    if system.is_chain or asked == "direct":
+        return False
+    return asked == "kept" or system.numbering.free >= LARGE
+
+
+class PetscSolver(LinearSolver):
     """A linear solver by the user's options; what they leave open is done by LU of MUMPS."""
 
     to_tolerance: ClassVar[bool] = True
@@ -48,37 +58,22 @@ class PetscSolver(LinearSystems):
         ksp.getPC().setType(PETSc.PC.Type.LU)
 
 
-class DirectSolver(LinearSystems):
-    """Each system is factorised."""
-
-    def __init__(self, system: System, workspace: Workspace) -> None:
-        self._system, self._workspace = system, workspace
-
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
-        ksp.setType(PETSc.KSP.Type.PREONLY)
-        factorise_directly(ksp.getPC(), self._system, self._workspace)
-
-    def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        """Where factors found too little workspace, the next get more."""
-        return "", self._workspace.grows_after(ksp.getPC())
-
-
 class TangentSolver:
     """The KSP of a system's tangents and, where nothing touches whole soil, that of the riser alone in its place.
 
-    systems: how the first one solves them; used: whether it has been chosen.
+    solver: of tangents of all rows; used: whether it has been chosen.
     """
 
     def __init__(self, system: System, asked: str, given: Given) -> None:
         self._system, self._given, self.used = system, given, False
-        self.systems = linear_systems(system, asked, given.linear_solver)
+        self.solver = linear_solver(system, asked, given.linear_solver)
 
     def serve(self, ksp: PETSc.KSP) -> None:
         """Solve what this KSP is asked for, for the matrix that the system has now."""
         system, self._ksp = self._system, ksp
         self._levers = system.matrix.mat.createVecLeft()
         self._levers.array_w[:] = system.numbering.to_global(system.levers)
-        self.systems.serve(ksp, self._levers)
+        self.solver.serve(ksp, self._levers)
         self._alone: tuple[RiserAboveSoil, PETSc.KSP] | None = None
         if system.whole_soil is not None and not self._given.linear_solver:
             self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
@@ -86,7 +81,7 @@ class TangentSolver:
 
     def choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
         """The solver of the present tangent for a residual, which has not been told how exactly."""
-        if self.systems.reads_mat or self._given.any:
+        if self.solver.reads_mat or self._given.any:
             self._system.matrix.write()
         if self._alone is not None:
             above_soil, ksp = self._alone
@@ -101,8 +96,8 @@ class TangentSolver:
             self._ksp.setTolerances(rtol=tolerance)
 
     def failed(self) -> tuple[str, bool]:
-        """See `LinearSystems`."""
-        return self.systems.failed(self._ksp)
+        """See `LinearSolver`."""
+        return self.solver.failed(self._ksp)
 
     def drop(self) -> None:
         """Destroy what belongs to the present matrix, factors on all ranks at once: MUMPS waits for the others."""
