@@ -29,7 +29,7 @@ from riser_soil.solve.line_results import LineResults
 from riser_soil.solve.line_system import Coupling, LineSystem
 from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.packed_line import PackedLine
-from riser_soil.solve.residual_norm import largest_at
+from riser_soil.solve.residual_norm import place_of_largest
 from riser_soil.solve.step import Solution, Step, reported
 from riser_soil.solve.step_results import StepResults
 from riser_soil.solve.step_trial import StepTrial
@@ -243,10 +243,7 @@ class LineSolver(StepResults):
 
     def _place(self) -> str:
         """The largest residual, in words."""
-        found = [packed.dofs.residual.ravel() / packed.dofs.levers.ravel() for packed in self._lines]
-        residual = np.concatenate(found)
-        if not np.isfinite(residual).all():
-            return "the residual is not finite"
-        k = int(np.argmax(np.abs(residual)))
-        field = next(field for field in self.system.model.lines if field.offset <= k < field.offset + field.size)
-        return largest_at(abs(residual[k]), field.describe(k - field.offset))
+        residual, system = self._nothing.copy(), self.system
+        for packed in self._lines:
+            residual[packed.line.part] = packed.dofs.residual.ravel() / packed.dofs.levers.ravel()
+        return place_of_largest(system, system.numbering.to_global(residual), system.numbering.first)

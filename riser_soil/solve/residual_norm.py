@@ -77,11 +77,6 @@ class ResidualNorm:
         return math.sqrt(max(system.sum([*mine])))
 
 
-def largest_at(residual: float, place: str) -> str:
-    """The largest residual [N] and its place, in words."""
-    return f"the largest residual, {residual:.3g} N, sits at the {place}"
-
-
 def place_of_largest(system: System, residual: Array, first: int) -> str:
     """The row with the largest residual, in words; collective.
 
@@ -93,7 +88,7 @@ def place_of_largest(system: System, residual: Array, first: int) -> str:
     k = int(np.argmax(values)) if len(values) else -1
     mine = (float(values[k]), first + k) if k >= 0 else (-1.0, -1)
     worst, row = max(system.comm.allgather(mine))
-    return largest_at(worst, system.describe(row))
+    return f"the largest residual, {worst:.3g} N, sits at the {system.describe(row)}"
 
 
 @njit

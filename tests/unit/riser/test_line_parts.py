@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, Part, State, Traits, Weights
-from riser_soil.riser.line_part import acting_on
+from riser_soil.core.part import Energy, Forces, Part, State, Traits, Weights
+from riser_soil.riser.bound_parts import has_work
+from riser_soil.riser.line_part import LineParts, acting_on
 from riser_soil.riser.section_forces import element_residual, nodal_residual
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from tests.support import sample_water
@@ -212,6 +214,33 @@ def test_parts_keep_to_their_slice(name: str, dimension: int) -> None:
     assert not np.any(total[-2:])
     assert total[7:-2] == pytest.approx(residual([MAKERS[name](near)], state, WEIGHTS), rel=1e-14)
     assert all(block.rows.min() >= 7 for block in part.blocks().values())
+
+
+@both_dimensions
+def test_parts_together_are_their_sum(dimension: int) -> None:
+    at, state = sample(dimension), sample(dimension).state(1)
+    parts: list[Any] = [make(at) for name, make in MAKERS.items() if "waves" not in name]
+    together, forces, expected = LineParts(at.line, parts), Forces.zeros(at.line.size), Forces.zeros(at.line.size)
+    K, of_each = np.zeros((2, at.line.length.size, 2 * at.line.ndof, 2 * at.line.ndof))
+    for _ in range(2):  # what one has found does not change what the other finds
+        forces, expected = Forces.zeros(at.line.size), Forces.zeros(at.line.size)
+        K[...], of_each[...] = 0.0, 0.0
+        together.residual(state, forces)
+        for part in parts:
+            part.residual(state, expected)
+            part.tangent(state, WEIGHTS, {at.line.name: of_each})
+        together.tangent(state, WEIGHTS, K)
+        for group in ("inertia", "force"):
+            assert error(getattr(forces, group), getattr(expected, group)) < 1e-12
+        assert error(K, of_each) < 1e-12
+    stored: Energy = sum((part.energy(state) for part in parts), Energy())
+    assert [*vars(together.energy(state)).values()] == pytest.approx([*vars(stored).values()], rel=1e-12)
+    within = sum(part.element_forces(state) for part in parts)
+    assert error(together.element_forces(state), within) < 1e-12
+    before = at.state(3, size=0.0, t=0.4)
+    turned = [[*vars(part.work(before, state)).values()] for part in parts if has_work(part.kernel_data())]
+    assert len(turned) > 3
+    assert error(np.array(together.work_rows(before, state)), np.array(turned)) < 1e-9
 
 
 @both_dimensions
