@@ -31,7 +31,8 @@ def test_a_line_is_where_its_state_is_whatever_came_before(dimension: int) -> No
 def require_placed(at: Configuration, fresh: LineTrials, state: State) -> None:
     fresh.now.move(state)
     placed: tuple[Any, ...] = fresh.now.at
-    for found, expected in zip(at, placed, strict=True):
+    held: tuple[Any, ...] = at
+    for found, expected in zip(held, placed, strict=True):
         np.testing.assert_array_equal(found, expected)
 
 
