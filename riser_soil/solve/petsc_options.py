@@ -56,7 +56,7 @@ class Given(NamedTuple):
         one_of = (
             ("snes_rtol", "snes_atol", "snes_stol"),
             ("snes_linesearch_type", "snes_type"),
-            ("ksp_type", "pc_type"),
+            ("ksp_type", "pc_type", "pc_factor_mat_solver_type"),
             ("ksp_rtol", "snes_ksp_ew"),
         )
         return cls(bool(names), *(not names.isdisjoint(some) for some in one_of))
