@@ -153,13 +153,15 @@ class LineParts:
     """Parts of one line that have kernels, evaluated together: a single one, or all that act on it.
 
     parts: in the order in which they are evaluated; data: their kernel data. forces: their residuals as found last, at
-    the trial `found` by the count of the line's configuration.
+    the state `found` by the count of the line's configuration. accepted: whether the states are accepted ones, at which
+    the line is placed once for all; but for work, which needs the one where the step begins.
     """
 
-    def __init__(self, line: MovingNodes, parts: Sequence[CompiledPart]) -> None:
+    def __init__(self, line: MovingNodes, parts: Sequence[CompiledPart], accepted: bool = False) -> None:
         self.line, self.parts, self.data = line, parts, [part.kernel_data() for part in parts]
         self._trials = line.once(LineTrials)
-        self._kernels = BoundParts(self._trials.now.at, self.data)
+        self._placed = self._trials.then if accepted else self._trials.now
+        self._kernels = BoundParts(self._placed.at, self.data)
         self.forces, self.found = self._kernels.forces, -1
         self._renewed = [part for part in parts if type(part).renew_kernel_data is not CompiledPart.renew_kernel_data]
         self._first = [each for part in parts for each in part.reads if each not in parts]
@@ -183,18 +185,18 @@ class LineParts:
         self._renew()
         for part in self._first:
             part.find(state)
-        self._trials.now.move(state)
+        self._placed.move(state)
 
     def find(self, state: State) -> LineForces:
         """Residuals at a trial state, as they act on elements and on nodes."""
         self.go_to(state)
-        if self.found != self._trials.now.count:
+        if self.found != self._placed.count:
             self._find_anew()
         return self.forces
 
     def _find_anew(self) -> None:
         self._find()
-        self.found = self._trials.now.count
+        self.found = self._placed.count
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add the parts' residuals at a trial state."""
@@ -220,7 +222,7 @@ class LineParts:
         self._add_to(K, MASS_ALONE, self._mass)
 
     def _add_to(self, K: Array, weights: Weights, add: Bound) -> None:
-        self._trials.differentiate(weights)
+        self._placed.differentiate(weights)
         if self._K.value is not K:
             self._K.renew(K)
         add()
@@ -231,12 +233,12 @@ class LineParts:
 
     @cached_property
     def _mass(self) -> Bound:
-        maps, weights = self._trials.maps, self._trials.weights
+        maps, weights = self._placed.maps, self._placed.weights
         return in_turn(*self._kernels.find_water(), *self._kernels.tangent(self.data, maps, weights, self._K))
 
     @cached_property
     def _tangent(self) -> Bound:
-        return in_turn(self._mass, *self._kernels.turning(self._trials.weights, self._K))
+        return in_turn(self._mass, *self._kernels.turning(self._placed.weights, self._K))
 
     def energy(self, state: State) -> Energy:
         """The parts' energy at a trial state."""
@@ -305,8 +307,8 @@ class LineParts:
 MASS_ALONE = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 
 
-def joined(parts: Iterable[Other]) -> list[Other | LineParts]:
-    """Parts, those of each line or body that have kernels as one."""
+def joined(parts: Iterable[Other], accepted: bool = False) -> list[Other | LineParts]:
+    """Parts, those of each line or body that have kernels as one; accepted: see `LineParts`."""
     compiled: dict[MovingNodes, list[CompiledPart]] = {}
     others: list[Other | LineParts] = []
     for part in parts:
@@ -314,4 +316,4 @@ def joined(parts: Iterable[Other]) -> list[Other | LineParts]:
             compiled.setdefault(part.line, []).append(part)
         else:
             others.append(part)
-    return [*(LineParts(line, of_line) for line, of_line in compiled.items()), *others]
+    return [*(LineParts(line, of_line, accepted) for line, of_line in compiled.items()), *others]

@@ -30,7 +30,10 @@ class LineBase:
 
 
 class PlacedLine:
-    """A line at a state. count: of the states that it was placed at; at accepted states only its rates are new."""
+    """A line at a state. count: of the states that it was placed at; at accepted states only its rates are new.
+
+    maps, weights: of the tangent that was asked for last.
+    """
 
     def __init__(self, line: MovingNodes, base: LineBase) -> None:
         self._line, self._base, self.at, shape = line, base, workspace_for(line), (line.nodes, line.ndof)
@@ -41,7 +44,9 @@ class PlacedLine:
         self._state: State | None = None
         self._from: Array | None = None  # the places of the nodes where the line was accepted
         self._moved = False  # whether it has moved from there
-        self.count = 0
+        self.count, self._mapped = 0, -1  # the count for which the maps hold
+        self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
+        self._write_maps = bound(write_maps, self.at, self.maps)
 
     def move(self, state: State) -> None:
         """Place it at a state, whose arrays must not change from then on, unless it is there."""
@@ -63,36 +68,34 @@ class PlacedLine:
         """Count it as placed anew when it is asked for next."""
         self._state = None
 
+    def differentiate(self, weights: Weights) -> None:
+        """Find the maps at the state."""
+        if (weights.inertia, weights.force) != self.weights.value:
+            self.weights.renew(LineWeights(float(weights.inertia), float(weights.force)))
+        kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
+        if (kept.shift_v, kept.shift_a) != shifts:
+            self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
+        elif self._mapped == self.count:
+            return
+        self._write_maps()
+        self._mapped = self.count
+
 
 class LineTrials:
     """A line at a trial state, `now`, and where a step begins, `then`, in which its parts are evaluated.
 
-    base: the accepted configuration that both follow from. start, end: times [s] of the step. maps, weights: of the
-    tangent that was asked for last.
+    base: the accepted configuration that both follow from. start, end: times [s] of the step.
     """
 
     def __init__(self, line: MovingNodes) -> None:
         self.base = LineBase(line)
         self.now, self.then = PlacedLine(line, self.base), PlacedLine(line, self.base)
         self.start = self.end = np.nan
-        self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
-        self._write_maps = bound(write_maps, self.now.at, self.maps)
-        self._mapped = -1  # the count of `now` for which they hold
 
     def step_to(self, t: float) -> None:
         """Times of the step that ends at t: it starts at the time that was asked for before."""
         if t != self.end:
             self.start, self.end = (t if np.isnan(self.end) else self.end), t
-
-    def differentiate(self, weights: Weights) -> None:
-        """Find the maps at the trial state."""
-        if (weights.inertia, weights.force) != self.weights.value:
-            self.weights.renew(LineWeights(float(weights.inertia), float(weights.force)))
-        kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
-        if self._mapped != self.now.count or (kept.shift_v, kept.shift_a) != shifts:
-            self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
-            self._write_maps()
-            self._mapped = self.now.count
 
     def forget(self) -> None:
         """What has been found does not hold any more: the parts' kernel data have changed, or others have used them."""

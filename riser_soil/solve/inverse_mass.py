@@ -191,7 +191,7 @@ class InverseMass:
     def __init__(self, system: System) -> None:
         self._system = system
         parts = [part for part in system.model.parts if part.active and "I" in part.traits.groups]
-        self._parts = joined(parts)
+        self._parts = joined(parts, accepted=True)
         lines = {line.name for line in system.model.lines}
         others = [part for part in parts if not lines & part.blocks().keys()]
         self._others = OtherMass(system, others) if any_of(system.comm, bool(others)) else None
@@ -210,7 +210,8 @@ class InverseMass:
             self._others.write_accelerations(force, out)
         rest = State.at_rest(t, force.size)
         for line, mass in self._lines:
-            out[local(line)] = comm.bcast(self._of_line(line, mass, rest, force) if comm.rank == 0 else None)
+            found = self._of_line(line, mass, rest, force) if comm.rank == 0 else None
+            out[local(line)] = found if comm.size == 1 else comm.bcast(found)
         return out
 
     def _of_line(self, line: LineField, mass: LineMass | NodeMass, rest: State, force: Array) -> Array:
@@ -225,8 +226,7 @@ class InverseMass:
 
     def kinetic_energy(self, state: State) -> float:
         """Kinetic energy [J] at a state."""
-        mine = sum(part.energy(state).kinetic for part in self._parts)
-        return float(self._system.comm.allreduce(mine))
+        return self._system.sum([sum(part.energy(state).kinetic for part in self._parts)])[0]
 
     def state(self) -> Saved:
         """By line, the projectors of its nodes, once they are known."""

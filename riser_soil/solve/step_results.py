@@ -51,7 +51,8 @@ class StepResults:
 
     @cached_property
     def _bulk(self) -> list[Part | LineParts]:
-        return joined(part for part in self.system.model.parts if part.active and part.traits.groups != "E")
+        bulk = (part for part in self.system.model.parts if part.active and part.traits.groups != "E")
+        return joined(bulk, accepted=True)
 
     def element_residual(self, line: Line, state: State) -> Array:
         """Residual of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has
