@@ -191,38 +191,43 @@ class InverseMass:
     def __init__(self, system: System) -> None:
         self._system = system
         parts = [part for part in system.model.parts if part.active and "I" in part.traits.groups]
-        self._parts = joined(parts, accepted=True)
+        self._parts, self._nothing = joined(parts, accepted=True), np.zeros(system.numbering.size)
         lines = {line.name for line in system.model.lines}
         others = [part for part in parts if not lines & part.blocks().keys()]
         self._others = OtherMass(system, others) if any_of(system.comm, bool(others)) else None
 
     @cached_property
-    def _lines(self) -> list[tuple[LineField, LineMass | NodeMass]]:
-        return [(line, self._mass_of(line)) for line in self._system.model.lines]
+    def _lines(self) -> list[tuple[LineField, LineMass | NodeMass, list[Part | LineParts]]]:
+        """Each with what has its mass."""
+        return [(line, self._mass_of(line), self._parts_of(line)) for line in self._system.model.lines]
 
     def _mass_of(self, line: LineField) -> LineMass | NodeMass:
         return mass_of(len(line.translation_dofs), line.prescribed, self._system.levers[local(line)])
+
+    def _parts_of(self, line: LineField) -> list[Part | LineParts]:
+        def acts(part: Part | LineParts) -> bool:
+            return part.line.name == line.name if isinstance(part, LineParts) else line.name in part.blocks()
+
+        return [part for part in self._parts if acts(part)]
 
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t; local arrays, zero where there is no mass."""
         out, comm = np.zeros_like(force), self._system.comm
         if self._others is not None:
             self._others.write_accelerations(force, out)
-        rest = State.at_rest(t, force.size)
-        for line, mass in self._lines:
-            found = self._of_line(line, mass, rest, force) if comm.rank == 0 else None
-            out[local(line)] = found if comm.size == 1 else comm.bcast(found)
+        rest = State(t, self._nothing, self._nothing, self._nothing)
+        for line, mass, parts in self._lines:
+            if comm.rank == 0:
+                mass.K[...] = 0.0
+                for part in parts:
+                    if isinstance(part, LineParts):
+                        part.mass(rest, mass.K)
+                    else:
+                        part.tangent(rest, MASS_ALONE, {line.name: mass.K})
+                out[local(line)] = mass.accelerations(force[local(line)])
+            if comm.size > 1:
+                out[local(line)] = comm.bcast(out[local(line)])
         return out
-
-    def _of_line(self, line: LineField, mass: LineMass | NodeMass, rest: State, force: Array) -> Array:
-        mass.K[...] = 0.0
-        for part in self._parts:
-            if isinstance(part, LineParts):
-                if part.line.name == line.name:
-                    part.mass(rest, mass.K)
-            elif line.name in part.blocks():
-                part.tangent(rest, MASS_ALONE, {line.name: mass.K})
-        return mass.accelerations(force[local(line)])
 
     def kinetic_energy(self, state: State) -> float:
         """Kinetic energy [J] at a state."""
@@ -230,10 +235,10 @@ class InverseMass:
 
     def state(self) -> Saved:
         """By line, the projectors of its nodes, once they are known."""
-        return {line.name: moving for line, mass in self._lines if (moving := mass.moving) is not None}
+        return {line.name: moving for line, mass, _ in self._lines if (moving := mass.moving) is not None}
 
     def restore(self, saved: Saved) -> None:
-        for line, mass in self._lines:
+        for line, mass, _ in self._lines:
             mass.restore(saved.get(line.name))
 
 

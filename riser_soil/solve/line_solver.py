@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
@@ -173,7 +172,7 @@ class LineSolver(StepResults):
             u[at], v[at], a[at] = found.u.ravel(), found.v.ravel(), found.a.ravel()
         for each in self._couplings:
             each.put_increments(trial.weights, u, v, a)
-        return trial.end_of(replace(trial.begun, u=u, v=v, a=a))
+        return trial.end_of(State(trial.begun.t, u, v, a, dt=trial.begun.dt))
 
     def _forces(self) -> Forces:
         """Those of the last trial; on the free dofs of soil they are in balance."""

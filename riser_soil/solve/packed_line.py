@@ -44,7 +44,8 @@ class PackedLine:
         self.write_sizes = bound(write_magnitudes, self.at, Packed(self.dofs.sizes))
         self.keep = in_turn(*self._kernels.keep())
         self.committed = [part for part in parts.parts if not has_history(part.kernel_data())]
-        self._turning = [part for part in parts.parts if has_work(part.kernel_data()) or _by_method(part)]
+        turning = ((part, has_work(part.kernel_data())) for part in parts.parts)
+        self._turning = [(part, kernel) for part, kernel in turning if kernel or _by_method(part)]
 
     def evaluate(self) -> list[Bound]:
         """Kernels that place the trial and find the forces there."""
@@ -128,8 +129,7 @@ class PackedLine:
     def add_work(self, before: State, after: State, work: dict[str, Work]) -> None:
         """Add what the parts turn over in a step that is accounted for, by name."""
         compiled = iter(as_list(self.work))
-        for part in self._turning:
-            kernel = has_work(part.kernel_data())
+        for part, kernel in self._turning:
             work[part.name] += Work(*next(compiled)) if kernel else part.work(before, after)
 
     def begin(self, state: State, past: Array, weights: Weights) -> None:

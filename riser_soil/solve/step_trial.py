@@ -37,7 +37,7 @@ class StepTrial:
     def _begun(self) -> State:
         step, scheme = self.step, self.step.scheme
         still = scheme.trial(step.before, step.t, step.dt, np.zeros(step.guess.size))
-        begun = replace(still, u=step.guess.copy())
+        begun = State(step.t, step.guess.copy(), still.v, still.a, dt=still.dt)
         self._system.prescribe(begun)
         if self._ratio == 1.0:
             return begun
@@ -66,7 +66,7 @@ class StepTrial:
         fixed, v, a = self._system.prescribed, np.empty_like(u), np.empty_like(u)
         write_rates(u, fixed, self.begun.v, self.weights.shift_v, v)
         write_rates(u, fixed, self.begun.a, self.weights.shift_a, a)
-        return replace(self.begun, u=u, v=v, a=a)
+        return State(self.begun.t, u, v, a, dt=self.begun.dt)
 
     def end_of(self, state: State) -> State:
         """The step's end, where it is balanced at a state."""
