@@ -1,8 +1,8 @@
 """Linear solver of a riser that does not touch its soil, which is in balance: the riser's band alone.
 
-The tangent then has a block of the riser and one of the soil and nothing beside them, and the soil's right-hand side is
-zero: so is its increment, and the riser's is that of its own band. No block is left out that is not zero, and what the
-soil's rows have left of a residual counts in Newton's test as ever.
+The tangent then has a block of the riser and one of the soil and nothing beside them, so that each is its own Schur
+complement; and the soil's right-hand side is zero: so is its increment, and the riser's is that of its own band. No
+block is left out that is not zero, and what the soil's rows have left of a residual counts in Newton's test as ever.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from riser_soil.core.banded import SingularError
 from riser_soil.core.communicator import all_of
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import BorderedBand
+from riser_soil.solve.linear_solver import LinearSolver
 from riser_soil.solve.python_context import PythonContext
 
 
-class RiserAboveSoil(PythonContext):
+class RiserAboveSoil(PythonContext, LinearSolver):
     """Linear solver of a system by the band of its riser alone; collective."""
 
     def __init__(self, system: System) -> None:
         self._system, self._rows = system, system.line_rows
         self._factors = BorderedBand(system.matrix, self._rows)
 
-    def serve(self, ksp: PETSc.KSP) -> None:
-        """Solve what this KSP is asked for."""
+    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         self.work_for(ksp)
         ksp.getPC().setType(PETSc.PC.Type.NONE)
 

@@ -77,7 +77,7 @@ class TangentSolver:
         self._alone: tuple[RiserAboveSoil, PETSc.KSP] | None = None
         if system.whole_soil is not None and not self._given.linear_solver:
             self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
-            self._alone[0].serve(self._alone[1])
+            self._alone[0].serve(self._alone[1], self._levers)
 
     def choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
         """The solver of the present tangent for a residual, which has not been told how exactly."""
