@@ -233,12 +233,12 @@ class LineParts:
 
     @cached_property
     def _mass(self) -> Bound:
-        maps, weights = self._placed.maps, self._placed.weights
+        maps, weights = self._placed.trial.maps, self._placed.trial.weights
         return in_turn(*self._kernels.find_water(), *self._kernels.tangent(self.data, maps, weights, self._K))
 
     @cached_property
     def _tangent(self) -> Bound:
-        return in_turn(self._mass, *self._kernels.turning(self._placed.weights, self._K))
+        return in_turn(self._mass, *self._kernels.turning(self._placed.trial.weights, self._K))
 
     def energy(self, state: State) -> Energy:
         """The parts' energy at a trial state."""

@@ -29,24 +29,43 @@ class LineBase:
             self._updated = self._line.x
 
 
-class PlacedLine:
-    """A line at a state. count: of the states that it was placed at; at accepted states only its rates are new.
+class TrialConfiguration:
+    """Configuration `at` of a line after increments from its base, and the kernels that write it.
 
-    maps, weights: of the tangent that was asked for last.
+    u, v, a (nn, ndof): increments, rates and accelerations that `place` reads. maps, weights: of its tangent, which
+    `write_maps` finds there.
     """
 
+    def __init__(self, line: MovingNodes, base: LineBase, u: Array, v: Array, a: Array) -> None:
+        self.at, rates = workspace_for(line), (Packed(v), Packed(a))
+        self.place = bound(place, self.at, base.packed, Packed(u), *rates)
+        self.put_rates = bound(write_rates, self.at, *rates)
+        self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
+        self.write_maps = bound(write_maps, self.at, self.maps)
+
+    def weigh(self, weights: Weights) -> bool:
+        """Take the weights and shifts of a tangent; whether shifts have changed."""
+        if (weights.inertia, weights.force) != self.weights.value:
+            self.weights.renew(LineWeights(float(weights.inertia), float(weights.force)))
+        kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
+        if (kept.shift_v, kept.shift_a) == shifts:
+            return False
+        self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
+        return True
+
+
+class PlacedLine:
+    """A line at a state. count: of the states that it was placed at; at accepted states only its rates are new."""
+
     def __init__(self, line: MovingNodes, base: LineBase) -> None:
-        self._line, self._base, self.at, shape = line, base, workspace_for(line), (line.nodes, line.ndof)
-        values = [np.zeros(shape) for _ in range(3)]
-        u, v, a = map(Packed, values)
-        self._place, self._put_rates = bound(place, self.at, base.packed, u, v, a), bound(write_rates, self.at, v, a)
-        self._u, self._v, self._a = (each.ravel() for each in values)
+        self._line, self._base = line, base
+        u, v, a = (np.zeros((line.nodes, line.ndof)) for _ in range(3))
+        self.trial = TrialConfiguration(line, base, u, v, a)
+        self.at, self._u, self._v, self._a = self.trial.at, u.ravel(), v.ravel(), a.ravel()
         self._state: State | None = None
         self._from: Array | None = None  # the places of the nodes where the line was accepted
         self._moved = False  # whether it has moved from there
         self.count, self._mapped = 0, -1  # the count for which the maps hold
-        self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
-        self._write_maps = bound(write_maps, self.at, self.maps)
 
     def move(self, state: State) -> None:
         """Place it at a state, whose arrays must not change from then on, unless it is there."""
@@ -58,9 +77,9 @@ class PlacedLine:
         self._v[:], self._a[:], self._moved = state.v[line.part], state.a[line.part], bool(u.any())
         if moved or self._moved or line.x is not self._from:
             self._u[:] = u
-            self._place()
+            self.trial.place()
         else:
-            self._put_rates()
+            self.trial.put_rates()
         self._state, self._from = state, line.x
         self.count += 1
 
@@ -70,15 +89,9 @@ class PlacedLine:
 
     def differentiate(self, weights: Weights) -> None:
         """Find the maps at the state."""
-        if (weights.inertia, weights.force) != self.weights.value:
-            self.weights.renew(LineWeights(float(weights.inertia), float(weights.force)))
-        kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
-        if (kept.shift_v, kept.shift_a) != shifts:
-            self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
-        elif self._mapped == self.count:
-            return
-        self._write_maps()
-        self._mapped = self.count
+        if self.trial.weigh(weights) or self._mapped != self.count:
+            self.trial.write_maps()
+            self._mapped = self.count
 
 
 class LineTrials:

@@ -14,14 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
-from riser_soil.core.bound import Packed
 from riser_soil.core.part import Energy, Forces, Part, State, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LineParts, joined
 from riser_soil.riser.moving_nodes import MovingNodes
-from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
 from riser_soil.solve.line_results import LineResults
@@ -49,13 +47,13 @@ def line_solver(system: System) -> LineSolver | None:
     make = _couplings_of(system, [part for part in parts if not isinstance(part, LineParts)])
     if make is None:
         return None
-    weights, lines = Packed(LineWeights(0.0, 0.0)), list[PackedLine]()
+    lines = list[PackedLine]()
     for field in fields:
         if not isinstance(field, MovingNodes):
             return None
         own, at = of_line.get(field) or LineParts(field, []), field.part
-        lines.append(PackedLine(own, system.prescribed[at], system.levers[at], weights))
-    return LineSolver(system, LineSystem(lines, make(lines), weights))
+        lines.append(PackedLine(own, system.prescribed[at], system.levers[at]))
+    return LineSolver(system, LineSystem(lines, make(lines)))
 
 
 def _couplings_of(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedLine]], list[Coupling]] | None:

@@ -16,7 +16,6 @@ from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import Energy, State, Weights, Work
 from riser_soil.core.saved_state import Saved
-from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.solve import step_kernels as kernels
 from riser_soil.solve.convergence import ITERATING, NOT_SOLVED, OUTGROWN, Convergence, StopLimits
 from riser_soil.solve.newton_loop import iterate
@@ -116,12 +115,12 @@ class Coupling:
 class LineSystem:
     """Residual, tangent and solution of lines and bodies with their couplings, by kernels, for Newton's loop.
 
-    weights: as the lines have them; convergence: of the step. evaluate, write_tangent, renew_contact, correct: pieces
+    convergence: of the step. evaluate, write_tangent, renew_contact, correct: pieces
     of the loop, which are looked at alone, too.
     """
 
-    def __init__(self, lines: Sequence[PackedLine], couplings: Sequence[Coupling], weights: Packed) -> None:
-        self.lines, self.couplings, self._weights = lines, couplings, weights
+    def __init__(self, lines: Sequence[PackedLine], couplings: Sequence[Coupling]) -> None:
+        self.lines, self.couplings = lines, couplings
         self._norms, self._above = np.zeros(3), np.zeros(1, dtype=np.bool_)
         self._failure = np.zeros(1, dtype=np.int64)
         self._bind()
@@ -185,9 +184,6 @@ class LineSystem:
             at = line.line.part
             own = State(state.t, state.u[at], state.v[at], state.a[at])
             line.begin(own, past[at], weights)
-        given = LineWeights(weights.inertia, weights.force)
-        if given != self._weights.value:
-            self._weights.renew(given)
         self.convergence = Convergence(limits)
 
     def solve(self) -> str:

@@ -10,9 +10,9 @@ from riser_soil.core.arrays import Array, BoolArray, as_list
 from riser_soil.core.bound import Bound, Packed, bound, in_turn
 from riser_soil.core.part import State, Weights, Work
 from riser_soil.riser.bound_parts import BoundParts, KernelData, has_history, has_work
-from riser_soil.riser.configuration import Configuration, maps_for, place, workspace_for, write_folded, write_magnitudes
+from riser_soil.riser.configuration import Configuration, write_folded, write_magnitudes
 from riser_soil.riser.line_part import CompiledPart, LineParts, overrides
-from riser_soil.riser.placed_line import LineTrials
+from riser_soil.riser.placed_line import LineTrials, TrialConfiguration
 from riser_soil.solve import step_kernels as kernels
 from riser_soil.solve.step_kernels import Dofs, StepData, matrix_workspace
 
@@ -22,18 +22,20 @@ class PackedLine:
     to, at being the trial configuration.
 
     parts: that act on it; committed: those whose history no kernel keeps. prescribed, levers (size,): of its dofs;
-    weights: `LineWeights` of the step, for all lines.
+    weights: `LineWeights` of the step.
     """
 
-    def __init__(self, parts: LineParts, prescribed: BoolArray, levers: Array, weights: Packed) -> None:
-        self.line, self.parts = line, parts = parts.line, parts
-        self._trials, shape = line.once(LineTrials), (line.nodes, line.ndof)
-        self.step, self._kernels = StepData(*_zeros(6, shape)), BoundParts(workspace_for(line), parts.data)
+    def __init__(self, parts: LineParts, prescribed: BoolArray, levers: Array) -> None:
+        self.line = line = parts.line
+        self.parts, self._trials, shape = parts, line.once(LineTrials), (line.nodes, line.ndof)
+        self.step = StepData(*_zeros(6, shape))
+        self._trial = TrialConfiguration(line, self._trials.base, self.step.u, self.step.v, self.step.a)
+        self._kernels = BoundParts(self._trial.at, parts.data)
         self.at, self.forces = self._kernels.at, self._kernels.forces
         self.workspace = matrix_workspace(*shape)
         self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
-        self.weights, self._maps = weights, Packed(maps_for(line))
+        self.weights, self._maps = self._trial.weights, self._trial.maps
         self.packed_at, self.packed_forces = self._kernels.packed_at, self._kernels.packed_forces
         self.packed_step, self.packed_dofs, self.packed_workspace = map(Packed, (self.step, self.dofs, self.workspace))
         self.K = Packed(self.workspace.K)
@@ -49,12 +51,8 @@ class PackedLine:
 
     def evaluate(self) -> list[Bound]:
         """Kernels that place the trial and find the forces there."""
-        moved = map(Packed, (self.step.u, self.step.v, self.step.a))
-        return [
-            Bound(kernels.follow, self.packed_step, self._maps, self.packed_dofs),
-            bound(place, self.at, self._trials.base.packed, *moved),
-            *self._kernels.find_forces(),
-        ]
+        follow = Bound(kernels.follow, self.packed_step, self._maps, self.packed_dofs)
+        return [follow, self._trial.place, *self._kernels.find_forces()]
 
     def balance(self, sums: Packed) -> list[Bound]:
         """Kernels that write the residual of the forces found, and add to its norms."""
@@ -137,9 +135,7 @@ class PackedLine:
         self._trials.base.update()
         u, v, a, earlier = self._start
         u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, past
-        maps = self._maps.value
-        if (maps.shift_v, maps.shift_a) != (weights.shift_v, weights.shift_a):
-            self._maps.renew(maps._replace(shift_v=weights.shift_v, shift_a=weights.shift_a))
+        self._trial.weigh(weights)
 
     @property
     def folding(self) -> tuple[int, int]:

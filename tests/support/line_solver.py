@@ -14,12 +14,10 @@ from benchmarks.stage import TimedStage, last_stage
 from riser_soil.contact.contact import ContactResults
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
-from riser_soil.core.bound import Packed
 from riser_soil.core.part import Energy, Forces, Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import MASS_ALONE, LineParts, acting_on
-from riser_soil.riser.part_kernels import LineWeights
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.convergence import CONVERGED, StopLimits
@@ -59,9 +57,9 @@ class Compiled:
 
     def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
-        free, weights = np.zeros(line.size, dtype=bool), Packed(LineWeights(0.0, 0.0))
-        self.line = PackedLine(LineParts(line, parts), free, np.ones(line.size), weights)
-        self.riser = LineSystem([self.line], [], weights)
+        free = np.zeros(line.size, dtype=bool)
+        self.line = PackedLine(LineParts(line, parts), free, np.ones(line.size))
+        self.riser = LineSystem([self.line], [])
         for part in parts:
             part.renew_kernel_data(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
