@@ -335,8 +335,9 @@ class StepIteration:
 
     @property
     def _tolerated(self) -> float:
-        """Norm of the residual [N] that counts as small beside the forces in play; collective."""
-        return self._convergence.limits.tolerance * self._norm.in_play(self._forces)
+        """Norm of the residual [N] that the settings count as small beside the forces in play; collective."""
+        ratio = self._step.step.scheme.step_over_trial  # of their balance over that of a trial, see `limits_of`
+        return self.settings.tolerance / ratio * self._norm.in_play(self._forces)
 
     def negligible(self) -> float:
         """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
