@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
+from riser_soil.assembly.motions import EndPlaces, end_places, end_positions, set_motions, vessels_of
 from riser_soil.assembly.riser import (
     attached_weight,
     attachments_of,
@@ -24,6 +24,7 @@ from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.sea import SeaAssembly
 from riser_soil.assembly.shape import least_bend
 from riser_soil.assembly.stage import loads_on_line
+from riser_soil.assembly.touchdown_forecast import TouchdownForecast, forecast
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.core.saved_state import Saved
@@ -108,6 +109,16 @@ class LineAssembly:
             found["soil"] *= E / (E + found["soil"])
         stiffest = max(found.values(), default=math.nan)
         return 2.0 * math.pi * math.sqrt(float(self.elements.mass.min()) / stiffest)
+
+    @cached_property
+    def end_places(self) -> list[EndPlaces]:
+        """Where its ends are, stage by stage."""
+        return list(end_places(self.scene, self.sea))
+
+    @cached_property
+    def touchdown(self) -> TouchdownForecast | None:
+        """Where it touches down by statics as a cable; None where no cable between its ends comes down."""
+        return forecast(self.scene, self.elements, self.end_places)
 
     @cached_property
     def wall_sections(self) -> WallSections | None:

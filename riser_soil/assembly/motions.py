@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from riser_soil.assembly.sea import SeaAssembly, sea_of
+from riser_soil.assembly.sea import SeaAssembly
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.riser.line import Line
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 # Times at which a stage is looked at, at least: a prime number of intervals, as whole periods would always find the
 # same.
 LOOKS = 98
+EndPlaces = dict[str, Array]
+"""Positions (nt, 3) [m] of an end that is prescribed at the times of a stage, by its name."""
 # Instants of a period, and at most of a stage.
 PER_PERIOD, MOST_LOOKS = 24, 20000
 
@@ -72,11 +74,11 @@ def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessel
         move_by(end, name, origin, stage, stage.motion.by_end[name], vessels)
 
 
-def end_places(scene: Scene) -> Iterator[dict[str, Array]]:
+def end_places(scene: Scene, sea: SeaAssembly | None) -> Iterator[EndPlaces]:
     """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
     ends = {name: getattr(scene.line, name) for name in ("start", "end")}
     last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
-    end, vessels = End(prescribed=True), vessels_of(scene, sea_of(scene))
+    end, vessels = End(prescribed=True), vessels_of(scene, sea)
     for stage in scene.stages:
         place = {}
         for name, origin in last.items():

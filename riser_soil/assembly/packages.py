@@ -26,7 +26,12 @@ def communicator_of(scene: Scene) -> Communicator:
         require("solver.newton: snes" if scene.solver.newton == "snes" else "solver.petsc_options", FOR_SNES)
     elif scene.lines:
         require("lines", FOR_SNES)
-    return world(with_mpi=scene.soil is not None or scene.solver.by_snes or bool(scene.lines))
+    return world(with_mpi=needs_petsc(scene))
+
+
+def needs_petsc(scene: Scene) -> bool:
+    """Whether a scene is solved with PETSc and on ranks; a riser alone is not, unless SNES is asked for."""
+    return scene.soil is not None or scene.solver.by_snes or bool(scene.lines)
 
 
 def require(key: str, packages: dict[str, str]) -> None:

@@ -9,8 +9,10 @@ import numpy as np
 
 from riser_soil.assembly.contact_laws import contact_width
 from riser_soil.assembly.graded_segments import to_four_figures
+from riser_soil.assembly.motions import end_places
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales, scales_of
+from riser_soil.assembly.sea import sea_of
 from riser_soil.assembly.touchdown_forecast import TouchdownForecast, forecast
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
@@ -66,7 +68,7 @@ class SoilSizes:
 
     @cached_property
     def touchdown(self) -> TouchdownForecast | None:
-        return forecast(self.scene, self.elements)
+        return forecast(self.scene, self.elements, list(end_places(self.scene, sea_of(self.scene))))
 
     @cached_property
     def width(self) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.motions import end_places
+from riser_soil.assembly.motions import EndPlaces
 from riser_soil.assembly.riser import attachments_of
 from riser_soil.assembly.shape import catenary_between, resting_level
 from riser_soil.core.arrays import Array
@@ -37,20 +37,20 @@ class TouchdownForecast:
     ahead: Array
 
 
-def forecast(scene: Scene, elements: Elements) -> TouchdownForecast | None:
+def forecast(scene: Scene, elements: Elements, places: Sequence[EndPlaces]) -> TouchdownForecast | None:
     """The touchdown points nearest to the riser's end; None where no catenary between its ends comes down."""
     attachments = attachments_of(scene)
     if not all(isinstance(end, Support) for end in (scene.line.start, scene.line.end)):
         return None
-    found = [_touchdown(scene, elements, attachments, *ends) for ends in extreme_places(scene)]
+    found = [_touchdown(scene, elements, attachments, *ends) for ends in extreme_places(places)]
     if not found or found[0] is None:
         return None
     return TouchdownForecast(np.array([point for point, *_ in filter(None, found)]), *found[0][1:])
 
 
-def extreme_places(scene: Scene) -> Iterator[tuple[Array, Array]]:
+def extreme_places(places: Sequence[EndPlaces]) -> Iterator[tuple[Array, Array]]:
     """First places of start and end (3,), then where they are nearest, farthest, highest and lowest to each other."""
-    for n, place in enumerate(end_places(scene)):
+    for n, place in enumerate(places):
         start, end = place["start"], place["end"]
         if len(start) != len(end):  # an end's table has rows of its own
             continue

@@ -154,7 +154,8 @@ def asked_lengths(riser: LineAssembly) -> tuple[Array, Array] | None:
     fine = scene.model_copy(update={"riser": scene.line.model_copy(update={"segments": _fine(scene)})})
     elements = elements_of(fine)
     try:
-        shapes = [catenary_between(fine, elements, riser.attachments, *ends) for ends in extreme_places(scene)]
+        ends = extreme_places(riser.end_places)
+        shapes = [catenary_between(fine, elements, riser.attachments, *each) for each in ends]
     except SceneError:  # ends farther apart than the riser is long: told elsewhere
         return None
     lengths = _lengths(scene, elements, shapes)

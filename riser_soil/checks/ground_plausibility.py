@@ -183,7 +183,7 @@ def _out_of_reach(riser: LineAssembly) -> Iterator[str]:
     points, underside = _along(riser)
     above = np.all((points[:, :2] >= grid.low[:2]) & (points[:, :2] <= grid.high[:2]), axis=1)
     gap = float(np.min((underside - scene.seabed_level)[above], initial=np.inf))
-    moved = farthest_move(scene)
+    moved = farthest_move(riser)
     reach = LOWERED * moved + DRIVEN * scene.line.length * _driven(scene) + 2.0 * _diameter(riser)
     if gap <= reach:
         return
@@ -211,7 +211,7 @@ def _rate_without_effect(riser: LineAssembly) -> Iterator[str]:
     if not dynamic:
         yield "soil.law.rate: static stages are slow and the scene has no other: it changes nothing; leave it out"
     elif not _driven(scene):
-        fastest = top_speed(scene) / _diameter(riser)
+        fastest = top_speed(riser) / _diameter(riser)
         if fastest < reference:
             yield (
                 f"soil.law.rate: the reference, {reference:.3g} 1/s, is more than the fastest end makes over a "

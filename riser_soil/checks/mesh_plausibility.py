@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.assembly import LineAssembly
 from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
-from riser_soil.assembly.touchdown_forecast import TouchdownForecast, forecast
+from riser_soil.assembly.touchdown_forecast import TouchdownForecast
 from riser_soil.checks.settlement import Settled, predicted_settlement
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
@@ -166,7 +166,7 @@ def _leaves_the_block(riser: LineAssembly) -> Iterator[str]:
     they move.
     """
     assert riser.soil is not None
-    found = forecast(riser.scene, riser.elements)
+    found = riser.touchdown
     if found is None:
         return
     yield from _leaves_fine_cells(riser, found)

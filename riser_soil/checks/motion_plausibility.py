@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from riser_soil.assembly import LineAssembly
 from riser_soil.assembly.motions import LOOKS, end_places, instants, periods_of, set_motion, vessels_of
 from riser_soil.assembly.sea import sea_of
 from riser_soil.core.arrays import Array
@@ -46,30 +47,31 @@ VelocitiesByEnd = dict[str, EndVelocities]
 """By the unit, m/s and deg/s."""
 
 
-def motion_warnings(scene: Scene) -> Iterator[str]:
+def motion_warnings(riser: LineAssembly) -> Iterator[str]:
     """Warnings about prescribed motions and time steps, each with its numbers."""
+    scene = riser.scene
     for name, support in (("start", scene.line.start), ("end", scene.line.end)):
         if isinstance(support, Support):
-            yield from _shocks(scene, name, support)
+            yield from _shocks(riser, name, support)
     yield from _displaced(scene)
-    yield from _stretched(scene)
+    yield from _stretched(riser)
     for n, stage in enumerate(scene.stages):
         if isinstance(stage, DynamicStage):
             yield from _long_steps(scene, f"stages.{n}.time_step", stage)
 
 
-def farthest_move(scene: Scene) -> float:
+def farthest_move(riser: LineAssembly) -> float:
     """The largest distance [m] of an end from where it was at first, in all stages."""
-    places = list(end_places(scene))
+    places = riser.end_places
     found = [np.linalg.norm(x - places[0][name][0], axis=1).max() for place in places for name, x in place.items()]
     return float(max(found, default=0.0))
 
 
-def top_speed(scene: Scene) -> float:
+def top_speed(riser: LineAssembly) -> float:
     """The largest speed [m/s] of an end in dynamic stages."""
-    ends = [(name, getattr(scene.line, name)) for name in ("start", "end")]
-    courses = [_courses(scene, name, end) for name, end in ends if isinstance(end, Support)]
-    moving = zip(scene.stages, *courses, strict=True)
+    ends = [(name, getattr(riser.scene.line, name)) for name in ("start", "end")]
+    courses = [_courses(riser, name, end) for name, end in ends if isinstance(end, Support)]
+    moving = zip(riser.scene.stages, *courses, strict=True)
     found = [each["m/s"].top for stage, *course in moving if isinstance(stage, DynamicStage) for each in course]
     return max(found, default=0.0)
 
@@ -77,7 +79,7 @@ def top_speed(scene: Scene) -> float:
 def refuse_unreachable(scene: Scene) -> None:
     """Raises SceneError where motions take ends farther apart than the lines reach, or below the ground."""
     for name, view in by_line(scene).items():
-        for n, (stage, place) in enumerate(zip(view.stages, end_places(view), strict=True)):
+        for n, (stage, place) in enumerate(zip(view.stages, end_places(view, sea_of(view)), strict=True)):
             if not isinstance(stage, StaticStage) and stage.motion is not None:
                 path = dotted(path_of_line(("stages", n, "motion"), name) if name else ("stages", n, "motion"))
                 times = instants(view, stage)
@@ -116,10 +118,10 @@ def _displaced(scene: Scene) -> Iterator[str]:
             yield f"{dotted(path)}: moves the {path[-1]} by {math.dist(before, place):.6g} m: {meant}"
 
 
-def _stretched(scene: Scene) -> Iterator[str]:
+def _stretched(riser: LineAssembly) -> Iterator[str]:
     """Ends that go farther apart than the riser is long."""
-    length = scene.line.length
-    for n, (stage, place) in enumerate(zip(scene.stages, end_places(scene), strict=True)):
+    scene, length = riser.scene, riser.scene.line.length
+    for n, (stage, place) in enumerate(zip(scene.stages, riser.end_places, strict=True)):
         moves = stage.move if isinstance(stage, StaticStage) else stage.motion
         if moves is None or len(place) < 2:
             continue
@@ -136,12 +138,12 @@ def _stretched(scene: Scene) -> Iterator[str]:
             )
 
 
-def _shocks(scene: Scene, name: str, support: Support) -> Iterator[str]:
+def _shocks(riser: LineAssembly, name: str, support: Support) -> Iterator[str]:
     """Jumps of an end's velocity between stages; a static stage leaves no velocities to go on from."""
-    courses = list(_courses(scene, name, support))
+    courses = list(_courses(riser, name, support))
     rest: VelocitiesByEnd = {"m/s": STILL, "deg/s": STILL}
     for n, (before, after) in enumerate(pairwise([rest, *courses])):
-        if not isinstance(scene.stages[n], DynamicStage):
+        if not isinstance(riser.scene.stages[n], DynamicStage):
             continue
         for unit in rest:
             yield from _shock(f"stages.{n}", name, unit, before[unit], after[unit])
@@ -165,10 +167,10 @@ def _shock(path: str, name: str, unit: str, before: EndVelocities, after: EndVel
         )
 
 
-def _courses(scene: Scene, name: str, support: Support) -> Iterator[VelocitiesByEnd]:
+def _courses(riser: LineAssembly, name: str, support: Support) -> Iterator[VelocitiesByEnd]:
     """Velocities of an end in each stage."""
-    end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(scene, sea_of(scene))
-    for stage in scene.stages:
+    end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(riser.scene, riser.sea)
+    for stage in riser.scene.stages:
         set_motion(end, name, position, stage, vessels)
         yield _course(end, np.linspace(0.0, stage.end, LOOKS), support.rotation != "free")
         position = position if end.motion is None else end.motion(stage.end)[0]

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from riser_soil.assembly import Assembly, LineAssembly
+from riser_soil.assembly.packages import needs_petsc
 from riser_soil.checks.bending_plausibility import bending_warnings
 from riser_soil.checks.code_plausibility import code_check_warnings
 from riser_soil.checks.motion_plausibility import motion_warnings, refuse_unreachable
@@ -46,8 +47,7 @@ def _options_without_petsc(assembly: Assembly) -> Iterator[str]:
     """Options for PETSc in the environment, where it solves nothing."""
     scene, given = assembly.scene, os.environ.get("PETSC_OPTIONS", "").split()
     options = [each for each in given if each.startswith("-riser_soil_")]
-    alone = scene.soil is None and not scene.lines and assembly.comm.size == 1
-    if options and alone and not scene.solver.by_snes:
+    if options and not needs_petsc(scene):
         yield (
             f"PETSC_OPTIONS: {' '.join(options)}: not used, as a riser alone is solved without PETSc; "
             "solver: {newton: snes} hands it to SNES"
@@ -80,7 +80,7 @@ def _of_one(riser: LineAssembly) -> Iterator[str]:
     if riser.scene.water is not None and riser.scene.water.waves is not None:
         yield from wave_warnings(riser.scene)
     if _moves(riser.scene):
-        yield from motion_warnings(riser.scene)
+        yield from motion_warnings(riser)
 
 
 def _moves(scene: Scene) -> bool:

@@ -21,13 +21,11 @@ import numpy as np
 
 from riser_soil.assembly import LineAssembly
 from riser_soil.assembly.contact_laws import contact_width
-from riser_soil.assembly.scales import Scales, scales_of
+from riser_soil.assembly.scales import Scales
 from riser_soil.assembly.soil_sizes import touching_width
-from riser_soil.assembly.touchdown_forecast import forecast
 from riser_soil.core.arrays import Array
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.touchdown_bend import TouchdownBend
-from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_law import initial_stress
 from riser_soil.scene.soil_layers import boundaries
@@ -53,20 +51,13 @@ class Settled(NamedTuple):
 
 def predicted_settlement(riser: LineAssembly, across: float = 0.0) -> Settled | None:
     """On cells of a size across the riser [m]; None without soil, and of a riser that has no weight."""
-    soil = riser.soil
-    if soil is None:
+    soil, scales = riser.scene.soil, riser.scales
+    if soil is None or riser.soil is None or scales.weight <= 0.0:
         return None
-    grid = soil.whole.grid
-    return settled(riser.scene, riser.elements, float(grid.high[2] - grid.low[2]), across)
-
-
-def settled(scene: Scene, elements: Elements, depth: float, across: float = 0.0) -> Settled | None:
-    """On soil of a depth, on cells of a size across the riser [m]; None without soil, and of a riser without weight."""
-    soil, scales = scene.soil, scales_of(elements)
-    if soil is None or scales.weight <= 0.0:
-        return None
+    grid = riser.soil.whole.grid
+    depth = float(grid.high[2] - grid.low[2])
     by_weight = settlement(soil, scales, depth, across)
-    touchdown, EI = forecast(scene, elements), _stiffness(elements)
+    touchdown, EI = riser.touchdown, _stiffness(riser.elements)
     if touchdown is None or min(touchdown.H, by_weight, EI) <= 0.0:  # a cable lies down without an overshoot
         return Settled(by_weight, by_weight, 1.0)
     deepest, overshoot = by_weight, 1.0

@@ -11,8 +11,10 @@ import pytest
 
 from riser_soil.assembly import sized
 from riser_soil.assembly.contact_laws import contact_width
+from riser_soil.assembly.motions import end_places
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales
+from riser_soil.assembly.sea import sea_of
 from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
 from riser_soil.checks.estimate import size_of
@@ -106,7 +108,7 @@ def test_a_trench_needs_sizes_of_tetrahedra() -> None:
 def test_the_block_lies_around_the_touchdown_points() -> None:
     """Of the catenary at rest: a parabola nearly, x_end - x_0 = (H/w) arcosh(1 + w z/H)."""
     scene = automatic(LAY)
-    found = forecast(scene, elements_of(scene))
+    found = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
     assert found is not None
     w = float(elements_of(scene).weight[0])
     assert len(found.points) == 1
@@ -121,7 +123,7 @@ def test_the_block_lies_around_the_touchdown_points() -> None:
 def test_the_block_follows_the_reach_of_the_motion() -> None:
     """By 1.25 times what catenaries between the moved ends say."""
     moving = automatic(LAY, heave(3.0, amplitude=1.0))
-    found = forecast(moving, elements_of(moving))
+    found = forecast(moving, elements_of(moving), list(end_places(moving, sea_of(moving))))
     assert found is not None
     still, block = chosen(automatic(LAY))[0], chosen(moving)[0]
     reach = found.points[:, 0] - found.points[0, 0]
@@ -133,7 +135,7 @@ def test_the_block_follows_the_reach_of_the_motion() -> None:
 def test_cells_of_a_block_grow_where_the_riser_does_not_touch_down() -> None:
     """From three bending lengths before the touchdown points of the motion to a cell beyond; sections stay alike."""
     scene = automatic(LAY, heave(3.0, amplitude=1.0))
-    found = forecast(scene, elements_of(scene))
+    found = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
     assert found is not None
     assert found.ahead == pytest.approx([1.0, 0.0])
     first = found.points[0, 0]
@@ -157,7 +159,7 @@ def test_a_riser_that_comes_down_the_other_way_has_its_cells_there() -> None:
 def test_a_chain_has_fine_cells_for_its_touchdown_point_at_rest() -> None:
     """Nothing bends and nothing moves: three cells before it, as far as there is a block, and one beyond."""
     scene = automatic(LAY, line_types__flexible__EI=0.0)
-    found = forecast(scene, elements_of(scene))
+    found = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
     assert found is not None
     block, _, sizes = chosen(scene)
     at = found.points[0, 0]

@@ -11,6 +11,7 @@ import pytest
 
 from riser_soil.checks.motion_plausibility import motion_warnings
 from riser_soil.scene.reader import scene_from_mapping
+from tests.support.driven_stage import built_of
 from tests.support.said import line_with, lines_with
 from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
@@ -30,7 +31,8 @@ def warnings(*stages: Mapping, folder: Path | None = None, rotation: Any = "fixe
         gravity=9.81,
         **more,
     )
-    return list(motion_warnings(scene_from_mapping(pipe, folder) if folder else scene_from_mapping(pipe)))
+    scene = scene_from_mapping(pipe, folder) if folder else scene_from_mapping(pipe)
+    return list(motion_warnings(built_of(scene).riser))
 
 
 def moved(name: str = "move", duration: float = 6.2831853, time_step: float = 0.1, **motion: Any) -> Mapping:

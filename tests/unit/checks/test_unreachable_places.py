@@ -13,6 +13,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
+from tests.support.driven_stage import built
 from tests.support.line_scenes import as_line
 from tests.support.said import line_with
 from tests.support.scenes import Mapping, dynamic, prescribed, quasi_static, riser_scene, static
@@ -53,13 +54,13 @@ def test_places_where_no_end_can_be(place: tuple[float, ...], words: tuple[str, 
     ("place", "write"), [((-40.0, 0.0, 300.0), "[360, 0, 300]"), ((10.0, 5.0, 50.0), "[410, 5, 350]")]
 )
 def test_a_likely_displacement_is_warned_of(place: tuple[float, ...], write: str) -> None:
-    given = laid(to(*place))
-    line_with(motion_warnings(scene_from_mapping(given)), "stages.1.move.end:", "not a displacement", f"write {write}")
+    warnings = motion_warnings(built(laid(to(*place))).riser)
+    line_with(warnings, "stages.1.move.end:", "not a displacement", f"write {write}")
 
 
 @pytest.mark.parametrize("place", [(340.0, 0.0, 300.0), (460.0, 20.0, 300.0), (400.0, 0.0, 20.0), (200.0, 0.0, 300.0)])
 def test_places_are_places(place: tuple[float, ...]) -> None:
-    assert not [*motion_warnings(scene_from_mapping(laid(to(*place))))]
+    assert not [*motion_warnings(built(laid(to(*place))).riser)]
 
 
 def test_beside_a_hang_off_an_offset_is_proposed() -> None:
