@@ -15,6 +15,7 @@ import numpy as np
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import away_from_axis, gap_forms
 from riser_soil.contact.facets import fill_shape
+from riser_soil.contact.integration_points import KeptRows, write_kept
 from riser_soil.contact.near_points import NearPoints, Surface, first_of, point_on
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
@@ -32,12 +33,33 @@ class Pairs(NamedTuple):
     facet: IntArray
 
 
+class PressWorkspace(NamedTuple):
+    """Points near the pipe, and what presses there: histories before and after the step (n, nh), force [N] and its
+    derivative by the penetration [N/m] (n,), area included; on_riser (n, 3): force on the pipe [N].
+    """
+
+    near: NearPoints
+    before: Array
+    after: Array
+    force: Array
+    slope: Array
+    on_riser: Array
+
+
+def press_workspace(near: NearPoints, columns: int) -> PressWorkspace:
+    """Workspace for some points; columns: of their history."""
+    n = len(near.gap)
+    histories = np.zeros((n, columns)), np.zeros((n, columns))
+    return PressWorkspace(near, *histories, np.zeros(n), np.zeros(n), np.zeros((n, 3)))
+
+
 @dataclass(frozen=True, eq=False)
 class PressedPoints:
     """What touches at a trial: n points. axis, surface: pipe and soil there; basis (3, d): of the line.
 
     force (n,) [N] = area times pressure, slope (n,) [N/m]: derivative by the penetration; potential [J] of all.
-    history (n, nh): of the pressure law after a step that ends here.
+    on_riser (n, 3): force on the pipe [N], global axes. history (n, nh): of the pressure law after a step that ends
+    here.
     """
 
     axis: Axis
@@ -47,25 +69,18 @@ class PressedPoints:
     force: Array
     slope: Array
     potential: float
+    on_riser: Array
     history: Array
 
     @classmethod
     def of(
-        cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, before: Array
+        cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, kept: KeptRows
     ) -> PressedPoints:
-        """The points among these where the law may act, by its kernel data and its history (n, nh) at the points."""
-        n = keep_active(law, points, len(points.gap), before)
-        points, before = first_of(points, n), before[:n]
-        force, slope, after = np.empty(n), np.empty(n), np.empty_like(before)
-        potential = press(law, points, n, before, after, force, slope)
-        return cls(axis, surface, basis, points, force, slope, potential, after)
-
-    @cached_property
-    def on_riser(self) -> Array:
-        """Force on the pipe at each point (n, 3) [N], global axes."""
-        out = np.empty((len(self.force), 3))
-        write_on_riser(self.axis, self.surface, self.points, len(out), self.force, out)
-        return out
+        """The points among these where the law may act, by its kernel data and what is kept of its history."""
+        found = press_workspace(points, kept.untouched.size)
+        n, potential = find_pressed(law, kept, axis, surface, len(points.gap), found)
+        given = first_of(points, n), found.force[:n], found.slope[:n], potential
+        return cls(axis, surface, basis, *given, found.on_riser[:n], found.after[:n])
 
     @cached_property
     def pairs(self) -> Pairs:
@@ -103,6 +118,20 @@ def write_axis(origin: Array, basis: Array, q: Array, axis: Array) -> None:
                 for j in range(q.shape[2]):
                     value += basis[i, j] * q[e, a, j]
                 axis[e, a, i] = value
+
+
+@njit
+def find_pressed(
+    law: Any, kept: KeptRows, axis: Axis, surface: Surface, n: int, out: PressWorkspace
+) -> tuple[int, float]:
+    """Find what presses at the first n of the near points, of which those stay where the law may act: how many they
+    are, and the energy that they store [J]. kept: of the law's history.
+    """
+    write_kept(kept, out.near.number, n, out.before)
+    n = keep_active(law, out.near, n, out.before)
+    energy = press(law, out.near, n, out.before, out.after, out.force, out.slope)
+    write_on_riser(axis, surface, out.near, n, out.force, out.on_riser)
+    return n, energy
 
 
 @njit

@@ -352,9 +352,9 @@ def add_friction(
     sliding: SlidingPoints,
 ) -> None:
     """Add the residual of friction to that of the line and to the border's, with contact found."""
-    near, n = workspace.near, workspace.found[POINTS]
+    near, n = workspace.pressed.near, workspace.found[POINTS]
     write_kept(given.kept, near.number, n, sliding.before)
-    touching, start = (near, n, workspace.force), (given.q, top.accepted)
+    touching, start = (near, n, workspace.pressed.force), (given.q, top.accepted)
     find_tractions(given.resistance, *touching, start, touch.axis, touch.surface, sliding)
     forces = touch.axis, touch.surface, touch.basis, near, n, sliding.on_riser
     spread(*forces, out.end_q, top.rows, border.residual, workspace.met)
@@ -372,8 +372,8 @@ def add_friction_tangent(
     sliding: SlidingPoints,
 ) -> None:
     """Add the derivative of the residual of friction, found last, to K (ne, n, n) and to the border's."""
-    n = workspace.found[POINTS]
-    near, pressed = first_of(workspace.near, n), (workspace.force[:n], workspace.slope[:n])
+    n, found = workspace.found[POINTS], workspace.pressed
+    near, pressed = first_of(found.near, n), (found.force[:n], found.slope[:n])
     pairs, pipe = paired(near, K.shape[0]), (touch.axis, touch.surface)
     forms, start = gap_forms(*pipe, near, touch.basis)[0], (given.q, top.accepted)
     place = start, *pipe, touch.basis

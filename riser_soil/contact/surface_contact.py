@@ -24,7 +24,7 @@ from riser_soil.contact.near_points import (
     points_of,
     points_workspace,
 )
-from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, write_axis
+from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, press_workspace, write_axis
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, LoopContact, SoilContact
 from riser_soil.contact.surface_loop import (
     LoopFriction,
@@ -117,8 +117,7 @@ class SurfaceContact(SoilContact):
         axis, surface = self.axis(trial), self.surface(deformed)
         elements, facets = self._pairs(axis, deformed, CandidateRange(self._acts_within, self._acts_within))
         near = near_points(axis, surface, elements, facets, self._acts_within)
-        memory = self._memory.at(near.number)
-        return PressedPoints.of(axis, surface, self._basis, near, self.law.kernel_data, memory)
+        return PressedPoints.of(axis, surface, self._basis, near, self.law.kernel_data, self._memory.kept)
 
     @property
     def _acts_within(self) -> float:
@@ -402,10 +401,8 @@ class SurfaceInLoop(LoopContact):
         """For so many points that touch."""
         if self._friction is not None:
             self._friction.make_room(count)
-        columns = len(self.contact.law.columns)
-        histories = np.zeros((count, columns)), np.zeros((count, columns))
-        forces = np.zeros(count), np.zeros(count), np.zeros((count, 3))
-        return TouchWorkspace(points_workspace(count), *histories, *forces, self.found, self.met, self.energy)
+        pressed = press_workspace(points_workspace(count), len(self.contact.law.columns))
+        return TouchWorkspace(pressed, self.found, self.met, self.energy)
 
     def begin(self, before: State) -> None:
         self._data.renew(self.contact.at_start(self._touch))
@@ -414,7 +411,7 @@ class SurfaceInLoop(LoopContact):
 
     def look(self, before: State, tried: bool) -> IntArray:
         if self.found[FULL]:
-            self._workspace.renew(self._with_room(2 * len(self._workspace.value.force)))
+            self._workspace.renew(self._with_room(2 * len(self._workspace.value.pressed.force)))
         axes = [self.contact.axis(self._line.trial(before))]
         if tried:
             axes.append(self._touch.axis._replace(q=self._touch.axis.q.copy()))
@@ -440,6 +437,6 @@ class SurfaceInLoop(LoopContact):
         stored = super().add_work(before, after, work)
         if self._friction is None:
             return stored
-        by_friction, turned = self._friction.account(self._workspace.value.near.area[: self.found[POINTS]])
+        by_friction, turned = self._friction.account(self._workspace.value.pressed.near.area[: self.found[POINTS]])
         work[self._friction.part.name] += turned
         return stored + by_friction

@@ -13,18 +13,17 @@ import numpy as np
 
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gap_forms
-from riser_soil.contact.integration_points import KeptRows, write_kept
-from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of
+from riser_soil.contact.integration_points import KeptRows
+from riser_soil.contact.near_points import PairsByFacet, Surface, boxes, fill_near, first_of
 from riser_soil.contact.pressed_points import (
     Pairs,
-    keep_active,
+    PressWorkspace,
+    find_pressed,
     pair_tangents,
     paired,
-    press,
     spread,
     work_of,
     write_axis,
-    write_on_riser,
 )
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
@@ -59,17 +58,9 @@ class Watched(NamedTuple):
 
 
 class TouchWorkspace(NamedTuple):
-    """What was found last. near: the points; their histories before and after the step (n, nh), force [N] and its
-    derivative by the penetration [N/m] (n,), area included; on_riser (n, 3): force on the pipe [N]; found, met, energy:
-    see `LoopContact`.
-    """
+    """What was found last. pressed: the points, with room for more; found, met, energy: see `LoopContact`."""
 
-    near: NearPoints
-    before: Array
-    after: Array
-    force: Array
-    slope: Array
-    on_riser: Array
+    pressed: PressWorkspace
     found: IntArray
     met: BoolArray
     energy: Array
@@ -86,17 +77,14 @@ def add_touch(
     workspace: TouchWorkspace,
 ) -> None:
     """Add the contact's residual to that of the line and to the border's."""
-    axis, surface, near, force = touch.axis, touch.surface, workspace.near, workspace.force
+    axis, surface, pressed = touch.axis, touch.surface, workspace.pressed
     write_axis(touch.origin, touch.basis, at.q, axis.q)
-    n = fill_near(axis, surface, watched.pairs, touch.reach, near)
+    n, room = fill_near(axis, surface, watched.pairs, touch.reach, pressed.near), len(pressed.force)
     workspace.met[:] = False
-    workspace.found[FULL], workspace.found[LEFT] = n > len(force), _leaves(axis, watched, touch.reach)
-    n = min(n, len(force))
-    write_kept(touch.kept, near.number, n, workspace.before)
-    n = workspace.found[POINTS] = keep_active(touch.law, near, n, workspace.before)
-    given = axis, surface, touch.basis, near, n, workspace.on_riser
-    workspace.energy[0] = press(touch.law, near, n, workspace.before, workspace.after, force, workspace.slope)
-    write_on_riser(axis, surface, near, n, force, workspace.on_riser)
+    workspace.found[FULL], workspace.found[LEFT] = n > room, _leaves(axis, watched, touch.reach)
+    n, workspace.energy[0] = find_pressed(touch.law, touch.kept, axis, surface, min(n, room), pressed)
+    workspace.found[POINTS] = n
+    given = axis, surface, touch.basis, pressed.near, n, pressed.on_riser
     spread(*given, out.end_q, top.rows, border.residual, workspace.met)
 
 
@@ -118,8 +106,8 @@ def add_touch_tangent(
     touch: TouchData, top: TopMotion, at: Configuration, K: Array, border: Border, workspace: TouchWorkspace
 ) -> None:
     """Add the derivative of the contact's residual, found last, to K (ne, n, n) and to the border's."""
-    n, facets = workspace.found[POINTS], touch.surface.facets
-    near, force, slope = first_of(workspace.near, n), workspace.force[:n], workspace.slope[:n]
+    n, facets, pressed = workspace.found[POINTS], touch.surface.facets, workspace.pressed
+    near, force, slope = first_of(pressed.near, n), pressed.force[:n], pressed.slope[:n]
     pairs = paired(near, K.shape[0])
     forms, C = gap_forms(touch.axis, touch.surface, near, touch.basis)
     by_dofs = pair_tangents(forms, C, force, slope, pairs, at.P)
@@ -161,7 +149,8 @@ def write_touch_work(
     """Write to work (1,) what the force at a step's end, found last, takes along the step [J], see `SurfaceContact`."""
     before = np.empty(touch.axis.q.shape)
     write_axis(touch.origin, touch.basis, first.q, before)
-    given = touch.axis, touch.surface, workspace.near, workspace.found[POINTS], workspace.on_riser
+    pressed = workspace.pressed
+    given = touch.axis, touch.surface, pressed.near, workspace.found[POINTS], pressed.on_riser
     work[0] = work_of(*given, before, top.accepted)
 
 
