@@ -14,7 +14,7 @@ from riser_soil.accuracy.study_points import POINTS, Factors, PointOutcome, comp
 
 TARGETS = (0.01, 0.001)
 
-Says = Callable[[str], None]
+Echo = Callable[[str], None]
 
 
 def pareto(outcomes: Outcomes, quantities: Quantities) -> list[PointOutcome]:
@@ -37,7 +37,7 @@ class Study:
 
     refinements: Refinements
     folder: Path
-    says: Says
+    echo: Echo
     outcomes: dict[Factors, PointOutcome] = field(default_factory=dict)
     failure: str = ""
 
@@ -49,7 +49,7 @@ class Study:
 
     def _print(self, outcome: PointOutcome, before: bool) -> None:
         how = f"{outcome.cpu:.3g} s" if outcome.done else f"failed: {outcome.reason}"
-        self.says(f"{self.refinements.in_words(outcome.factors)}: {how}{', computed before' if before else ''}")
+        self.echo(f"{self.refinements.in_words(outcome.factors)}: {how}{', computed before' if before else ''}")
 
     @property
     def scene(self) -> PointOutcome:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from riser_soil.accuracy.cheapest_setting import next_setting
-from riser_soil.accuracy.findings import TARGETS, Says, Study
+from riser_soil.accuracy.findings import TARGETS, Echo, Study
 from riser_soil.accuracy.refinements import RATIOS, Refinements
 from riser_soil.accuracy.study_files import write_files
 from riser_soil.accuracy.study_points import POINTS
@@ -24,7 +24,7 @@ LEAST_LEVELS, MOST_LEVELS = 3, 9
 
 def study(
     scene: Scene, folder: Path, *, settings: Sequence[str] = (), levels: int = 5, jobs: int = 1, force: bool = False,
-    says: Says = print,
+    echo: Echo = print,
 ) -> Study:  # fmt: skip
     """Run a study and leave its files in a folder. A study that was interrupted is resumed.
 
@@ -39,7 +39,7 @@ def study(
         if force:
             shutil.rmtree(runs, ignore_errors=True)
         try:
-            made = _around_what_runs(Study(refinements, folder, says))
+            made = _around_what_runs(Study(refinements, folder, echo))
             _compute_refinements(made, jobs)
             _try_settings(made)
         except Interruption as end:
@@ -69,7 +69,7 @@ def _finer(made: Study) -> Study:
     """The study around a scene one level finer in elements and steps, with the same points in its terms."""
     step = tuple(RATIOS[setting.name] if setting.name in HELPING else 1.0 for setting in made.refinements.settings)
     refinements = Refinements(made.refinements.scene_at(step), made.refinements.settings, made.refinements.levels)
-    finer = Study(refinements, made.folder, made.says, failure=made.failure or made.scene.reason)
+    finer = Study(refinements, made.folder, made.echo, failure=made.failure or made.scene.reason)
     for before in made.outcomes.values():
         factors = tuple(factor / ratio for factor, ratio in zip(before.factors, step, strict=True))
         finer.outcomes[factors] = replace(before, factors=factors)
@@ -102,5 +102,5 @@ def _try_settings(made: Study) -> None:
             point = next_setting(made.predicted(target))
             if point is None:
                 break
-            made.says(f"expected to reach {target:.1%}:")
+            made.echo(f"expected to reach {target:.1%}:")
             made.compute([point], 1)

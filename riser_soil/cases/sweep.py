@@ -22,7 +22,7 @@ CASES = "cases"  # folder of the cases' runs
 
 def run_cases(
     file: Path, folder: Path, workers: Workers, overrides: Sequence[str] = (), limit: float | None = None,
-    says: Callable[[str], None] = print,
+    echo: Callable[[str], None] = print,
 ) -> tuple[CaseTable, list[CharacteristicExtreme]]:  # fmt: skip
     """Run the cases of a file that are not done yet, and leave their tables in the folder.
 
@@ -36,7 +36,7 @@ def run_cases(
     with claimed(folder, CASES, "load cases") as runs:
         tasks = [task(case.name, case.variant, runs, limit=limit) for case in cases]
         outcomes, todo = pool.divided(tasks)
-        says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
+        echo(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
         outcomes |= _computed(cases, todo, workers, folder)
         table = case_table(f"Load cases of {file.name}", runs, cases, outcomes, case_file.statistics.since)
         extremes = characteristic_extremes(table, case_file.extremes)

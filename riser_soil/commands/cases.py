@@ -96,5 +96,5 @@ def study(
             raise ResultsError(f"--jobs {jobs}: must be 1 or more")
         folder = output or Path(f"{Path(scene).stem}-study")
         with placed(scene, overrides):
-            done = vary(checked, folder, settings=setting or (), levels=levels, jobs=jobs, force=force, says=typer.echo)
+            done = vary(checked, folder, settings=setting or (), levels=levels, jobs=jobs, force=force, echo=typer.echo)
         typer.echo("\n".join([*words(done), f"tables and plot are in {folder}: study.html, study.csv, study.json"]))

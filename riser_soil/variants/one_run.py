@@ -21,7 +21,7 @@ from riser_soil.core.environment import environment_alone
 from riser_soil.errors import ResultsError, WriteError
 from riser_soil.results.folder import SCENE, names_in
 from riser_soil.results.ownership import sealed
-from riser_soil.variants.runs_folder import SAID, Outcome, attempt, known_outcome, settle
+from riser_soil.variants.runs_folder import PRINTED, Outcome, attempt, known_outcome, settle
 from riser_soil.variants.variant import Variant
 
 Task = dict[str, Any]
@@ -80,7 +80,7 @@ def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
     if stopped == STOPPED_BY_LIMIT:
         reason = f"took longer than the limit of {task['limit']:g} s"
     elif status:
-        reason = _last_words(process.returncode, made / SAID).replace(str(made), str(runs / task["name"]))
+        reason = _last_words(process.returncode, made / PRINTED).replace(str(made), str(runs / task["name"]))
     seconds = time.monotonic() - since
     outcome = Outcome(task["name"], task["key"], status, reason, seconds, socket.gethostname(), task["alone"])
     if status == WriteError.exit_status:  # what it has written would fill the disk
@@ -107,9 +107,9 @@ def command(made: Path) -> list[str]:
 
 def _started(made: Path) -> subprocess.Popen[bytes]:
     """In a session of its own: Ctrl-C in the terminal ends the command, and that the run."""
-    with (made / SAID).open("wb") as said:
+    with (made / PRINTED).open("wb") as printed:
         return subprocess.Popen(
-            command(made), env=environment_alone() | {"OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL, stdout=said,
+            command(made), env=environment_alone() | {"OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL, stdout=printed,
             stderr=subprocess.STDOUT, start_new_session=True,
         )  # fmt: skip
 
@@ -137,10 +137,10 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
         process.wait()
 
 
-def _last_words(status: int, said: Path) -> str:
+def _last_words(status: int, printed: Path) -> str:
     """Why a run failed: the signal that killed it, or the last line that it printed."""
     if status < 0:
         name = signal.Signals(-status).name
         return f"killed by {name}{', as where memory runs out' if status == -signal.SIGKILL else ''}"
-    lines = said.read_text(encoding="utf-8", errors="replace").strip().splitlines()
+    lines = printed.read_text(encoding="utf-8", errors="replace").strip().splitlines()
     return " ".join(lines[-1].split()) if lines else f"ended with status {status}"

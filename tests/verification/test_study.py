@@ -19,7 +19,7 @@ def test_references_hold_what_a_much_finer_run_finds(tmp_path: Path) -> None:
     from riser_soil.accuracy.study import study
     from riser_soil.scene.reader import read_scene
 
-    made = study(read_scene(SCENE), tmp_path / "study", says=lambda _: None)
+    made = study(read_scene(SCENE), tmp_path / "study", echo=lambda _: None)
     quantities = made.quantities()
     made.compute([FINE], 1)
     fine = made.outcomes.pop(FINE)

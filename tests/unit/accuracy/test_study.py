@@ -69,7 +69,7 @@ def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, 
         return PointOutcome(factors, 0, "", 2.0 / (h * dt), True, 10, found)
 
     monkeypatch.setattr(findings, "compute", compute)
-    return study(scene(), folder, says=lambda _: None, **given)
+    return study(scene(), folder, echo=lambda _: None, **given)
 
 
 def both(h: float, dt: float) -> float:
@@ -181,7 +181,7 @@ def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest
         return [outcome(*each) for each in scenes.items()]
 
     monkeypatch.setattr(findings, "compute", compute)
-    made = study(scene(), tmp_path / "t", levels=3, says=lambda _: None)
+    made = study(scene(), tmp_path / "t", levels=3, echo=lambda _: None)
     finer = "144 elements", "time_step 0.0025 s"
     line_with(made.refinements.in_words(made.refinements.base), *finer)
     line_with(words(made)[:1], "scene itself fails:", "folded", "finer settings:", *finer)
