@@ -7,17 +7,20 @@ that of `core.bordered`. It needs no PETSc.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from riser_soil.core import banded, bordered, dense
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.banded import SingularError
-from riser_soil.core.compiled import njit
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.dense import PIVOT
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.system import System
 
 WIDEST = 32  # entries beside the diagonal up to which a matrix is a riser's
+OF_LINES = 5, 11  # entries beside it of a line in a plane and in space, for which the loops over a row are compiled
 
 
 class BorderedBand:
@@ -28,7 +31,7 @@ class BorderedBand:
 
     def __init__(self, matrix: Matrix, band: int, border: int = 0) -> None:
         self._matrix, self._factored, wide = matrix, -1, _half_bandwidth(matrix, band)
-        self._band, self._wide = np.zeros((band + wide, 3 * wide + 1)), np.zeros(wide)  # of any width
+        self._band, self._wide = np.zeros((band + wide, 3 * wide + 1)), _width(wide)
         self._pivots, self._exchanged = np.zeros(band, dtype=np.int64), np.zeros(border, PIVOT)
         self._right, self._below, self._schur = (np.zeros((rows, border)) for rows in (band, band, border))
         self._coupled: IntArray = np.zeros(0, dtype=np.int64)
@@ -75,6 +78,12 @@ def band_of(system: System) -> BorderedBand | None:
     if coupled < (rows - chain) ** 2 or _half_bandwidth(system.matrix, chain) > WIDEST:
         return None
     return BorderedBand(system.matrix, chain, rows - chain)
+
+
+def _width(wide: int) -> Any:
+    """A band's width as `banded` takes it: fixed for lines, else an array of that length, for matrices of all widths.
+    """
+    return fixed(wide) if wide in OF_LINES else np.zeros(wide)
 
 
 def negative_pivots(matrix: Matrix, rows: int) -> int:

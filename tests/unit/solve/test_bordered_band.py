@@ -60,7 +60,8 @@ def _csr(entries: Array) -> tuple[Array, Array, Array]:
 
 @pytest.mark.parametrize(
     ("chain", "border", "band", "touched"),
-    [(30, 7, 3, slice(10, 15)), (30, 7, 3, slice(0, 30)), (12, 20, 2, slice(11, 12)), (15, 0, 2, slice(0, 0))],
+    [(30, 7, 3, slice(10, 15)), (30, 7, 3, slice(0, 30)), (12, 20, 2, slice(11, 12)), (15, 0, 2, slice(0, 0)),
+     (40, 7, 5, slice(10, 15))],  # the last one has the width of a line in a plane
 )
 def test_it_solves(chain: int, border: int, band: int, touched: slice) -> None:
     entries = matrix(chain, border, band, touched)
