@@ -74,6 +74,16 @@ def handling_signals() -> Iterator[None]:
 
 
 @contextmanager
+def interrupted(place: str) -> Iterator[None]:
+    """Interruption that is raised in the block says where the program was. place: and what is in its folder."""
+    try:
+        yield
+    except Interruption as end:
+        end.place = place
+        raise
+
+
+@contextmanager
 def _unraisable_kept() -> Iterator[None]:
     """Keeps signals that come within a function that C calls back, as LLVM does when a kernel is compiled or read: it
     can raise nothing, and Python prints what it would have raised.

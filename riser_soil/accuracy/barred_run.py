@@ -13,8 +13,7 @@ from riser_soil.accuracy.chain import bars_of, comparison_runs, run_values
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar, RunValues
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core import compiled
-from riser_soil.errors import Interruption
-from riser_soil.interruption import handling_signals
+from riser_soil.interruption import handling_signals, interrupted
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.summary import add_to_summary
 from riser_soil.scene.scene import Scene
@@ -41,12 +40,8 @@ def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, r
 
 
 def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorBar]:
-    with handling_signals():
-        try:
-            chain = comparison_runs(scene, comm)
-        except Interruption as end:
-            end.place = INTERRUPTED.format(folder)
-            raise
+    with interrupted(INTERRUPTED.format(folder)), handling_signals():
+        chain = comparison_runs(scene, comm)
     if comm.rank != 0:
         return []
     return bars_of(scene, values_of_run(folder, peaks), chain)

@@ -12,7 +12,8 @@ from riser_soil.accuracy.findings import TARGETS, Echo, Study
 from riser_soil.accuracy.refinements import RATIOS, Refinements
 from riser_soil.accuracy.study_files import write_files
 from riser_soil.accuracy.study_points import POINTS
-from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError, WriteError
+from riser_soil.errors import ResultsError, SceneError, SolveError, WriteError
+from riser_soil.interruption import interrupted
 from riser_soil.scene.scene import Scene
 from riser_soil.variants.runs_folder import claimed
 from riser_soil.variants.settings import HELPING, Setting, resolved, settings_of
@@ -39,12 +40,10 @@ def study(
         if force:
             shutil.rmtree(runs, ignore_errors=True)
         try:
-            made = _around_what_runs(Study(refinements, folder, echo))
-            _compute_refinements(made, jobs)
-            _try_settings(made)
-        except Interruption as end:
-            end.place = f"in a study; {kept}"
-            raise
+            with interrupted(f"in a study; {kept}"):
+                made = _around_what_runs(Study(refinements, folder, echo))
+                _compute_refinements(made, jobs)
+                _try_settings(made)
         except WriteError as err:
             raise WriteError(f"{err}; {kept}") from err
         write_files(made)

@@ -26,8 +26,8 @@ from riser_soil.accuracy.search import TriedSetting, first_setting, measured, tr
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.limits import in_words
 from riser_soil.core import compiled
-from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError, SolveError
-from riser_soil.interruption import handling_signals
+from riser_soil.errors import AccuracyError, MeshError, SceneError, SolveError
+from riser_soil.interruption import handling_signals, interrupted
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
@@ -58,12 +58,8 @@ def run_to_accuracy(scene: Scene, folder: Path | str, force: bool = False) -> No
 
 
 def _sought(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
-    with handling_signals():
-        try:
-            return trial(first_setting(scene), accuracy, comm)
-        except Interruption as end:
-            end.place = SOUGHT
-            raise
+    with interrupted(SOUGHT), handling_signals():
+        return trial(first_setting(scene), accuracy, comm)
 
 
 def _run_until(accuracy: float, last: TriedSetting, folder: Path, force: bool, comm: Any) -> tuple[TriedSetting, str]:
@@ -145,12 +141,8 @@ def _predicted_bars(
 
 
 def _measured(scene: Scene, values: RunValues | None, folder: Path, comm: Any) -> list[ErrorBar]:
-    with handling_signals():
-        try:
-            return measured(scene, values, comm)
-        except Interruption as end:
-            end.place = INTERRUPTED.format(folder)
-            raise
+    with interrupted(INTERRUPTED.format(folder)), handling_signals():
+        return measured(scene, values, comm)
 
 
 def _print_largest(last: TriedSetting, accuracy: float, comm: Any) -> None:

@@ -158,7 +158,7 @@ def test_two_meshes_of_soil_that_agree_may_do_so_by_chance(factors: dict[str, fl
     ("before", "change", "after", "measured"),
     [
         (0.02, 15.0, 0.005, False),
-        (0.02, 25.0, 0.005, True),  # further than the bar before told
+        (0.02, 25.0, 0.005, True),  # by more than the bar before
         (0.002, 4.0, 0.002, False),  # likewise, but by less than half the accuracy
         (0.06, 15.0, 0.009, False),
         (0.06, 15.0, 0.007, True),  # to less than an eighth

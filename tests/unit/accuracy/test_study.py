@@ -247,17 +247,17 @@ def test_how_a_point_ends(
     """One that was killed, or found the disk full, is run again; one whose scene fails is not. Its summary stays."""
     monkeypatch.setattr(one_run, "command", lambda made: [sys.executable, "-c", FAKE, str(made), str(status)])
     point: dict[Factors, Scene] = {(2.0, 1.0): scene()}
-    told = list[bool]()
+    known_before = list[bool]()
     if status == 4:
         with pytest.raises(WriteError, match="buried"):
-            compute(point, tmp_path, 1, lambda outcome, before: told.append(before))
+            compute(point, tmp_path, 1, lambda outcome, before: known_before.append(before))
         assert not list(tmp_path.glob("*/*"))
         return
     for _ in range(2):
-        (found,) = compute(point, tmp_path, 1, lambda outcome, before: told.append(before))
+        (found,) = compute(point, tmp_path, 1, lambda outcome, before: known_before.append(before))
         assert (found.status, found.reason, found.alone) == (137 if status == -9 else status, reason, True)
         assert found.cpu == pytest.approx(cpu, nan_ok=True)
-    assert told == [False, not again]
+    assert known_before == [False, not again]
     (folder,) = (entry for entry in tmp_path.iterdir() if not entry.name.startswith("."))
     left = {"case.json", "said.txt", "scene.yaml"} | ({"summary.json"} if status >= 0 else set())
     assert {entry.name for entry in folder.iterdir()} == left
