@@ -108,8 +108,8 @@ def _hung(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     from riser_soil.interruption import handling_signals
 
     with handling_signals():
-        found = hung(scene)
-    assert found is not None
+        solved = hung(scene)
+    assert solved is not None
     if communicator_of(scene).rank == 0:
-        print(found.in_words)
-    return found.scene, {"hang_off": found.summary}
+        print(solved.in_words)
+    return solved.scene, {"hang_off": solved.summary}

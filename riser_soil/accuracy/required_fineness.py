@@ -129,9 +129,9 @@ def _by_difference(
     shares: Mapping[str, float], change: float, factors: Factors, order: Mapping[str, float]
 ) -> dict[str, float]:
     """Shares of the refined sources, but the soil's, from those by orders and the difference of two runs."""
-    found, finer = {}, [source for source, ratio in factors.items() if ratio > 1.0]
+    limited, finer = {}, [source for source, ratio in factors.items() if ratio > 1.0]
     for source in finer:
         if source in shares and source != "soil":
             share = max(SAFETY[source] * change / (factors[source] ** order[source] - 1.0), BY_CHANCE * shares[source])
-            found[source] = share if len(finer) == 1 else min(shares[source], share)
-    return found
+            limited[source] = share if len(finer) == 1 else min(shares[source], share)
+    return limited

@@ -45,7 +45,7 @@ def as_dict(study: Study) -> dict[str, Any]:
         "knobs": [setting.name for setting in study.refinements.settings],
         "words": words(study),
         "quantities": {key: _quantity(study, each) for key, each in quantities.items()},
-        "cheapest": {target: list(found.factors) if found else None for target, found in reaching.items()},
+        "cheapest": {target: list(cheapest.factors) if cheapest else None for target, cheapest in reaching.items()},
         "pareto_front": [list(each.factors) for each in front],
         "points": [_point(study, outcome, outcome in front) for outcome in _in_order(study)],
     }
@@ -114,12 +114,12 @@ def _rows(study: Study) -> Iterator[list[str]]:
     for outcome in _in_order(study):
         point = _point(study, outcome, outcome in front)
         cells = [point[name] for name in ("settings", "status", "reason", "cpu", "timed_alone", "steps", "error", "in")]
-        found = outcome.key_results
+        results = outcome.key_results
         yield [
             *(f"{factor:.4g}" for factor in outcome.factors),
             *(_cell(cell) for cell in (*cells, point["pareto"])),
-            *(f"{found[key].value:.8g}" if key in found else "" for key in quantities),
-            *(f"{each.error_of(found[key]):.4g}" if key in found else "" for key, each in quantities.items()),
+            *(f"{results[key].value:.8g}" if key in results else "" for key in quantities),
+            *(f"{each.error_of(results[key]):.4g}" if key in results else "" for key, each in quantities.items()),
         ]
 
 

@@ -211,14 +211,14 @@ def _largest_share(quantities: Quantities, number: int) -> tuple[float, str]:
 
 
 def _cheapest(study: Study, target: float) -> Iterator[str]:
-    quantities, found = study.judged(), study.reaching(target)
+    quantities, reaching = study.judged(), study.reaching(target)
     if not quantities:
         return
-    best = found if found is not None else study.front()[-1]
+    best = reaching if reaching is not None else study.front()[-1]
     error, key = study.error(best)
     settings, off = study.refinements.in_words(best.factors), _off(quantities, error, key)
     where = "" if len(quantities) == len(study.quantities()) else f" in {len(quantities)} quantities"
-    if found is None:
+    if reaching is None:
         yield f"{percent(target)} is reached{where} by no setting that was run; the best, {settings}, is {off}"
         return
     at = f"at the least cost, {best.cpu:.3g} s, with {settings}: {off}"

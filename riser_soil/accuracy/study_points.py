@@ -58,19 +58,19 @@ OnEnd = Callable[[PointOutcome, bool], None]
 def compute(scenes: Mapping[Factors, Scene], runs: Path, jobs: int, on_end: OnEnd) -> list[PointOutcome]:
     """Outcomes of points with these scenes, as they end. runs: folder of all points; jobs: how many run at a time."""
     tasks = {factors: point_task(scene, runs, alone=jobs == 1) for factors, scene in scenes.items()}
-    found: list[PointOutcome] = []
+    outcomes: list[PointOutcome] = []
 
     def end(ended: Outcome, before: bool = False) -> None:
         """Counts that are rounded may give several points the same scene, and one run."""
         for factors in (each for each in tasks if tasks[each]["name"] == ended.name):
-            found.append(point_outcome(factors, ended, runs))
-            on_end(found[-1], before)
+            outcomes.append(point_outcome(factors, ended, runs))
+            on_end(outcomes[-1], before)
 
     earlier, todo = pool.divided([*tasks.values()])
     for each in earlier.values():
         end(each, before=True)
     pool.compute(todo, Workers(jobs), end)
-    return found
+    return outcomes
 
 
 def point_task(scene: Scene, runs: Path, alone: bool) -> Task:

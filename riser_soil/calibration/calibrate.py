@@ -61,9 +61,9 @@ def calibrate(
         def resistance(values: Mapping[str, float]) -> Array:
             return path.at_points(segment.resistance(values, path, table))
 
-        found = fit(resistance, measured.V, parameters, printed, relative=relative)
-        write_folder(folder, Path(place), segment, path, measured, found, diameter(at_first))
-    return found
+        fitted = fit(resistance, measured.V, parameters, printed, relative=relative)
+        write_folder(folder, Path(place), segment, path, measured, fitted, diameter(at_first))
+    return fitted
 
 
 def parameter(scene: Scene, wanted: str) -> FitParameter:

@@ -91,17 +91,18 @@ def fit(
     search = _Search(model, data, sizes, parameters, on_run)
     first = np.array([p.scaled(p.guess) for p in parameters])
     low, high = np.array([p.scaled(p.low) for p in parameters]), np.array([p.scaled(p.high) for p in parameters])
-    found = least_squares(
+    solution = least_squares(
         search.residual, first, search.jacobian, (low, high), xtol=CLOSE, ftol=FLAT, max_nfev=MOST_STEPS
     )
-    values = search.residual(found.x) * sizes + data
+    values = search.residual(solution.x) * sizes + data
     misfit = float(np.sqrt(np.mean((values - data) ** 2)))
-    spread = deviations(found.jac, found.fun)
+    spread = deviations(solution.jac, solution.fun)
+    fitted = zip(parameters, solution.x, spread, strict=True)
     return Fit(
-        tuple(_with_interval(*each, len(data) - len(first)) for each in zip(parameters, found.x, spread, strict=True)),
+        tuple(_with_interval(*each, len(data) - len(first)) for each in fitted),
         values,
         misfit,
-        found.status > 0,
+        solution.status > 0,
         search.runs,
     )
 

@@ -65,7 +65,7 @@ def steps(length: float, largest: float) -> Array:
 
 def turns(w: Array, least: float) -> IntArray:
     """Indexes into w (n,) at which it turns back by at least `least`; the first point and the last are among them."""
-    found, extreme, way = [0], 0, 0.0
+    corners, extreme, way = [0], 0, 0.0
     for n, value in enumerate(w):
         if way == 0.0:
             way = float(np.sign(value - w[0])) if abs(value - w[0]) >= least else 0.0
@@ -73,9 +73,9 @@ def turns(w: Array, least: float) -> IntArray:
         elif way * (value - w[extreme]) > 0.0:
             extreme = n
         elif way * (w[extreme] - value) >= least:
-            found.append(extreme)
+            corners.append(extreme)
             way, extreme = -way, n
-    return np.unique([*found, extreme, len(w) - 1])
+    return np.unique([*corners, extreme, len(w) - 1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -63,7 +63,7 @@ def write_folder(
 
 def as_dict(fit: Fit) -> dict[str, object]:
     """Content of calibration.json; the interval is null where the data do not determine it."""
-    found = {
+    parameters = {
         each.parameter.name: {
             "value": each.value,
             "interval": list(each.interval) if each.known else None,
@@ -72,7 +72,7 @@ def as_dict(fit: Fit) -> dict[str, object]:
         for each in fit.parameters
     }
     facts = {"misfit": fit.misfit, "runs": fit.runs, "converged": fit.converged, "confidence": CONFIDENCE}
-    return facts | {"parameters": found}
+    return facts | {"parameters": parameters}
 
 
 def _scene_text(segment: PipeSegment, values: Mapping[str, float], path: PenetrationPath, table: Path) -> str:

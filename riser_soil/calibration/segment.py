@@ -90,9 +90,9 @@ def first_penetration(scene: Scene) -> float:
 
 def diameter(scene: Scene) -> float:
     """Outer diameter of a pipe segment [m]."""
-    found = {line_type.outer_diameter for line_type in scene.used_line_types.values()}
-    only = found.pop()
-    if found or only is None:
+    diameters = {line_type.outer_diameter for line_type in scene.used_line_types.values()}
+    only = diameters.pop()
+    if diameters or only is None:
         raise SceneError("riser.segments: a pipe segment has one outer_diameter, all along; take one line type")
     return only
 

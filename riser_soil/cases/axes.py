@@ -129,8 +129,8 @@ class _Waves:
         waves = _under(self.base.data, "water", "waves")
         given = [kind for kind in (*KINDS, *ALONE) if isinstance(waves, dict) and waves.get(kind) is not None]
         if len(given) != 1:
-            found = "has no waves" if not given else f"has waves of several kinds, {', '.join(given)}"
-            raise SceneError(f"{self.file}: {self.key}: the base scene {found}; give it one kind under water.waves")
+            waves = "has no waves" if not given else f"has waves of several kinds, {', '.join(given)}"
+            raise SceneError(f"{self.file}: {self.key}: the base scene {waves}; give it one kind under water.waves")
         (kind,) = given
         if kind == _TRAINS:
             remedy = "set them by product, as water.waves.trains.0.jonswap.seed: [1, 2, 3]"
@@ -159,11 +159,11 @@ def _of_depth(file: Path, share: str, base: Document) -> float:
     surface, level = (_under(base.data, *path) for path in (("water", "surface_level"), ("seabed", "level")))
     uneven = any(_under(base.data, "seabed", key) is not None for key in ("profile", "grid", "slope_deg"))
     depth = surface - (level or 0.0) if _is_number(surface) and not uneven else _under(base.data, "water", "depth")
-    found = PERCENT.fullmatch(share)
-    if found is None or not _is_number(depth) or depth <= 0.0:
+    percent = PERCENT.fullmatch(share)
+    if percent is None or not _is_number(depth) or depth <= 0.0:
         needs = f"{share} of the water depth needs water.depth, or water.surface_level above a level seabed"
         raise SceneError(f"{file}: offsets: {needs}; give them, or a distance [m]")
-    return round(float(found[1]) * depth / 100.0, 9)
+    return round(float(percent[1]) * depth / 100.0, 9)
 
 
 def _away(file: Path, base: Document) -> tuple[float, float]:

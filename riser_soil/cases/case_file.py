@@ -124,8 +124,8 @@ _OFFSETS = "must be a distance [m], a share of the water depth, as 5 %, or a map
 
 
 def _share_given(text: str) -> str:
-    found = PERCENT.fullmatch(text)
-    if found is None or not float(found[1]) > 0.0:
+    percent = PERCENT.fullmatch(text)
+    if percent is None or not float(percent[1]) > 0.0:
         raise PydanticCustomError("choice", "{text}", {"text": _OFFSETS})
     return text
 

@@ -74,12 +74,12 @@ def case_values(folder: Path, since: float) -> list[CaseValue]:
     """
     run = Run(folder)
     last = _LastDynamic.of(run, since)
-    found = [
+    values = [
         CaseValue(each.stage, each.label, each.unit, each.value, last.sample(each) if last else None)
         for each in (*key_results(run.summary).values(), *_utilisations(run.summary["stages"]))
     ]
     each = ((line, value) for line, own in run.of_lines.items() for value in _statistics(own, since))
-    return [*found, *(replace(value, name=f"{line} {value.name}".strip()) for line, value in each)]
+    return [*values, *(replace(value, name=f"{line} {value.name}".strip()) for line, value in each)]
 
 
 def _utilisations(stages: Sequence[Mapping[str, Any]]) -> Iterator[KeyResult]:
@@ -110,8 +110,8 @@ class _LastDynamic:
 
     @property
     def stage(self) -> Mapping[str, Any]:
-        found: Mapping[str, Any] = self.run.summary["stages"][self.number]
-        return found
+        stage: Mapping[str, Any] = self.run.summary["stages"][self.number]
+        return stage
 
     @property
     def records(self) -> Array:
@@ -137,10 +137,10 @@ class _LastDynamic:
     def _time_of(self, result: KeyResult) -> float:
         """Time of an extreme in its stage [s]; the stage's end where no time is known."""
         own: Any = self.stage["lines"][result.of] if result.of in self.stage.get("lines", {}) else self.stage
-        found = own["extremes"]
+        extremes = own["extremes"]
         for key in result.figure.split("."):
-            found = found.get(key) if isinstance(found, Mapping) else None
-        time = found.get(f"t_{result.which}") if isinstance(found, Mapping) else None
+            extremes = extremes.get(key) if isinstance(extremes, Mapping) else None
+        time = extremes.get(f"t_{result.which}") if isinstance(extremes, Mapping) else None
         return float(time) if isinstance(time, int | float) else math.inf
 
     def _recorded(self, result: KeyResult) -> Array | None:

@@ -103,10 +103,10 @@ def _rows(groups: Mapping[str, Labels], most: int) -> dict[str, set[str]]:
     depth = max(map(len, groups.values()), default=0)
     while depth and len({labels[:depth] for labels in groups.values()}) > most:
         depth -= 1
-    found: dict[str, set[str]] = {}
+    rows: dict[str, set[str]] = {}
     for name, labels in groups.items():
-        found.setdefault(", ".join(labels[:depth]) or "all", set()).add(name)
-    return found
+        rows.setdefault(", ".join(labels[:depth]) or "all", set()).add(name)
+    return rows
 
 
 def _ending_in_words(outcome: Outcome) -> str:

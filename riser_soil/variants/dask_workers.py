@@ -87,8 +87,8 @@ def _connected(address: str) -> Client:
 
 def _refuse_strangers(client: Client, address: str) -> None:
     """SceneError where a worker lacks this package: it could not read what it is sent, and would fall silent."""
-    found = client.run(get_data, PACKAGE, "py.typed")  # a question in terms that all workers know
-    for worker, content in found.items():
+    contents = client.run(get_data, PACKAGE, "py.typed")  # a question in terms that all workers know
+    for worker, content in contents.items():
         if content is None:
             raise SceneError(
                 f"--scheduler {address}: its worker {worker} has no {PACKAGE}; install {__version__} there, or end it"
