@@ -22,7 +22,7 @@ from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.driven_stage import Watcher, soil_under
+from tests.support.driven_stage import Watcher
 from tests.support.scenes import LAY, Mapping, dynamic, prescribed, riser_scene, static, touchdown
 from tests.support.scenes import heave as heaved
 
@@ -79,8 +79,7 @@ def reported_of(scene: Mapping, s: float) -> Array:
     rows = list[list[float]]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        riser, contact = riser_snapshot(assembly.riser, stepper), soil_under(assembly).contact or assembly.riser.seabed
-        assert contact is not None
+        riser, contact = riser_snapshot(assembly.riser, stepper), assembly.contacts[0]
         forces = [riser.start_force[0] / s**3, riser.effective_tension[-1] / s**3, riser.bending_moment.max() / s**4]
         places = [contact.touchdown_arc(stepper.now) / s, float(riser.position[:, 2].min()) / s]
         time = 0.0 if len(rows) == 0 else step.t / s**0.5
