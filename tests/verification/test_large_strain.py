@@ -236,9 +236,9 @@ def test_ranks_agree_across_new_meshes(scene: str) -> None:
         f"made = build(scene_from_mapping({scene}), MPI.COMM_WORLD)\n"
         "rest = State.at_rest(0.0, made.size)\n"
         "state = run_stage(made, made.scene.stages[0], rest, Watcher(), Timer.new())\n"
-        "force = made.soil_contact.force_on_soil(state)\n"
+        "force = made.soil.contact.force_on_soil(state)\n"
         "if MPI.COMM_WORLD.rank == 0:\n"
-        "    print(made.mesh_renewal.count, *force)\n"
+        "    print(made.soil.mesh_renewal.count, *force)\n"
     )
     found = []
     for ranks in (1, 2, 4):

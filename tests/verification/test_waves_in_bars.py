@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
@@ -43,7 +44,7 @@ def scene(steps: int, duration: float, elements: int, rho_inf: float, **more: An
     )
 
 
-def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Any, TimeStepper], tuple[float, ...]]) -> Array:
+def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Assembly, TimeStepper], tuple[float, ...]]) -> Array:
     """Time and what `look` sees after each step; v (nn,): the nodes' first speeds along an axis of the plane [m/s]."""
     assembly, rows = built(mapping), list[tuple[float, ...]]()
     rates = np.zeros(assembly.size)
@@ -78,9 +79,10 @@ class Strike:
             contact={"method": "node", "stiffness": 2.0 * EA / h**2, "smoothing": 0.0},
         )
 
-        def look(assembly: Any, stepper: TimeStepper) -> tuple[float, ...]:
-            up = assembly.riser.line.nodal(stepper.now.v)[:, 1] @ assembly.riser.line.tributary_length / L
-            return float(assembly.riser.seabed.force_on_riser(stepper.now)[2]), up, stepper.energy.total
+        def look(assembly: Assembly, stepper: TimeStepper) -> tuple[float, ...]:
+            line = assembly.riser.line
+            up = float(line.nodal(stepper.now.v)[:, 1] @ line.tributary_length) / L
+            return assembly.ground_force(stepper.now), up, stepper.energy.total
 
         t, force, up, energy = seen(bar, 1, np.full(steps + 1, -V), look)
         between = (t > 0.5) & (t < 1.8)
@@ -138,8 +140,8 @@ def taut_peak(folder: Path, steps: int, elements: int, rho_inf: float = 0.8) -> 
     return float(force.max()) / (2.0 * FORCE)
 
 
-def _start_force(assembly: Any, stepper: TimeStepper) -> float:
-    return -float(riser_snapshot(assembly, stepper).start_force[0])
+def _start_force(assembly: Assembly, stepper: TimeStepper) -> float:
+    return -float(riser_snapshot(assembly.riser, stepper).start_force[0])
 
 
 def _moving_off(file: Path) -> Path:
