@@ -179,13 +179,13 @@ class LineParts:
         for part in self._renewed:
             part.renew_kernel_data(self._trials.start, self._trials.end)
 
-    def go_to(self, state: State) -> None:
-        """Bring line and kernel data to a trial state."""
+    def go_to(self, state: State, velocities_alone: bool = False) -> None:
+        """Bring line and kernel data to a trial state, whose accelerations may not matter."""
         self._trials.step_to(state.t)
         self._renew()
         for part in self._first:
             part.find(state)
-        self._placed.move(state)
+        self._placed.move(state, velocities_alone)
 
     def find(self, state: State) -> LineForces:
         """Residuals at a trial state, as they act on elements and on nodes."""
@@ -243,10 +243,18 @@ class LineParts:
     def energy(self, state: State) -> Energy:
         """The parts' energy at a trial state."""
         self._place(state)
+        return Energy(*self._found_energy())
+
+    def kinetic_energy(self, state: State) -> float:
+        """Kinetic energy [J] of parts that have no other, at a trial state."""
+        self.go_to(state, velocities_alone=True)
+        return float(self._found_energy()[0])
+
+    def _found_energy(self) -> list[float]:
         energy, find = self._energy
         energy[:] = 0.0
         find()
-        return Energy(*as_list(energy))
+        return as_list(energy)
 
     @cached_property
     def _energy(self) -> tuple[Array, Bound]:

@@ -65,22 +65,28 @@ class PlacedLine:
         self._state: State | None = None
         self._from: Array | None = None  # the places of the nodes where the line was accepted
         self._moved = False  # whether it has moved from there
+        self._rates: tuple[Array | None, Array | None] = None, None  # that it has, of all local dofs
         self.count, self._mapped = 0, -1  # the count for which the maps hold
 
-    def move(self, state: State) -> None:
-        """Place it at a state, whose arrays must not change from then on, unless it is there."""
+    def move(self, state: State, velocities_alone: bool = False) -> None:
+        """Place it at a state, whose arrays must not change from then on, unless it is there; its accelerations may not
+        matter.
+        """
         line = self._line
         if state is self._state and line.x is self._from:
             return
         self._base.update()
-        u, moved = state.u[line.part], self._moved
-        self._v[:], self._a[:], self._moved = state.v[line.part], state.a[line.part], bool(u.any())
-        if moved or self._moved or line.x is not self._from:
-            self._u[:] = u
-            self.trial.place()
-        else:
-            self.trial.put_rates()
-        self._state, self._from = state, line.x
+        u = state.u[line.part]
+        moves, (v, a) = bool(u.any()), self._rates
+        stays = line.x is self._from and not (moves or self._moved)
+        if not (stays and state.v is v and (velocities_alone or state.a is a)):
+            self._v[:], self._a[:], self._rates = state.v[line.part], state.a[line.part], (state.v, state.a)
+            if stays:
+                self.trial.put_rates()
+            else:
+                self._u[:] = u
+                self.trial.place()
+        self._state, self._from, self._moved = None if velocities_alone else state, line.x, moves
         self.count += 1
 
     def forget(self) -> None:

@@ -231,7 +231,10 @@ class InverseMass:
 
     def kinetic_energy(self, state: State) -> float:
         """Kinetic energy [J] at a state."""
-        return self._system.sum([sum(part.energy(state).kinetic for part in self._parts)])[0]
+        mine = 0.0
+        for part in self._parts:
+            mine += part.kinetic_energy(state) if isinstance(part, LineParts) else part.energy(state).kinetic
+        return self._system.sum([mine])[0]
 
     def state(self) -> Saved:
         """By line, the projectors of its nodes, once they are known."""

@@ -19,7 +19,9 @@ def test_a_line_is_where_its_state_is_whatever_came_before(dimension: int) -> No
     at = sample(dimension)
     moved, still, faster = at.state(1), at.state(2, size=0.0), at.state(3, size=0.0)
     now = at.line.once(LineTrials).now
-    for state in (moved, still, faster, moved, faster):
+    other = State(0.9, faster.u, faster.v, still.a)
+    for state in (moved, still, faster, State(0.8, faster.u, faster.v, faster.a), other, moved, faster):
+        now.move(other, velocities_alone=True)
         now.move(state)
         require_placed(now.at, LineTrials(at.line), state)
     at.line.commit(moved)
