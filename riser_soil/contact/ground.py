@@ -18,7 +18,6 @@ from riser_soil.contact.facets import (
     heights,
     penalty_hessian,
     strips,
-    triangular,
     within_line,
 )
 from riser_soil.contact.pairing import Cover, FacetSearch, bounds, facet_below
@@ -27,6 +26,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
 from riser_soil.seabed.law import NormalLaw, SeabedResponse
+from riser_soil.soil.surface import vector_areas
 
 if TYPE_CHECKING:
     from riser_soil.soil.condensed import SoilSurface
@@ -155,7 +155,7 @@ class DeformedSurface:
         """Largest area of some facets of a deformed surface (np, 3), seen square to them at first, over that at first;
         1 of none.
         """
-        now, before = (_area(points[self.facets[facets]]) for points in (deformed, self.at_first))
+        now, before = (vector_areas(points[self.facets[facets]]) for points in (deformed, self.at_first))
         return float(np.max(np.sum(now * before, axis=1) / np.sum(before * before, axis=1), initial=1.0))
 
     def height(self, xy: Array, points: Array) -> Array:
@@ -185,13 +185,6 @@ class DeformedSurface:
         """Local dof numbers (n, 3·nv) of facets, node by node."""
         dofs = self._surface.offset + 3 * self.facets[facet][:, :, None] + np.arange(3)
         return dofs.reshape(len(facet), 3 * self.facets.shape[1])
-
-
-def _area(at: Array) -> Array:
-    """Vector area (n, 3) [m2] between the corners of facets (n, nv, 3): along their normal, upwards."""
-    corners = at[:, : 3 if triangular(at.shape[1]) else 4]
-    corners = corners - corners[:, :1]
-    return np.asarray(0.5 * np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -87,6 +87,10 @@ class UpdatedLagrangian(Protocol):
         """Take the geometry of a state of the step, where it is one that the thing can have; collective."""
         ...
 
+    def lag(self, state: State) -> float:
+        """How far the geometry is off that of a state, on this rank, as a share."""
+        ...
+
 
 @runtime_checkable
 class Yielding(Protocol):

@@ -9,6 +9,15 @@ from riser_soil.core.part import State, local
 from riser_soil.core.saved_state import Saved
 
 
+def vector_areas(at: Array) -> Array:
+    """Vector area (n, 3) [m2] between the corners of facets (n, nv, 3), of 4 or 3 and then others: along their normal,
+    upwards.
+    """
+    corners = at[:, : 3 if at.shape[1] in (3, 6) else 4]
+    corners = corners - corners[:, :1]
+    return np.asarray(0.5 * np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1))
+
+
 class SoilTop:
     """Field "surface": views, on rank 0, of the soil's dofs at the top; it owns none.
 
@@ -16,7 +25,7 @@ class SoilTop:
     of 3 and then the midpoints of the sides 12, 23, 31. global_index, sign, prescribed (3 np,): of its dofs, x, y, z of
     each point; see `core.part.Field`. volume (nf,): number of the named volume below each facet. committed (np, 3) [m]:
     displacement since the geostatic start at the last accepted step; placed (np, 3) [m]: the one where areas are taken,
-    none at small strain, see `Soil.place`. moves: whether the geometry follows that, as at large strain.
+    zero at small strain, see `place`. moves: whether the geometry follows that, as at large strain.
     """
 
     name = "surface"
@@ -36,6 +45,7 @@ class SoilTop:
         self.global_index, self.sign, self.prescribed = global_index, sign, prescribed
         self.committed: Array = np.zeros_like(points)
         self.placed: Array = np.zeros_like(points)
+        self._placed_ahead = False
         self.size = points.size
         self.offset = 0
         self.owned: BoolArray = np.zeros(self.size, dtype=bool)
@@ -43,6 +53,17 @@ class SoilTop:
     def displacement(self, state: State) -> Array:
         """Displacement of the whole top (np, 3) since the geostatic start [m]."""
         return np.asarray(self.committed + state.u[self.offset : self.offset + self.size].reshape(-1, 3))
+
+    def lag(self, state: State) -> float:
+        """Largest change of a facet's area from where it is placed to a state, as a share of it; 0 without facets."""
+        placed, there = (self.points + moved for moved in (self.placed, self.displacement(state)))
+        before, after = (np.linalg.norm(vector_areas(at[self.facets]), axis=1) for at in (placed, there))
+        return float(np.abs(after / before - 1.0).max(initial=0.0))
+
+    def place(self, state: State) -> None:
+        """Take areas at a state of the step that is solved next, and until another one begins."""
+        self.placed = self.displacement(state)
+        self._placed_ahead = bool((self.placed != self.committed).any())
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):
@@ -52,18 +73,20 @@ class SoilTop:
         return np.abs(self.committed.ravel() + state.u[local(self)])
 
     def commit(self, state: State) -> None:
-        self._settle(self.displacement(state))
+        self.committed = self.displacement(state)
+        if self.moves and not self._placed_ahead:
+            self.placed = self.committed
+        self._placed_ahead = False
+
+    def take(self, displacement: Array) -> None:
+        """Go on with another accepted displacement (np, 3) [m]."""
+        self.committed = self.placed = displacement
 
     def state(self) -> Saved:
-        return {"committed": self.committed}
+        return {"committed": self.committed, "placed": self.placed}
 
     def restore(self, saved: Saved) -> None:
-        self._settle(saved["committed"].copy())
-
-    def _settle(self, displacement: Array) -> None:
-        self.committed = displacement
-        if self.moves:
-            self.placed = displacement
+        self.committed, self.placed = saved["committed"].copy(), saved["placed"].copy()
 
     def describe(self, entry: int) -> str:
         node, direction = divmod(entry, 3)

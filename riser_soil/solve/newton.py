@@ -49,13 +49,13 @@ class Newton:
         solvers = self.lines, self._by_parts
         return sum(solver.iterations for solver in solvers if solver is not None)
 
-    def solve(self, step: Step, refined: bool = False, tolerance: float = 0.0) -> Solution:
+    def solve(self, step: Step, refined: bool = False) -> Solution:
         """Solve a step or raise NotConvergedError; refined: whether its guess is a solution on another geometry of the
-        soil; tolerance: where that is looser than the settings' one, of steps over the parts. Collective.
+        soil. Collective.
         """
         near, self.at_equilibrium = self.at_equilibrium, False
         if self.lines is None:
-            return self.by_parts.solve(step, near, refined, tolerance)
+            return self.by_parts.solve(step, near, refined)
         found = self.lines.solve(step, self.settings, near)
         if isinstance(found, Solution):
             return found

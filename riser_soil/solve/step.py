@@ -49,12 +49,15 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A converged step: the state at its end, the forces in balance by group, the residual norms [N]."""
+    """A converged step: the state at its end, the forces in balance by group, the residual norms [N];
+    iterations_before: of solutions of the step on other geometries of the soil.
+    """
 
     state: State
     forces: Forces
     norms: list[float] = field(default_factory=list)
+    iterations_before: int = 0
 
     @property
     def iterations(self) -> int:
-        return len(self.norms) - 1
+        return self.iterations_before + len(self.norms) - 1

@@ -63,11 +63,9 @@ class StepIteration:
         numbering = self.system.numbering
         self._x, self._f, self._norm = numbering.zeros(), numbering.zeros(), ResidualNorm(self.system)
 
-    def solve(
-        self, step: Step, at_equilibrium: bool, refined: bool = False, tolerance: float = 0.0
-    ) -> Solution:
-        """Solve a step or raise NotConvergedError; at_equilibrium, refined, tolerance: see `Newton`. Collective."""
-        self._begin(step, at_equilibrium, max(tolerance, self.settings.tolerance))
+    def solve(self, step: Step, at_equilibrium: bool, refined: bool = False) -> Solution:
+        """Solve a step or raise NotConvergedError; at_equilibrium, refined: see `Newton`. Collective."""
+        self._begin(step, at_equilibrium)
         if self.settings.linear_start and not refined and (self._moves or not self._continues()):
             self._start_linearly()
         if failure := self._iterate():
@@ -242,14 +240,13 @@ class StepIteration:
             self._x, self._state = self.system.numbering.to_global(self._state.u), None
         self.loop.renew()
 
-    def _begin(self, step: Step, at_equilibrium: bool, tolerance: float) -> None:
+    def _begin(self, step: Step, at_equilibrium: bool) -> None:
         self._trial, self._state, self._known = StepTrial(self.system, step), None, None
         self._x = self.system.numbering.to_global(self._trial.begun.u)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._moves
         answers = at_equilibrium or guessed  # one like round-off has an answer, too
-        settings = replace(self.settings, tolerance=tolerance)
-        self._convergence = Convergence(limits_of(settings, near, False, answers, step.scheme.step_over_trial))
+        self._convergence = Convergence(limits_of(self.settings, near, False, answers, step.scheme.step_over_trial))
         self._convergence.most = self.loop.max_iterations
 
     def residual(self, x: Array) -> Array:

@@ -2,7 +2,7 @@
 
 Strain, forces and areas of contact of a step are taken on one geometry, about which it is linear. With that of the
 step's start the forces on the line would lag by a step. So it is the one to which the motion of the last steps would
-lead if it continued, and then that of the solution, until both are one as far as the line can feel.
+lead if it continued, and then that of the solution: what is left is of second order in the step.
 """
 
 from __future__ import annotations
@@ -10,10 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State
+from riser_soil.core.part import State
 from riser_soil.core.roles import UpdatedLagrangian, with_role
 from riser_soil.core.system import System
 from riser_soil.solve.step import NotConvergedError, Solution, Step
@@ -21,8 +19,7 @@ from riser_soil.solve.step import NotConvergedError, Solution, Step
 if TYPE_CHECKING:
     from riser_soil.solve.newton import Newton
 
-LAG = 1e-4  # of the largest force of the soil on a line, by which a solution may change one through its geometry
-ROUGHLY = 1e-4  # of the forces in play, that the first solution may lack of balance
+SAME, LAG = 1e-6, 1e-2  # shares of a facet's area, by which a solution may be off its geometry: the first one, others
 MOST_SOLUTIONS = 8
 
 
@@ -44,40 +41,23 @@ class UpdatedGeometry:
             part.place(state)
 
     def solve(self, newton: Newton, step: Step) -> Solution:
-        """Solve a step, at first roughly, and again on the geometry of the last solution, until that changes no force
-        of the soil on a line by more than a share `LAG` of the largest; NotConvergedError if it doesn't settle.
+        """Solve a step on the predicted geometry, and then on that of the solution; NotConvergedError if both don't
+        come together. Forces are in balance on the geometry that the last solution is found on, and is left.
         """
+        found = newton.solve(step)
         if not self._parts:
-            return newton.solve(step)
-        rough = newton.solve(step, tolerance=ROUGHLY)
-        self._place(rough.state)
-        guess, norms = rough.state.u, rough.norms
+            return found
+        allowed = SAME
         for _ in range(MOST_SOLUTIONS):
-            found = newton.solve(replace(step, guess=guess), refined=True)
-            before, state = self._forces_on_lines(found.state), replace(found.state)  # which the parts evaluate anew
-            guess, norms = state.u, [*norms, *found.norms[1:]]
-            self._place(state)
-            if self._change(before, self._forces_on_lines(state)) <= LAG:
-                return replace(found, state=state, norms=norms)
+            if (lag := self._lag(found.state)) <= allowed:
+                return found
+            self._place(found.state)
+            again = newton.solve(replace(step, guess=found.state.u), refined=True)
+            found, allowed = replace(again, iterations_before=found.iterations), LAG
         raise NotConvergedError(
-            f"the soil's geometry changes the forces on it by more than {LAG:g} of the largest, "
-            f"{MOST_SOLUTIONS} times in a row"
+            f"the soil's surface is off the geometry that its forces are found on: a facet's area by {lag:.2g} of it"
         )
 
-    def _forces_on_lines(self, state: State) -> Array:
-        """Forces (parts, n) of each part of group E at a state on the n dofs of lines [N], moments over the lever."""
-        lines, found = slice(self._system.end_of_lines), []
-        for part in self._system.model.parts:
-            if part.active and part.traits.groups == "E":
-                forces = Forces.zeros(state.u.size)
-                part.residual(state, forces)
-                found.append(forces.end[lines] / self._system.levers[lines])
-        return np.array(found)
-
-    def _change(self, before: Array, after: Array) -> float:
-        """Largest change of a force on a line, over the largest of the parts whose forces change; collective."""
-        changed = (after != before).any(axis=1)
-        forces = (after - before).sum(axis=0), before[changed].sum(axis=0)
-        mine = [float(np.abs(f).max(initial=0.0)) for f in forces]
-        change, largest = np.max(self._system.comm.allgather(mine), axis=0)
-        return float(change / largest) if change > 0.0 else 0.0
+    def _lag(self, state: State) -> float:
+        """Of all parts, collective."""
+        return max(self._system.comm.allgather(max(part.lag(state) for part in self._parts)))

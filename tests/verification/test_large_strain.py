@@ -26,6 +26,7 @@ from tests.support.sinking_pipe import CLAY, SU, D, Sunk, sink, sinking, sinking
 
 ROUGH = {"contact": {"friction": {"axial": 0.4, "lateral": 0.4}}}
 FULLY_ROUGH = {"contact": {"friction": {"adhesion": 1.0}}}
+FEW = 7.0  # iterations of a step, which is solved on two geometries
 DEPTHS = (0.1, 0.2, 0.3, 0.4, 0.5)  # over the diameter
 
 
@@ -66,7 +67,7 @@ def test_a_pipe_sinks_to_a_fifth_of_its_diameter(scene: Mapping, lost: float) ->
         assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
     require_a_load_that_rises(found)
     assert found.renewals > 0
-    assert found.iterations.mean() < 5.0
+    assert found.iterations.mean() < FEW
     assert found.area == pytest.approx(1.0, abs=lost)
 
 
@@ -74,12 +75,12 @@ def test_a_pipe_sinks_to_a_fifth_of_its_diameter(scene: Mapping, lost: float) ->
 def test_the_line_is_in_balance_with_the_forces_that_are_shown(scene: Mapping) -> None:
     """At the end of a last step in which the surface under the pipe grows by some per cent."""
     found = sink(scene)
-    assert found.R[-1] == pytest.approx(found.V[-1], rel=1.5e-3)
+    assert found.R[-1] == pytest.approx(found.V[-1], rel=1e-6)
 
 
 def test_a_geometry_that_does_not_settle_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(updated_geometry, "LAG", -1.0)
-    with pytest.raises(SolveError, match="geometry changes the forces on it by more than -1 of the largest, 8 times"):
+    with pytest.raises(SolveError, match="the geometry that its forces are found on"):
         sink(sinking(4, 0.1, 2))
 
 
@@ -113,7 +114,7 @@ def test_a_pipe_sinks_to_half_of_its_diameter_on_two_meshes(tell: Tell) -> None:
         for w in DEPTHS:
             assert found.at(w) == pytest.approx(smooth(w), rel=0.04)
         require_a_load_that_rises(found)
-        assert found.iterations.mean() < 5.0
+        assert found.iterations.mean() < FEW
         loads.append([found.at(w) for w in DEPTHS])
     np.testing.assert_allclose(loads[0], loads[1], rtol=0.04)
 
@@ -135,7 +136,7 @@ def test_a_rough_pipe_sinks_to_half_of_its_diameter(tell: Tell, cells: int) -> N
     for w in DEPTHS:
         assert found.at(w) == pytest.approx(rough(w), rel=0.07)
     require_a_load_that_rises(found)
-    assert found.iterations.mean() < 5.0
+    assert found.iterations.mean() < FEW
 
 
 @pytest.mark.verify
@@ -149,8 +150,8 @@ def test_steps_of_a_fortieth_and_a_hundred_and_sixtieth_of_the_diameter_agree() 
 def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
     """The load of a limit state is the least power over the mechanisms: weight adds, at first, its power in that of
     weightless soil, so much as lifts soil into the heave; no more, as the mechanism may only change for less. At less
-    than D/5 clay is not yet at its limit throughout. Beside 1.5 gamma' A over D su of Merifield et al., a round number,
-    A being the segment of the pipe below the seabed.
+    than D/5 clay is not yet at its limit throughout, and weight adds 4 % more, in twice as many steps, too. Beside
+    1.5 gamma' A over D su of Merifield et al., a round number, A being the segment of the pipe below the seabed.
     """
     heavy = 2.0e4  # N/m3
     weightless, found = (sink(sinking(16, 0.5, 50, submerged_unit_weight=weight)) for weight in (0.0, heavy))
@@ -158,7 +159,7 @@ def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
         added = found.at(w) - weightless.at(w)
         before, after = np.interp((w - 0.02, w + 0.02), weightless.w, weightless.lift)
         power = (after - before) / 0.04 * heavy * D / SU
-        assert added == pytest.approx(power, rel=0.03)
+        assert added == pytest.approx(power, rel=0.05)
         assert added == pytest.approx(1.5 * heavy * area * D / SU, rel=0.1)
 
 
@@ -216,7 +217,7 @@ def test_a_pipe_pulled_out_leaves_the_soil() -> None:
     found = sink(scene | {"stages": [*scene["stages"], {"name": "pull", "kind": "static", "move": up}]}, 1)
     assert -2.0 < found.V.min() < -1.0
     assert not found.V[-5:].any()
-    assert found.iterations.max() <= 10
+    assert found.iterations.max() <= 12
 
 
 @pytest.mark.verify
