@@ -26,7 +26,7 @@ from tests.support.sinking_pipe import CLAY, SU, D, Sunk, sink, sinking, sinking
 
 ROUGH = {"contact": {"friction": {"axial": 0.4, "lateral": 0.4}}}
 FULLY_ROUGH = {"contact": {"friction": {"adhesion": 1.0}}}
-FEW = 7.0  # iterations of a step, which is solved on two geometries
+FEW = 6.0  # iterations of a step, some of which are solved on two geometries
 DEPTHS = (0.1, 0.2, 0.3, 0.4, 0.5)  # over the diameter
 
 
