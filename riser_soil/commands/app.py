@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from riser_soil import __version__
-from riser_soil.commands.cases import cases, study
+from riser_soil.commands.cases import cases, compile_, study
 from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.imports import export, import_, new
 from riser_soil.commands.logging import logged
@@ -21,7 +21,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-OF_SCENES = (new, run, check, import_, export, cases, study, modes, material, calibrate, schema)
+OF_SCENES = (new, run, check, import_, export, cases, study, compile_, modes, material, calibrate, schema)
 OF_RUNS = (statistics, histories, stiffness, fatigue, film, plot, report)
 for command in (*OF_SCENES, *OF_RUNS):
     app.command(command.__name__.rstrip("_"))(command if command in PRINTING else logged(command))

@@ -1,4 +1,4 @@
-"""Commands about many runs of one scene: riser-soil cases | study."""
+"""Commands about many runs: riser-soil cases | study | compile."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from riser_soil.commands.exit_status import expected_errors, rank
-from riser_soil.commands.scenes import Overrides, SceneFile, placed, positive, read_solved
+from riser_soil.commands.scenes import Overrides, SceneFile, placed, positive, read_solved, read_start
 from riser_soil.errors import ResultsError, SolveError
 
 _NAMED = 5
@@ -57,6 +57,37 @@ def cases(
             names = ", ".join(outcome.name for outcome in failed[:_NAMED])
             more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
             raise SolveError(f"failed: {names}{more}; reasons are in {folder / 'cases.csv'}")
+
+
+def compile_(
+    scenes: Annotated[
+        list[str] | None, typer.Argument(metavar="SCENE...", help="scene files; by default the drafts of `new`")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", help="scenes at a time; by default one for each core")] = None,
+) -> None:
+    """Compile what scenes are computed with, by a few steps of each, so that their first runs start at once."""
+    with expected_errors():
+        if rank() > 0:
+            return
+        if jobs is not None and jobs < 1:
+            raise ResultsError(f"--jobs {jobs}: must be 1 or more")
+        from rich.console import Console
+        from rich.progress import Progress
+
+        from riser_soil.drafts.every_kind import drafted
+        from riser_soil.variants.pool import cores
+        from riser_soil.variants.short_runs import compile_kernels
+
+        asked = {file: read_start(file, None) for file in scenes or ()} or drafted()
+        failed = []
+        with Progress(console=Console(stderr=True, force_jupyter=False), transient=True) as progress:
+            bar = progress.add_task("compiling kernels", total=len(asked))
+            for outcome in compile_kernels(asked, jobs or cores()):
+                progress.advance(bar)
+                failed += [] if outcome.done else [f"{outcome.name}: {outcome.reason}"]
+        if failed:
+            raise SolveError("\n".join(failed))
+        typer.echo(f"compiled what {len(asked)} scene{'s are' if len(asked) > 1 else ' is'} computed with")
 
 
 def study(

@@ -82,26 +82,27 @@ def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) 
     A gap that is no higher than the deepest penetration does not end a stretch: just behind the touchdown point a stiff
     bed lifts the riser off a little.
     """
-    runs, ends = _runs(clearance, force), np.empty((0, 2))
-    if len(runs) > 0:
-        ends = _ends_of(runs, arc, share, clearance, force)
-    return [ContactInterval(*between, *run) for run, between in zip(as_list(runs), as_list(ends), strict=True)]
+    rising = force.argsort()
+    return [
+        ContactInterval(*_ends_of(first, last, arc, share, clearance, force, rising), first, last)
+        for first, last in as_list(_runs(clearance, force))
+    ]
 
 
-@njit
-def _ends_of(runs: IntArray, arc: Array, share: Array, clearance: Array, force: Array) -> Array:
-    """Where what touches begins and ends (k, 2) [m]."""
-    n, whole, ends = arc.size, share.sum(), np.empty(runs.shape)
-    for k in range(len(runs)):
-        first, last = runs[k]
-        f, ends[k, 0], ends[k, 1] = np.zeros(n), 0.0, whole
-        f[first : last + 1] = force[first : last + 1]
-        if first > 0:
-            behind, gap, pressing = share[::-1].copy(), clearance[::-1].copy(), f[::-1].copy()
-            ends[k, 0] = whole - _leaving(whole - arc[::-1], behind, gap, pressing, n - 1 - first)
-        if last < n - 1:
-            ends[k, 1] = _leaving(arc, share, clearance, f, last)
-    return ends
+def _ends_of(
+    first: int, last: int, arc: Array, share: Array, clearance: Array, force: Array, rising: IntArray
+) -> tuple[float, float]:
+    """Where what touches begins and ends [m], from its first to its last point; rising (n,): all points by force.
+    """
+    n, whole = arc.size, float(share.sum())
+    f, start, end = np.zeros(n), 0.0, whole
+    f[first : last + 1] = force[first : last + 1]
+    if first > 0:
+        behind = tuple(np.ascontiguousarray(each[::-1]) for each in (whole - arc, share, clearance, f))
+        start = whole - _leaving(*behind, n - 1 - rising, n - 1 - first)
+    if last < n - 1:
+        end = _leaving(arc, share, clearance, f, rising, last)
+    return start, end
 
 
 @njit
@@ -130,13 +131,15 @@ def _runs(clearance: Array, force: Array) -> IntArray:
 
 
 @njit
-def _leaving(arc: Array, share: Array, clearance: Array, force: Array, last: int) -> float:
-    """Arc length [m] at which the stretch whose last point is given ends."""
+def _leaving(arc: Array, share: Array, clearance: Array, force: Array, rising: IntArray, last: int) -> float:
+    """Arc length [m] at which the stretch whose last point is given ends; rising: its points, among others, by their
+    forces.
+    """
     end = _edge(arc, clearance, last)
     near, weight, middle = _layer(arc, share, force)
     if math.isnan(middle):
         return end
-    d = _equivalent(arc, share, near, force, _resting(weight, force))
+    d = _equivalent(arc, share, near, force, _resting(weight, force, rising))
     return min(max(d, middle), end)
 
 
@@ -183,13 +186,15 @@ def _rise(x: float) -> float:
 
 
 @njit
-def _resting(weight: Array, force: Array) -> float:
-    """Mean of the middle half of forces, by weight: stations loaded by a clump or bridging a dip do not count."""
+def _resting(weight: Array, force: Array, rising: IntArray) -> float:
+    """Mean of the middle half of forces, by weight: stations loaded by a clump or bridging a dip do not count. rising:
+    the stations by their forces.
+    """
     total = 0.0
     for own in weight:
         total += own
-    upto, reached, mean, counting = 0.0, 0.25 * total, 0.0, np.flatnonzero(weight)
-    for i in counting[force[counting].argsort()]:
+    upto, reached, mean = 0.0, 0.25 * total, 0.0
+    for i in rising:
         before, upto = reached, upto + weight[i]
         reached = min(max(upto, 0.25 * total), 0.75 * total)
         mean += (reached - before) * force[i]

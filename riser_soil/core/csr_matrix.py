@@ -99,7 +99,8 @@ def number_entries(
     found[:] = -1
     for r in range(n):
         count = _columns_of_row(r, begin, places, cols, found, column, rows.shape[1])
-        own = np.sort(column[:count])
+        own = column[:count].copy()
+        _sort(own)
         for k in range(count):
             keys[begun[r] + k], column[own[k]] = r * n + own[k], begun[r] + k
         for k in range(begin[r], begin[r + 1]):
@@ -109,6 +110,17 @@ def number_entries(
                     at = column[cols[b, j]]
                     numbers[b, i, j] = -1 - at if minus[0][b, i] != minus[1][b, j] else at
     return keys
+
+
+@njit
+def _sort(few: IntArray) -> None:
+    """Sort by insertion, in place: numba takes seconds to compile its own sorting."""
+    for i in range(1, few.size):
+        k, value = i, few[i]
+        while k > 0 and few[k - 1] > value:
+            few[k] = few[k - 1]
+            k -= 1
+        few[k] = value
 
 
 @njit

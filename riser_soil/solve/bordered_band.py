@@ -11,11 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core import banded, bordered, dense
+from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.banded import SingularError
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.dense import PIVOT
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.system import System
 
@@ -32,7 +31,7 @@ class BorderedBand:
     def __init__(self, matrix: Matrix, band: int, border: int = 0) -> None:
         self._matrix, self._factored, wide = matrix, -1, _half_bandwidth(matrix, band)
         self._band, self._wide = np.zeros((band + wide, 3 * wide + 1)), _width(wide)
-        self._pivots, self._exchanged = np.zeros(band, dtype=np.int64), np.zeros(border, PIVOT)
+        self._pivots, self._exchanged = np.zeros(band, dtype=np.int64), np.zeros(0)
         self._right, self._below, self._schur = (np.zeros((rows, border)) for rows in (band, band, border))
         self._coupled: IntArray = np.zeros(0, dtype=np.int64)
 
@@ -45,8 +44,11 @@ class BorderedBand:
         self._coupled = np.flatnonzero(_spread(*self._matrix.stored.csr(), *parts))
         if not banded.factorise(*factors):
             raise SingularError
-        if self._exchanged.size:
+        if self._schur.size:
+            from riser_soil.core import bordered, dense  # with SciPy, which a riser alone does without
+
             bordered.condense(*factors, self._coupled, self._right, self._below, self._schur)
+            self._exchanged = np.zeros(len(self._schur), dense.PIVOT)
             if not dense.factorise(self._schur, self._exchanged):
                 raise SingularError
         self._factored = self._matrix.changes
@@ -57,6 +59,8 @@ class BorderedBand:
         x, factors = load.copy(), (self._band, self._pivots, self._wide)
         inner, border = x[: len(self._pivots)], x[len(self._pivots) :]
         if border.size:
+            from riser_soil.core import bordered, dense
+
             bordered.forward_eliminate(*factors, self._coupled, self._below, inner, border)
             dense.solve(self._schur, self._exchanged, border)
             bordered.back_substitute(self._coupled, self._right, border, inner)

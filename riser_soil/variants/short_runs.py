@@ -1,0 +1,41 @@
+"""Short runs of scenes, which leave their kernels compiled: those of several scenes at a time, in processes."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.variants.one_run import task
+from riser_soil.variants.pool import Workers, outcomes
+from riser_soil.variants.runs_folder import Outcome, prepare_attempts
+from riser_soil.variants.variant import variant_of
+
+STEPS, AUTO_STEP = 2, 0.1  # of each time stage; s, where steps choose their size
+
+
+def compile_kernels(scenes: Mapping[str, Scene], jobs: int) -> Iterator[Outcome]:
+    """Run scenes, by names, for a few steps, so many at a time, in a folder that is removed; outcomes, by names too."""
+    names = {f"{n}": name for n, name in enumerate(scenes)}
+    with tempfile.TemporaryDirectory(prefix="riser_soil-") as folder:
+        runs = Path(folder) / "runs"
+        tasks = [task(n, variant_of(shortened(scenes[name])), runs) for n, name in names.items()]
+        with closing(outcomes(tasks, Workers(jobs), lambda: prepare_attempts(runs))) as found:
+            for outcome in found:
+                yield replace(outcome, name=names[outcome.name])
+
+
+def shortened(scene: Scene) -> Scene:
+    """The scene with time stages of a few steps, without a search for an accuracy."""
+    return scene.model_copy(update={"stages": tuple(map(_short, scene.stages)), "accuracy": None})
+
+
+def _short(stage: Stage) -> Stage:
+    if not isinstance(stage, DynamicStage):
+        return stage
+    step = AUTO_STEP if stage.time_step == "auto" else stage.time_step
+    return stage.model_copy(update={"duration": min(stage.duration, STEPS * step)})
