@@ -78,6 +78,12 @@ def test_the_line_is_in_balance_with_the_forces_that_are_shown(scene: Mapping) -
     assert found.R[-1] == pytest.approx(found.V[-1], rel=1e-6)
 
 
+def test_loads_lag_behind_no_step() -> None:
+    """On the geometry of each step's start the load of the coarser steps would be that of a step before, 2 % less."""
+    coarse, fine = (sink(sinking(8, 0.25, steps)) for steps in (40, 100))
+    assert coarse.R[-1] == pytest.approx(fine.R[-1], rel=4e-3)
+
+
 def test_a_geometry_that_does_not_settle_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(updated_geometry, "LAG", -1.0)
     with pytest.raises(SolveError, match="the geometry that its forces are found on"):
