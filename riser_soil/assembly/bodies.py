@@ -15,12 +15,12 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe, alike, diameters, pipe_at
-from riser_soil.sea.vortex_law import Shedding
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Dry
     from riser_soil.sea.reynolds_drag import ReynoldsTables
+    from riser_soil.sea.vortex_law import Shedding
 
 
 @dataclass(frozen=True)
@@ -111,6 +111,8 @@ class PipeInWater(Body):
         return {in_line: self._shedding(values) for in_line, values in given.items() if values[:, 0].any()}
 
     def _shedding(self, given: Array) -> Shedding:
+        from riser_soil.sea.vortex_law import Shedding
+
         (coefficient, middle, width), diameter = given.T.copy(), self.elements.outer_diameter
         return Shedding(0.5 * self.rho * diameter * coefficient, diameter, middle, width)
 

@@ -13,7 +13,6 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State
 from riser_soil.errors import SceneError
 from riser_soil.riser import sections, shapes
-from riser_soil.riser.additions import Growth, Taper, with_growth, with_taper
 from riser_soil.riser.attachments import Attachments, PointAttachment
 from riser_soil.riser.catenary import Catenary
 from riser_soil.riser.line import UP, Line
@@ -47,6 +46,8 @@ def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections
 
     SceneError where shape and growth do not settle.
     """
+    from riser_soil.riser.additions import Growth, with_growth
+
     growth, attachments, grown = Growth(*given.T), attachments_of(scene), bare
     unstressed = unstressed_shape(scene.line, bare.arc)
     before: Array = np.full(bare.arc.size, np.inf)
@@ -74,6 +75,8 @@ def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surro
     """With the bend stiffeners of the ends that have one."""
     for end, is_last in ((riser.start, False), (riser.end, True)):
         if isinstance(end, Support) and end.bend_stiffener is not None:
+            from riser_soil.riser.additions import Taper, with_taper
+
             elements = with_taper(elements, Taper(**end.bend_stiffener.model_dump()), is_last, around)
     return elements
 

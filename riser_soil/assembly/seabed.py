@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.contact.soil_contact import SoilContact
 from riser_soil.core.arrays import Array
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
@@ -18,6 +19,9 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import Seabed
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.law import NormalLaw
+
+if TYPE_CHECKING:
+    from riser_soil.contact.soil_contact import SoilContact
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
 

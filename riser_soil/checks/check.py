@@ -17,7 +17,6 @@ from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, s
 from riser_soil.checks.inventory import Inventory, inventory, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
-from riser_soil.checks.wave_plausibility import reported_regular
 from riser_soil.core.communicator import Communicator
 from riser_soil.scene.scene import Scene
 
@@ -80,6 +79,8 @@ def _counted(number: int, name: str) -> str:
 def reported_waves(assembly: Assembly) -> Iterator[str]:
     """What theory a regular wave follows, where the scene has one of finite height."""
     if assembly.sea is not None and assembly.sea.waves is not None:
+        from riser_soil.checks.wave_plausibility import reported_regular
+
         yield from reported_regular(assembly.sea.waves)
 
 

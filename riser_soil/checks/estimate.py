@@ -21,7 +21,6 @@ from riser_soil.scene.lines import by_line, on_soil
 from riser_soil.scene.plane import initial_ends, resolved_dimension
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import MeshFile, SoilScene
-from riser_soil.scene.soil_law import initial_stress
 from riser_soil.scene.stages import QuasiStaticStage, Stage, StaticStage
 from riser_soil.soil.grading import BlockSpec
 
@@ -141,6 +140,8 @@ def _symmetric(scene: Scene, soil: SoilScene) -> bool:
     """Whether all tangents are symmetric, so that one triangle of the soil's factor is enough: inertia, damping,
     friction, drag and flowing contents have others.
     """
+    from riser_soil.scene.soil_law import initial_stress
+
     middle = np.array([0.5 * soil.given_block.depth if soil.given_block else 1.0])
     lawful = all(law.at_points(middle, initial_stress(soil, middle)).symmetric for law in soil.laws)
     rubs = scene.contact is not None and scene.contact.friction is not None

@@ -13,7 +13,6 @@ from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
 from riser_soil.checks.mesh_plausibility import mesh_warnings, reported_size
 from riser_soil.checks.motion_plausibility import farthest_move, top_speed
-from riser_soil.checks.soil_edge import edge_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.riser import Support
@@ -44,6 +43,7 @@ def ground_warnings(riser: LineAssembly) -> Iterator[str]:
     yield from _beyond_the_grid(riser)
     yield from _ends_below(riser.scene)
     if riser.soil is not None:
+        from riser_soil.checks.soil_edge import edge_warnings
         from riser_soil.checks.soil_mesh import quality_warnings
 
         yield from quality_warnings(riser)

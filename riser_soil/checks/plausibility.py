@@ -11,9 +11,7 @@ import numpy as np
 from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.assembly.packages import needs_petsc
 from riser_soil.checks.bending_plausibility import bending_warnings
-from riser_soil.checks.code_plausibility import code_check_warnings
 from riser_soil.checks.motion_plausibility import motion_warnings, refuse_unreachable
-from riser_soil.checks.wave_plausibility import wave_warnings
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.line_checks import path_of_line
 from riser_soil.scene.problem import dotted
@@ -74,10 +72,14 @@ def _of_one(riser: LineAssembly) -> Iterator[str]:
 
         yield from ground_warnings(riser)
     if riser.scene.code_check:
+        from riser_soil.checks.code_plausibility import code_check_warnings
+
         yield from code_check_warnings(riser.scene)
     yield from _beyond_the_rao(riser)
     yield from _loads_that_end(riser.scene)
     if riser.scene.water is not None and riser.scene.water.waves is not None:
+        from riser_soil.checks.wave_plausibility import wave_warnings
+
         yield from wave_warnings(riser.scene)
     if _moves(riser.scene):
         yield from motion_warnings(riser)
