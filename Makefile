@@ -2,7 +2,6 @@
 
 PYTHON := .venv/bin/python
 WORKERS ?= 3
-COMPILED := demos/first_scene.yaml demos/steel_catenary.yaml demos/waves/scene.yaml demos/lines/lazy_s.yaml demos/touchdown_clay/scene.yaml
 DECKS ?= build/decks
 SUITES ?= bookworm trixie
 DOCKER ?= docker
@@ -31,7 +30,7 @@ environment: # Debian packages, the environment .venv, riser_soil in it; does no
 	@scripts/setup.sh
 
 setup: environment ## Debian packages, the environment .venv, riser_soil in it, and kernels compiled, so that first runs start at once
-	$(PYTHON) -m riser_soil compile $(COMPILED)
+	@scripts/compile.sh
 
 demo: environment ## a flexible riser comes down on a block of soft clay in 3D: results and a picture in demos/touchdown_clay/results
 	$(PYTHON) -m demos.touchdown_clay.run

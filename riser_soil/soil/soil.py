@@ -83,7 +83,7 @@ class Soil:
         self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
         self._mesh_at = self.cells.made_at.copy() if moves else np.empty(0)  # (nc, nn, 3): nodes of cells when made
         self._stored = self._lifted = 0.0
-        self._grid_is_ahead = False  # whether the cells lie elsewhere than accepted, see `place`
+        self._cells_ahead = False  # whether the cells lie elsewhere than accepted, see `place`
 
     def _material(self) -> tuple[Array, Array, Formula]:
         """Initial stress, unit weight and law at the points, of the depths that their material had at first."""
@@ -175,7 +175,7 @@ class Soil:
 
     def _move(self, u: Array, dt: float) -> StressUpdate:
         """Let the nodes move by u within dt [s]; the law's answer to that."""
-        self._grid_is_ahead = False
+        self._cells_ahead = False
         found = moved_on(self.cells, self.points, u, self.law, self._found.history, dt)
         self.cells.renew(self.points + u.reshape(-1, 3))
         self._load = self._held + self._weight()
@@ -187,13 +187,12 @@ class Soil:
         """
         if self.inadmissible(state):
             state = State.at_rest(state.t, state.u.size)
+        self.surface.place(state)  # on the first rank, which may have no cells that move
         u = self.field.own(state.u)
-        if not self._grid_is_ahead and not u.any():
-            return
-        self._grid_is_ahead = bool(u.any())
-        self.cells.renew(self.points + u.reshape(-1, 3))
-        self.surface.place(state)
-        self._load, self._last = self._held + self._weight(), None
+        if self._cells_ahead or u.any():
+            self._cells_ahead = bool(u.any())
+            self.cells.renew(self.points + u.reshape(-1, 3))
+            self._load, self._last = self._held + self._weight(), None
 
     def lag(self, state: State) -> float:
         """Largest change of a facet's area from where the surface is placed to a state, as a share of it."""

@@ -45,7 +45,7 @@ class SoilTop:
         self.global_index, self.sign, self.prescribed = global_index, sign, prescribed
         self.committed: Array = np.zeros_like(points)
         self.placed: Array = np.zeros_like(points)
-        self._placed_ahead = False
+        self._placed_for_step = False
         self.size = points.size
         self.offset = 0
         self.owned: BoolArray = np.zeros(self.size, dtype=bool)
@@ -61,9 +61,8 @@ class SoilTop:
         return float(np.abs(after / before - 1.0).max(initial=0.0))
 
     def place(self, state: State) -> None:
-        """Take areas at a state of the step that is solved next, and until another one begins."""
-        self.placed = self.displacement(state)
-        self._placed_ahead = bool((self.placed != self.committed).any())
+        """Take areas at a state of the step that is solved next: there they stay until another one begins."""
+        self.placed, self._placed_for_step = self.displacement(state), True
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):
@@ -74,9 +73,9 @@ class SoilTop:
 
     def commit(self, state: State) -> None:
         self.committed = self.displacement(state)
-        if self.moves and not self._placed_ahead:
+        if self.moves and not self._placed_for_step:
             self.placed = self.committed
-        self._placed_ahead = False
+        self._placed_for_step = False
 
     def take(self, displacement: Array) -> None:
         """Go on with another accepted displacement (np, 3) [m]."""

@@ -175,10 +175,11 @@ class TimeStepper:
     def next_step(self, control: Control) -> Step:
         """The step to be solved next, its increments predicted."""
         t, dt = control.target, control.dt
-        self._geometry.place(self.before, self._past.increments(dt))
+        continued = self._past.increments(dt)
+        self._geometry.place(self.before, continued)
         start = self._start(dt)
         history = self._history if start is self.before else self.system.forces(start)
-        return Step(self.scheme, start, t, dt, history, self._predict(t, dt))
+        return Step(self.scheme, start, t, dt, history, self._predict(t, continued))
 
     def _new_error(self) -> LocalError:
         assert self._mass is not None
@@ -195,9 +196,8 @@ class TimeStepper:
             self.newton.require_stable(solution)
         return solution
 
-    def _predict(self, t: float, dt: float) -> Array:
-        """The motion of the last steps continued, as lines and contacts predict it better."""
-        guess = self._past.increments(dt)
+    def _predict(self, t: float, guess: Array) -> Array:
+        """Increments of the motion of the last steps continued, as lines and contacts predict it better."""
         for owner in self._predictors:
             guess = owner.predict(State(t, guess, self.before.v, self.before.a))
         return guess if self._first_guess is None else guess + self._first_guess

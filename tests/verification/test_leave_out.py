@@ -28,7 +28,13 @@ FOR_PICTURES = {"pyvista", "vtk", "vtkmodules", "matplotlib"}
 SLOW_TO_IMPORT = {"pandas", "xarray", "typer"} | {
     f"scipy.{name}" for name in ("fft", "integrate", "interpolate", "optimize", "signal", "spatial", "special", "stats")
 }
-OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.soil.dolfinx_compat"}
+OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.soil.surface", "riser_soil.soil.dolfinx_compat"} | {
+    f"riser_soil.{name}" for name in ("contact.soil_contact", "contact.ground", "contact.facets", "checks.soil_edge")
+}
+OWN_FOR_OTHERS = {  # for waves, vortices, code checks, marine growth and bend stiffeners
+    *(f"riser_soil.{name}" for name in ("sea.components", "sea.vortex_law", "riser.additions")),
+    *(f"riser_soil.checks.{name}" for name in ("wave_plausibility", "code_plausibility")),
+}
 FOR_HEAVE = {False: set[str](), True: {"riser_soil.motion.prescribed"}}
 NODES = 37
 FORMULAS = {"riser", "sea", "seabed", "contact", "soil", "motion"}
@@ -74,7 +80,7 @@ def imported(name: str, folder: Path) -> set[str]:
 @pytest.mark.parametrize("name", ["hanging, static", "hanging, dynamic", "over springs"])
 def test_without_soil_its_libraries_are_not_imported(name: str, tmp_path: Path) -> None:
     found = imported(name, tmp_path)
-    assert not found & (FOR_SOIL | FOR_PICTURES | OWN_FOR_SOIL)
+    assert not found & (FOR_SOIL | FOR_PICTURES | OWN_FOR_SOIL | OWN_FOR_OTHERS)
     assert ("riser_soil.contact.seabed_contact" in found) == (name == "over springs")
     assert ("riser_soil.sea.morison" in found) == (name != "hanging, static")
     assert ("riser_soil.riser.inertia" in found) == (name != "hanging, static")

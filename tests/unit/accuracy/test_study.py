@@ -28,19 +28,11 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.variants import one_run
 from riser_soil.variants.key_results import KeyResult
+from tests.support.case_files import SMALL
 from tests.support.on_ranks import HANGS, environment
 from tests.support.said import line_with, telling
 from tests.support.scenes import LAY, heave, touchdown
 
-SMALL = """
-title: A small riser
-line_types: {pipe: {EA: 1.0e6, EI: 200.0, mass: 20.0, submerged_weight: 150.0, outer_diameter: 0.1}}
-riser:
-  segments: [{line_type: pipe, length: 12.0, elements: 8}]
-  start: {position: [0.0, 0.0, 0.0]}
-  end: {position: [9.0, 0.0, 4.0]}
-stages: [{name: hang, kind: static}]
-"""
 FAILED = "no convergence at 0.3 s"
 Answer = Callable[[float, float], float]
 

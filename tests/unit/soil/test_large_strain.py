@@ -139,6 +139,26 @@ def test_forces_are_those_on_the_geometry_of_the_state_that_it_is_placed_at(kind
     np.testing.assert_allclose(nodal_forces(soil, u), there, rtol=1e-9, atol=1e-9 * np.abs(there).max())
 
 
+def test_areas_stay_where_a_step_was_solved_until_the_next() -> None:
+    """On the rank that has the surface, whose own cells may not move; what is solved without a step takes new ones."""
+    soil = moving("hex")
+    surface = soil.surface
+    surface.offset = soil.field.size
+    u = np.zeros(soil.field.size + surface.size)
+    u[surface.offset :] = 0.01
+    moved = State(1.0, u, u, u)
+    soil.place(moved)
+    assert (surface.placed == 0.01).all()
+    surface.commit(moved)
+    assert (surface.placed == surface.committed).all()
+    soil.place(State.at_rest(1.0, u.size))
+    surface.commit(moved)
+    assert (surface.placed == 0.01).all()
+    assert (surface.committed == 0.02).all()
+    surface.commit(moved)
+    assert (surface.placed == surface.committed).all()
+
+
 def test_it_is_not_placed_where_a_cell_would_fold() -> None:
     soil, rng = moving("hex", LAWS[0].at_points), np.random.default_rng(5)
     u = 1e-4 * rng.normal(size=soil.points.shape)
