@@ -52,7 +52,9 @@ def compute(
 
 
 def outcomes(tasks: Sequence[Task], workers: Workers, begin: Callable[[], None]) -> Generator[Outcome]:
-    """Outcomes of tasks, as they end. Runs are stopped when the caller closes the generator."""
+    """Outcomes of tasks, as they end. Runs are stopped when the caller closes the generator, and none begins or goes on
+    on this machine once one has found the disk full.
+    """
     if workers.scheduler is not None:
         from riser_soil.variants.dask_workers import outcomes_by_dask
 
@@ -60,11 +62,18 @@ def outcomes(tasks: Sequence[Task], workers: Workers, begin: Callable[[], None])
         return
     begin()
     stopped = threading.Event()
+
+    def run(task: Task) -> Outcome:
+        outcome = Outcome.of(run_variant(task, lambda: not stopped.is_set()))
+        if outcome.status == WriteError.exit_status:  # before this thread begins another
+            stopped.set()
+        return outcome
+
     with ThreadPoolExecutor(workers.jobs) as pool:
-        futures = [pool.submit(run_variant, task, lambda: not stopped.is_set()) for task in tasks]
+        futures = [pool.submit(run, task) for task in tasks]
         try:
             for future in as_completed(futures):
-                yield Outcome.of(future.result())
+                yield future.result()
         finally:
             stopped.set()
             pool.shutdown(cancel_futures=True)
