@@ -78,12 +78,14 @@ def test_states_are_those_of_direct_solutions(law: str) -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_newton_takes_no_more_iterations(law: str) -> None:
-    """But for two of some sixty: where clay begins to yield, round-off changes a residual by a tenth after the first
-    iteration, with either solver, and so tells on which side of the tolerance the second one ends. By OpenBLAS' kernels
-    for Haswell two steps end on the other side.
+    """Some steps end just below Newton's tolerance: where clay begins to yield, round-off changes a residual by a tenth
+    after the first iteration, with either solver. By OpenBLAS' kernels of some processors three of cyclic clay's 18
+    steps end on the other side, 67 iterations to 64. A linear tolerance ten times as loose takes 76 to 64, and two more
+    in a step; in perfectly plastic clay 69 to 63.
     """
     kept, direct = taken(law, "kept"), taken(law, "direct")
-    assert sum(kept.iterations) <= sum(direct.iterations) + 2
+    more = [mine - own for mine, own in zip(kept.iterations, direct.iterations, strict=True)]
+    assert max(more) <= 1 and sum(more) <= 0.07 * sum(direct.iterations)
 
 
 @pytest.mark.parametrize("law", LAWS)
