@@ -453,7 +453,8 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
     """
     soil = assembly.soil
     absent = [] if soil is None else [*soil.parts, *soil.pressed_by]
-    alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
+    present = [part for part in model.parts if not any(part is each for each in absent)]
+    alone = replace(model, parts=present, others=())
     system = System(assembly.comm, alone, clock)
     newton = Newton(system, replace(settings, line_search=False))
     with destroyed_together(assembly.comm, newton.destroy, system.destroy):

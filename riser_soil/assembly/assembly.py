@@ -19,6 +19,7 @@ from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field, LineField, Model, Part, State
 from riser_soil.core.saved_state import Saved, gathered, restore_all
 from riser_soil.errors import SceneError
+from riser_soil.riser.line_part import joined
 from riser_soil.scene.lines import by_line, on_soil, placing, spinning
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -202,7 +203,7 @@ class Assembly:
         parts = [*(part for each in of_lines.values() for part in each), *hung]
         on_ground = [*self.contacts, *self.frictions]
         if soil is None:
-            return Model(self.moving, [*parts, *on_ground])
+            return Model(self.moving, [*parts, *on_ground], joined=joined)
         in_motion = soil.in_motion if isinstance(stage, DynamicStage) else []
         soil.whole.hold(by_boundary=not any(part.name == "soil boundary" for part in in_motion))
         cushion = []
@@ -210,11 +211,11 @@ class Assembly:
             soil.cushion.stays, cushion = not self.soil_bears, [soil.cushion]
         if not self.soil_bears:
             others = [part for part in on_ground if part not in soil.pressed_by]
-            return Model(self.moving, [*parts, *others, *cushion])
+            return Model(self.moving, [*parts, *others, *cushion], joined=joined)
         on_ground += cushion
         if soil.condensed is not None:
-            return Model(self.moving, [*parts, *on_ground, *soil.parts], soil.fields)
-        return Model(self.moving, [*parts, *soil.parts, *in_motion, *on_ground, *soil.renewal], soil.fields)
+            return Model(self.moving, [*parts, *on_ground, *soil.parts], soil.fields, joined)
+        return Model(self.moving, [*parts, *soil.parts, *in_motion, *on_ground, *soil.renewal], soil.fields, joined)
 
     @property
     def soil_bears(self) -> bool:

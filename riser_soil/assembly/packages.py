@@ -1,4 +1,4 @@
-"""Packages that a scene needs beyond those of a riser alone: asked for before anything is built, told in one line."""
+"""Packages that a scene needs beyond those of lines alone: asked for before anything is built, told in one line."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from riser_soil.core.communicator import Communicator, world
 from riser_soil.errors import SceneError
 from riser_soil.scene.scene import Scene
+from riser_soil.solve.newton_settings import MOST_JOINTS
 
 FOR_SOIL = {"dolfinx": "dolfinx", "petsc4py": "PETSc", "mpi4py": "MPI", "gmsh": "gmsh", "scipy": "scipy"}
 FOR_SNES = {"petsc4py": "PETSc", "mpi4py": "MPI"}
@@ -24,14 +25,16 @@ def communicator_of(scene: Scene) -> Communicator:
         require("soil", FOR_SOIL)
     elif scene.solver.by_snes:
         require("solver.newton: snes" if scene.solver.newton == "snes" else "solver.petsc_options", FOR_SNES)
-    elif scene.lines:
-        require("lines", FOR_SNES)
+    elif len(scene.joints) > MOST_JOINTS:
+        require("joints", FOR_SNES)
+    elif scene.joints:
+        require("joints", {"scipy": "scipy"})
     return world(with_mpi=needs_petsc(scene))
 
 
 def needs_petsc(scene: Scene) -> bool:
-    """Whether a scene is solved with PETSc and on ranks; a riser alone is not, unless SNES is asked for."""
-    return scene.soil is not None or scene.solver.by_snes or bool(scene.lines)
+    """Whether a scene is solved with PETSc; lines and bodies alone are not, unless SNES is asked for."""
+    return scene.soil is not None or scene.solver.by_snes or len(scene.joints) > MOST_JOINTS
 
 
 def require(key: str, packages: dict[str, str]) -> None:

@@ -163,8 +163,11 @@ def inverse_at(ab: Array, pivots: IntArray, at: IntArray, B: Size) -> Array:
 
 
 @njit
-def count_negative_pivots(ab: Array, n: int, B: Size) -> int:
-    """Negative pivots of a symmetric matrix without row exchanges: its negative eigenvalues. The matrix is lost."""
+def count_negative_pivots(ab: Array, n: int, B: Size, right: Array, corner: Array) -> int:
+    """Negative pivots of a symmetric matrix without row exchanges: its negative eigenvalues. The matrix is lost.
+
+    right (n, nb), corner (nb, nb): of a border, whose Schur complement the corner becomes.
+    """
     b, negative = len(B), 0
     for k in range(n):
         pivot = ab[k, b]
@@ -176,6 +179,13 @@ def count_negative_pivots(ab: Array, n: int, B: Size) -> int:
             if factor != 0.0:
                 for j in range(i, b + 1):
                     ab[k + i, b + j - i] -= factor * ab[k, b + j]
+                for c in range(right.shape[1]):
+                    right[k + i, c] -= factor * right[k, c]
+        for c in range(right.shape[1]):
+            factor = right[k, c] / pivot
+            if factor != 0.0:
+                for d in range(right.shape[1]):
+                    corner[c, d] -= factor * right[k, d]
     return negative
 
 

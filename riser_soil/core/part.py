@@ -11,7 +11,7 @@ A residual has no memory: it depends on the trial state alone. History changes o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -159,20 +159,10 @@ class Traits:
             raise ValueError(f'groups of a part are letters of "{GROUPS}", not "{self.groups}"')
 
 
-class Part(Protocol):
-    """A contribution to the system: riser, inertia, Morison loads, soil, contact, …"""
+class Contribution(Protocol):
+    """Residual, tangent and energy of a part, or of several that are evaluated together. name: of its time."""
 
     name: str
-    traits: Traits
-
-    @property
-    def active(self) -> bool:
-        """Whether this rank evaluates the part; where not, no other method is called."""
-        ...
-
-    def blocks(self) -> dict[str, MatrixBlock]:
-        """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
-        ...
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add this rank's share of the residual."""
@@ -184,6 +174,21 @@ class Part(Protocol):
 
     def energy(self, state: State) -> Energy:
         """This rank's share of the stored energy."""
+        ...
+
+
+class Part(Contribution, Protocol):
+    """A contribution to the system: riser, inertia, Morison loads, soil, contact, …"""
+
+    traits: Traits
+
+    @property
+    def active(self) -> bool:
+        """Whether this rank evaluates the part; where not, no other method is called."""
+        ...
+
+    def blocks(self) -> dict[str, MatrixBlock]:
+        """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
         ...
 
     def work(self, before: State, after: State) -> Work:
@@ -290,11 +295,14 @@ class LineField(Field, Protocol):
 class Model:
     """The model of a stage: the lines and bodies, the parts that act on them, and the other owners of dofs, such as the
     soil.
+
+    joined: those of some parts that are evaluated together made one contribution, as of each line (`line_part.joined`).
     """
 
     lines: Sequence[LineField]
     parts: Sequence[Part] = ()
     others: Sequence[Field] = ()
+    joined: Callable[[Sequence[Part]], Sequence[Contribution]] = list
 
     @property
     def fields(self) -> list[Field]:

@@ -14,7 +14,19 @@ from riser_soil.core.communicator import Communicator, all_of, any_of, sum_of
 from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix, Patterns
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import Energy, Field, Forces, MatrixBlock, Model, Part, State, Weights, Work, local
+from riser_soil.core.part import (
+    Contribution,
+    Energy,
+    Field,
+    Forces,
+    MatrixBlock,
+    Model,
+    Part,
+    State,
+    Weights,
+    Work,
+    local,
+)
 from riser_soil.core.roles import Adaptive, require_roles, with_role
 from riser_soil.core.saved_state import Saved
 
@@ -63,6 +75,7 @@ class System:
         self._patterns = {} if patterns is None and with_role(model.parts, Adaptive) else patterns
         require_roles(model)
         self._active = [part for part in model.parts if part.active]
+        self._joined: dict[tuple[int, ...], tuple[Sequence[Part], Sequence[Contribution]]] = {}
         self._number()
         self.lever, self.levers = self._weigh_moments()
         self.symmetric = all_of(comm, all(p.traits.symmetric for p in model.parts))
@@ -90,11 +103,6 @@ class System:
             blocks.update(part.blocks())
         self._couplings = [key for key, block in blocks.items() if _couples(block, self.end_of_lines)]
         return Matrix(self.numbering, blocks, self.symmetric, self._patterns)
-
-    @property
-    def is_chain(self) -> bool:
-        """Whether it is one line's on one rank, whose matrix is a band."""
-        return self.comm.size == 1 and len(self.model.fields) == 1
 
     @property
     def end_of_lines(self) -> int:
@@ -140,7 +148,7 @@ class System:
     def forces(self, state: State) -> Forces:
         """This rank's residual by group (local arrays; shares of shared dofs are summed by the numbering)."""
         forces = Forces.zeros(self.numbering.size)
-        for part in self._active:
+        for part in self._together(self._active):
             since = time.perf_counter()
             part.residual(state, forces)
             self.clock.add(part.name, since)
@@ -149,14 +157,21 @@ class System:
     def assemble(self, state: State, weights: Weights, parts: Sequence[Part] | None = None) -> None:
         """Put dR/du at the state into the matrix; by default that of all parts."""
         self.matrix.clear()
-        for part in self._active if parts is None else parts:
+        chosen = self._active if parts is None else [part for part in parts if part.active]
+        for part in self._together(chosen):
             since = time.perf_counter()
-            if part.active:
-                part.tangent(state, weights, self.matrix.values)
+            part.tangent(state, weights, self.matrix.values)
             self.clock.add(part.name, since)
         since = time.perf_counter()
         self.matrix.assemble()
         self.clock.add("matrix", since)
+
+    def _together(self, parts: Sequence[Part]) -> Sequence[Contribution]:
+        """Some of the parts, those of each line evaluated together."""
+        which = tuple(map(id, parts))
+        if which not in self._joined:
+            self._joined[which] = parts, self.model.joined(parts)  # an id is one's own as long as the part is kept
+        return self._joined[which][1]
 
     def magnitudes(self, state: State, weights: Weights) -> Array:
         """Sizes (size,) of the terms that this rank's residual is made of, to be summed by the numbering [N]: those of
@@ -166,7 +181,7 @@ class System:
         return self.matrix.magnitudes(np.concatenate([f.magnitudes(state) for f in self.model.fields]))
 
     def energy(self, state: State) -> Energy:
-        mine = sum((p.energy(state) for p in self._active), Energy())
+        mine = sum((part.energy(state) for part in self._together(self._active)), Energy())
         values = self.sum([mine.kinetic, mine.strain, mine.potential])
         return Energy(*values)
 

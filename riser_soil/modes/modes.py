@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.sea import sea_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Model, Part, State, Weights
+from riser_soil.core.part import Part, State, Weights
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SceneError, SolveError
 from riser_soil.modes.eigenpairs import Eigenpairs, lowest
@@ -311,7 +312,7 @@ def _linearised(assembly: Assembly, stage: Stage) -> RiserAtRest:
     cushion = None if assembly.soil is None else assembly.soil.cushion
     at_rest = [part for part in model.parts if part is not cushion]
     massive = _with_mass(assembly)
-    system = System(assembly.comm, Model(model.lines, [*at_rest, *massive], model.others), Timer.new())
+    system = System(assembly.comm, replace(model, parts=[*at_rest, *massive]), Timer.new())
     try:
         stiffness = _assembled(system, state, STIFFNESS, at_rest)
         mass = _assembled(system, state, MASS, massive)

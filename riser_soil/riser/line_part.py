@@ -118,7 +118,7 @@ class CompiledPart(LinePart, ABC):
         self._alone.residual(state, forces)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        self._alone.tangent(state, weights, values[self.line.name])
+        self._alone.tangent(state, weights, values)
 
     def energy(self, state: State) -> Energy:
         return self._alone.energy(state)
@@ -156,6 +156,8 @@ class LineParts:
     the state `found` by the count of the line's configuration. accepted: whether the states are accepted ones, at which
     the line is placed once for all; but for work, which needs the one where the step begins.
     """
+
+    name = "lines"
 
     def __init__(self, line: MovingNodes, parts: Sequence[CompiledPart], accepted: bool = False) -> None:
         self.line, self.parts, self.data = line, parts, [part.kernel_data() for part in parts]
@@ -211,10 +213,10 @@ class LineParts:
         if "E" in self._groups:
             forces.end[at] += found.end.ravel()
 
-    def tangent(self, state: State, weights: Weights, K: Array) -> None:
-        """Add the parts' tangent at a trial state to the element matrices K (ne, n, n)."""
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        """Add the parts' tangent at a trial state to the line's element matrices (ne, n, n)."""
         self.find(state)
-        self._add_to(K, weights, self._tangent)
+        self._add_to(values[self.line.name], weights, self._tangent)
 
     def mass(self, state: State, K: Array) -> None:
         """Add the parts' mass at an accepted state, without rates, to the element matrices K (ne, n, n)."""

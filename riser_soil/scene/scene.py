@@ -59,8 +59,8 @@ class Solver(BaseModel):
     )
     newton: Literal["snes", "compiled"] = Field(
         default="compiled",
-        description="the code that solves the steps; compiled: a riser alone by loops of its own, time steps of lines "
-        "and bodies by a compiled one, all else by PETSc's SNES; snes: SNES throughout, with the same results",
+        description="the code that solves the steps; compiled: lines and bodies on one rank by a loop of its own, "
+        "all else by PETSc's SNES; snes: SNES throughout, with the same results",
     )
     petsc_options: dict[str, Any] = Field(
         default={},

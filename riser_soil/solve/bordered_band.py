@@ -1,8 +1,10 @@
-"""Exact factors of a riser's matrix, a band, with a dense border of few other dofs that all couple with each other.
+"""Exact factors of lines' matrices, bands one behind the other, with a dense border of few other rows.
 
-A riser alone has no border. Where the whole is positive definite, so is the band, and of no larger condition:
-eliminating it first is as stable as any order (Golub & Van Loan, Matrix Computations, 2013, 4.3). The elimination is
-that of `core.bordered`. It needs no PETSc.
+A riser alone has no border. Where joints couple lines and bodies, the fewest rows that all entries beside the bands lie
+in are the border: a body's own six, of two lines' ends those of one. Condensed soil, whose rows all couple with each
+other, is border, too. Where the whole is positive definite, so is the band, and of no larger condition: eliminating it
+first is as stable as any order (Golub & Van Loan, Matrix Computations, 2013, 4.3). The elimination is that of
+`core.bordered`. It needs no PETSc.
 """
 
 from __future__ import annotations
@@ -16,32 +18,41 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.banded import SingularError
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.matrix import Matrix
+from riser_soil.core.part import LineField
 from riser_soil.core.system import System
+from riser_soil.solve.newton_settings import MOST_JOINTS
 
-WIDEST = 32  # entries beside the diagonal up to which a matrix is a riser's
-OF_LINES = 5, 11  # entries beside it of a line in a plane and in space, for which the loops over a row are compiled
+OF_LINES = 5, 11  # entries beside the diagonal, in a plane and in space, for which loops over a row are compiled
+MOST_ROWS = 6 * MOST_JOINTS  # of the border, that joints have
 
 
 class BorderedBand:
-    """Factors of the first rows of a matrix, made anew where it has changed.
+    """Factors of some rows of a matrix and the same columns, made anew where it has changed.
 
-    band: rows of the band; border: of the border, the next ones. Entries in other columns don't count.
+    rows: of the band and of the border, each in order; entries in other columns don't count.
     """
 
-    def __init__(self, matrix: Matrix, band: int, border: int = 0) -> None:
-        self._matrix, self._factored, wide = matrix, -1, _half_bandwidth(matrix, band)
-        self._band, self._wide = np.zeros((band + wide, 3 * wide + 1)), _width(wide)
-        self._pivots, self._exchanged = np.zeros(band, dtype=np.int64), np.zeros(0)
-        self._right, self._below, self._schur = (np.zeros((rows, border)) for rows in (band, band, border))
+    def __init__(self, matrix: Matrix, band: IntArray, border: IntArray) -> None:
+        self._matrix, self._factored, self.rows = matrix, -1, (band, border)
+        self._places = _places(matrix, band, border)
+        self._wide = _width(_half_bandwidth(matrix, self._places, len(band)))
+        self._parts = self._new_parts()
+        self._band, self._right, self._below, self._schur = self._parts
+        self._pivots, self._exchanged = np.zeros(len(band), dtype=np.int64), np.zeros(0)
         self._coupled: IntArray = np.zeros(0, dtype=np.int64)
+
+    def _new_parts(self) -> tuple[Array, Array, Array, Array]:
+        """Band as `banded` has it, block to its right, transpose of that below, corner."""
+        (band, border), wide = map(len, self.rows), len(self._wide)
+        right, below, corner = (np.zeros((rows, border)) for rows in (band, band, border))
+        return np.zeros((band + wide, 3 * wide + 1)), right, below, corner
 
     def factorise(self) -> None:
         """Where that has not been done; SingularError where it can't be."""
         if self._factored == self._matrix.changes:
             return
         self._factored, factors = -1, (self._band, self._pivots, self._wide)
-        parts = self._band, self._right, self._below, self._schur
-        self._coupled = np.flatnonzero(_spread(*self._matrix.stored.csr(), *parts))
+        self._coupled = np.flatnonzero(_spread(*self._matrix.stored.csr(), self._places, *self._parts))
         if not banded.factorise(*factors):
             raise SingularError
         if self._schur.size:
@@ -54,10 +65,11 @@ class BorderedBand:
         self._factored = self._matrix.changes
 
     def solve(self, load: Array) -> Array:
-        """Solution for a load, in the rows of band and border; SingularError where there is none."""
+        """Solution for a load, in the matrix' first rows, those of band and border; SingularError where there is none.
+        """
         self.factorise()
-        x, factors = load.copy(), (self._band, self._pivots, self._wide)
-        inner, border = x[: len(self._pivots)], x[len(self._pivots) :]
+        x, factors = np.empty_like(load), (self._band, self._pivots, self._wide)
+        inner, border = (load[rows] for rows in self.rows)
         if border.size:
             from riser_soil.core import bordered, dense
 
@@ -65,23 +77,66 @@ class BorderedBand:
             dense.solve(self._schur, self._exchanged, border)
             bordered.back_substitute(self._coupled, self._right, border, inner)
         banded.solve(self._band, self._pivots, inner, self._wide)
+        for rows, found in zip(self.rows, (inner, border), strict=True):
+            x[rows] = found
         return x
+
+    def negative_pivots(self) -> int:
+        """Those of a symmetric matrix without row exchanges: its number of negative eigenvalues, as many as the band
+        and its Schur complement have together (Haynsworth, Linear Algebra Appl. 1, 1968).
+        """
+        band, right, below, corner = self._new_parts()
+        _spread(*self._matrix.stored.csr(), self._places, band, right, below, corner)
+        wide = np.zeros(len(self._wide))
+        negative = int(banded.count_negative_pivots(band, len(self._pivots), wide, right, corner))
+        return negative + int(np.count_nonzero(np.linalg.eigvalsh(corner) < 0.0)) if corner.size else negative
 
 
 def band_of(system: System) -> BorderedBand | None:
-    """Factors of a serial system whose matrix is a riser's band with a dense border, or none; else None."""
-    rows = system.numbering.free
-    if system.is_chain:
-        return BorderedBand(system.matrix, rows)
-    if system.comm.size > 1 or len(system.model.lines) > 1:
+    """Factors of a serial system whose matrix is its lines' bands with a dense border, or none; else None."""
+    if system.comm.size > 1:
         return None
-    at = slice(0, sum(line.size for line in system.model.lines))
-    chain = int(np.count_nonzero(system.numbering.index[at] >= 0))
-    indptr, indices, _ = system.matrix.stored.csr()
-    coupled = np.count_nonzero(indices[indptr[chain] :] >= chain)
-    if coupled < (rows - chain) ** 2 or _half_bandwidth(system.matrix, chain) > WIDEST:
+    rows, of_lines = system.numbering.free, system.line_rows
+    if rows - of_lines > 0 and (len(system.model.lines) > 1 or not _is_dense_behind(system.matrix, of_lines)):
         return None
-    return BorderedBand(system.matrix, chain, rows - chain)
+    joined = _rows_beside(system.matrix, of_lines, max(map(_band_of_elements, system.model.lines)))
+    if len(joined) > MOST_ROWS:
+        return None
+    band = np.setdiff1d(np.arange(of_lines), joined)
+    return BorderedBand(system.matrix, band, np.concatenate([joined, np.arange(of_lines, rows)]))
+
+
+def band_alone(matrix: Matrix, rows: int) -> BorderedBand:
+    """Factors of a matrix' first rows, which are a band."""
+    return BorderedBand(matrix, np.arange(rows), np.zeros(0, dtype=np.int64))
+
+
+def _band_of_elements(line: LineField) -> int:
+    """Entries beside the diagonal of a line's element matrices, or of a body's."""
+    nodes = len(line.translation_dofs)
+    return min(nodes, 2) * (line.size // nodes) - 1
+
+
+def _is_dense_behind(matrix: Matrix, first: int) -> bool:
+    """Whether all of the rows from `first` on couple with each other."""
+    indptr, indices, _ = matrix.stored.csr()
+    behind = len(indptr) - 1 - first
+    return bool(np.count_nonzero(indices[indptr[first] :] >= first) == behind**2)
+
+
+def _rows_beside(matrix: Matrix, rows: int, wide: int) -> IntArray:
+    """The fewest of the first rows, as a greedy choice finds them, that all entries farther from the diagonal than a
+    band is wide lie in, or in whose columns; sorted.
+    """
+    indptr, indices, _ = matrix.stored.csr()
+    of_entry, columns = np.repeat(np.arange(rows), np.diff(indptr[: rows + 1])), indices[: indptr[rows]]
+    beside = (np.abs(of_entry - columns) > wide) & (columns < rows)
+    row, column, chosen = of_entry[beside], columns[beside], list[int]()
+    while row.size:
+        chosen.append(int(np.bincount(np.concatenate([row, column])).argmax()))
+        left = (row != chosen[-1]) & (column != chosen[-1])
+        row, column = row[left], column[left]
+    return np.array(sorted(chosen), dtype=np.int64)
 
 
 def _width(wide: int) -> Any:
@@ -90,45 +145,58 @@ def _width(wide: int) -> Any:
     return fixed(wide) if wide in OF_LINES else np.zeros(wide)
 
 
-def negative_pivots(matrix: Matrix, rows: int) -> int:
-    """Negative pivots of a symmetric matrix' first rows, a band: its number of negative eigenvalues."""
-    wide, none = _half_bandwidth(matrix, rows), np.zeros((rows, 0))
-    band = np.zeros((rows + wide, 3 * wide + 1))
-    _spread(*matrix.stored.csr(), band, none, none, np.zeros((0, 0)))
-    return int(banded.count_negative_pivots(band, rows, np.zeros(wide)))
-
-
-def _half_bandwidth(matrix: Matrix, rows: int) -> int:
-    """Largest distance from the diagonal of an entry among the first rows and columns."""
+def _places(matrix: Matrix, band: IntArray, border: IntArray) -> IntArray:
+    """Where each row and column of a matrix is: its number in the band, -1 less that in the border; that of all rows of
+    the band where it is in neither.
+    """
     indptr, indices, _ = matrix.stored.csr()
-    of_entry, columns = np.repeat(np.arange(rows), np.diff(indptr[: rows + 1])), indices[: indptr[rows]]
-    return int(np.abs(of_entry - columns)[columns < rows].max(initial=0))
+    places = np.full(max(len(indptr) - 1, int(indices.max(initial=-1)) + 1), len(band), dtype=np.int64)
+    places[band], places[border] = np.arange(len(band)), -1 - np.arange(len(border))
+    return places
+
+
+def _half_bandwidth(matrix: Matrix, places: IntArray, band: int) -> int:
+    """Largest distance from the diagonal of an entry within the band, of so many rows."""
+    indptr, indices, _ = matrix.stored.csr()
+    row, column = np.repeat(places[: len(indptr) - 1], np.diff(indptr)), places[indices]
+    within = (row >= 0) & (row < band) & (column >= 0) & (column < band)
+    return int(np.abs(row - column)[within].max(initial=0))
 
 
 @njit
 def _spread(
-    indptr: IntArray, indices: IntArray, values: Array, band: Array, right: Array, below: Array, corner: Array
+    indptr: IntArray,
+    indices: IntArray,
+    values: Array,
+    places: IntArray,
+    band: Array,
+    right: Array,
+    below: Array,
+    corner: Array,
 ) -> BoolArray:
     """Write the values of a CSR matrix to its four parts; which rows of the band are coupled with the border. band: as
     `banded` has it; below (band, border): the transpose of the block below.
     """
-    chain, rows, middle = right.shape[0], right.shape[0] + corner.shape[0], (band.shape[1] - 1) // 3
+    chain, middle = right.shape[0], (band.shape[1] - 1) // 3
     touched = np.zeros(chain, np.bool_)
     for part in (band, right, below, corner):
         part[...] = 0.0
-    for i in range(rows):
-        for k in range(indptr[i], indptr[i + 1]):
-            j = indices[k]
-            if j >= rows:
+    for row in range(indptr.size - 1):
+        i = places[row]
+        if i >= chain:
+            continue
+        for k in range(indptr[row], indptr[row + 1]):
+            j = places[indices[k]]
+            if j >= chain:
                 continue
-            if i < chain and j < chain:
+            if i >= 0 and j >= 0:
                 band[i, j - i + middle] = values[k]
-            elif i < chain:
-                right[i, j - chain] = values[k]
+            elif i >= 0:
+                right[i, -1 - j] = values[k]
                 touched[i] |= values[k] != 0.0
-            elif j < chain:
-                below[j, i - chain] = values[k]
+            elif j >= 0:
+                below[j, -1 - i] = values[k]
                 touched[j] |= values[k] != 0.0
             else:
-                corner[i - chain, j - chain] = values[k]
+                corner[-1 - i, -1 - j] = values[k]
     return touched

@@ -19,7 +19,7 @@ from riser_soil.core.part import Part, State, Weights
 from riser_soil.core.system import System
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
-from riser_soil.solve.bordered_band import BorderedBand
+from riser_soil.solve.bordered_band import band_of
 from riser_soil.solve.stability import judged_parts
 
 if TYPE_CHECKING:
@@ -63,8 +63,8 @@ def buckling_mode(
 
 
 def _exact_solver(system: System) -> AbstractContextManager[Callable[[Array], Array]]:
-    if system.is_chain:
-        return nullcontext(BorderedBand(system.matrix, system.numbering.free).solve)
+    if (band := band_of(system)) is not None:
+        return nullcontext(band.solve)
     from riser_soil.solve.direct_solver import exact_solver
 
     return exact_solver(system)

@@ -25,10 +25,9 @@ from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.part_kernels import Border, LineForces, LineWeights
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
 from riser_soil.solve.line_system import Coupling
+from riser_soil.solve.newton_settings import MOST_JOINTS
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace
-
-MOST_JOINTS = 32  # from which on a sparse matrix of all is cheaper
 
 
 class JointData(NamedTuple):

@@ -128,7 +128,7 @@ def balance_held(
     with ExitStack() as stack:
         for line in model.lines:
             stack.enter_context(line.held())
-        system = System(comm, Model(model.lines, parts, model.others), clock, known)
+        system = System(comm, replace(model, parts=parts), clock, known)
         newton = Newton(system, settings)
         with destroyed_together(comm, newton.destroy, system.destroy):
             before = State.at_rest(t, system.numbering.size)

@@ -8,6 +8,7 @@ from typing import Literal
 
 from riser_soil.solve.convergence import StopLimits
 
+MOST_JOINTS = 32  # beyond it a sparse matrix of lines and bodies, which PETSc solves, is cheaper than bands
 REUSE = 0.1
 BESIDE_CLAY = 0.02  # the same of the tangent of all else beside clay, whose curves take most of the iterations
 

@@ -14,7 +14,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.banded import SingularError
 from riser_soil.core.communicator import all_of
 from riser_soil.core.system import System
-from riser_soil.solve.bordered_band import BorderedBand
+from riser_soil.solve.bordered_band import band_alone
 from riser_soil.solve.linear_solver import LinearSolver
 from riser_soil.solve.python_context import PythonContext
 
@@ -24,7 +24,7 @@ class RiserAboveSoil(PythonContext, LinearSolver):
 
     def __init__(self, system: System) -> None:
         self._system, self._rows = system, system.line_rows
-        self._factors = BorderedBand(system.matrix, self._rows)
+        self._factors = band_alone(system.matrix, self._rows)
 
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         self.work_for(ksp)

@@ -24,7 +24,7 @@ from riser_soil.core.communicator import all_of, any_of
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
-from riser_soil.solve import bordered_band
+from riser_soil.solve.bordered_band import band_alone, band_of
 
 EPS = float(np.finfo(float).eps)
 NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
@@ -54,7 +54,7 @@ class PivotCounter:
         if system.whole_soil is None or any_of(system.comm, system.couples):
             return negative_pivots(system)
         rows = system.line_rows
-        mine = bordered_band.negative_pivots(system.matrix, rows) if rows else 0
+        mine = band_alone(system.matrix, rows).negative_pivots() if rows else 0
         return int(system.sum([float(mine)])[0]) + self._of_others(rows)
 
     def _of_others(self, rows: int) -> int:
@@ -92,8 +92,8 @@ def unstable_modes(
 
 def negative_pivots(system: System) -> int:
     """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
-    if system.is_chain:
-        return bordered_band.negative_pivots(system.matrix, system.numbering.free)
+    if (band := band_of(system)) is not None:
+        return band.negative_pivots()
     from riser_soil.solve import direct_solver
 
     return direct_solver.negative_pivots(system)

@@ -1,6 +1,6 @@
 """Newton's method for a step over the parts of a system: residual, tangent and the rules of convergence.
 
-The riser's own loop (`chain`) and PETSc's SNES (`snes`) call them.
+The loop of lines and bodies (`band_loop`) and PETSc's SNES (`snes`) call them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import Adaptive, Limited, Yielding, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
-from riser_soil.solve.chain import ChainLoop
+from riser_soil.solve.band_loop import band_loop
 from riser_soil.solve.convergence import CONVERGED, ITERATING, OUTGROWN, TOO_MANY, Convergence
 from riser_soil.solve.elastic_share import ElasticShare
 from riser_soil.solve.line_search import step_length
@@ -53,8 +53,9 @@ class StepIteration:
         self._make_vectors()
 
     def _new_loop(self) -> Loop:
-        if self.system.is_chain and not self.settings.snes:
-            return ChainLoop(self.system, self.settings.max_iterations, self)
+        loop = None if self.settings.snes else band_loop(self.system, self.settings.max_iterations, self)
+        if loop is not None:
+            return loop
         from riser_soil.solve.snes import SnesLoop
 
         return SnesLoop(self.system, self.settings, self)

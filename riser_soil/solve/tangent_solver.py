@@ -10,6 +10,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import System
+from riser_soil.solve.bordered_band import band_of
 from riser_soil.solve.direct_solver import DirectSolver
 from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
@@ -42,7 +43,7 @@ def linear_solver(system: System, asked: str, by_options: bool) -> LinearSolver:
 
 def _keeps_factors(system: System, asked: str) -> bool:
     """Whether factors are kept from one tangent to the next: as asked ("kept", "direct"), or where that is cheaper."""
-    if system.is_chain or asked == "direct":
+    if asked == "direct" or band_of(system) is not None:
         return False
     return asked == "kept" or system.numbering.free >= LARGE
 

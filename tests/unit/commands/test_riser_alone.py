@@ -19,6 +19,7 @@ from riser_soil.core.csr_matrix import CsrMatrix
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
 from riser_soil.whole_run import run
+from tests.support.line_scenes import mooring, shaken
 from tests.support.on_ranks import ROOT
 from tests.support.said import line_with, telling
 from tests.support.without_packages import FOR_USERS, SOIL, riser_soil_without
@@ -52,6 +53,26 @@ def test_a_riser_alone_gives_what_snes_gives_without_petsc_mpi_and_scipy(tmp_pat
     found, expected = figures(tmp_path / "alone"), figures(tmp_path / "snes")
     assert len(expected) > 20
     assert found == pytest.approx(expected, rel=1e-5, abs=1e-5)
+
+
+def test_lines_and_bodies_give_what_snes_gives_without_petsc_and_mpi(tmp_path: Path) -> None:
+    """Statics and time steps of a buoy on three chains; joints take LAPACK, as SciPy has it."""
+    given, hidden = tmp_path / "lines.json", [name for name in FOR_USERS if name != "scipy"]
+    given.write_text(json.dumps(mooring(shaken(duration=0.2), elements=8)))
+    done = riser_soil_without((*SOIL, *hidden), "run", str(given), "-o", str(tmp_path / "alone"))
+    assert done.returncode == 0, done.stderr
+    run(read_scene(str(given), ["solver.newton=snes"]), tmp_path / "snes")
+    found, expected = figures(tmp_path / "alone"), figures(tmp_path / "snes")
+    assert len(expected) > 20
+    assert found == pytest.approx(expected, rel=1e-5, abs=1e-5)
+
+
+def test_joints_say_that_they_need_scipy(tmp_path: Path) -> None:
+    given = tmp_path / "lines.json"
+    given.write_text(json.dumps(mooring(shaken(duration=0.2), elements=8)))
+    done = riser_soil_without(["scipy"], "check", str(given))
+    assert done.returncode == SceneError.exit_status
+    line_with(done.stderr, "joints: needs scipy")
 
 
 def test_soil_says_in_one_line_what_it_lacks_and_who_has_it(tmp_path: Path) -> None:
@@ -162,7 +183,8 @@ def test_negative_pivots_are_negative_eigenvalues(n: int, b: int) -> None:
             band[i, j - i + b] = dense[i, j]
     negative = int((np.linalg.eigvalsh(dense) < 0.0).sum())
     assert 0 < negative < n
-    assert banded.count_negative_pivots(band, n, np.zeros(b)) == negative
+    none = np.zeros((n, 0)), np.zeros((0, 0))
+    assert banded.count_negative_pivots(band, n, np.zeros(b), *none) == negative
 
 
 def test_rows_of_one_rank_are_those_that_petsc_sees() -> None:

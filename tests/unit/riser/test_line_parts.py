@@ -229,7 +229,7 @@ def test_parts_together_are_their_sum(dimension: int) -> None:
         for part in parts:
             part.residual(state, expected)
             part.tangent(state, WEIGHTS, {at.line.name: of_each})
-        together.tangent(state, WEIGHTS, K)
+        together.tangent(state, WEIGHTS, {at.line.name: K})
         for group in ("inertia", "force"):
             assert error(getattr(forces, group), getattr(expected, group)) < 1e-12
         assert error(K, of_each) < 1e-12

@@ -49,7 +49,7 @@ class Stored:
 def solver(entries: Array, chain: int, border: int) -> tuple[BorderedBand, Stored]:
     """Of the first rows."""
     matrix: Any = Stored(entries)
-    return BorderedBand(matrix, chain, border), matrix
+    return BorderedBand(matrix, np.arange(chain), np.arange(chain, chain + border)), matrix
 
 
 def _csr(entries: Array) -> tuple[Array, Array, Array]:
@@ -79,6 +79,28 @@ def test_the_band_alone_is_solved() -> None:
     factors, _ = solver(entries, 30, 0)
     expected = np.linalg.solve(entries[:30, :30], load)
     assert np.abs(factors.solve(load) - expected).max() < 1e-9 * np.abs(expected).max()
+
+
+def test_rows_of_the_border_may_lie_anywhere() -> None:
+    """Those of band and border in another order of the system, as joined lines have them."""
+    entries, load = matrix(30, 7, 3, slice(10, 15)), np.random.default_rng(8).normal(size=37)
+    mixed = np.random.default_rng(9).permutation(37)
+    given: Any = Stored(entries[np.ix_(mixed, mixed)])
+    at = np.argsort(mixed)  # where each of the rows is now
+    found = BorderedBand(given, at[:30], at[30:]).solve(load[mixed])
+    expected = np.linalg.solve(entries, load)[mixed]
+    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("border", [0, 7])
+def test_negative_pivots_of_band_and_border_are_negative_eigenvalues(border: int) -> None:
+    entries = matrix(30, border, 3, slice(10, 15))
+    entries += entries.T
+    entries[0, 0] = 1.0
+    negative = int((np.linalg.eigvalsh(entries) < 0.0).sum())
+    assert 5 < negative < len(entries) - 5
+    factors, _ = solver(entries, 30, border)
+    assert factors.negative_pivots() == negative
 
 
 @pytest.mark.parametrize("row", [4, 33])
@@ -121,7 +143,8 @@ class Solver:
         self.snes.setFunction(self.function, self.f)
         self.snes.setJacobian(lambda *_: None, mat)
         self.snes.getKSP().setType("preonly")
-        BandSolver(BorderedBand(Stored(2.0 * np.eye(3)), 2, 1)).work_for(self.snes.getKSP().getPC())
+        band = BorderedBand(Stored(2.0 * np.eye(3)), np.arange(2), np.array([2]))
+        BandSolver(band).work_for(self.snes.getKSP().getPC())
 
     def function(self, snes, x, f):
         f.setArray(2.0 * x.getArray(readonly=True) - 6.0)

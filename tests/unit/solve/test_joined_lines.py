@@ -14,13 +14,15 @@ from riser_soil.assembly import build
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import in_turn
 from riser_soil.core.part import Energy, State
-from riser_soil.core.system import Timer
+from riser_soil.core.system import System, Timer
 from riser_soil.riser.part_kernels import Border
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve.bordered_band import band_of
 from riser_soil.solve.joint_border import JointBorder
 from riser_soil.solve.line_solver import LineSolver
 from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.soil_border import SoilBorder
+from riser_soil.solve.step_iteration import STATIC
 from riser_soil.stages import LayingCounter, lay, run_stage
 from tests.support.line_scenes import CHAIN, DEPTH, IN_WATER, RIGID, hung_over_clay, mooring, shaken
 
@@ -255,6 +257,22 @@ def test_many_joints_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None
     """Whose sparse factors cost less than dense ones."""
     monkeypatch.setattr("riser_soil.solve.joint_border.MOST_JOINTS", len(bundle()["joints"]) - 1)
     assert last_stage("a bundle", "compiled").newton.lines is None
+
+
+@pytest.mark.parametrize(("case", "border"), [("a buoy in waves", 3), ("a rigid buoy", 6), ("a bundle", 21)])
+def test_statics_eliminate_the_fewest_rows_that_joints_have(case: str, border: int) -> None:
+    """A body's own; of lines those of one side: six, and three rotations where the line has a support."""
+    scene = scene_from_mapping(SCENES[case]())
+    assembly = build(scene, MPI.COMM_SELF)
+    lay(assembly, Timer.new())
+    system = System(assembly.comm, assembly.begin(scene.stages[0]), Timer.new())
+    found = band_of(system)
+    assert found is not None
+    assert len(found.rows[1]) == border
+    load = np.random.default_rng(3).normal(size=system.numbering.free)
+    system.assemble(State.at_rest(0.0, system.numbering.size), STATIC)
+    answer = found.solve(load)
+    assert np.abs(system.matrix.stored.times(answer) - load).max() < 1e-6 * np.abs(load).max()
 
 
 def test_joints_store_what_they_stretch() -> None:

@@ -1,21 +1,27 @@
-"""Newton's method for a riser alone on one rank, whose matrix is a band: a chain. It needs no PETSc."""
+"""Newton's method for lines and bodies on one rank, whose matrix is a band with a border. It needs no PETSc."""
 
 from __future__ import annotations
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.banded import SingularError
 from riser_soil.core.system import System
-from riser_soil.solve.bordered_band import BorderedBand
+from riser_soil.solve.bordered_band import BorderedBand, band_of
 from riser_soil.solve.convergence import ITERATING, NOT_SOLVED
 from riser_soil.solve.newton_loop import Balance, Loop, iterate
 
 
-class ChainLoop(Loop):
+def band_loop(system: System, max_iterations: int, balance: Balance) -> BandLoop | None:
+    """The loop of a system of lines and bodies alone; None where it has no such matrix."""
+    factors = None if system.model.others else band_of(system)
+    return None if factors is None else BandLoop(system, factors, max_iterations, balance)
+
+
+class BandLoop(Loop):
     """Newton's iteration with banded factors."""
 
-    def __init__(self, system: System, max_iterations: int, balance: Balance) -> None:
-        self._system, self.max_iterations, self._balance = system, max_iterations, balance
-        self.renew()
+    def __init__(self, system: System, factors: BorderedBand, max_iterations: int, balance: Balance) -> None:
+        self._system, self._factors = system, factors
+        self.max_iterations, self._balance = max_iterations, balance
 
     def iterate(self, x: Array) -> str:
         self._x = x
@@ -40,4 +46,7 @@ class ChainLoop(Loop):
             return NOT_SOLVED, f
 
     def renew(self) -> None:
-        self._factors = BorderedBand(self._system.matrix, self._system.numbering.free)
+        """The lines' own pattern stays as it is, with whatever dofs are free."""
+        found = band_of(self._system)
+        assert found is not None
+        self._factors = found
