@@ -8,7 +8,7 @@ from pathlib import Path
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.packages import communicator_of
-from riser_soil.checks.check import reported_waves, resolution
+from riser_soil.checks.check import resolution, wave_theory
 from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
 from riser_soil.core.part import State
@@ -56,7 +56,7 @@ def run(
         clock.add("build", since)
         lying = assembly.line_on_soil
         if comm.rank == 0:
-            for line in (*reported_waves(assembly), *(resolution(lying) if lying is not None else ())):
+            for line in (*wave_theory(assembly), *(resolution(lying) if lying is not None else ())):
                 print(line)
         warnings = [*physical_warnings(assembly), *of_size]
         for warning in warnings if comm.rank == 0 else ():

@@ -70,7 +70,7 @@ class MovingBody(MovingNodes):
         return np.asarray(self.x[0] + self.frames.R[0] @ point)
 
     @contextmanager
-    def held(self) -> Iterator[None]:
+    def all_prescribed(self) -> Iterator[None]:
         """While the context lasts the body does not move."""
         free, self.prescribed = self.prescribed, np.ones(self.size, dtype=bool)
         try:

@@ -61,7 +61,7 @@ def describe(scene: Scene, place: Callable[[str], str] = str) -> str:
     lines = [_title(assembly)]
     for name, line in assembly.lines.items():
         lines += [f"{name}: {text}" if name and not text.startswith(" ") else text for text in by_hand(line)]
-    lines += [*reported_waves(assembly), *(f"warning: {warning}" for warning in warnings), _verdict(warnings)]
+    lines += [*wave_theory(assembly), *(f"warning: {warning}" for warning in warnings), _verdict(warnings)]
     for name, line in assembly.lines.items():
         lines += [*_unknowns(line, name, comm)]
     lines += [*_hung(assembly), _memory_line(assembly), *_results(size), *_model(inventory(assembly))]
@@ -76,12 +76,12 @@ def _counted(number: int, name: str) -> str:
     return f"{number} {name}" if number == 1 else f"{number} {name}s"
 
 
-def reported_waves(assembly: Assembly) -> Iterator[str]:
+def wave_theory(assembly: Assembly) -> Iterator[str]:
     """What theory a regular wave follows, where the scene has one of finite height."""
     if assembly.sea is not None and assembly.sea.waves is not None:
-        from riser_soil.checks.wave_plausibility import reported_regular
+        from riser_soil.checks.wave_plausibility import regular_wave_theory
 
-        yield from reported_regular(assembly.sea.waves)
+        yield from regular_wave_theory(assembly.sea.waves)
 
 
 def _title(assembly: Assembly) -> str:
@@ -178,9 +178,9 @@ def _condensed(scene: Scene, soil: SoilAssembly) -> Iterator[str]:
 
 def resolution(riser: LineAssembly) -> Iterator[str]:
     """The soil's cells under a riser against what touches, where the scene has them meshed."""
-    from riser_soil.checks.mesh_plausibility import reported_resolution
+    from riser_soil.checks.mesh_plausibility import resolution_in_words
 
-    line = reported_resolution(riser)
+    line = resolution_in_words(riser)
     if line is not None:
         yield line
 
@@ -191,7 +191,7 @@ def _memory_line(assembly: Assembly) -> str:
 
 def _results(size: ProblemSize) -> Iterator[str]:
     yield f"estimated results: {_counted(round(size.records), 'record')}, {in_bytes(size.disk)}"
-    yield f"estimated time: {in_words(size.seconds)} on one core, {size.reported_steps}"
+    yield f"estimated time: {in_words(size.seconds)} on one core, {size.steps_in_words}"
 
 
 def memory(assembly: Assembly) -> float:

@@ -77,7 +77,7 @@ class ProblemSize:
     asked: int = 0
 
     @property
-    def reported_steps(self) -> str:
+    def steps_in_words(self) -> str:
         return f"for {'at least ' if self.auto else ''}{math.ceil(self.steps - SAME):.6g} steps"
 
     def memory(self, ranks: int) -> float:

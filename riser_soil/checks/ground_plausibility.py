@@ -11,7 +11,7 @@ from riser_soil.assembly.contact_laws import smoothing
 from riser_soil.assembly.motions import cycle_count
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
-from riser_soil.checks.mesh_plausibility import mesh_warnings, reported_size
+from riser_soil.checks.mesh_plausibility import mesh_warnings, size_in_words
 from riser_soil.checks.motion_plausibility import farthest_move, top_speed
 from riser_soil.core.arrays import Array
 from riser_soil.scene.bathymetry import ground_height
@@ -132,7 +132,7 @@ def _nodes_on_soil(riser: LineAssembly) -> Iterator[str]:
     if scene.contact is None or not scene.contact.at_nodes or scene.soil is None:
         return
     mesh = scene.soil.mesh
-    cells = f"cells of {reported_size(mesh)}" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
+    cells = f"cells of {size_in_words(mesh)}" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
     yield (
         f"the pipe, D = {_diameter(riser):.4g} m, touches the soil at its nodes only, "
         f"{riser.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "

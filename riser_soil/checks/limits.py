@@ -63,7 +63,7 @@ def too_long(size: ProblemSize) -> Iterator[str]:
     """A warning of a long run."""
     if size.seconds > LONG:
         yield (
-            f"the run takes about {in_words(size.seconds)}, {size.reported_steps} of {_parts(size)}: check duration, "
+            f"the run takes about {in_words(size.seconds)}, {size.steps_in_words} of {_parts(size)}: check duration, "
             "time_step and load_steps, and what is meshed more finely than it needs to be"
         )
 
@@ -71,7 +71,7 @@ def too_long(size: ProblemSize) -> Iterator[str]:
 def tell(size: ProblemSize, comm: Communicator) -> None:
     """Tell of a run that lasts a while, before it begins."""
     if size.seconds > NOTED and comm.rank == 0:
-        print(f"this takes about {in_words(size.seconds)}, {size.reported_steps} of {_parts(size)}", flush=True)
+        print(f"this takes about {in_words(size.seconds)}, {size.steps_in_words} of {_parts(size)}", flush=True)
 
 
 def in_words(seconds: float) -> str:
@@ -121,7 +121,7 @@ def _largest(size: ProblemSize) -> str:
 
 
 def _too_much_disk(size: ProblemSize, free: float) -> str:
-    what = f"{size.records:.4g} records and {size.pictures:.4g} pictures of {_parts(size)}, {size.reported_steps}"
+    what = f"{size.records:.4g} records and {size.pictures:.4g} pictures of {_parts(size)}, {size.steps_in_words}"
     remedy = "take longer intervals of output, a shorter duration or a longer time_step"
     return f"output.interval: {what}: about {in_bytes(size.disk)} on disk, and {in_bytes(free)} are free; {remedy}"
 

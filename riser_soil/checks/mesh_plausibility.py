@@ -24,7 +24,7 @@ LONG = 1.5
 EXCESS, DEEP = 0.05, 2.516
 
 
-def reported_resolution(riser: LineAssembly) -> str | None:
+def resolution_in_words(riser: LineAssembly) -> str | None:
     """The cells under the riser against what touches, and what they miss of the settlement; None without them."""
     mesh, soil = _generated(riser), riser.scene.soil
     if mesh is None or soil is None or riser.soil is None:
@@ -34,7 +34,7 @@ def reported_resolution(riser: LineAssembly) -> str | None:
         return None
     width = touching_width(riser.scales, soil.top_law)
     return (
-        f"soil under the riser: cells of {reported_size(mesh)}, where {width:.3g} m touch at rest: it settles by about "
+        f"soil under the riser: cells of {size_in_words(mesh)}, where {width:.3g} m touch at rest: it settles by about "
         f"{1000.0 * fine.by_weight:.2g} mm under its weight, at the touchdown point by {1000.0 * fine.deepest:.2g} mm, "
         f"and {missed(found, fine):.0%} less on these cells"
     )
@@ -69,7 +69,7 @@ def mesh_warnings(riser: LineAssembly) -> Iterator[str]:
     yield from _leaves_the_block(riser)
 
 
-def reported_size(mesh: GeneratedMesh) -> str:
+def size_in_words(mesh: GeneratedMesh) -> str:
     """The cells' size under the riser in words."""
     across = f"{mesh.across:.4g} m"
     return f"{mesh.along:.4g} m along and {across} across" if isinstance(mesh.size_at_riser, CellSizes) else across

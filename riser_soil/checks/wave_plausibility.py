@@ -45,7 +45,7 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
         yield "water.waves: waves act in dynamic stages, and no stage is dynamic: nothing will come of them"
 
 
-def reported_regular(waves: DrawnWaves) -> Iterator[str]:
+def regular_wave_theory(waves: DrawnWaves) -> Iterator[str]:
     """The theory and shape of a regular wave of finite height, where the waves are one."""
     wave, given = waves.regular, waves.given.regular
     if wave is None or given is None:

@@ -268,7 +268,7 @@ class LineField(Field, Protocol):
         """A better first guess of a step than the increments of `guess`, by its prescribed motion; a copy."""
         ...
 
-    def held(self) -> AbstractContextManager[None]:
+    def all_prescribed(self) -> AbstractContextManager[None]:
         """While the context lasts all dofs are prescribed not to move."""
         ...
 

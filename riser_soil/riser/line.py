@@ -96,9 +96,9 @@ class Line(MovingNodes):
         """Which dofs (size,) are prescribed."""
         return self._ends.prescribed
 
-    def held(self) -> AbstractContextManager[None]:
+    def all_prescribed(self) -> AbstractContextManager[None]:
         """While the context lasts all dofs are prescribed not to move."""
-        return self._ends.held()
+        return self._ends.all_prescribed()
 
     @cached_property
     def lever(self) -> float:

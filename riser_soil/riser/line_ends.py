@@ -96,7 +96,7 @@ class LineEnds:
         self._dofs: IntArray = np.flatnonzero(self.prescribed)
 
     @contextmanager
-    def held(self) -> Iterator[None]:
+    def all_prescribed(self) -> Iterator[None]:
         """While the context lasts all dofs are prescribed not to move."""
         free = self.prescribed, self._dofs
         self.prescribed, self._dofs = np.ones(free[0].size, dtype=bool), np.arange(free[0].size)

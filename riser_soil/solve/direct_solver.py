@@ -27,7 +27,7 @@ class DirectSolver(LinearSolver):
     def __init__(self, system: System, workspace: Workspace) -> None:
         self._system, self._workspace = system, workspace
 
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+    def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         factorise_directly(ksp.getPC(), self._system, self._workspace)
 

@@ -49,8 +49,8 @@ class IterativeSolver(PythonContext, LinearSolver):
         self._system, self._solid = system, solid
         self._corrections: _Corrections | None = None
 
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
-        """Solve what this KSP is asked for, to a relative tolerance."""
+    def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        """Set a KSP up, which solves to a relative tolerance."""
         ksp.setType(PETSc.KSP.Type.GMRES)
         ksp.setPCSide(PETSc.PC.Side.RIGHT)
         ksp.setTolerances(rtol=TOLERANCE, atol=0.0, max_it=MOST_ITERATIONS)

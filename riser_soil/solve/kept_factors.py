@@ -55,8 +55,8 @@ class KeptFactors(PythonContext, LinearSolver):
         self._outgrown = False
         self.forget()
 
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
-        """Solve what this KSP is asked for, to its relative tolerance in the norm of residuals over the levers."""
+    def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        """Set a KSP up; it solves to its relative tolerance in the norm of residuals over the levers."""
         self._levers = levers
         self.work_for(ksp)
         ksp.getPC().setType(PETSc.PC.Type.NONE)

@@ -27,7 +27,7 @@ from riser_soil.solve.line_system import Coupling, LineSystem
 from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import place_of_largest
-from riser_soil.solve.step import Solution, Step, reported
+from riser_soil.solve.step import Solution, Step, failure_text
 from riser_soil.solve.step_results import StepResults
 from riser_soil.solve.step_trial import StepTrial
 
@@ -236,7 +236,7 @@ class LineSolver(StepResults):
             each.restore(saved)
 
     def _reason(self, ending: str, norms: list[float]) -> str:
-        return reported(ending, norms, self._place())
+        return failure_text(ending, norms, self._place())
 
     def _place(self) -> str:
         """The largest residual, in words."""

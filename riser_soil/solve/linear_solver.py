@@ -34,8 +34,8 @@ class LinearSolver:
         """Whether PETSc's own matrix is read, and not the rows that it is made of."""
         return True
 
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
-        """Solve what this KSP is asked for; by the levers [m] moments count as forces."""
+    def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        """Set a KSP up to solve by this solver; by the levers [m] moments count as forces."""
         raise NotImplementedError
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:

@@ -117,7 +117,7 @@ def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton
     return Newton(system, settings, lines)
 
 
-def balance_held(
+def balance_under_fixed_lines(
     comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer, known: Patterns | None = None
 ) -> None:
     """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it: to `BALANCED`,
@@ -127,7 +127,7 @@ def balance_held(
     parts = [part for part in model.parts if part.traits.groups == "E"]
     with ExitStack() as stack:
         for line in model.lines:
-            stack.enter_context(line.held())
+            stack.enter_context(line.all_prescribed())
         system = System(comm, replace(model, parts=parts), clock, known)
         newton = Newton(system, settings)
         with destroyed_together(comm, newton.destroy, system.destroy):

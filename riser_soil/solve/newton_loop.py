@@ -54,7 +54,7 @@ class Balance(Protocol):
 
     def shortened(self, x: Array, y: Array) -> Array: ...
 
-    def took(self, part: float) -> None:
+    def note_step_length(self, part: float) -> None:
         """Take note of the part of the last step that another line search has found."""
         ...
 

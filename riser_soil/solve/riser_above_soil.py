@@ -26,7 +26,7 @@ class RiserAboveSoil(PythonContext, LinearSolver):
         self._system, self._rows = system, system.line_rows
         self._factors = band_alone(system.matrix, self._rows)
 
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+    def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         self.work_for(ksp)
         ksp.getPC().setType(PETSc.PC.Type.NONE)
 

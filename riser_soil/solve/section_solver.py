@@ -55,7 +55,7 @@ class SectionSolver(PythonContext, LinearSolver):
     def reads_mat(self) -> bool:
         return self._by_rows_exchanged
 
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+    def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         if self._by_rows_exchanged:
             factorise_directly(ksp.getPC(), self._system, self._workspace)

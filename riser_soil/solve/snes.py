@@ -67,7 +67,7 @@ class SnesLoop(Loop):
         snes.setTolerances(rtol=0.0, atol=0.0, stol=0.0, max_it=self._settings.max_iterations)
         if self._settings.line_search and not self._given.line_search:
             snes.setLineSearchPreCheck(self._shorten)  # before "basic", which takes all of what it leaves
-        self._tangents.serve(snes.getKSP())
+        self._tangents.attach(snes.getKSP())
         set_from_options(snes, {"snes_linesearch_type": "basic", **self.linear.options})
         snes.setErrorIfNotConverged(False)  # a step that fails is cut
         self.max_iterations = snes.max_it
@@ -86,7 +86,7 @@ class SnesLoop(Loop):
         x = np.array(self._x.array_r)
         if self._given.line_search and iteration > 0 and norms[1] > 0.0:
             moved = self._system.sum([float(np.sum((x - self._before) ** 2))])[0] ** 0.5
-            self._balance.took(moved / norms[1])
+            self._balance.note_step_length(moved / norms[1])
         self._before = x
         small = self._given.small(snes, iteration, *norms) if self._given.tolerances else None
         return int(REASONS[self._balance.judge(x, np.array(self._f.array_r), small)])

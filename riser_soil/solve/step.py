@@ -24,7 +24,7 @@ class UnstableError(NotConvergedError):
         self.solution = solution
 
 
-def reported(why: str, norms: list[float], place: str) -> str:
+def failure_text(why: str, norms: list[float], place: str) -> str:
     """Why a step failed, the last of its residual's norms [N], and where the residual sits."""
     last = ", ".join(f"{norm:.3g}" for norm in norms[-3:])
     return f"{why} after {max(len(norms) - 1, 0)} iterations (last residual norms {last} N); {place}"

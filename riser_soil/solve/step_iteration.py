@@ -24,7 +24,7 @@ from riser_soil.solve.newton_loop import Loop, OutgrownError
 from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.residual_norm import ResidualNorm, above_round_off
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
-from riser_soil.solve.step import NotConvergedError, Solution, Step, reported
+from riser_soil.solve.step import NotConvergedError, Solution, Step, failure_text
 from riser_soil.solve.step_trial import StepTrial
 
 TIGHT, LOOSEST = 1e-10, 1e-2  # shares of the residual that a linear system solved by iterations may leave
@@ -262,10 +262,10 @@ class StepIteration:
         def along(f: Array) -> float:
             return -self.system.sum([float(f @ y)])[0]
 
-        self.took(step_length(along(self._f), lambda part: along(self.residual(x - part * y))))
+        self.note_step_length(step_length(along(self._f), lambda part: along(self.residual(x - part * y))))
         return self._elastic.length * y
 
-    def took(self, part: float) -> None:
+    def note_step_length(self, part: float) -> None:
         """Take note of the part of a step that a line search has found."""
         self._elastic.length = part
 
@@ -343,7 +343,7 @@ class StepIteration:
 
     def _reason(self, why: str) -> str:
         """Why the step did not converge, with where it is out of balance."""
-        return reported(why, self._convergence.norms, self._norm.largest(self._f))
+        return failure_text(why, self._convergence.norms, self._norm.largest(self._f))
 
     def state(self) -> Saved:
         """What is kept of linear systems."""

@@ -54,7 +54,7 @@ class PetscSolver(LinearSolver):
     to_tolerance: ClassVar[bool] = True
     options: ClassVar[Mapping[str, str]] = {"pc_factor_mat_solver_type": "mumps"}
 
-    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+    def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.LU)
 
@@ -69,16 +69,16 @@ class TangentSolver:
         self._system, self._given, self.used = system, given, False
         self.solver = linear_solver(system, asked, given.linear_solver)
 
-    def serve(self, ksp: PETSc.KSP) -> None:
-        """Solve what this KSP is asked for, for the matrix that the system has now."""
+    def attach(self, ksp: PETSc.KSP) -> None:
+        """Set a KSP up for the matrix that the system has now."""
         system, self._ksp = self._system, ksp
         self._levers = system.matrix.mat.createVecLeft()
         self._levers.array_w[:] = system.numbering.to_global(system.levers)
-        self.solver.serve(ksp, self._levers)
+        self.solver.attach(ksp, self._levers)
         self._alone: tuple[RiserAboveSoil, PETSc.KSP] | None = None
         if system.whole_soil is not None and not self._given.linear_solver:
             self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
-            self._alone[0].serve(self._alone[1], self._levers)
+            self._alone[0].attach(self._alone[1], self._levers)
 
     def choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
         """The solver of the present tangent for a residual, which has not been told how exactly."""

@@ -20,7 +20,7 @@ from riser_soil.errors import SolveError
 from riser_soil.solve.energy_gain import LARGEST, EnergyGain
 from riser_soil.solve.extrapolation import GRADUAL, ROUGH, SMOOTH, Extrapolation
 from riser_soil.solve.local_error import LocalError, committed_error
-from riser_soil.solve.newton import Newton, balance_held
+from riser_soil.solve.newton import Newton, balance_under_fixed_lines
 from riser_soil.solve.step import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import CommittedStep, Scheme
@@ -274,7 +274,7 @@ class TimeStepper:
                 continue
             if self.scheme.dynamic:
                 given = system.comm, system.model, self.before.t, self.newton.settings, system.clock
-                balance_held(*given, self._patterns_held)
+                balance_under_fixed_lines(*given, self._patterns_held)
                 self.newton.renew()  # the balance has chosen patterns of its own
             part.lose(self.energy.total - system.energy(self.before).total)
             self._forces = system.forces(self.before)

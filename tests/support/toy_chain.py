@@ -30,7 +30,7 @@ class Chain:
     def predict(self, guess: State) -> Array:
         return guess.u
 
-    def held(self) -> AbstractContextManager[None]:
+    def all_prescribed(self) -> AbstractContextManager[None]:
         return nullcontext()
 
     def inadmissible(self, state: State, before: State | None = None) -> str:

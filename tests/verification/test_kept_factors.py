@@ -51,14 +51,14 @@ def taken(law: str, linear: str) -> Steps:
         out.forces.append(step.solution.forces.end.copy())
         out.increments.append(step.solution.state.u.copy())
 
-    usual = KeptFactors.serve
+    usual = KeptFactors.attach
 
-    def serve(self: KeptFactors, *given: object) -> None:
+    def attach(self: KeptFactors, *given: object) -> None:
         kept.append(self)
         usual(self, *given)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(KeptFactors, "serve", serve)
+        patch.setattr(KeptFactors, "attach", attach)
         for stage in assembly.scene.stages:
             before = take(assembly, stage, before, watch)
     each = set(kept)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, reported_resolution
+from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, resolution_in_words
 from riser_soil.checks.settlement import Settled, predicted_settlement
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import GeneratedMesh
@@ -105,13 +105,13 @@ def test_what_cells_miss_grows_with_their_size() -> None:
     assert missed(fine, fine) == pytest.approx(0.02)
     assert missed(half, fine) == pytest.approx(0.52)
     assert missed(Settled(0.0, 0.0, 1.0), Settled(0.0, 0.0, 1.0)) == 0.0
-    reported = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))).riser)
+    reported = resolution_in_words(built(on_block(LAY, mesh=sizes(0.5, 0.012))).riser)
     assert reported is not None
     line_with(reported, "0.5 m along", "0.012 m across", "0.0236 m touch", "2% less")
-    wide = reported_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))).riser)
+    wide = resolution_in_words(built(on_block(LAY, mesh=sizes(0.5, 0.05))).riser)
     assert wide is not None
     assert int(wide.rsplit("%")[0].rsplit(" ")[-1]) > 20
-    assert reported_resolution(built({**touchdown(LAY), "contact": {"method": "node"}}).riser) is None
+    assert resolution_in_words(built({**touchdown(LAY), "contact": {"method": "node"}}).riser) is None
 
 
 def stage_warnings(scene: Mapping, folder: Path) -> list[str]:

@@ -13,7 +13,7 @@ import pytest
 import raschii
 
 from riser_soil.assembly.sea import sea_of
-from riser_soil.checks.wave_plausibility import reported_regular, wave_warnings
+from riser_soil.checks.wave_plausibility import regular_wave_theory, wave_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
@@ -249,7 +249,7 @@ def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> Non
     sea = sea_of(scene)
     assert sea is not None
     assert sea.waves is not None
-    (reported,) = reported_regular(sea.waves)
+    (reported,) = regular_wave_theory(sea.waves)
     assert "fifth order: 160" in reported
     assert list(wave_warnings(scene)) == []
     assert resolved_dimension(scene) == 2

@@ -18,7 +18,7 @@ from riser_soil.soil.rate import Rate
 from riser_soil.soil.remoulding import Remoulding
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
-from riser_soil.solve.newton import balance_held
+from riser_soil.solve.newton import balance_under_fixed_lines
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, soil_under, take
@@ -170,6 +170,6 @@ def test_steps_tell_their_time_and_held_lines_leave_the_soil_none() -> None:
     assert times == pytest.approx([0.15] * 10)
     used = strength_used(soil)
     settings = NewtonSettings(assembly.scene.solver.tolerance, 20, assembly.scales.force_floor)
-    balance_held(assembly.comm, assembly.begin(last), 1.5, settings, Timer.new())
+    balance_under_fixed_lines(assembly.comm, assembly.begin(last), 1.5, settings, Timer.new())
     assert used > 1.05
     assert strength_used(soil) == pytest.approx(used, rel=1e-6)

@@ -26,7 +26,7 @@ class Solver:
         self._ksp = PETSc.KSP().create(PETSc.COMM_SELF)
         self._ksp.setTolerances(rtol=TOLERANCE)
         levers = PETSc.Vec().createWithArray(np.full(len(K), levers), comm=PETSc.COMM_SELF)
-        self.kept.serve(self._ksp, levers)
+        self.kept.attach(self._ksp, levers)
 
     def solution(self, rows: Array, b: Array) -> Array:
         """Of A x = b, A with the pattern of dense rows (n, n) and their values."""

@@ -102,7 +102,7 @@ def test_searches_of_petsc_let_no_residual_grow(options: dict[str, Any]) -> None
 def test_the_part_of_a_step_that_petsc_takes_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """A tenth is the least that "bt" takes of what it has tried, and all of a step near the end."""
     parts = list[float]()
-    monkeypatch.setattr(StepIteration, "took", lambda iteration, part: parts.append(part))
+    monkeypatch.setattr(StepIteration, "note_step_length", lambda iteration, part: parts.append(part))
     solved(snes_linesearch_type="bt")
     assert parts[0] == pytest.approx(0.1)
     assert parts[-1] == pytest.approx(1.0)

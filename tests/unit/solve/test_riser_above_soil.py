@@ -57,7 +57,7 @@ def test_the_riser_moves_as_with_the_soil_which_stays(above: System) -> None:
     f[: above.line_rows] = np.random.default_rng(3).normal(size=above.line_rows)
     solver, ksp = RiserAboveSoil(above), PETSc.KSP().create(PETSc.COMM_SELF)
     assert solver.suits(f, 0.0)
-    solver.serve(ksp, above.matrix.mat.createVecLeft())
+    solver.attach(ksp, above.matrix.mat.createVecLeft())
     ksp.setOperators(above.matrix.mat)
     x, b = above.matrix.mat.createVecs()
     b.array_w[:] = f
