@@ -14,142 +14,56 @@ moment.
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import njit
-from riser_soil.core.part import State
+from riser_soil.riser.components import across, cross, dot, size
+from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
-from riser_soil.riser.section_forces import end_forces
+from riser_soil.riser.section_forces import ElementEnds, SectionForces
 from riser_soil.riser.sections import Elements
-from riser_soil.riser.spatial_directors import SpatialOrientation
-from riser_soil.riser.vectors import (
-    Vec,
-    add,
-    cross,
-    dot,
-    matmul,
-    norm,
-    padded,
-    padded_matrix,
-    scale,
-    sub,
-    transpose,
-    write,
-)
 
 
-class BendingMisfit(NamedTuple):
-    """The largest difference [N m] between an element's bending moment by its end rotations and by its end moments.
+def bending_misfits(line: Line, elements: Elements, sections: SectionForces) -> tuple[Array, Array]:
+    """Difference [N m] between each element's bending moment by its end rotations and by its end moments.
 
-    smooth: by the formula with shear; steep: by the trapezoidal rule, without elements at ends where the moment sets
-    in. Each with its element.
+    Of the section forces' states, each (..., ne): by the formula with shear, and by the trapezoidal rule, which is 0 in
+    elements at ends where the moment sets in.
     """
-
-    smooth: float
-    smooth_at: int
-    steep: float
-    steep_at: int
-
-
-def misfit(line: Line, elements: Elements, state: State, residual: Array) -> BendingMisfit:
-    """residual (ne, 2 ndof): from `section_forces.element_residual`, less its viscous share."""
-    trial = line.trial(state)
-    tangent, out = trial.turn.tangent, (np.empty(line.length.size), np.empty(line.length.size))
-    stiffness = *trial.turn.end_frames, *elements.flexibility, elements.larger_EI
-    on_ends = end_forces(line, state, residual)
-    _write_misfits(line.length, *on_ends, line.basis, tangent, _turns(line, state), *stiffness, *out)
-    i, j = (int(values.argmax()) for values in out)
-    return BendingMisfit(float(out[0][i]), i, float(out[1][j]), j)
+    ends = sections.ends
+    bending, shear = across(ends.moment, ends.tangent), cross(ends.force, ends.tangent)
+    k, slope = (_over_stiffness(vectors, elements, ends.frames) for vectors in (bending, shear))
+    L = line.length
+    plain = _turns(line, ends) - 0.5 * L * (k[:, 0] + k[:, 1])
+    corrected = plain + L * L / 12.0 * (slope[:, 1] - slope[:, 0])
+    smooth, steep = (elements.larger_EI / L * size(turn) for turn in (corrected, plain))
+    first, second = size(bending)
+    steep[..., 0] *= first[..., 0] > second[..., 0]
+    steep[..., -1] *= second[..., -1] > first[..., -1]
+    return smooth, steep
 
 
-@njit
-def _write_misfits(
-    length: Array,
-    force: Array,
-    moment: Array,
-    basis: Array,
-    tangent: Array,
-    turn: Array,
-    first: Array,
-    second: Array,
-    y: Array,
-    z: Array,
-    EI: Array,
-    smooth: Array,
-    steep: Array,
-) -> None:
-    """Write the misfits (ne,) of the elements by the formula with shear, and by the trapezoidal rule.
+def _over_stiffness(moment: Array, elements: Elements, frames: Array | None) -> Array:
+    """Curvature (r, 2, ..., ne) of a moment, in space about the section axes of two stiffnesses."""
+    y, z = elements.flexibility
+    if frames is None:
+        return np.asarray(moment * y)
+    return np.asarray(frames[1] * (dot(frames[1], moment) * y) + frames[2] * (dot(frames[2], moment) * z))
 
-    force, moment (ne, 2, 3): on the elements' ends; basis (3, d): axes of the tangents (ne, 2, d) there; turn: of
-    `_turns`; first, second: `end_frames`; y, z (ne,): 1/EI.
+
+def _turns(line: Line, ends: ElementEnds) -> Array:
+    """Rotation vectors (r, ..., ne) by which elements' ends turn against each other from the unstressed state on, less
+    the twist.
     """
-    ne, size = len(length), np.empty(2)
-    k, slope = np.empty((2, 3)), np.empty((2, 3))
-    for e in range(ne):
-        for end in range(2):
-            sign, t, F = 2.0 * end - 1.0, _in_space(basis, tangent[e, end]), padded(force[e, end])
-            M = scale(sign, padded(moment[e, end]))
-            bending, shear = sub(M, scale(dot(M, t), t)), scale(sign, cross(F, t))
-            size[end] = norm(bending)
-            for vector, out in ((bending, k[end]), (shear, slope[end])):
-                if len(first) == 0:
-                    write(scale(y[e], vector), out)
-                else:
-                    _write_over_stiffness(first[e] if end == 0 else second[e], vector, y[e], z[e], out)
-        L, trapezoidal, corrected = length[e], 0.0, 0.0
-        for i in range(3):
-            plain = turn[e, i] - 0.5 * L * (k[0, i] + k[1, i])
-            trapezoidal += plain**2
-            corrected += (plain + L * L / 12.0 * (slope[1, i] - slope[0, i])) ** 2
-        smooth[e], steep[e] = EI[e] / L * math.sqrt(corrected), EI[e] / L * math.sqrt(trapezoidal)
-        if (e == 0 and not size[0] > size[1]) or (e == ne - 1 and not size[1] > size[0]):
-            steep[e] = 0.0
-
-
-@njit
-def _in_space(basis: Array, a: Array) -> Vec:
-    """The vector, global axes, of components (d,) along those of a basis (3, d)."""
-    x = y = z = 0.0
-    for i in range(len(a)):
-        x, y, z = x + basis[0, i] * a[i], y + basis[1, i] * a[i], z + basis[2, i] * a[i]
-    return x, y, z
-
-
-@njit
-def _write_over_stiffness(frame: Array, moment: Vec, y: float, z: float, out: Array) -> None:
-    """Write the curvature of a moment, global axes, about the section axes of two stiffnesses."""
-    about_y = frame[0, 1] * moment[0] + frame[1, 1] * moment[1] + frame[2, 1] * moment[2]
-    about_z = frame[0, 2] * moment[0] + frame[1, 2] * moment[1] + frame[2, 2] * moment[2]
-    for i in range(3):
-        out[i] = frame[i, 1] * y * about_y + frame[i, 2] * z * about_z
-
-
-def _turns(line: Line, state: State) -> Array:
-    """Rotation vectors (ne, 3) by which elements' ends turn against each other from the unstressed state on, less the
-    twist.
-    """
-    turn = line.trial(state).turn
-    if not isinstance(turn, SpatialOrientation):
-        angle = turn.angle
-        return np.asarray((angle[1:] - angle[:-1])[:, None] * line.normal)
-    turns = np.empty((line.length.size, 3))
-    _write_turns(turn.R, turn.tangent, turns)
-    return turns
-
-
-@njit
-def _write_turns(R: Array, tangent: Array, out: Array) -> None:
-    """R (nn, 3, 3): frames of the nodes; tangent (ne, 2, 3): at the elements' ends."""
-    for e in range(len(out)):
-        Q = matmul(padded_matrix(R[e + 1]), transpose(padded_matrix(R[e])))
-        twice = Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1]
-        vector = scale(0.5, twice)
-        sine, cosine = norm(vector), 0.5 * (Q[0][0] + Q[1][1] + Q[2][2] - 1.0)
-        turn = scale(math.atan2(sine, cosine) / sine if sine > 0.0 else 1.0, vector)
-        middle = add(padded(tangent[e, 0]), padded(tangent[e, 1]))
-        middle = scale(1.0 / norm(middle), middle)
-        write(sub(turn, scale(dot(turn, middle), middle)), out[e])
+    if ends.frames is None or isinstance(line.frames, PlanarFrames):
+        return np.asarray(ends.turn[..., 1:] - ends.turn[..., :-1])[None]
+    first, second = np.moveaxis(ends.frames, 2, 0)
+    unstressed = np.swapaxes(line.frames.T0[:, 1], -1, -2) @ line.frames.T0[:, 0]
+    # The second end's axes as the first ones of the element, and the rotation Q from the first end's to these.
+    carried = [sum(second[i] * unstressed[:, i, j] for i in range(3)) for j in range(3)]
+    Q = [[sum(carried[j][i] * first[j][k] for j in range(3)) for k in range(3)] for i in range(3)]
+    vector = 0.5 * np.stack([Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1]])
+    sine, cosine = size(vector), 0.5 * (Q[0][0] + Q[1][1] + Q[2][2] - 1.0)
+    angle_over_sine = np.divide(np.arctan2(sine, cosine), sine, out=np.ones(sine.shape), where=sine > 0.0)
+    middle = ends.tangent[:, 0] + ends.tangent[:, 1]
+    return across(angle_over_sine * vector, np.asarray(middle / size(middle)))

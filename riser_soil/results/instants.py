@@ -17,11 +17,12 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, SectionSnapshot, mapped
-from riser_soil.results.riser_snapshot import code_snapshot, look_inside, snapshot_of
+from riser_soil.results.bending_misfit import bending_misfits
+from riser_soil.results.riser_snapshot import code_snapshot, snapshot_of
 from riser_soil.results.settlement_trough import sections_of
 from riser_soil.riser.hermite import axis_at
 from riser_soil.riser.line import Line
-from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.section_forces import SectionForces
 from riser_soil.solve.time_stepper import TimeStepper
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ class OnGround(NamedTuple):
 
 
 class Look(NamedTuple):
-    """Vectors that later steps leave as they are: inside, see `SectionForces.within`, and of each contact, see
+    """Vectors that later steps leave as they are: inside, see `SectionInput`, and of each contact, see
     `ContactResults.within`. pressure: change of that inside since the first stage began [Pa].
     """
 
@@ -74,7 +75,7 @@ class InstantReader:
         lay_sections: where the riser lies now; they are laid anyway as long as they are nowhere.
         """
         contacts, state = self._riser.contacts, stepper.now
-        inside = look_inside(self._riser, stepper)
+        inside = stepper.newton.accepted.section_input(self._riser.line, state)
         found = tuple(stepper.newton.accepted.contact_results(contact, state) for contact in contacts)
         if self._sections is not None and (lay_sections or not self._sections.laid):
             of_one = self._inside(inside[None])
@@ -103,8 +104,13 @@ class InstantReader:
             riser = riser._replace(code=code_snapshot(self._riser, self._checks, inside, pressed, pressure))
         return Instant(self._riser.line.arc, riser, self._touch(inside, found, ground))
 
+    def bending_misfits(self, looks: Sequence[Look]) -> tuple[Array, Array]:
+        """See there, each (nt, ne)."""
+        sections = self._inside(np.stack([each.inside for each in looks]))
+        return bending_misfits(self._riser.line, self._riser.elements, sections)
+
     def _inside(self, numbers: Array) -> SectionForces:
-        return SectionForces.within(numbers, self._riser.line.nodes)
+        return SectionForces(self._riser.line, self._riser.elements, numbers)
 
     def _found(self, numbers: Sequence[Array]) -> list[ContactResults]:
         """Results of each contact from packed numbers, a row an instant."""

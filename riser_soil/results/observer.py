@@ -42,7 +42,6 @@ from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import BoundaryStress, Plausibility, boundary_stress
 from riser_soil.results.record import Keeping, Recorder
-from riser_soil.results.riser_snapshot import elastic_residual
 from riser_soil.results.run_clock import RunClock
 from riser_soil.results.schedule import DueOutputs, Schedule
 from riser_soil.results.screen import Progress, print_summary
@@ -194,11 +193,6 @@ class Observer:
             looks = {name: reader.look(stepper, at_rest) for name, reader in self._instants.items()}
             hung = looked_at(self._hung, stepper.now)
             self._buffer.append(BufferedStep(record, due, looks, hung, stepper.now, soil))
-            if due.pictures:  # which cost more than to look closely
-                time_of_run = self._recorder.time_at(step.t)
-                for name, line in self._assembly.lines.items():
-                    elastic = elastic_residual(line, stepper)
-                    self._plausibility[name].look_closely(time_of_run, stepper.now, elastic)
             if last or len(self._buffer) >= self._buffer_size or self._recorder.flush_is_due:
                 self.flush()
         self._relaxed = 0
@@ -227,6 +221,7 @@ class Observer:
 
     def _check_plausibility(self, recorder: Recorder, steps: Sequence[BufferedStep], instants: Instants) -> None:
         """Check whether what was recorded is plausible, for the summary's warnings."""
+        self._check_bending(recorder, [each for each in steps if each.due.pictures])
         recorded = [n for n, each in enumerate(steps) if each.due.series]
         if not recorded:
             return
@@ -240,6 +235,13 @@ class Observer:
         if self._hung is not None:
             whole = recorder.summary.stages[-1]
             whole.implausible = tuple(self._hung.warnings(whole.hung))
+
+    def _check_bending(self, recorder: Recorder, steps: Sequence[BufferedStep]) -> None:
+        """Check whether the elements resolve the bending where pictures are made, which cost more."""
+        times = np.array([recorder.time_at(step.record.t) for step in steps])
+        for name, plausibility in self._plausibility.items() if steps else ():
+            misfits = self._instants[name].bending_misfits([step.looks[name] for step in steps])
+            plausibility.look_closely(times, *misfits)
 
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
         """Write the state after a recorded step, where it is due; collective. Arguments as of `CheckpointWriter`."""

@@ -11,14 +11,13 @@ import numpy as np
 
 from riser_soil.assembly import LineAssembly
 from riser_soil.checks.overload import over_a_length, surface_bearing
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot
-from riser_soil.results.bending_misfit import misfit
 from riser_soil.riser.section_forces import at_most
-from riser_soil.riser.sections import larger_beside
+from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.scene.stages import Stage
 
 if TYPE_CHECKING:
@@ -80,6 +79,11 @@ class LargestValue:
     def or_larger(self, values: Array, arcs: Array, t: float) -> LargestValue:
         at = int(values.argmax())
         return self.or_this(float(values[at]), arcs, at, t)
+
+    def or_largest(self, values: Array, arcs: Array, times: Array) -> LargestValue:
+        """The first of the largest values, each (n,) with its arc and time, where it is larger."""
+        at = int(values.argmax())
+        return self.or_this(float(values[at]), arcs, at, float(times[at]))
 
     def or_this(self, value: float, arcs: Array, at: int, t: float) -> LargestValue:
         """This value, at the place of a number, where it is larger."""
@@ -161,17 +165,13 @@ class Plausibility:
         outside = np.maximum(grid.low[:2] - at, at - grid.high[:2]).max()
         return np.array([max(0.0, float(np.nan_to_num(outside, nan=0.0)))])
 
-    def look_closely(self, t: float, state: State, elastic: Array) -> None:
-        """elastic: residual of the elements less its viscous share (ne, 2 ndof)."""
-        found = misfit(self._riser.line, self._riser.elements, state, elastic)
-        self._misfit = self._misfit.or_larger(np.array([found.smooth]), self._middle[[found.smooth_at]], t)
-        self._smooth = self._grown(self._smooth, found.smooth, found.smooth_at, t)
-        self._steep = self._grown(self._steep, found.steep, found.steep_at, t)
-
-    def _grown(self, worst: LargestValue, moment: float, e: int, t: float) -> LargestValue:
-        elements = self._riser.elements
-        small = moment * elements.length[e] < SMALL_TURN * max(elements.EI_y[e], elements.EI_z[e])
-        return worst if small else worst.or_larger(np.array([moment]), self._middle[[e]], t)
+    def look_closely(self, times: Array, smooth: Array, steep: Array) -> None:
+        """times (nt,): as above; smooth, steep (nt, ne): from `bending_misfits`."""
+        elements, rows = self._riser.elements, np.arange(times.size)
+        e, s = smooth.argmax(axis=1), steep.argmax(axis=1)
+        self._misfit = self._misfit.or_largest(smooth[rows, e], self._middle[e], times)
+        self._smooth = self._smooth.or_largest(_not_small(smooth[rows, e], e, elements), self._middle[e], times)
+        self._steep = self._steep.or_largest(_not_small(steep[rows, s], s, elements), self._middle[s], times)
 
     def bending(self) -> dict[str, float]:
         """The largest misfit of the elements' bending, an estimate of the moment's error [N.m]: its size, share of the
@@ -320,6 +320,12 @@ class Plausibility:
         self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit, self._pushed = found
         self._stretch, self._beyond, self._load = of_soil
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]
+
+
+def _not_small(moment: Array, e: IntArray, elements: Elements) -> Array:
+    """Misfits [N m] of elements e, each (n,); 0 where the turn of the element is too small to mind."""
+    small = moment * elements.length[e] < SMALL_TURN * elements.larger_EI[e]
+    return np.where(small, 0.0, moment)
 
 
 @njit

@@ -9,9 +9,8 @@ import numpy as np
 from riser_soil.assembly import LineAssembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import CodeSnapshot, ExtremeAlong, RiserSnapshot, WallSnapshot
-from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import add_at_ends, at_most, viscous_residual
-from riser_soil.riser.section_kernels import SectionForces, largest_between_nodes
+from riser_soil.riser.bending_peaks import largest_between_nodes
+from riser_soil.riser.section_forces import SectionForces, at_most
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.wall_stress import WallSections, bending_stress, hoop_and_radial_stress, largest_von_mises
 from riser_soil.solve.time_stepper import TimeStepper
@@ -20,20 +19,10 @@ if TYPE_CHECKING:
     from riser_soil.code_checks.line_checks import LineChecks
 
 
-def look_inside(riser: LineAssembly, stepper: TimeStepper) -> Array:
-    """Section forces at the accepted state, see `SectionForces.within`, and what the supports exert on the ends; on the
-    rank that holds the riser.
-    """
-    line, state, accepted = riser.line, stepper.now, stepper.newton.accepted
-    inside, nodal = accepted.section_forces(line, riser.elements, state), accepted.nodal_residual(line, state)
-    if nodal is not None:
-        add_at_ends(line, state, nodal, SectionForces.within(inside, line.nodes))
-    return inside
-
-
 def riser_snapshot(riser: LineAssembly, stepper: TimeStepper) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
-    inside = SectionForces.within(look_inside(riser, stepper), riser.line.nodes)
+    line, accepted = riser.line, stepper.newton.accepted
+    inside = SectionForces(line, riser.elements, accepted.section_input(line, stepper.now))
     pressed = [contact.force_per_length(stepper.now) for contact in riser.contacts]
     contact_force = np.sum([np.zeros(riser.line.nodes), *pressed], axis=0)
     return snapshot_of(riser, inside, contact_force, riser.pressure_change(stepper.now.t))
@@ -53,9 +42,9 @@ def snapshot_of(
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
         bend_utilisation=_bend_utilisation(riser, inside.curvature_beside),
-        least_tension=_extreme(inside, 0),
-        largest_moment=_extreme(inside, 1),
-        largest_curvature=_extreme(inside, 2),
+        least_tension=ExtremeAlong(*inside.least_tension),
+        largest_moment=ExtremeAlong(*inside.largest_moment),
+        largest_curvature=ExtremeAlong(*inside.largest_curvature),
         largest_bend_utilisation=most_used,
         tightest_radius=tightest,
         contact_force=contact_force,
@@ -71,18 +60,6 @@ def snapshot_of(
     )
 
 
-def elastic_residual(riser: LineAssembly, stepper: TimeStepper) -> Array:
-    """Residual of the elements (ne, 2 ndof) [N, N m], less what follows from strain rates."""
-    line, state = riser.line, stepper.now
-    residual = stepper.newton.accepted.element_residual(line, state)
-    viscous = viscous_residual(line, acting_on(line, stepper.system.model.parts), state)
-    return residual if viscous is None else residual - viscous
-
-
-def _extreme(inside: SectionForces, row: int) -> ExtremeAlong:
-    return ExtremeAlong(inside.extreme[..., row, 0][()], inside.extreme[..., row, 1][()])
-
-
 def _bend_utilisation(riser: LineAssembly, curvature: Array) -> Array | None:
     """curvature (..., ne, 2): at the elements' ends."""
     if not riser.elements.limits_bending:
@@ -92,16 +69,14 @@ def _bend_utilisation(riser: LineAssembly, curvature: Array) -> Array | None:
 
 def _tightest_bend(riser: LineAssembly, inside: SectionForces) -> tuple[ExtremeAlong, Array]:
     """The largest bend utilisation, and the radius [m] there; nan where no least radius is given."""
-    shape, allowed = inside.extreme.shape[:-2], riser.elements.min_bend_radius[:, None]
+    allowed = riser.elements.min_bend_radius
     if not riser.elements.limits_bending:
-        unknown = np.full(shape, np.nan)[()]
+        unknown = np.full(inside.effective_tension.shape[:-1], np.nan)[()]
         return ExtremeAlong(unknown, unknown), unknown
-    rows = (allowed * values for values in (inside.curvature_beside, inside.curvature_slope))
-    each = zip(*(row.reshape(-1, *allowed.shape[:1], 2) for row in rows), strict=True)
-    found = [largest_between_nodes(riser.line.arc, *row) for row in each]
-    used, arc, e = (np.reshape(values, shape) for values in zip(*found, strict=True))
-    radius = np.divide(allowed[e, 0], used, out=np.full(shape, np.inf), where=used > 0.0)
-    return ExtremeAlong(used[()], arc[()]), radius[()]
+    rows = (allowed[:, None] * values for values in (inside.curvature_beside, inside.curvature_slope))
+    used, arc, e = largest_between_nodes(riser.line.arc, *rows)
+    radius = np.divide(allowed[e], used, out=np.full(np.shape(used), np.inf), where=used > 0.0)
+    return ExtremeAlong(used, arc), radius[()]
 
 
 def _wall_tension(riser: LineAssembly, inside: SectionForces, pressure: Array | float) -> Array | None:

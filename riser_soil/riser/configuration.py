@@ -170,13 +170,6 @@ def write_turning(at: Configuration, F: Array, G: Array) -> None:
 
 
 @bound_by_type
-def write_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
-    """Write the maps (nn, 3, r) of what is conjugate to the rotation dofs to moments in global axes, see `Orientation`.
-    axes (3, r): `Line.turning_axes`.
-    """
-
-
-@bound_by_type
 def write_folded(at: Configuration, base: Base, out: IntArray) -> None:
     """Write what `line_kernels.write_folded` writes, of a step from the accepted configuration."""
 
@@ -268,16 +261,6 @@ def _write_turning_in_plane(at: PlanarConfiguration, F: Array, G: Array) -> None
 @write_turning.of(SpatialConfiguration)
 def _write_turning_in_space(at: SpatialConfiguration, F: Array, G: Array) -> None:
     spatial_directors.write_geometric(at.Rn, at.H, at.Theta, at.tangent, F, G)
-
-
-@write_moment_maps.of(PlanarConfiguration)
-def _write_moment_maps_in_plane(at: PlanarConfiguration, axes: Array, maps: Array) -> None:
-    directors.write_moment_maps(axes, maps)
-
-
-@write_moment_maps.of(SpatialConfiguration)
-def _write_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array) -> None:
-    spatial_directors.write_moment_maps(at.Rn, at.Theta, maps)
 
 
 @write_folded.of(PlanarConfiguration)

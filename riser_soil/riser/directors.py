@@ -13,7 +13,7 @@ t = R t0, t' = R (W x t0), t'' = R (A x t0 + W x (W x t0)).
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -63,11 +63,9 @@ class PlanarOrientation:
         write_motion(self.tangent, self.normal, v, a, rate, acceleration)
         return rate, acceleration
 
-    def moment_maps(self, axes: Array) -> Array:
-        """Maps (nn, 3, 1) of moments conjugate to angles to those in global axes; axes (3, 1): its normal."""
-        maps = np.empty((len(self.angle), 3, 1))
-        write_moment_maps(np.ascontiguousarray(axes), maps)
-        return maps
+    def moment_maps(self, axes: Array, nodes: Sequence[int] | slice = slice(None)) -> Array:
+        """Maps (n, 3, 1) of moments conjugate to angles to those in global axes; axes (3, 1): its normal."""
+        return np.tile(axes, (len(self.angle[nodes]), 1, 1))
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
@@ -190,14 +188,6 @@ def write_maps(
                 t, n = tangent[e, side, i], normal[e, side, i]
                 first[e, side, i, 0] = shift_v * n - w * t
                 second[e, side, i, 0] = (shift_a - w**2) * n - (alpha + 2.0 * shift_v * w) * t
-
-
-@njit
-def write_moment_maps(axes: Array, maps: Array) -> None:
-    """Write the axis (3, 1) of each node."""
-    for n in range(maps.shape[0]):
-        for i in range(3):
-            maps[n, i, 0] = axes[i, 0]
 
 
 @njit

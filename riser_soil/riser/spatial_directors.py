@@ -1,7 +1,7 @@
 """Node orientations (directors) of a line in space: a rotation matrix per node; see `directors`."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -68,11 +68,9 @@ class SpatialOrientation:
         write_motion(self.R, self.T0, v, a, rate, acceleration)
         return rate, acceleration
 
-    def moment_maps(self, axes: Array) -> Array:
-        """Maps (nn, 3, 3) of moments conjugate to the rotation increments to those in global axes; axes: unit."""
-        maps = np.empty_like(self.Rn)
-        write_moment_maps(self.Rn, self.Theta, maps)
-        return maps
+    def moment_maps(self, axes: Array, nodes: Sequence[int] | slice = slice(None)) -> Array:
+        """Maps H^-T (n, 3, 3) of moments conjugate to the rotation increments to those in global axes; axes: unit."""
+        return np.swapaxes(np.linalg.inv(self.H[nodes]), -1, -2)
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 3, 3) from the residual conjugate to the tangents, F (ne, 2, 3)."""
@@ -141,14 +139,6 @@ def orient(
     for e in range(T0.shape[0]):
         for side in range(2):
             store(matscale(-1.0, matmul(skew(vector(tangent[e, side])), matrix(H[e + side]))), P[e, side])
-
-
-@njit
-def write_moment_maps(Rn: Array, Theta: Array, maps: Array) -> None:
-    """H^-T, that is Rn T_R^-1."""
-    for n in range(len(Rn)):
-        inverse = transpose(rotations.left_tangent_inverse(vector(Theta[n])))
-        store(matmul(matrix(Rn[n]), inverse), maps[n])
 
 
 @njit

@@ -15,8 +15,7 @@ from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import overrides
-from riser_soil.riser.section_forces import BoundSections
-from riser_soil.riser.sections import Elements
+from riser_soil.riser.section_forces import section_input
 from riser_soil.solve.packed_line import PackedLine
 
 if TYPE_CHECKING:
@@ -34,7 +33,6 @@ class LineResults:
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._committed: Array | None = None  # the line's places, where its last step was solved by the loop
         self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # how they tell their results, and where to
-        self._sections: dict[Elements, BoundSections] = {}
         self._whole = not any(overrides(part, "viscous_forces") for part in packed.parts.parts)
 
     def forget(self) -> None:
@@ -55,15 +53,12 @@ class LineResults:
         """
         return self._element_residual() if self._has_solved(state) and not self._line.turns_axes else None
 
-    def section_forces(self, elements: Elements, state: State) -> Array | None:
-        """Section forces at an accepted state, see `SectionForces.within`; None where the loop has not solved for it.
+    def section_input(self, state: State, on_ends: Array | None) -> Array | None:
+        """Input of section forces at an accepted state, see `SectionInput`; None where the loop has not solved for it.
         """
         if not self._has_solved(state):
             return None
-        residual = self._element_residual()
-        if elements not in self._sections:
-            self._sections[elements] = BoundSections(self._line, elements, self._packed.at, residual, None)
-        return self._sections[elements].found()
+        return section_input(self._line, self._packed.at, self._element_residual(), on_ends=on_ends)
 
     def contact_results(self, contact: RiserContact) -> Array | None:
         """Results of a contact where the line was committed last; None where it has not been by the loop."""

@@ -20,7 +20,6 @@ from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LineParts, joined
 from riser_soil.riser.moving_nodes import MovingNodes
-from riser_soil.riser.sections import Elements
 from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
 from riser_soil.solve.line_results import LineResults
 from riser_soil.solve.line_system import Coupling, LineSystem
@@ -200,10 +199,10 @@ class LineSolver(StepResults):
         found = None if known is None else known.element_residual(state)
         return super().element_residual(line, state) if found is None else found
 
-    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
+    def section_input(self, line: Line, state: State) -> Array:
         known = self._results.get(line)
-        found = None if known is None else known.section_forces(elements, state)
-        return super().section_forces(line, elements, state) if found is None else found
+        found = None if known is None else known.section_input(state, self._on_ends(line, state))
+        return super().section_input(line, state) if found is None else found
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:
         known = self._results.get(contact.line)

@@ -10,8 +10,14 @@ from riser_soil.core.part import Energy, Forces, Part, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, LineParts, acting_on, joined
-from riser_soil.riser.section_forces import element_residual, nodal_residual, section_vector, viscous_residual
-from riser_soil.riser.sections import Elements
+from riser_soil.riser.section_forces import (
+    element_residual,
+    nodal_residual,
+    on_ends,
+    placed,
+    section_input,
+    viscous_residual,
+)
 from riser_soil.solve.inverse_mass import InverseMass
 from riser_soil.solve.step import Solution
 
@@ -62,15 +68,16 @@ class StepResults:
             self._acting[line] = joined(acting_on(line, self.system.model.parts))
         return element_residual(line, self._acting[line], state)
 
-    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
-        """Section forces of a line at an accepted state, see `SectionForces.within`; on the rank that has it."""
-        viscous = viscous_residual(line, acting_on(line, self.system.model.parts), state)
-        return section_vector(line, elements, state, self.element_residual(line, state), viscous)
+    def section_input(self, line: Line, state: State) -> Array:
+        """Input of a line's section forces at an accepted state, see `SectionInput`; on the rank that has it."""
+        acting = acting_on(line, self.system.model.parts)
+        residual, viscous = self.element_residual(line, state), viscous_residual(line, acting, state)
+        return section_input(line, placed(line, state), residual, viscous, self._on_ends(line, state))
+
+    def _on_ends(self, line: Line, state: State) -> Array | None:
+        """Loads on the nodes at the line's ends, see `SectionInput`."""
+        return on_ends(line, state, nodal_residual(line, acting_on(line, self.system.model.parts), state))
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:
         """Results of a contact at an accepted state, see `ContactResults.within`; on the rank that evaluates it."""
         return contact.results(state)
-
-    def nodal_residual(self, line: Line, state: State) -> Array | None:
-        """Residual (nn, ndof) at an accepted state of what acts on a line's nodes without holding them, if anything."""
-        return nodal_residual(line, acting_on(line, self.system.model.parts), state)

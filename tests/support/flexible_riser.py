@@ -16,8 +16,7 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import Catenary, catenary
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
-from riser_soil.riser.section_forces import element_residual, section_forces
-from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import solve
 
@@ -92,9 +91,7 @@ def elastica_H() -> tuple[float, float]:
 
     tangent = np.append(found.curve.tangent[:, 0], found.curve.tangent[-1:, 1], axis=0)
     theta = np.unwrap(np.arctan2(tangent[:, 2], tangent[:, 0]))
-    y = np.stack(
-        [*(found.curve.position[:, [0, 2]].T / LENGTH), theta, stiff * np.gradient(theta, e.arc / LENGTH)]
-    )
+    y = np.stack([*(found.curve.position[:, [0, 2]].T / LENGTH), theta, stiff * np.gradient(theta, e.arc / LENGTH)])
     forces = np.array([found.H, -found.tension[0] * abs(tangent[0, 2])]) / weight
     solution = solve_bvp(slopes, ends, e.arc / LENGTH, y, forces, tol=1e-10, max_nodes=200_000)
     assert solution.success, solution.message

@@ -18,8 +18,13 @@ from riser_soil.core.part import Energy, Forces, Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import MASS_ALONE, LineParts, acting_on
-from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
-from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.section_forces import (
+    SectionForces,
+    element_residual,
+    nodal_residual,
+    section_forces,
+    viscous_residual,
+)
 from riser_soil.solve.convergence import CONVERGED, StopLimits
 from riser_soil.solve.inverse_mass import mass_of
 from riser_soil.solve.line_solver import line_solver
@@ -41,6 +46,11 @@ IN_WATER = (
     sample_water.modules_floating,
     sample_water.floating,
     sample_water.floating_in_waves,
+)
+SECTION_FORCES = (
+    *("force", "moment", "about_axes", "effective_tension", "bending_moment", "moment_slope", "curvature"),
+    *("curvature_beside", "curvature_slope", "tangent", "position", "end_force", "end_moment"),
+    *("least_tension", "largest_moment", "largest_curvature"),
 )
 SCENES = Path(__file__).parent.parent / "scenes"
 
@@ -194,14 +204,15 @@ def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     line, elements, told = compiled.assembly.riser.line, compiled.assembly.riser.elements, compiled.newton.lines
     assert told is not None
     state, other = compiled.stepper.now, snes.stepper.now
-    reported = SectionForces.within(told.section_forces(line, elements, state), line.nodes)
+    found = SectionForces(line, elements, told.section_input(line, state))
     parts = acting_on(line, compiled.system.model.parts)
-    acting = element_residual(line, parts, state), viscous_residual(line, parts, state)
+    acting = [of(line, parts, state) for of in (element_residual, viscous_residual, nodal_residual)]
     own = section_forces(line, elements, state, *acting)
-    vector = snes.newton.accepted.section_forces(snes.assembly.riser.line, snes.assembly.riser.elements, other)
-    by_snes = SectionForces.within(vector, line.nodes)
-    for name, values in reported._asdict().items():
-        scale = np.abs(reported.moment if name == "end_moment" else values).max()  # pinned ends have none
+    other_line = snes.assembly.riser.line
+    by_snes = SectionForces(other_line, elements, snes.newton.accepted.section_input(other_line, other))
+    for name in SECTION_FORCES:
+        values = np.asarray(getattr(found, name))
+        scale = np.abs(found.moment if name == "end_moment" else values).max()  # pinned ends have none
         np.testing.assert_allclose(values, getattr(own, name), rtol=0.0, atol=1e-10 * scale, err_msg=name)
         np.testing.assert_allclose(values, getattr(by_snes, name), rtol=0.0, atol=1e-5 * scale, err_msg=name)
 

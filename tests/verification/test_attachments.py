@@ -20,8 +20,7 @@ from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import element_residual, section_forces
-from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take

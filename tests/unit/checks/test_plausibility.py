@@ -11,10 +11,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from riser_soil.core.part import State
 from riser_soil.core.snapshot import RiserSnapshot
-from riser_soil.results import plausibility as module
-from riser_soil.results.bending_misfit import BendingMisfit
 from riser_soil.results.plausibility import LargestValue, Plausibility
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -124,14 +121,13 @@ def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -
     ("smooth", "steep", "limit"), [(9.9, 19.9, ""), (10.1, 0.0, "limit 10%"), (0.0, 20.1, "limit 20%")]
 )
 def test_bending_is_blurred_from_a_tenth_of_the_largest_moment_where_it_is_smooth_and_a_fifth_beside_a_clamp(
-    smooth: float, steep: float, limit: str, monkeypatch: pytest.MonkeyPatch
+    smooth: float, steep: float, limit: str
 ) -> None:
-    monkeypatch.setattr(module, "misfit", lambda *found: BendingMisfit(smooth, 1, steep, 1))
     assembly = built(pulled(static()))
     seen = Plausibility(assembly.riser)
     seen.begin_stage(assembly.scene.stages[0])
     seen._largest = 100.0
-    seen.look_closely(1.0, State.at_rest(1.0, assembly.size), np.empty(0))
+    seen.look_closely(np.array([0.5, 1.0]), *(np.array([[0.0, 0.0], [0.0, worst]]) for worst in (smooth, steep)))
     assert [limit in warning for warning in seen.warnings()] == [True] * bool(limit)
 
 

@@ -7,25 +7,34 @@ import math
 import numpy as np
 import pytest
 
-from riser_soil.riser.section_kernels import largest_between_nodes, moment_slopes, top_of_cubic
+from riser_soil.core.arrays import Array
+from riser_soil.riser.bending_peaks import largest_between_nodes, top_of_cubic
+from riser_soil.riser.components import cross
+from riser_soil.riser.section_forces import moment_slopes
 
 
-@pytest.mark.parametrize("top", [0.0, 0.2, 0.5, 1.0])
-def test_top_of_a_parabola(top: float) -> None:
-    value, at = top_of_cubic(5.0 - 3.0 * top**2, 5.0 - 3.0 * (1.0 - top) ** 2, 6.0 * top, -6.0 * (1.0 - top))
-    assert (value, at) == (pytest.approx(5.0), pytest.approx(top))
+def top(first: float, second: float, rise: float, fall: float) -> tuple[float, float]:
+    """Of the cubic in one element, as of a line that is one."""
+    value, at, _ = largest_between_nodes(np.arange(2.0), np.array([[first, second]]), np.array([[rise, fall]]))
+    return float(value), float(at)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.2, 0.5, 1.0])
+def test_top_of_a_parabola(place: float) -> None:
+    ends = 5.0 - 3.0 * place**2, 5.0 - 3.0 * (1.0 - place) ** 2
+    assert top(*ends, 6.0 * place, -6.0 * (1.0 - place)) == (pytest.approx(5.0), pytest.approx(place))
 
 
 def test_top_of_a_cubic() -> None:
     """x (1 - x) (2 - x): at 1 - 1/sqrt(3), 2/(3 sqrt(3)) high."""
-    value, at = top_of_cubic(0.0, 0.0, 2.0, -1.0)
+    value, at = top_of_cubic(*np.array([[0.0], [0.0], [2.0], [-1.0]]))
     assert (value, at) == (pytest.approx(2.0 / 27.0**0.5), pytest.approx(1.0 - 1.0 / math.sqrt(3.0)))
 
 
 @pytest.mark.parametrize(("rise", "fall"), [(3.0, 3.0), (-3.0, 3.0), (-3.0, -3.0), (0.0, -1.0), (1.0, 0.0)])
 def test_without_a_rise_and_a_fall_the_larger_end_counts(rise: float, fall: float) -> None:
-    assert top_of_cubic(1.0, 2.0, rise, fall) == (2.0, 1.0)
-    assert top_of_cubic(2.0, 1.0, rise, fall) == (2.0, 0.0)
+    assert top(1.0, 2.0, rise, fall) == (2.0, 1.0)
+    assert top(2.0, 1.0, rise, fall) == (2.0, 0.0)
 
 
 def test_of_equal_values_the_first_counts_whatever_rounds() -> None:
@@ -55,18 +64,31 @@ def test_where_the_curvature_jumps_the_larger_side_counts() -> None:
     assert largest_between_nodes(arc, values, np.full((2, 2), -5.0)) == (8.0, 1.0, 1)
 
 
+def test_of_many_states_each_is_as_it_is_alone() -> None:
+    """Whatever the number of states: cubics, corners and ties at once."""
+    rng = np.random.default_rng(3)
+    arc, values, slope = np.arange(6.0), rng.uniform(0.0, 9.0, (40, 5, 2)), rng.normal(size=(40, 5, 2))
+    values[::4] = 7.0
+    together = largest_between_nodes(arc, values, slope)
+    for n in range(40):
+        assert largest_between_nodes(arc, values[n], slope[n]) == tuple(each[n] for each in together)
+    assert len(set(together[2].tolist())) == 5
+
+
+def slopes(moment: Array, force: Array) -> Array:
+    """(2,), of moments (2, 3) at both ends of an element along x with a force."""
+    tangent = np.array([1.0, 0.0, 0.0])
+    shear = np.tile(cross(force, tangent)[:, None, None], (1, 2, 1))
+    return moment_slopes(np.ascontiguousarray(moment.T), shear)[:, 0]
+
+
 def test_slopes_follow_from_the_shear_across_the_moment() -> None:
     """A cantilever along x held at 0 and pushed by F at its end s = 2: M = (2 - s) e x F, |M|' = -|F across e|."""
-    force, tangent = np.array([3.0, -4.0, 12.0]), np.array([1.0, 0.0, 0.0])
-    moment = np.array([(2.0 - s) * np.cross(tangent, force) for s in (0.0, 1.0)])
-    out = np.empty((1, 2))
-    moment_slopes(moment, np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
-    assert out == pytest.approx(-math.hypot(4.0, 12.0))
+    force, sheared = np.array([3.0, -4.0, 12.0]), math.hypot(4.0, 12.0)
+    moment = np.array([(2.0 - s) * np.cross([1.0, 0.0, 0.0], force) for s in (0.0, 1.0)])
+    assert slopes(moment, force) == pytest.approx(-sheared)
     round_off = np.array([1e-13, -1e-13, 2e-13])
     hinged = np.array([round_off, moment[0]])  # at the start, and then at the end
-    moment_slopes(hinged, np.tile(-force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
-    assert out == pytest.approx(math.hypot(4.0, 12.0))
-    moment_slopes(hinged[::-1], np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
-    assert out == pytest.approx(-math.hypot(4.0, 12.0))
-    moment_slopes(0.0 * moment, np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
-    assert not out.any()
+    assert slopes(hinged, -force) == pytest.approx(sheared)
+    assert slopes(hinged[::-1], force) == pytest.approx(-sheared)
+    assert not slopes(0.0 * moment, force).any()

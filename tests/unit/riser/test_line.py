@@ -12,11 +12,11 @@ from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
+from riser_soil.riser.bending_peaks import largest_between_nodes
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.loads import AppliedLoad, PointLoads
-from riser_soil.riser.section_forces import add_at_ends, element_residual, section_forces
-from riser_soil.riser.section_kernels import largest_between_nodes
+from riser_soil.riser.section_forces import element_residual, section_forces
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from tests.support.dense_chain import solve
@@ -130,10 +130,9 @@ def test_cantilever_reactions_balance_weight_and_tip_load(dimension: int) -> Non
     beam = Beam(line, e)
     solve(line, [beam, loads])
     state = State.at_rest(1.0, line.size)
-    at_tip = section_forces(line, e, state, element_residual(line, [beam, loads], state))
     on_nodes = loads.nodal_forces(state)
     assert on_nodes is not None
-    add_at_ends(line, state, on_nodes, at_tip)
+    at_tip = section_forces(line, e, state, element_residual(line, [beam, loads], state), nodal=on_nodes)
     start, end = at_tip.end_force
     weight = np.array([0.0, 0.0, -600.0])
     assert start == pytest.approx(-weight - 2.0 * tip, abs=1e-6)

@@ -16,6 +16,7 @@ from riser_soil.core.bound import in_turn
 from riser_soil.core.part import Energy, State
 from riser_soil.core.system import System, Timer
 from riser_soil.riser.part_kernels import Border
+from riser_soil.riser.section_forces import SectionForces
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.bordered_band import band_of
 from riser_soil.solve.joint_border import JointBorder
@@ -119,10 +120,12 @@ def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> 
         place, wanted = mine.line.positions3(found.before), other.line.positions3(expected.before)
         np.testing.assert_allclose(place, wanted, rtol=0.0, atol=1e-8)
         sections, by_snes = (
-            stage.newton.accepted.section_forces(own.line, own.elements, stage.stepper.now)
+            SectionForces(own.line, own.elements, stage.newton.accepted.section_input(own.line, stage.stepper.now))
             for stage, own in ((compiled, mine), (snes, other))
         )
-        np.testing.assert_allclose(sections, by_snes, rtol=0.0, atol=1e-5 * np.abs(by_snes).max())
+        for name in ("force", "moment", "end_force"):
+            values, wanted = getattr(sections, name), getattr(by_snes, name)
+            np.testing.assert_allclose(values, wanted, rtol=0.0, atol=1e-5 * np.abs(wanted).max())
     assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
     for name, work in snes._taken.turned.items():
         mine_turned = [*vars(compiled._taken.turned[name]).values()]
