@@ -13,7 +13,7 @@ share of the bar is
 Differences are those of the extremes and of their course in time together (`extreme_differences.difference`). The error
 of sampling between the run's nodes is the mesh's, between its steps the time step's, and so is an alternation from step
 to step around an extreme: short waves that the steps do not resolve (`results.peaks`). Largest moments and curvatures
-are evaluated between nodes (`riser.section_kernels`). Of two comparison runs in one source, one coarser than the other,
+are evaluated between nodes (`riser.bending_peaks`). Of two comparison runs in one source, one coarser than the other,
 the larger share counts. The bar is the root of the sum of the squares of shares. With these factors the calibration
 (`benchmarks.error_bars`) finds the true error inside at least 95 % of the bars.
 

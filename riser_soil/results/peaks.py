@@ -2,7 +2,7 @@
 
 An extreme at the end of a step, or a least tension at a node, misses the peak beside it by up to an eighth of the
 second difference there. The vertex of the parabola through the sample and its two neighbours misses it by higher
-orders. Largest moments and curvatures are told between nodes already (`riser.section_kernels`).
+orders. Largest moments and curvatures are evaluated between nodes already (`riser.bending_peaks`).
 
 Of a dynamic stage there are extremes in even windows of its time, too. Two runs of a scene may agree in an extreme by
 chance; they hardly do so in several windows.

@@ -206,8 +206,8 @@ def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     state, other = compiled.stepper.now, snes.stepper.now
     found = SectionForces(line, elements, told.section_input(line, state))
     parts = acting_on(line, compiled.system.model.parts)
-    acting = [of(line, parts, state) for of in (element_residual, viscous_residual, nodal_residual)]
-    own = section_forces(line, elements, state, *acting)
+    acting = viscous_residual(line, parts, state), nodal_residual(line, parts, state)
+    own = section_forces(line, elements, state, element_residual(line, parts, state), *acting)
     other_line = snes.assembly.riser.line
     by_snes = SectionForces(other_line, elements, snes.newton.accepted.section_input(other_line, other))
     for name in SECTION_FORCES:

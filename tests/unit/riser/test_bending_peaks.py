@@ -13,10 +13,16 @@ from riser_soil.riser.components import cross
 from riser_soil.riser.section_forces import moment_slopes
 
 
+def largest(arc: Array, values: Array, slope: Array) -> tuple[float, float, int]:
+    """Largest value, its arc length and element, of one state."""
+    value, at, element = largest_between_nodes(arc, values, slope)
+    return float(value), float(at), int(element)
+
+
 def top(first: float, second: float, rise: float, fall: float) -> tuple[float, float]:
     """Of the cubic in one element, as of a line that is one."""
-    value, at, _ = largest_between_nodes(np.arange(2.0), np.array([[first, second]]), np.array([[rise, fall]]))
-    return float(value), float(at)
+    value, at, _ = largest(np.arange(2.0), np.array([[first, second]]), np.array([[rise, fall]]))
+    return value, at
 
 
 @pytest.mark.parametrize("place", [0.0, 0.2, 0.5, 1.0])
@@ -40,15 +46,15 @@ def test_without_a_rise_and_a_fall_the_larger_end_counts(rise: float, fall: floa
 def test_of_equal_values_the_first_counts_whatever_rounds() -> None:
     arc, values = np.arange(4.0), np.full((3, 2), 7.0)
     values[1:] += 7e-15
-    assert largest_between_nodes(arc, values, np.zeros((3, 2))) == (7.0, 0.0, 0)
+    assert largest(arc, values, np.zeros((3, 2))) == (7.0, 0.0, 0)
 
 
 def test_a_cubic_does_not_tower_over_values_that_hardly_bend() -> None:
     """Second differences of 0.2 allow for twice 0.2/8 above the larger end; an element alone for all that it has."""
     values = np.array([[9.8, 10.0], [10.0, 10.0], [10.0, 9.8]])
     slope = np.array([[0.2, 0.2], [80.0, -80.0], [-0.2, -0.2]])
-    assert largest_between_nodes(np.arange(4.0), values, slope) == (pytest.approx(10.05), pytest.approx(1.5), 1)
-    alone = largest_between_nodes(np.arange(2.0), values[1:2], slope[1:2])
+    assert largest(np.arange(4.0), values, slope) == (pytest.approx(10.05), pytest.approx(1.5), 1)
+    alone = largest(np.arange(2.0), values[1:2], slope[1:2])
     assert alone == (pytest.approx(30.0), pytest.approx(0.5), 0)
 
 
@@ -56,12 +62,12 @@ def test_a_corner_is_not_overshot() -> None:
     """Steep up to a node, gently down from it."""
     arc, values = np.array([0.0, 1.0, 3.0, 4.0]), np.array([[0.0, 10.0], [10.0, 9.0], [9.0, 8.5]])
     slope = np.array([[10.0, 10.0], [-0.5, -0.5], [-0.5, -0.5]])
-    assert largest_between_nodes(arc, values, slope) == (10.0, 1.0, 0)
+    assert largest(arc, values, slope) == (10.0, 1.0, 0)
 
 
 def test_where_the_curvature_jumps_the_larger_side_counts() -> None:
     arc, values = np.array([0.0, 1.0, 2.0]), np.array([[4.0, 2.0], [8.0, 0.0]])
-    assert largest_between_nodes(arc, values, np.full((2, 2), -5.0)) == (8.0, 1.0, 1)
+    assert largest(arc, values, np.full((2, 2), -5.0)) == (8.0, 1.0, 1)
 
 
 def test_of_many_states_each_is_as_it_is_alone() -> None:
@@ -71,7 +77,7 @@ def test_of_many_states_each_is_as_it_is_alone() -> None:
     values[::4] = 7.0
     together = largest_between_nodes(arc, values, slope)
     for n in range(40):
-        assert largest_between_nodes(arc, values[n], slope[n]) == tuple(each[n] for each in together)
+        assert largest(arc, values[n], slope[n]) == tuple(each[n] for each in together)
     assert len(set(together[2].tolist())) == 5
 
 

@@ -12,14 +12,21 @@ from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.bending_peaks import largest_between_nodes
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.loads import AppliedLoad, PointLoads
-from riser_soil.riser.section_forces import element_residual, section_forces
+from riser_soil.riser.section_forces import (
+    SectionForces,
+    element_residual,
+    placed,
+    section_forces,
+    section_input,
+    viscous_residual,
+)
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from tests.support.dense_chain import solve
+from tests.support.line_solver import SECTION_FORCES
 from tests.support.said import line_with, telling
 from tests.support.sample_line import DIRECTION, START, sample
 
@@ -171,6 +178,26 @@ def test_small_deflections_give_textbook_section_forces() -> None:
 
 
 @both_dimensions
+def test_section_forces_of_many_states_are_those_of_each(dimension: int) -> None:
+    """To the last bit, so that files do not depend on how many steps are written together."""
+    made = sample(dimension)
+    parts = [made.beam(), made.damping()]
+    rows = []
+    for n in range(5):
+        state = made.state(n, size=0.02)
+        residual, viscous = element_residual(made.line, parts, state), viscous_residual(made.line, parts, state)
+        rows.append(section_input(made.line, placed(made.line, state), residual, viscous))
+    together = SectionForces(made.line, made.elements, np.stack(rows))
+    for name in SECTION_FORCES:
+        for n, row in enumerate(rows):
+            of_one = np.asarray(getattr(SectionForces(made.line, made.elements, row), name))
+            of_many = np.asarray(getattr(together, name))
+            expected = of_many[:, n] if name.startswith(("least", "largest")) else of_many[n]
+            np.testing.assert_array_equal(of_one, expected, err_msg=name)
+        assert np.ptp(of_many) > 0.0, name
+
+
+@both_dimensions
 def test_largest_moment_under_an_even_load_lies_between_nodes(dimension: int) -> None:
     """A beam on two supports, w = 50 N/m: w L²/8 in the middle of 12 m, between nodes at 4.8 and 7.2 m."""
     line, e = bar(dimension, End(True), End(True), kind=replace(BAR, EI_y=2.0e6, EI_z=2.0e6), count=5)
@@ -179,11 +206,10 @@ def test_largest_moment_under_an_even_load_lies_between_nodes(dimension: int) ->
     state = State.at_rest(1.0, line.size)
     found = section_forces(line, e, state, element_residual(line, [beam], state))
     middle = 50.0 * 12.0**2 / 8.0
-    at_nodes = np.stack([found.bending_moment[:-1], found.bending_moment[1:]], axis=1)
-    assert at_nodes.max() == pytest.approx(0.96 * middle, rel=1e-3)
-    moment, arc, element = largest_between_nodes(line.arc, at_nodes, found.moment_slope)
-    assert (moment, arc, element) == (pytest.approx(middle, rel=1e-3), pytest.approx(6.0, abs=1e-3), 2)
-    curvature, arc, _ = largest_between_nodes(line.arc, found.curvature_beside, found.curvature_slope)
+    assert found.bending_moment.max() == pytest.approx(0.96 * middle, rel=1e-3)
+    moment, arc = map(float, found.largest_moment)
+    assert (moment, arc) == (pytest.approx(middle, rel=1e-3), pytest.approx(6.0, abs=1e-3))
+    curvature, arc = map(float, found.largest_curvature)
     assert (curvature, arc) == (pytest.approx(middle / 2.0e6, rel=1e-3), pytest.approx(6.0, abs=1e-3))
 
 
@@ -197,8 +223,7 @@ def test_largest_moment_under_a_point_load_is_not_overshot(dimension: int) -> No
     solve(line, parts)
     state = State.at_rest(1.0, line.size)
     found = section_forces(line, e, state, element_residual(line, parts, state))
-    at_nodes = np.stack([found.bending_moment[:-1], found.bending_moment[1:]], axis=1)
-    moment, arc, _ = largest_between_nodes(line.arc, at_nodes, found.moment_slope)
+    moment, arc = map(float, found.largest_moment)
     assert (moment, arc) == (found.bending_moment[2], pytest.approx(4.8))
     assert moment == pytest.approx(50.0 * 4.8 * 7.2 / 12.0, rel=1e-3)
 
