@@ -52,7 +52,7 @@ def _exceeds(value: Array, other: Array) -> BoolArray:
     return np.asarray(value > other + TIE * np.abs(other))
 
 
-def _largest_bend(length: Array, first: Array, second: Array, at: tuple[IntArray, IntArray]) -> Array:
+def _largest_bend(length: Array, first: Array, second: Array, at: tuple[IntArray, ...]) -> Array:
     """The larger second derivative by the values of an element and those beside it, of elements `at` (k,): their row
     and number; inf of an element that is alone.
     """
