@@ -84,7 +84,10 @@ class RiserContact(LinePart, ABC):
 
     def contact_intervals(self, state: State) -> list[ContactInterval]:
         """Intervals of contact along the riser, from its start on."""
-        return contact_intervals(*self.along, *self.contact_along_line(state)) if self.active else []
+        if not self.active:
+            return []
+        clearance, force = self.contact_along_line(state)
+        return contact_intervals(*self.along, clearance[None], force[None])[0]
 
 
 class ContactResults(NamedTuple):

@@ -29,17 +29,16 @@ contact. All weights and means are continuous in the forces, and so is d: a stat
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray, as_list
-from riser_soil.core.compiled import njit
 
 DEEP = 96.0  # rises of the force within a depth of 1: 43 l on stiff springs, of which f0 is read from the far half
 LEAST = 60.0  # stations within a depth of 1 in a layer that the mesh doesn't resolve
-FADING = 8  # power of the depth with which stations count in f0: 1e-8 at the peak
+AT_ONCE = 1 << 13  # forces whose arrays stay in a processor's cache
+FADING = 3  # times that the depth is squared for the weight of stations in f0: 1e-8 at the peak
 
 
 class PointsAlong(NamedTuple):
@@ -61,155 +60,164 @@ class ContactInterval(NamedTuple):
     last: int
 
 
+class Stretches(NamedTuple):
+    """Stretches that touch, each (k,): the state, counted along many, and the first and last points."""
+
+    row: IntArray
+    first: IntArray
+    last: IntArray
+
+
 def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float:
     """Arc length [m] of the touchdown point towards the riser's end; nan where nothing touches.
 
     Where the riser's end itself touches, but not all of the riser, it is the touchdown point next to the start.
     Arguments as in `contact_intervals`.
     """
-    found = contact_intervals(arc, share, clearance, force)
+    (found,) = contact_intervals(arc, share, clearance[None], force[None])
     if not found:
         return float("nan")
     last, n = found[-1], len(arc)
     return last.start if last.last == n - 1 and last.first > 0 else last.end
 
 
-def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
-    """Intervals of contact along the riser, from its start on.
+def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[list[ContactInterval]]:
+    """Intervals of contact along the riser, from its start on, at each of nt states.
 
     arc (n,): of points along the riser from its start, growing [m]. share (n,): of its length [m] by quadrature.
-    clearance (n,): gap less that at which the force begins [m]. force (n,): per length [N/m], > 0 where it pushes.
-    A gap that is no higher than the deepest penetration does not end a stretch: just behind the touchdown point a stiff
-    bed lifts the riser off a little.
+    clearance (nt, n): gap less that at which the force begins [m]. force (nt, n): per length [N/m], > 0 where it
+    pushes. A gap that is no higher than the deepest penetration does not end a stretch: just behind the touchdown point
+    a stiff bed lifts the riser off a little.
     """
-    rising = force.argsort()
-    return [
-        ContactInterval(*_ends_of(first, last, arc, share, clearance, force, rising), first, last)
-        for first, last in as_list(_runs(clearance, force))
-    ]
+    found, whole = touching(clearance, force), float(np.cumsum(share)[-1])
+    start, end = np.zeros(found.row.size), np.full(found.row.size, whole)
+    if (at := np.flatnonzero(found.last < arc.size - 1)).size:
+        own = Stretches(*(each[at] for each in found))
+        end[at] = _leaving(arc, share, clearance, force, own)
+    if (at := np.flatnonzero(found.first > 0)).size:
+        own = Stretches(found.row[at], *(arc.size - 1 - each[at] for each in (found.last, found.first)))
+        backwards = (whole - arc[::-1], share[::-1], clearance[:, ::-1], force[:, ::-1])
+        start[at] = whole - _leaving(*backwards, own)
+    intervals: list[list[ContactInterval]] = [[] for _ in clearance]
+    for row, *ends in zip(as_list(found.row), *map(as_list, (start, end, found.first, found.last)), strict=True):
+        intervals[row].append(ContactInterval(*ends))
+    return intervals
 
 
-def _ends_of(
-    first: int, last: int, arc: Array, share: Array, clearance: Array, force: Array, rising: IntArray
-) -> tuple[float, float]:
-    """Where what touches begins and ends [m], from its first to its last point; rising (n,): all points by force.
+def touching(clearance: Array, force: Array) -> Stretches:
+    """What touches, small gaps within included; none that presses nowhere beside others. Each (nt, n)."""
+    rows, points = np.nonzero((clearance < 0.0) | (force != 0.0))
+    if not rows.size:
+        return Stretches(rows, rows, rows)
+    begins = np.concatenate([[True], rows[1:] != rows[:-1]])
+    gaps = np.flatnonzero(~begins & (points != np.roll(points, 1) + 1))
+    begins[gaps] = _highest(clearance, rows[gaps], points[gaps - 1], points[gaps]) > -clearance[rows[gaps]].min(axis=1)
+    first = np.flatnonzero(begins)
+    found = Stretches(rows[first], points[first], points[np.append(first[1:], rows.size) - 1])
+    presses = np.logical_or.reduceat(force[rows, points] != 0.0, first)
+    somewhere = np.zeros(len(clearance), dtype=bool)
+    somewhere[found.row[presses]] = True
+    return Stretches(*(each[presses | ~somewhere[found.row]] for each in found))
+
+
+def _highest(clearance: Array, rows: IntArray, before: IntArray, behind: IntArray) -> Array:
+    """Largest clearances (k,) between the points before gaps and behind them, these included."""
+    first = rows * clearance.shape[1]
+    bounds = np.stack([first + before, first + behind + 1], axis=1).ravel()
+    return np.maximum.reduceat(np.append(clearance, 0.0), bounds)[::2] if rows.size else np.empty(0)
+
+
+def _leaving(arc: Array, share: Array, clearance: Array, force: Array, found: Stretches) -> Array:
+    """Arc lengths (k,) [m] at which stretches end, by the forces in them."""
+    points = int(found.last.max()) + 1  # beyond them nothing is pushed
+    some = max(1, AT_ONCE // points)
+    parts = [Stretches(*(each[k : k + some] for each in found)) for k in range(0, found.row.size, some)]
+    d, middle = np.concatenate([_rigid_end(arc, share, force[:, :points], part) for part in parts], axis=1)
+    end = _edge(arc, clearance, found)
+    return np.where(np.isnan(middle), end, np.minimum(np.fmax(d, middle), end))
+
+
+def _rigid_end(arc: Array, share: Array, force: Array, found: Stretches) -> Array:
+    """End d of the rigid contact, and the middle of the forces (2, k) [m], which is nan where nothing presses.
+
+    force (nt, m): at the first m points, among them all of the stretches.
     """
-    n, whole = arc.size, float(share.sum())
-    f, start, end = np.zeros(n), 0.0, whole
-    f[first : last + 1] = force[first : last + 1]
-    if first > 0:
-        behind = tuple(np.ascontiguousarray(each[::-1]) for each in (whole - arc, share, clearance, f))
-        start = whole - _leaving(*behind, n - 1 - rising, n - 1 - first)
-    if last < n - 1:
-        end = _leaving(arc, share, clearance, f, rising, last)
-    return start, end
+    m = force.shape[1]
+    number, own = np.arange(m), force[found.row]
+    pushing = np.where((number >= found.first[:, None]) & (number <= found.last[:, None]), own, 0.0)
+    near, weight, middle = _layer(arc[:m], share[:m], pushing)
+    near *= number <= found.last[:, None]
+    f0 = _resting(weight, pushing, own.argsort(axis=1, kind="stable"))
+    return np.stack([_equivalent(arc, share, near, pushing, f0, found.last), middle])
 
 
-@njit
-def _runs(clearance: Array, force: Array) -> IntArray:
-    """First and last points (k, 2) of what touches, small gaps within included; none that presses nowhere beside
-    others.
+def _edge(arc: Array, clearance: Array, found: Stretches) -> Array:
+    """Arc lengths (k,) at which the clearance vanishes beyond the last point in contact."""
+    row, last = found.row, found.last
+    behind = np.minimum(last + 1, arc.size - 1)
+    here, there = clearance[row, last], clearance[row, behind]
+    leaves = (here < 0.0) & np.isfinite(there) & (behind > last)
+    share = np.divide(here, here - there, out=np.zeros(here.shape), where=leaves)
+    return np.asarray(arc[last] + (arc[behind] - arc[last]) * share)
+
+
+def _layer(arc: Array, share: Array, force: Array) -> tuple[Array, Array, Array]:
+    """How far points (k, n) belong to the touchdown layer, their weight in f0, and the middle of the forces (k,) [m],
+    which is nan where nothing presses. Depths are counted from the free side; see the module's text.
     """
-    runs, k, pressing, pushed = np.empty((clearance.size, 2), dtype=np.int64), 0, 0, False
-    small, highest = -math.inf, 0.0
-    for gap in clearance:
-        small = max(small, -gap)
-    for i in range(clearance.size):
-        if k > 0:
-            highest = max(highest, clearance[i])
-        if clearance[i] < 0.0 or force[i] != 0.0:
-            if k == 0 or (i > runs[k - 1, 1] + 1 and highest > small):
-                runs[k, 0], pushed = i, False
-                k += 1
-            runs[k - 1, 1], highest = i, clearance[i]
-            if force[i] != 0.0 and not pushed:  # those that press come first, in their order
-                runs[pressing, 0], pushed = runs[k - 1, 0], True
-                pressing += 1
-            if pushed:
-                runs[pressing - 1, 1] = i
-    return runs[: pressing if pressing > 0 else k]
+    pressing = np.maximum(force, 0.0)
+    own = share * pressing
+    total, moment = _sum(own), _sum(arc * own)
+    own, step = own[:, ::-1], share[::-1]
+    largest = np.maximum.accumulate(pressing[:, ::-1], axis=1)
+    m = np.where(largest > 0.0, largest, 1.0)
+    B, counted = (step * largest).cumsum(axis=1) / m, largest.cumsum(axis=1) / (LEAST * m)
+    A = 4.0 * np.maximum(B - (step * largest**2).cumsum(axis=1) / m**2, 0.0)
+    depth = np.minimum(np.divide(B, DEEP * A, out=np.full(A.shape, np.inf), where=A > 0.0), counted)
+    presses = total > 0.0
+    outside = (own.cumsum(axis=1) - 0.5 * own) / np.where(presses, total, 1.0)[:, None]
+    depth = np.maximum.accumulate(np.maximum(depth, 1.5 * outside), axis=1)[:, ::-1]
+    near = 1.0 - _rise(4.0 * depth - 3.0)
+    weight = np.minimum(depth, 1.0)
+    for _ in range(FADING):
+        weight *= weight
+    weight *= share * near
+    return near, weight, np.divide(moment, total, out=np.full(total.shape, np.nan), where=presses)
 
 
-@njit
-def _leaving(arc: Array, share: Array, clearance: Array, force: Array, rising: IntArray, last: int) -> float:
-    """Arc length [m] at which the stretch whose last point is given ends; rising: its points, among others, by their
-    forces.
-    """
-    end = _edge(arc, clearance, last)
-    near, weight, middle = _layer(arc, share, force)
-    if math.isnan(middle):
-        return end
-    d = _equivalent(arc, share, near, force, _resting(weight, force, rising))
-    return min(max(d, middle), end)
-
-
-@njit
-def _edge(arc: Array, clearance: Array, last: int) -> float:
-    """Arc length at which the clearance vanishes beyond the last point in contact."""
-    if last == len(arc) - 1 or clearance[last] >= 0.0 or not math.isfinite(clearance[last + 1]):
-        return arc[last]
-    here, there = clearance[last], clearance[last + 1]
-    return arc[last] + (arc[last + 1] - arc[last]) * here / (here - there)
-
-
-@njit
-def _layer(arc: Array, share: Array, force: Array) -> tuple[Array, Array, float]:
-    """How far points (n,) belong to the touchdown layer, their weight in f0, and the middle of the forces [m], which is
-    nan where nothing presses. Depths are counted from the free side; see the module's text.
-    """
-    near, weight, total, moment = np.zeros(arc.size), np.zeros(arc.size), 0.0, 0.0
-    for i in range(arc.size):
-        total += share[i] * max(force[i], 0.0)
-        moment += arc[i] * share[i] * max(force[i], 0.0)
-    largest = count = first = second = outside = depth = 0.0
-    for i in range(arc.size - 1, -1, -1):
-        pressing = max(force[i], 0.0)
-        largest = max(largest, pressing)
-        m = largest if largest > 0.0 else 1.0
-        count, first, second = count + largest, first + share[i] * largest, second + share[i] * largest**2
-        B, counted = first / m, count / (LEAST * m)
-        A = 4.0 * max(B - second / m**2, 0.0)
-        outside += share[i] * pressing
-        depth = max(depth, min(B / (DEEP * A), counted) if A > 0.0 else counted)
-        if total > 0.0:
-            depth = max(depth, 1.5 * (outside - 0.5 * share[i] * pressing) / total)
-        near[i] = 1.0 - _rise(4.0 * depth - 3.0)
-        weight[i] = share[i] * near[i] * min(depth, 1.0) ** FADING
-    return near, weight, moment / total if total > 0.0 else math.nan
-
-
-@njit
-def _rise(x: float) -> float:
+def _rise(x: Array) -> Array:
     """From 0 to 1 over 0 < x < 1, twice continuously differentiable."""
-    x = min(max(x, 0.0), 1.0)
-    return x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
+    x = np.clip(x, 0.0, 1.0)
+    return np.asarray(x * x * x * (10.0 - x * (15.0 - 6.0 * x)))
 
 
-@njit
-def _resting(weight: Array, force: Array, rising: IntArray) -> float:
-    """Mean of the middle half of forces, by weight: stations loaded by a clump or bridging a dip do not count. rising:
-    the stations by their forces.
+def _resting(weight: Array, force: Array, rising: IntArray) -> Array:
+    """Mean (k,) of the middle half of forces, by weight (k, n): stations loaded by a clump or bridging a dip do not
+    count. rising: the stations by their forces.
     """
-    total = 0.0
-    for own in weight:
-        total += own
-    upto, reached, mean = 0.0, 0.25 * total, 0.0
-    for i in rising:
-        before, upto = reached, upto + weight[i]
-        reached = min(max(upto, 0.25 * total), 0.75 * total)
-        mean += (reached - before) * force[i]
-    return mean / (0.5 * total) if total > 0.0 else 0.0
+    total = _sum(weight)[:, None]
+    upto = np.take_along_axis(weight, rising, axis=1).cumsum(axis=1)
+    reached = np.minimum(np.maximum(upto, 0.25 * total), 0.75 * total)
+    counted = np.diff(reached, axis=1, prepend=0.25 * total)
+    summed = _sum(counted * np.take_along_axis(force, rising, axis=1))
+    return np.divide(summed, 0.5 * total[:, 0], out=np.zeros(summed.shape), where=total[:, 0] > 0.0)
 
 
-@njit
-def _equivalent(arc: Array, share: Array, near: Array, force: Array, f0: float) -> float:
-    """d: see the module's text. The sums go to the line's end; tau = 2 E1/(R + E0) is the same, where that is safe."""
-    length = E0 = E1 = 0.0
-    for own in share:
-        length += own
-    for i in range(arc.size):
-        excess = near[i] * share[i] * (force[i] - f0)
-        E0, E1 = E0 + excess, E1 + excess * (length - arc[i])
-    R = math.sqrt(max(E0**2 + 2.0 * f0 * E1, 0.0))
-    tau: float = 2.0 * E1 / (R + E0) if E0 > 0.0 else (R - E0) / f0
-    return length - tau
+def _equivalent(arc: Array, share: Array, near: Array, force: Array, f0: Array, last: IntArray) -> Array:
+    """d (k,): see the module's text. The sums go to the line's end, beyond the last points with no force; tau = 2 E1/(R
+    + E0) is the same, where that is safe.
+    """
+    length, m = float(np.cumsum(share)[-1]), near.shape[1]
+    lever = length - arc
+    beyond, moment_beyond = (np.append(np.cumsum(each[::-1])[-2::-1], 0.0)[last] for each in (share, share * lever))
+    excess = near * share[:m] * (force - f0[:, None])
+    E0, E1 = _sum(excess) - f0 * beyond, _sum(excess * lever[:m]) - f0 * moment_beyond
+    R = np.sqrt(np.maximum(E0**2 + 2.0 * f0 * E1, 0.0))
+    pushes = E0 > 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):  # nothing rests: it is the middle of the forces
+        return np.asarray(length - np.where(pushes, 2.0 * E1, R - E0) / np.where(pushes, R + E0, f0))
+
+
+def _sum(values: Array) -> Array:
+    """Sums (k,) of rows (k, n), one term after the other: the same for a row whatever others there are."""
+    return np.asarray(values.cumsum(axis=1)[:, -1])

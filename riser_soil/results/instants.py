@@ -6,13 +6,13 @@ steps together, as each of its operations takes an interpreter longer than the n
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from riser_soil.assembly import LineAssembly
-from riser_soil.contact.touchdown import ContactInterval, PointsAlong, contact_intervals
+from riser_soil.contact.touchdown import ContactInterval, contact_intervals
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
@@ -28,8 +28,6 @@ from riser_soil.solve.time_stepper import TimeStepper
 if TYPE_CHECKING:
     from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.contact.contact import ContactResults
-
-Touching = tuple[PointsAlong, Array, Array]
 
 
 class OnGround(NamedTuple):
@@ -142,17 +140,13 @@ class InstantReader:
         if not found:
             return np.full(count, np.nan), np.full((count, 3), np.nan), np.zeros(count, dtype=np.int64)
 
-        alongs = [contact.along for contact in self._riser.contacts]
-        zones = [
-            touchdown_zone(
-                line,
-                [(along, of.clearance[n], of.force[n]) for along, of in zip(alongs, found, strict=True)],
-                *(inside.position[n], inside.tangent[n]),
-            )
-            for n in range(count)
-        ]
-        arcs, positions, points = zip(*zones, strict=True)
-        return np.array(arcs), np.array(positions), np.array(points)
+        contacts = zip(self._riser.contacts, found, strict=True)
+        of_each = [contact_intervals(*contact.along, of.clearance, of.force) for contact, of in contacts]
+        near = float(line.length.max())
+        grounds = [joined([each for own in at_once for each in own], near) for at_once in zip(*of_each, strict=True)]
+        arc = np.array([touchdown_arc(intervals, line) for intervals in grounds])
+        ends = np.array([touchdown_points(intervals, line) for intervals in grounds])
+        return arc, axis_at(line.arc, inside.position, inside.tangent, arc)[0], ends
 
     def _deepest(self, depths: Sequence[Array]) -> Array | None:
         return np.max(depths, axis=0) if depths else None
@@ -191,27 +185,9 @@ class InstantReader:
         return found if self._checks is None else found | {"code checks": self._checks}
 
 
-"""A contact along the line: its points; gaps and forces there, as in `ContactResults`."""
-
-
-class TouchdownZone(NamedTuple):
-    """Arc length and position (3,) of the touchdown point [m], nan without contact; number of places where the riser
-    comes down or leaves the ground.
-    """
-
-    arc: float
-    position: Array
-    points: int
-
-
-def touchdown_zone(line: Line, touching: Iterable[Touching], position: Array, tangent: Array) -> TouchdownZone:
-    """touching: of each contact; position (nn, 3), tangent (ne, 2, 3): see `SectionForces`."""
-    of_each = [interval for along, gap, force in touching for interval in contact_intervals(*along, gap, force)]
-    intervals = joined(of_each, float(line.length.max()))
-    arc = touchdown_arc(intervals, line)
-    ends = sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in intervals)
-    at = np.full(3, np.nan) if np.isnan(arc) else axis_at(line.arc, position, tangent, arc)[0]
-    return TouchdownZone(arc, at, ends)
+def touchdown_points(intervals: Sequence[ContactInterval], line: Line) -> int:
+    """Number of places where the riser comes down or leaves the ground; its ends do not count."""
+    return sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in intervals)
 
 
 def joined(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:

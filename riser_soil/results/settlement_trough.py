@@ -66,7 +66,7 @@ class TroughSections:
         for n, arc in enumerate(self._given or (touchdown_arc,)):
             if np.isnan(arc):
                 continue
-            position, slope = axis_at(self._line.arc, nodes, tangent, arc)
+            (position,), (slope,) = axis_at(self._line.arc, nodes[None], tangent[None], np.array([arc]))
             level = np.array([slope[0], slope[1], 0.0])
             size = float(np.linalg.norm(level))
             if size > UPRIGHT:

@@ -200,12 +200,17 @@ def add_geometric(out: Array, scale: float, G: Array, d: int) -> None:
                     out[e, at + i, at + j] += scale * G[e, side, i, j]
 
 
-def axis_at(nodes: Array, position: Array, tangent: Array, arc: float) -> tuple[Array, Array]:
-    """Position of the axis (3,) [m] and its derivative by the arc length (3,), global axes, at an arc length [m].
+def axis_at(nodes: Array, position: Array, tangent: Array, arc: Array) -> tuple[Array, Array]:
+    """Position of the axis (nt, 3) [m] and its derivative by the arc length (nt, 3), global axes, at arc lengths (nt,).
 
-    Of the nodes arc lengths (nn,) and positions (nn, 3); tangent (ne, 2, 3): of the elements' ends.
+    Of the nodes arc lengths (nn,) and, at each of nt states, positions (nt, nn, 3); tangent (nt, ne, 2, 3): of the
+    elements' ends. nan at an arc length of nan.
     """
-    e = min(max(int(np.searchsorted(nodes, arc)) - 1, 0), nodes.size - 2)
-    length = float(nodes[e + 1] - nodes[e])
-    xi, q = (arc - float(nodes[e])) / length, np.array([position[e], tangent[e, 0], position[e + 1], tangent[e, 1]])
-    return np.array(shape(xi, length)) @ q, np.array(slope(xi, length)) @ q
+    e, row = np.clip(np.searchsorted(nodes, arc) - 1, 0, nodes.size - 2), np.arange(arc.size)
+    length = nodes[e + 1] - nodes[e]
+    xi, q = (arc - nodes[e]) / length, (position[row, e], tangent[row, e, 0], position[row, e + 1], tangent[row, e, 1])
+    place, direction = (
+        sum(share[:, None] * each for share, each in zip(shares.py_func(xi, length), q, strict=True))
+        for shares in (shape, slope)
+    )
+    return np.asarray(place), np.asarray(direction)

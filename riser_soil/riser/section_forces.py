@@ -361,12 +361,17 @@ class SectionForces:
         """Vectors (..., 3) in global axes by components (d, ...) along the line's axes."""
         if len(components) == 3:
             return vectors(components)
-        first, second = self._line.basis.T
-        return np.asarray(components[0][..., None] * first + components[1][..., None] * second)
+        found = np.empty((*components.shape[1:], 3))
+        for i, (along, up) in enumerate(self._line.basis):
+            np.multiply(components[0], along, out=found[..., i])
+            found[..., i] += components[1] * up
+        return found
 
     def _moment_in_global(self, components: Array) -> Array:
         """Moments (..., 3) in global axes by components (r, ...)."""
-        return vectors(components) if len(components) == 3 else components[0][..., None] * self._line.normal
+        if len(components) == 3:
+            return vectors(components)
+        return vectors(np.stack([components[0] * along for along in self._line.normal]))
 
 
 def moment_slopes(moment: Array, shear: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.contact.touchdown import contact_intervals, touchdown
+from riser_soil.contact.touchdown import ContactInterval, contact_intervals, touchdown
 from riser_soil.core.arrays import Array
 from riser_soil.riser import stations
 
@@ -32,6 +32,12 @@ def landed(arc: Array, end: float, layer: float) -> tuple[Array, Array]:
 def exact(end: float, layer: float) -> float:
     """Sum R, moment R layer about the end."""
     return end - (np.sqrt(R**2 + 2.0 * W * R * layer) - R) / W
+
+
+def intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
+    """Of one state."""
+    (found,) = contact_intervals(arc, share, clearance[None], force[None])
+    return found
 
 
 @both_rules
@@ -96,20 +102,20 @@ def test_stretches_part_at_spans_and_not_at_a_layers_small_gaps() -> None:
     clearance = np.where((arc < 5.0) | ((arc > 10.0) & (arc < 30.0)), -1e-3, 0.2)
     force = np.where(clearance < 0.0, W, 0.0)
     clearance[(arc > 18.0) & (arc < 19.0)] = 0.9e-3
-    first, second = contact_intervals(arc, share, clearance, force)
+    first, second = intervals(arc, share, clearance, force)
     assert (first.start, first.end) == pytest.approx((0.0, 5.0), abs=0.1)
     assert (second.start, second.end) == pytest.approx((10.0, 30.0), abs=0.1)
     assert touchdown(arc, share, clearance, force) == second.end
     span = (arc > 18.0) & (arc < 19.0)
     clearance[span] = 1.1e-3
-    assert len(contact_intervals(arc, share, clearance, np.where(span, 0.0, force))) == 3
-    assert len(contact_intervals(arc, share, clearance, np.where(span, -W, force))) == 2, "held by suction"
+    assert len(intervals(arc, share, clearance, np.where(span, 0.0, force))) == 3
+    assert len(intervals(arc, share, clearance, np.where(span, -W, force))) == 2, "held by suction"
 
 
 def test_a_trench_in_which_the_riser_hangs_is_no_place_where_it_lies() -> None:
     arc, share = points("line")
     clearance = np.where((arc < 20.0) | ((arc > 25.0) & (arc < 30.0)), -0.1, 0.2)
-    found = contact_intervals(arc, share, clearance, np.where(arc < 18.0, W, 0.0))
+    found = intervals(arc, share, clearance, np.where(arc < 18.0, W, 0.0))
     assert [s.end for s in found] == pytest.approx([18.0], abs=0.1)
 
 
@@ -145,7 +151,7 @@ def test_nothing_and_all_of_it() -> None:
     arc, share = points("line")
     none, all_of_it = np.zeros_like(arc), np.full_like(arc, W)
     assert np.isnan(touchdown(arc, share, none + 1.0, none))
-    assert contact_intervals(arc, share, none + 1.0, none) == []
+    assert intervals(arc, share, none + 1.0, none) == []
     assert touchdown(arc, share, none - 1.0, all_of_it) == pytest.approx(LENGTH)
 
 
@@ -155,3 +161,15 @@ def test_unknown_clearance_beyond_and_no_force() -> None:
     clearance = np.where(arc < 20.0, -1e-3, np.inf)
     last = float(arc[arc < 20.0].max())
     assert touchdown(arc, share, clearance, np.zeros_like(arc)) == last
+
+
+def test_intervals_of_many_states_are_those_of_each() -> None:
+    """To the last bit: stretches that begin and end anywhere, held here and there, with gaps low and high."""
+    rng = np.random.default_rng(8)
+    arc, share = points("line", NODES[:60])
+    wave = sum(rng.normal(size=(40, 1)) * np.sin(k * arc + rng.uniform(0.0, 6.0, (40, 1))) for k in (0.1, 0.4, 4.0))
+    clearance = np.asarray(wave) + rng.uniform(-1.0, 1.0, (40, 1))
+    force = np.where(clearance < 0.0, -1e3 * clearance * rng.choice([0.0, 1.0, -0.2], (40, arc.size)), 0.0)
+    together = contact_intervals(arc, share, clearance, force)
+    assert together == [intervals(arc, share, *each) for each in zip(clearance, force, strict=True)]
+    assert {len(each) for each in together} >= {0, 1, 2, 3}
