@@ -210,7 +210,7 @@ def _equivalent(arc: Array, share: Array, near: Array, force: Array, f0: Array, 
     length, m = float(np.cumsum(share)[-1]), near.shape[1]
     lever = length - arc
     beyond, moment_beyond = (np.append(np.cumsum(each[::-1])[-2::-1], 0.0)[last] for each in (share, share * lever))
-    excess = near * share[:m] * (force - f0[:, None])
+    excess = near * share[:m] * np.subtract(force, f0[:, None])
     E0, E1 = _sum(excess) - f0 * beyond, _sum(excess * lever[:m]) - f0 * moment_beyond
     R = np.sqrt(np.maximum(E0**2 + 2.0 * f0 * E1, 0.0))
     pushes = E0 > 0.0
