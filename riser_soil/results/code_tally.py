@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
-from riser_soil.core.arrays import Array
-from riser_soil.core.saved_state import Saved, packed, unpacked
+from riser_soil.core.arrays import Array, as_list
+from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import CodeCheckFacts, CodeSnapshot
+from riser_soil.results.largest import Largest
 
 
 class CodeTally:
@@ -18,24 +18,20 @@ class CodeTally:
 
     def __init__(self, facts: Sequence[CodeCheckFacts] = ()) -> None:
         self._facts = tuple(facts)
-        self._used = np.full((3, len(self._facts)), np.nan)  # utilisation, arc, time
+        self._used = Largest(len(self._facts), beside=1)
 
     def update(self, times: Array, found: CodeSnapshot | None) -> None:
         """times (nt,), of the instants found."""
-        if found is None:
-            return
-        at = found.largest.argmax(axis=0)
-        columns = np.arange(len(self._facts))
-        rows = np.stack([found.largest[at, columns], found.place[at, columns], times[at]])
-        more = ~(rows[0] <= self._used[0])
-        self._used = np.where(more, rows, self._used)
+        if found is not None:
+            self._used.update(times, found.largest, found.place)
 
     def as_list(self) -> list[dict[str, Any]]:
         """The summary's `code_check`; empty where nothing is checked, or before the first instant."""
+        each = zip(self._facts, *map(as_list, (self._used.values, *self._used.beside, self._used.times)), strict=True)
         return [
             asdict(facts) | {"utilisation": used, "arc": arc, "time": t, "exceeded": used > 1.0}
-            for facts, (used, arc, t) in zip(self._facts, self._used.T.tolist(), strict=True)
-            if np.isfinite(used)
+            for facts, used, arc, t in each
+            if math.isfinite(used)
         ]
 
     def warnings(self, unit: str) -> Iterator[str]:
@@ -49,8 +45,8 @@ class CodeTally:
                 )
 
     def state(self) -> Saved:
-        return {"used": self._used.copy(), "facts": packed([asdict(facts) for facts in self._facts])}
+        return gathered({"used": self._used}) | {"facts": packed([asdict(facts) for facts in self._facts])}
 
     def restore(self, saved: Saved) -> None:
         self._facts = tuple(CodeCheckFacts(**facts) for facts in unpacked(saved["facts"]))
-        self._used = saved["used"].copy()
+        restore_all({"used": self._used}, saved)

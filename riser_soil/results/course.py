@@ -1,11 +1,11 @@
-"""The course of figures from step to step, compiled: extremes, peaks, how sharply they turn."""
+"""The course of figures from step to step, compiled: peaks, and how sharply they turn."""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.compiled import njit
 
 # Of the largest second difference around an extreme, from the calibration in `tests/verification/test_indicators.py`.
@@ -39,39 +39,6 @@ class Course(NamedTuple):
     rival: Array
     rival_error: Array
     rival_steps: Array
-
-
-class Extent(NamedTuple):
-    """Least and most of n figures, with the times when they were [s]; of the m that sit somewhere along the riser their
-    arc lengths [m], too.
-    """
-
-    least: Array
-    most: Array
-    t_least: Array
-    t_most: Array
-    arc_least: Array
-    arc_most: Array
-
-
-@njit
-def extend(extent: Extent, placed: IntArray, times: Array, rows: Array) -> None:
-    """Take in figures at times (nt,), and behind them the arc lengths of those that have one (nt, n + m); nan does not
-    count. placed (m,): which figures these are.
-    """
-    n = extent.least.size
-    for row in range(times.size):
-        t, seen = times[row], rows[row]
-        for k, i in enumerate(placed):
-            if seen[i] < extent.least[i]:
-                extent.arc_least[k] = seen[n + k]
-            if seen[i] > extent.most[i]:
-                extent.arc_most[k] = seen[n + k]
-        for i in range(n):
-            if seen[i] < extent.least[i]:
-                extent.least[i], extent.t_least[i] = seen[i], t
-            if seen[i] > extent.most[i]:
-                extent.most[i], extent.t_most[i] = seen[i], t
 
 
 @njit

@@ -15,6 +15,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.output import Figure
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot
+from riser_soil.results.largest import Range
 
 _END = ("position", "force", "resultant_force", "moment", "effective_tension", "angle_deg")
 # In the order of the file; what the table of outputs has beyond them comes behind.
@@ -135,39 +136,36 @@ class Extremes:
     """Smallest and largest of every figure, with their times and places along the riser; nan does not count."""
 
     def __init__(self) -> None:
-        from riser_soil.results.course import Extent, extend  # compiled code is imported where there are stages
-
-        none, nowhere = np.full(_SIZE, np.inf), np.full(len(_PLACED), np.nan)
-        unknown = np.full(_SIZE, np.nan)
-        self._extend, self._extent = extend, Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy())
+        self._range = Range(_SIZE, beside=1)
 
     def update(self, t: Array | float, vector: Array) -> None:
         """t: s (static stages: load factor); vector: from `pack`; both of one instant, or of many in turn."""
-        self._extend(self._extent, _AT_PLACED, np.atleast_1d(t), np.atleast_2d(vector))
+        rows = np.atleast_2d(vector)
+        arcs = np.full((len(rows), _SIZE), np.nan)
+        arcs[:, _AT_PLACED] = rows[:, _SIZE:]
+        self._range.update(np.atleast_1d(t), rows[:, :_SIZE], arcs)
 
     def nested(self) -> dict[str, Any]:
         """{min, max, t_min, t_max} of each figure, and {arc_min, arc_max} [m] of those that sit somewhere along the
         riser; vectors by component.
         """
-        found = self._extent
-        columns = {"min": found.least, "max": found.most, "t_min": found.t_least, "t_max": found.t_most}
-        parts = {key: unpack(values) for key, values in columns.items()}
+        parts = {key: unpack(values) for key, values in self._range.columns().items()}
         nested: dict[str, Any] = {}
         for _, figure in _FIGURES:
             least = _get(parts["min"], figure.path)
             if figure.name not in _SOMETIMES or np.isfinite(least).all():
                 _put(nested, figure.path, {key: _get(part, figure.path) for key, part in parts.items()})
-        for (_, figure), least, most in zip(_PLACED, found.arc_least, found.arc_most, strict=True):
+        (arc_min,), (arc_max,) = self._range.beside["min"], self._range.beside["max"]
+        for (_, figure), at in zip(_PLACED, _AT_PLACED, strict=True):
             with suppress(KeyError):  # one that is unknown was left out
-                _get(nested, figure.path).update(arc_min=float(least), arc_max=float(most))
+                _get(nested, figure.path).update(arc_min=float(arc_min[at]), arc_max=float(arc_max[at]))
         return nested
 
     def state(self) -> Saved:
-        return {name: values.copy() for name, values in self._extent._asdict().items()}
+        return self._range.state()
 
     def restore(self, saved: Saved) -> None:
-        for name, values in self._extent._asdict().items():
-            values[...] = saved[name]
+        self._range.restore(saved)
 
 
 def _put(nested: dict[str, Any], path: tuple[str, ...], value: Any) -> None:

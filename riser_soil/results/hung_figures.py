@@ -9,7 +9,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.part import State
-from riser_soil.core.saved_state import Saved, packed, unpacked
+from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, under, unpacked, within
+from riser_soil.results.largest import Range
 
 if TYPE_CHECKING:
     from riser_soil.assembly import Assembly
@@ -20,44 +21,38 @@ class HungExtremes:
     """Extremes of a stage."""
 
     def __init__(self) -> None:
-        self._found: dict[str, dict[str, Any]] = {}
+        self._ranges: dict[str, Range] = {}
+        self._final: dict[str, Array] = {}
 
     def update(self, times: Array, rows: Mapping[str, Array]) -> None:
-        """Take note of values by path at times (nt,) [s] (static stages: load factor)."""
+        """Take note of values by path, (nt,) or (nt, 3), at times (nt,) [s] (static stages: load factor)."""
         for name, values in rows.items():
-            self._found[name] = _extended(self._found.get(name), times, values)
+            columns = values.reshape(len(values), -1)
+            self._ranges.setdefault(name, Range(columns.shape[1])).update(times, columns)
+            self._final[name] = values[-1].copy()
 
     @property
     def nested(self) -> dict[str, Any]:
-        """What is known of the stage, nested by path."""
+        """{final, min, max, t_min, t_max} of the stage, nested by path; vectors by component."""
         nested: dict[str, Any] = {}
-        for name, found in self._found.items():
+        for name, final in self._final.items():
             *groups, last = name.split("/")
             inner = nested
             for key in groups:
                 inner = inner.setdefault(key, {})
-            inner[last] = found
+            columns = {key: values.reshape(final.shape) for key, values in self._ranges[name].columns().items()}
+            inner[last] = {key: as_list(values) for key, values in ({"final": final} | columns).items()}
         return nested
 
     def state(self) -> Saved:
-        return {"found": packed(self._found)}
+        names = {"names": packed([*self._final])}
+        return names | under("final", dict(self._final)) | under("ranges", gathered(self._ranges))
 
     def restore(self, saved: Saved) -> None:
-        self._found = unpacked(saved["found"])
-
-
-def _extended(before: dict[str, Any] | None, times: Array, values: Array) -> dict[str, Any]:
-    """{final, min, max, t_min, t_max} of values (nt,) or (nt, 3), vectors by component."""
-    found: dict[str, Any] = {"final": as_list(values[-1])}
-    for key, sign in (("min", 1.0), ("max", -1.0)):
-        at = (sign * values).argmin(axis=0)
-        best, when = np.take_along_axis(values, at[None], axis=0)[0], times[at]
-        if before is not None:
-            old = np.array(before[key])
-            better = sign * best < sign * old
-            best, when = np.where(better, best, old), np.where(better, when, np.array(before[f"t_{key}"]))
-        found |= {key: as_list(best), f"t_{key}": as_list(when)}
-    return found
+        final = within(saved, "final")
+        self._final = {name: final[name] for name in unpacked(saved["names"])}
+        self._ranges = {name: Range(value.size) for name, value in self._final.items()}
+        restore_all(self._ranges, within(saved, "ranges"))
 
 
 def hung_reader(assembly: Assembly) -> HungReader | None:

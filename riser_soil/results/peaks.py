@@ -10,7 +10,7 @@ chance; they hardly do so in several windows.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -73,35 +73,42 @@ class StagePeaks:
 
     def update(self, times: Sequence[float], instants: Instant) -> None:
         """Follow the state that a dynamic stage begins with, and accepted steps in turn; times: s or load factors."""
-        for t, sampled, peaked in zip(times, pack(instants), pack_peaks(instants), strict=True):
-            self._follow(t, sampled, peaked)
+        self._follow(times, pack(instants), pack_peaks(instants))
         self._last_instant = instants_at(instants, -1)
 
     def begin(self, before: StagePeaks) -> None:
         """With the end of the stage before."""
-        self._follow(0.0, before._latest, before._last[-1])
+        self._follow([0.0], before._latest[None], before._last[-1][None])
         self._final = before.final
 
-    def _follow(self, t: float, sampled: Array, peaked: Array) -> None:
-        self._latest = sampled
-        self.sampled.update(t, sampled)
-        for extremes in (self.of_nodes, self.peaks):
-            extremes.update(t, peaked)
-        self._t, self._last = [*self._t[-4:], t], [*self._last[-4:], peaked]
-        if self.kind == "dynamic":
-            self._follow_in_time(t, peaked)
-        if self.kind != "static":
-            self._follow_smoothly()
+    def _follow(self, times: Sequence[float], sampled: Array, peaked: Array) -> None:
+        """Rows (nt, figures) of instants in turn, as recorded and with the tension's between nodes."""
+        between, smooth = list[tuple[float, Array]](), list[tuple[float, Array]]()
+        for t, row in zip(times, peaked, strict=True):
+            self._t, self._last = [*self._t[-4:], t], [*self._last[-4:], row]
+            between.append((t, row))
+            if self.kind == "dynamic":
+                between.extend(self._between_steps(t, row))
+            if self.kind != "static":
+                smooth.append(self._smoothed())
+        self._latest = sampled[-1]
+        at = np.array(times)
+        for extremes, rows in ((self.sampled, sampled), (self.of_nodes, peaked)):
+            extremes.update(at, rows)
+        for extremes, found in ((self.peaks, between), (self.smooth, smooth)):
+            if found:
+                extremes.update(np.array([t for t, _ in found]), np.array([row for _, row in found]))
 
-    def _follow_in_time(self, t: float, peaked: Array) -> None:
+    def _between_steps(self, t: float, peaked: Array) -> Iterator[tuple[float, Array]]:
+        """Follow the stage's windows; the peak at the step before, if there is one, with its time."""
         if not self._windows.size:
             self._windows = np.full((2, WINDOWS, peaked.size), np.nan)
         self._at_edges()
         self._in_window(self._window(t), peaked)
         if len(self._t) >= 3 and self._t[-3] < self._t[-2] < t:
             top = vertex(np.array(self._t[-3:]), np.array(self._last[-3:]))
-            self.peaks.update(self._t[-2], top)
             self._in_window(self._window(self._t[-2]), top)
+            yield self._t[-2], top
 
     def _at_edges(self) -> None:
         """On the line from the step before to this one, where one window ends and the next begins: long steps miss no
@@ -128,12 +135,9 @@ class StagePeaks:
             self._final, self._last_instant = final_state(self._last_instant), None
         return self._final
 
-    def _follow_smoothly(self) -> None:
+    def _smoothed(self) -> tuple[float, Array]:
         """The middle one of five steps without ringing; where there are none yet, or uneven ones, the last as it is."""
-        if self._even:
-            self.smooth.update(self._t[2], RINGLESS[0] @ np.array(self._last))
-        else:
-            self.smooth.update(self._t[-1], self._last[-1])
+        return (self._t[2], RINGLESS[0] @ np.array(self._last)) if self._even else (self._t[-1], self._last[-1])
 
     @property
     def _even(self) -> bool:
