@@ -40,8 +40,9 @@ class HungExtremes:
             inner = nested
             for key in groups:
                 inner = inner.setdefault(key, {})
-            columns = {key: values.reshape(final.shape) for key, values in self._ranges[name].columns().items()}
-            inner[last] = {key: as_list(values) for key, values in ({"final": final} | columns).items()}
+            columns = self._ranges[name].columns()
+            extremes = {key: columns[key].reshape(final.shape) for key in ("min", "t_min", "max", "t_max")}
+            inner[last] = {key: as_list(values) for key, values in ({"final": final} | extremes).items()}
         return nested
 
     def state(self) -> Saved:
