@@ -1,102 +1,41 @@
-"""The deformed soil surface as a contact surface: gaps, forces and stiffness at candidate pairs of node and facet.
+"""The deformed soil surface as contact sees it, and candidate pairs of a node or element of the riser and a facet.
 
-Candidate pairs set the sparsity pattern of contact in the tangent.
+Candidate pairs are all that may touch. They set the sparsity pattern of contact in the tangent.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.contact.facets import (
-    QUAD,
-    gap_forms,
-    height_at,
-    heights,
-    penalty_hessian,
-    strips,
-    within_line,
-)
-from riser_soil.contact.pairing import Cover, FacetSearch, bounds, facet_below
+from riser_soil.contact.facets import QUAD, heights, strips
+from riser_soil.contact.pairing import Cover, FacetSearch, bounds
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
-from riser_soil.riser.line import Line
-from riser_soil.seabed.law import NormalLaw, SeabedResponse
 from riser_soil.soil.surface import vector_areas
 
 if TYPE_CHECKING:
     from riser_soil.soil.condensed import SoilSurface
 
 EMPTY = np.empty(0, dtype=np.int64)
-ASPECT = (
-    1.618  # the golden ratio: sides of facets, also diagonals of simple grids, miss all four points of a node
-)
-
-
-class ContactPoints(NamedTuple):
-    """Points fixed to nodes that carry the nodes' contact forces.
-
-    node (n,). offset (n, 2): horizontal distance from the node [m]. length (n,): riser length that a point
-    stands for [m].
-    """
-
-    node: IntArray
-    offset: Array
-    length: Array
-
-    @classmethod
-    def of_nodes(cls, tributary: Array, footprint: float, along: Array) -> ContactPoints:
-        """Four points a node, ±ASPECT·footprint along a horizontal unit vector, ±footprint across; or one."""
-        across = np.array([-along[1], along[0]])
-        corners = np.array([i * ASPECT * along + j * across for i in (-1.0, 1.0) for j in (-1.0, 1.0)])
-        corners = footprint * corners if footprint > 0.0 else np.zeros((1, 2))
-        node = np.repeat(np.arange(len(tributary)), len(corners))
-        return cls(node, np.tile(corners, (len(tributary), 1)), tributary[node] / len(corners))
-
-
-class PointsBelow(NamedTuple):
-    """Where contact points (n,) stand: soil facet below, −1 where there is none or none is looked for; place on it (n,
-    2); gap, the height [m] of the riser's underside over the ground, inf without a facet.
-    """
-
-    facet: IntArray
-    xi: Array
-    gap: Array
-
-
-def points_below(count: int) -> PointsBelow:
-    """Workspace for so many points."""
-    return PointsBelow(np.full(count, -1), np.zeros((count, 2)), np.full(count, np.inf))
-
-
-@njit
-def find_below(x: Array, radius: Array, points: ContactPoints, level: float, cover: Cover, out: PointsBelow) -> None:
-    """Write where the points of nodes at x (nn, 3) stand whose undersides are below a level [m]. radius (nn,): [m] from
-    the axis to the line that touches.
-    """
-    for p in range(points.node.size):
-        n = points.node[p]
-        out.facet[p], out.gap[p] = -1, np.inf
-        if not x[n, 2] - radius[n] < level:
-            continue
-        out.facet[p] = facet_below(cover, x[n, 0] + points.offset[p, 0], x[n, 1] + points.offset[p, 1], -1)
-        if out.facet[p] >= 0:
-            out.xi[p, 0], out.xi[p, 1] = cover.xi[0], cover.xi[1]
-            ground = height_at(cover.facets[out.facet[p]], cover.xi[0], cover.xi[1], cover.points)
-            out.gap[p] = x[n, 2] - radius[n] - ground
 
 
 class DeformedSurface:
-    """The deformed surface: its facets, and the dofs of their nodes."""
+    """The deformed surface: its facets, and the dofs of their nodes.
+
+    rows (np, 3): of the nodes in the surface's slice of local arrays; unreached (np,): none that these lack.
+    """
 
     def __init__(self, surface: SoilSurface) -> None:
         self._surface = surface
         self._pairing = FacetSearch(surface.points, surface.facets)
         self.corners = self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)  # without those beside strips
+        self.rows = np.arange(surface.size).reshape(-1, 3)
+        self.unreached = np.zeros(len(self.rows), dtype=np.bool_)
 
     @property
     def moves(self) -> bool:
@@ -151,6 +90,11 @@ class DeformedSurface:
         """Points (np, 3) of the surface as accepted so far [m]."""
         return np.asarray(self._surface.points + self._surface.committed)
 
+    @property
+    def committed(self) -> Array:
+        """Displacement (np, 3) of the surface as accepted so far [m]: another array once a step is."""
+        return self._surface.committed
+
     def stretch(self, deformed: Array, facets: IntArray) -> float:
         """Largest area of some facets of a deformed surface (np, 3), seen square to them at first, over that at first;
         1 of none.
@@ -185,98 +129,6 @@ class DeformedSurface:
         """Local dof numbers (n, 3·nv) of facets, node by node."""
         dofs = self._surface.offset + 3 * self.facets[facet][:, :, None] + np.arange(3)
         return dofs.reshape(len(facet), 3 * self.facets.shape[1])
-
-
-@dataclass(frozen=True, eq=False)
-class ActiveContacts:
-    """Contact points that carry force; n points, nr dofs each, the riser's d translations first.
-
-    node, facet (n,). length (n,): of riser [m]. penetration (n,) [m]. rows (n, nr): local dofs. forms (n, 5, nr),
-    H (n, 2, 2): derivatives of the gap, see `gap`.
-    """
-
-    law: NormalLaw
-    node: IntArray
-    facet: IntArray
-    length: Array
-    penetration: Array
-    rows: IntArray
-    forms: Array
-    H: Array
-
-    @cached_property
-    def _response(self) -> SeabedResponse:
-        return self.law.update(self.penetration, self.law.initial_history(self.penetration.shape))
-
-    @cached_property
-    def force(self) -> Array:
-        """Contact force of each point (n,) [N], ≥ 0."""
-        return self.length * self._response.force
-
-    @cached_property
-    def gradient(self) -> Array:
-        """dψ/du (n, nr) [N]: minus the forces on riser and soil."""
-        return np.asarray(-self.force[:, None] * self.forms[:, 0])
-
-    @property
-    def hessian(self) -> Array:
-        """d²ψ/du² (n, nr, nr) [N/m]."""
-        return penalty_hessian(self.forms, self.H, self.force, self.length * self._response.slope)
-
-    @property
-    def potential(self) -> float:
-        """ψ [J]."""
-        return float(self.length @ self._response.stored)
-
-
-@dataclass(frozen=True, eq=False)
-class ContactState:
-    """Contact points at a state, and where they stand. surface (np, 3): deformed points of the soil [m]. touching: what
-    of them touches.
-    """
-
-    points: ContactPoints
-    below: PointsBelow
-    surface: Array
-    touching: ActiveContacts
-
-
-class ContactDetection:
-    """Contact detection between riser and soil: `detect` gives gaps and contact forces at a state.
-
-    radius (nn,): [m] from the axis to the line that touches. near: height [m] over the soil's highest point up to which
-    nodes are looked at.
-    """
-
-    def __init__(
-        self, line: Line, radius: Array, points: ContactPoints, law: NormalLaw, soil: DeformedSurface, near: float
-    ) -> None:
-        self._line, self._radius, self._points = line, radius, points
-        self._law, self._soil, self._near = law, soil, near
-
-    def detect(self, state: State) -> ContactState:
-        """Gaps at a state, and forces where the riser touches."""
-        x, surface = self._line.positions3(state), self._soil.deformed(state)
-        below = points_below(len(self._points.node))
-        level = float(surface[:, 2].max()) + self._near
-        find_below(x, self._radius, self._points, level, self._soil.cover(surface), below)
-        return ContactState(self._points, below, surface, self._touch(below, surface))
-
-    def _touch(self, below: PointsBelow, surface: Array) -> ActiveContacts:
-        at = np.flatnonzero(below.gap < self._law.start)
-        node, facet = self._points.node[at], below.facet[at]
-        forms, H = gap_forms(facet, below.xi[at], self._soil.facets, surface)
-        rows = np.hstack((self._line.translation_dofs[node], self._soil.facet_dofs(facet)))
-        given = self._points.length[at], -below.gap[at], rows, within_line(forms, self._line.basis), H
-        return ActiveContacts(self._law, node, facet, *given)
-
-
-@njit
-def add_shares(values: Array, rows: IntArray, shares: Array) -> None:
-    """Add shares (n, nr) to values at rows (n, nr), which may repeat."""
-    for i in range(rows.shape[0]):
-        for j in range(rows.shape[1]):
-            values[rows[i, j]] += shares[i, j]
 
 
 @njit

@@ -74,7 +74,7 @@ class MeshRenewal:
         surface = self._soil.surface.points + self._soil.surface.committed
         self._soil.take_mesh(points, made)
         if self._contact.active:
-            self._contact.surface_renewed(surface, [self._friction.anew()] if self._friction else [])
+            self._contact.surface_renewed(surface, [self._friction.memory] if self._friction else [])
         self.count += 1
         return True
 

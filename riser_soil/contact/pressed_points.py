@@ -17,12 +17,14 @@ from riser_soil.contact.cylinder_gap import away_from_axis, gap_forms
 from riser_soil.contact.facets import fill_shape
 from riser_soil.contact.integration_points import KeptRows, write_kept
 from riser_soil.contact.near_points import NearPoints, Surface, first_of, point_on
+from riser_soil.contact.on_condensed_soil import BEYOND
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import shape as axis_shape
-from riser_soil.riser.part_kernels import BEYOND
 from riser_soil.riser.vectors import add, dot, scale, sub, vector, write
 from riser_soil.seabed.compiled_law import answer, may_act
+
+Start = tuple[Array, Array]  # where a step starts: q (ne, 4, 3) of the pipe's axis, and the soil's points (np, 3) [m]
 
 
 class Pairs(NamedTuple):
@@ -82,6 +84,18 @@ class PressedPoints:
         given = first_of(points, n), found.force[:n], found.slope[:n], potential
         return cls(axis, surface, basis, *given, found.on_riser[:n], found.after[:n])
 
+    @classmethod
+    def kept(
+        cls, axis: Axis, surface: Surface, basis: Array, n: int, potential: float, found: PressWorkspace
+    ) -> PressedPoints:
+        """The first n points of a workspace, as they are now; it is written to again."""
+        axis, surface = axis._replace(q=axis.q.copy()), surface._replace(deformed=surface.deformed.copy())
+        near = NearPoints._make(each[:n].copy() for each in found.near)
+        force, slope, on_riser, history = (
+            each[:n].copy() for each in (found.force, found.slope, found.on_riser, found.after)
+        )
+        return cls(axis, surface, basis, near, force, slope, potential, on_riser, history)
+
     @cached_property
     def pairs(self) -> Pairs:
         found: Pairs = paired(self.points, len(self.axis.length))
@@ -102,10 +116,9 @@ class PressedPoints:
         spread(self.axis, self.surface, self.basis, self.points, len(f), f, F, rows, soil.ravel(), met)
         return F, soil
 
-    def work(self, f: Array, before: PressedPoints) -> float:
-        """Work [J] of forces f (n, 3) on the pipe and on the soil on the way from another trial."""
-        way = before.axis.q, before.surface.deformed
-        return float(work_of(self.axis, self.surface, self.points, len(f), f, *way))
+    def work(self, f: Array, start: Start) -> float:
+        """Work [J] of forces f (n, 3) on the pipe and on the soil on the way from where a step starts."""
+        return float(work_of(self.axis, self.surface, self.points, len(f), f, *start))
 
 
 @njit

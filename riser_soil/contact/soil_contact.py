@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -12,13 +12,13 @@ import numpy as np
 from riser_soil.contact.along_step import landing_predictor
 from riser_soil.contact.contact import RiserContact
 from riser_soil.contact.ground import CandidatePairs, DeformedSurface
+from riser_soil.contact.on_condensed_soil import Touched
 from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_contact import Covering
 from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.contact.touchdown import PointsAlong
-from riser_soil.core.arrays import Array, BoolArray, IntArray, as_list
-from riser_soil.core.bound import Bound, Packed
-from riser_soil.core.part import MatrixBlock, Part, State, Traits, Work
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import Energy, MatrixBlock, State, Traits, Work
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from riser_soil.soil.condensed import SoilSurface
 
 SOIL = "contact.soil"
-SHARE = 0.25  # of the range around the pipe by which soil may move before what may touch is looked for anew
 
 
 @dataclass(frozen=True)
@@ -44,10 +43,11 @@ class SoilContact(RiserContact):
     """Base of the frictionless penalty contacts between riser and soil, in group E.
 
     Their tangent has a block for each pair of a node or element of the riser and a facet of the soil's surface. Its
-    pattern holds the pairs that may come to touch. outgrown: a pair has touched that had no place in the pattern and
-    was left out there, not in the residual.
+    pattern holds the candidate pairs, which may come to touch; the line solver looks at no others. outgrown: a pair has
+    touched that had no place in the pattern and was left out there, not in the residual.
 
-    line: the riser's field; the rank where it is active evaluates contact, and holds the surface.
+    line: the riser's field; the rank where it is active evaluates contact, and holds the surface. A `place` is what the
+    contact knows of the riser: its nodes, or its axis.
     """
 
     name = "contact"
@@ -56,19 +56,62 @@ class SoilContact(RiserContact):
     def __init__(self, line: Line, law: NormalLaw, surface: SoilSurface) -> None:
         super().__init__(line, law)
         self.outgrown = False
+        self._stored: float | None = None  # [J] at the accepted state, once it is known
         if not self.active:
             return
         self._soil = DeformedSurface(surface)
+        self._reach: CandidateRange
         self._patch: CandidatePairs | None = None
         self._missed = CandidatePairs.none(len(self._soil.facets))
 
+    @property
+    def around(self) -> float:
+        """How far beside the riser facets are candidates [m]."""
+        return self._reach.around
+
     @abstractmethod
-    def candidates(self, state: State) -> CandidatePairs:
-        """Pairs near each other at a state."""
+    def place(self, state: State) -> Any:
+        """Where the riser is at a state."""
+
+    @abstractmethod
+    def candidates(self, places: Sequence[Any], surface: Array) -> CandidatePairs:
+        """Pairs that may touch near places of the riser, over the surface with its points (np, 3) [m] there."""
 
     @abstractmethod
     def pair_dofs(self, on_line: IntArray, facet: IntArray) -> IntArray:
         """Local dofs (m, nr) of pairs of a node or element and a facet, (m,) each."""
+
+    @abstractmethod
+    def potential(self, state: State) -> float:
+        """Energy stored [J] at a state."""
+
+    @abstractmethod
+    def taken(self, state: State) -> float:
+        """Work [J] that the forces at a state take out on the way there from the accepted state."""
+
+    @abstractmethod
+    def kernel_data(self, deformed: Array, touched: Touched) -> Any:
+        """For the line solver, see `on_condensed_soil`; deformed (np, 3): where it writes the surface's points [m],
+        touched: where it writes what it finds.
+        """
+
+    @abstractmethod
+    def at_start(self, data: Any) -> Any:
+        """The kernel data of a step that starts at the accepted state."""
+
+    @abstractmethod
+    def place_in(self, data: Any) -> Any:
+        """Where the line solver has found the riser last."""
+
+    @abstractmethod
+    def watch(self, data: Any, places: Sequence[Any], pairs: CandidatePairs, slack: float) -> Any:
+        """The kernel data with the candidates near places of the riser, and what may move how far until others may
+        touch; the soil by `slack` [m].
+        """
+
+    @abstractmethod
+    def adopt(self, state: State, data: Any) -> None:
+        """Take over what the line solver has found at a state."""
 
     @abstractmethod
     def clearance(self, state: State) -> Array:
@@ -99,12 +142,40 @@ class SoilContact(RiserContact):
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and all that was missed in the step so far."""
         if self.active:
-            self._patch = self.candidates(state).joined(self._missed)
+            self._patch = self._around(state).joined(self._missed)
         self.outgrown = False
 
+    def _around(self, state: State) -> CandidatePairs:
+        return self.candidates([self.place(state)], self._soil.deformed(state))
+
+    def watching(
+        self, data: Any, places: Sequence[Any], surface: Array, slack: float
+    ) -> tuple[Any, IntArray]:
+        """The line solver's kernel data with the candidates near places of the riser, and the nodes (k,) of their
+        facets; surface and slack: see `candidates` and `watch`.
+        """
+        pairs = self.candidates(places, surface)
+        return self.watch(data, places, pairs, slack), np.unique(self._soil.facets[pairs.facet])
+
+    def energy(self, state: State) -> Energy:
+        """Potential of the penalty."""
+        return Energy(potential=self.potential(state))
+
+    def work(self, before: State, after: State) -> Work:
+        """Energy dissipated: the work of the force at the end of the step less the change of its potential, all of it
+        by the time scheme.
+
+        ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
+        vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
+        """
+        stored = self.potential(before) if self._stored is None else self._stored
+        lost = self.taken(after) - self.potential(after) + stored
+        return Work(dissipated=lost, by_scheme=lost)
+
     def commit(self, state: State) -> None:
-        """What the step has missed on its way is of no concern to the next."""
+        """Keep what is stored; what the step has missed on its way is of no concern to the next."""
         self._missed = CandidatePairs.none(len(self._soil.facets))
+        self._stored = self.potential(state)
 
     def places(self, values: Array, on_line: IntArray, facet: IntArray) -> IntArray:
         """Where the pattern has pairs (m,), and the matrix its `values`, to be filled; -1, which is noted, where it has
@@ -125,12 +196,13 @@ class SoilContact(RiserContact):
     def _present_patch(self) -> CandidatePairs:
         if self._patch is None:
             ends = self.line.offset + self.line.size, self._soil.end
-            self._patch = self.candidates(State.at_rest(0.0, max(ends)))
+            self._patch = self._around(State.at_rest(0.0, max(ends)))
         return self._patch
 
-    @abstractmethod
-    def in_loop(self, friction: Any) -> LoopContact:
-        """For the line solver; friction: its kernels, see `surface_loop.LoopFriction`, None where there is none."""
+    @property
+    def settled(self) -> Array:
+        """Points (np, 3) of the soil's surface as accepted so far [m]."""
+        return self._soil.settled
 
     @property
     def covering(self) -> Covering:
@@ -182,86 +254,19 @@ class SoilContact(RiserContact):
         return landing_predictor(guess, heights, present, guessed, self.law.start)
 
     def state(self) -> Saved:
-        """The pattern: another one, as wide as need be, gives the same forces but to round-off."""
+        """The pattern and the energy stored: others, as wide as need be or found anew, are the same but to round-off.
+        """
         if not self.active:
             return {}
-        return {"patch": self._present_patch().pairs}
+        stored = {} if self._stored is None else {"stored": np.array(self._stored)}
+        return {"patch": self._present_patch().pairs} | stored
 
     def restore(self, saved: Saved) -> None:
         if self.active:
             self._patch = CandidatePairs(len(self._soil.facets), saved["patch"])
+            self._stored = float(saved["stored"]) if "stored" in saved else None
 
 
 @covered_by.of(Cover)
 def _by_surface(cover: Cover, x: Vec, known: int) -> int:
     return facet_below(cover, x[0], x[1], known)
-
-
-class LoopContact(ABC):
-    """Contact with condensed soil in the line solver, see `solve.soil_border`: kernels, bound to where they read and
-    write.
-
-    parts: whose forces these are. deformed (np, 3): where the loop writes the top's points [m]. found (3,): see POINTS.
-    met (np,): nodes of the top that are not reached, and bear a force in the last trial. energy, work (1,): stored
-    then, and that of the forces along the step [J].
-    """
-
-    parts: Sequence[Part]
-    deformed: Array
-    met: BoolArray
-
-    def __init__(self, contact: SoilContact, around: float) -> None:
-        self.contact, self.slack = contact, SHARE * around
-        self.found: IntArray = np.zeros(3, dtype=np.int64)
-        self.energy: Array = np.zeros(1)
-        self.work: Array = np.zeros(1)
-        self._stored = dict[float, float]()  # energy [J] by the time of states
-
-    @abstractmethod
-    def begin(self, before: State) -> None:
-        """Begin a step from an accepted state, at which the top's points are written."""
-
-    @abstractmethod
-    def look(self, before: State, tried: bool) -> IntArray:
-        """Find what may touch near the accepted place and, where asked for, near the last trial: the top's nodes (k,).
-        """
-
-    @abstractmethod
-    def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
-        """Kernels that add to the residuals of the line and of the border."""
-
-    @abstractmethod
-    def tangent(self, top: Packed, at: Packed, K: Packed, border: Packed) -> list[Bound]:
-        """Kernels that add to the tangents."""
-
-    @abstractmethod
-    def account(self, top: Packed, first: Packed) -> list[Bound]:
-        """Kernels that write the work of the forces at a step's end along it, from a configuration."""
-
-    def add_work(self, before: State, after: State, work: dict[str, Work]) -> float:
-        """Add what the parts have turned over in the step solved last; the energy that they store [J]."""
-        work[self.contact.name] += self._work(before, after)
-        return float(self.energy[0])
-
-    def _work(self, before: State, after: State) -> Work:
-        """Work of the step solved last. A law without history dissipates nothing: what is missing is the time scheme's.
-        """
-        if self.contact.law.columns:
-            return self.contact.work(before, after)
-        first, last = self._stored.get(before.t), float(self.energy[0])
-        if first is None:
-            first = self.contact.energy(before).potential
-        self._stored = {before.t: first, after.t: last}
-        lost = float(self.work[0]) - last + first
-        return Work(dissipated=lost, by_scheme=lost)
-
-    def forget(self) -> None:
-        """A step was solved elsewhere."""
-        self._stored.clear()
-
-    def state(self) -> Saved:
-        """What contact has stored at the times known: found anew it would be the same but to round-off."""
-        return {"times": np.array([*self._stored]), "stored": np.array([*self._stored.values()])}
-
-    def restore(self, saved: Saved) -> None:
-        self._stored = dict(zip(as_list(saved["times"]), as_list(saved["stored"]), strict=True))

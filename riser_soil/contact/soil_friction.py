@@ -4,54 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.coulomb import limits, return_map
-from riser_soil.contact.cylinder_gap import Slide, gap_forms, slide_workspace, write_slide, write_slide_columns
-from riser_soil.contact.friction import components, read_along, resistance_by_movement, vector_of, write_along
-from riser_soil.contact.integration_points import KeptRows, PointMemory, write_kept
-from riser_soil.contact.near_points import NearPoints, Surface, first_of
-from riser_soil.contact.pressed_points import Pairs, add_products, in_dofs, paired, spread
+from riser_soil.contact.integration_points import PointMemory
+from riser_soil.contact.near_points import NearPoints
+from riser_soil.contact.on_condensed_soil import POINTS
+from riser_soil.contact.sliding_points import (
+    AREA,
+    Resistance,
+    SlidingPoints,
+    SoilFrictionData,
+    find_tractions,
+    friction_tangents,
+    sliding_workspace,
+)
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
-from riser_soil.contact.surface_loop import LoopFriction, TouchData, TouchWorkspace, add_pairs
+from riser_soil.contact.surface_kernels import SurfaceContactData
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.bound import Bound, Packed
-from riser_soil.core.compiled import njit
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful, gathered, within
-from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.part_kernels import POINTS, Border, LineForces, TopMotion
-from riser_soil.riser.vectors import add, scale, sub, vector, write
-
-AREA = 3  # column of the memory, behind the traction
-
-
-class Resistance(NamedTuple):
-    """Coefficients (2,) of friction, axial and lateral, and stiffness of the soil's surface along itself [N/m3]."""
-
-    mu: Array
-    stiffness: float
-
-
-class SlidingPoints(NamedTuple):
-    """Friction at n points in a trial state.
-
-    Kept from the accepted state: history (n, 4) and adhesion (n,) [Pa]. In the trial: way slid (n, 3) [m], directions
-    (n, 2, 3), elastic guess and traction (n, 3) [Pa], and force (n, 3) [N] on the riser.
-    """
-
-    before: Array
-    most: Array
-    moved: Array
-    along: Array
-    elastic: Array
-    traction: Array
-    on_riser: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +40,6 @@ SoilAdhesion = Callable[[IntArray, Array], Array]
 """Facets (n,) and heights of points on them before the riser came (n,) [m] -> what the soil holds the pipe by at most
 (n,) [Pa].
 """
-
-Start = tuple[Array, Array]  # where a step starts: q (ne, 4, 3) of the pipe's axis, and the soil's points (np, 3) [m]
 
 
 class SoilFriction(LinePart):
@@ -95,7 +67,6 @@ class SoilFriction(LinePart):
         self.contact = contact
         self._resistance, self._adhesion = Resistance(np.array([axial, lateral]), float(stiffness)), adhesion
         self._memory = PointMemory(np.zeros(AREA + 1))
-        self._at_start: Start | None = None
         self._slid: Array = np.zeros(self.line.nodes)
 
     def stick(self) -> None:
@@ -114,7 +85,7 @@ class SoilFriction(LinePart):
         return SlidingState(found, made)
 
     def _evaluate(self, found: SurfaceState) -> SlidingPoints:
-        pressed, start = found.pressed, self._start(found.trial.state)
+        pressed, start = found.pressed, self.contact.start()
         out = sliding_workspace(len(pressed.force))
         out.before[...], out.most[...] = self._memory.at(pressed.points.number), self._most(pressed.points)
         touching = pressed.points, len(out.most), pressed.force
@@ -125,22 +96,23 @@ class SoilFriction(LinePart):
         """Adhesion of points (n,) [Pa]."""
         return np.inf if self._adhesion is None else self._adhesion(points.facet, self.contact.first_heights(points))
 
-    def _start(self, state: State) -> Start:
-        if self._at_start is None:
-            found = self.contact.evaluate(State.at_rest(state.t, state.u.size)).pressed
-            self._at_start = found.axis.q, found.surface.deformed
-        return self._at_start
-
-    def in_loop(self) -> FrictionInLoop:
-        """For the line solver, on soil that does not yield."""
+    def kernel_data(self, contact: SurfaceContactData) -> SoilFrictionData:
+        """For the line solver, on soil that does not yield; contact: its kernel data."""
         assert self._adhesion is None
-        q = np.zeros((self.line.length.size, 4, 3))
-        return FrictionInLoop(self, SoilFrictionData(self._resistance, self._memory.kept, q))
+        room = sliding_workspace(len(contact.pressed.force))
+        return SoilFrictionData(contact, self._resistance, self._memory.kept, self.contact.start()[0], room)
 
-    def at_start(self, given: SoilFrictionData, state: State) -> SoilFrictionData:
-        """Kernel data of the friction for a step that starts at an accepted state."""
-        given.q[...] = self.contact.axis(self.line.trial(state)).q
-        return given._replace(kept=self._memory.kept)
+    def renewed(self, data: SoilFrictionData, contact: SurfaceContactData) -> SoilFrictionData:
+        """The kernel data beside those that the contact has now."""
+        room, wanted = data.points, len(contact.pressed.force)
+        points = room if len(room.most) == wanted else sliding_workspace(wanted)
+        return data._replace(contact=contact, kept=self._memory.kept, q=self.contact.start()[0], points=points)
+
+    def adopt(self, state: State, data: SoilFrictionData) -> None:
+        """Take over what the line solver has found at a state, once contact has."""
+        n = data.contact.touched.counts[POINTS]
+        points = SlidingPoints(*(each[:n].copy() for each in data.points))
+        self.line.trial(state).once((self, "sliding"), lambda _: points)
 
     def element_forces(self, state: State) -> Array:
         """Element residual (ne, 2 ndof)."""
@@ -154,37 +126,33 @@ class SoilFriction(LinePart):
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Unweighted: friction stands at the end of the step."""
         sliding = self.evaluate(state)
-        at, P, start = sliding.found.pressed, sliding.found.trial.turn.P, self._start(state)
+        at, P, start = sliding.found.pressed, sliding.found.trial.turn.P, self.contact.start()
         pressed = at.points, at.force, at.slope
         by_dofs = friction_tangents(
             self._resistance, *pressed, start, at.axis, at.surface, at.basis, at.forms[0], at.pairs, sliding.points, P
         )
         self.contact.add_tangent(values, sliding.found, by_dofs, sliding.points.on_riser)
 
-    def anew(self) -> PointMemory:
-        """The next step starts from a surface with other nodes: tractions of the points, to go over to them."""
-        self._at_start = None
+    @property
+    def memory(self) -> PointMemory:
+        """What is kept of the points: their tractions [Pa] and areas [m2]."""
         return self._memory
 
     def energy(self, state: State) -> Energy:
         """Stored in what the surface gives elastically along itself."""
         sliding = self.evaluate(state)
-        return Energy(potential=self.exchanged(sliding.points, sliding.found.pressed.points.area)[1])
+        return Energy(potential=self._stored(sliding.points.traction, sliding.found.pressed.points.area))
 
-    def exchanged(self, points: SlidingPoints, area: Array) -> tuple[float, float]:
-        """What friction at points has taken in the step, and what it stores [J]."""
-        taken = -float(np.sum(points.on_riser * points.moved))
-        return taken, float(0.5 / self._resistance.stiffness * np.sum(area * np.sum(points.traction**2, axis=1)))
+    def _stored(self, traction: Array, area: Array) -> float:
+        """Energy stored [J] by tractions (n, 3) [Pa] over areas (n,) [m2]."""
+        return float(0.5 / self._resistance.stiffness * np.sum(area * np.sum(traction**2, axis=1)))
 
     def work(self, before: State, after: State) -> Work:
-        sliding = self.evaluate(after)
-        return self.work_of(*self.exchanged(sliding.points, sliding.found.pressed.points.area))
-
-    def work_of(self, taken: float, stored: float) -> Work:
-        """Energy dissipated: what friction has taken less the change of the energy stored [J]; never negative."""
-        kept = self._memory.rows
-        squares = float(np.sum(kept[:, AREA] * np.sum(kept[:, :AREA] ** 2, axis=1)))
-        return Work(dissipated=taken - stored + 0.5 / self._resistance.stiffness * squares)
+        """Energy dissipated: what friction has taken less the change of the energy stored; never negative."""
+        points, kept = self.evaluate(after).points, self._memory.rows
+        taken = -float(np.sum(points.on_riser * points.moved))
+        stored_before = self._stored(kept[:, :AREA], kept[:, AREA])
+        return Work(dissipated=taken - self.energy(after).potential + stored_before)
 
     def commit(self, state: State) -> None:
         """Keep the tractions."""
@@ -192,7 +160,6 @@ class SoilFriction(LinePart):
         points = sliding.found.pressed.points
         self._slid = self._slid + self._nodal_slip(sliding)
         self._memory.keep(points.number, np.column_stack([sliding.points.traction, points.area]))
-        self._at_start = None
 
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
@@ -227,182 +194,5 @@ class SoilFriction(LinePart):
         return {"slid": self._slid} | gathered({"points": self._memory})
 
     def restore(self, saved: Saved) -> None:
-        self._slid, self._at_start = saved["slid"], None
+        self._slid = saved["slid"]
         self._memory.restore(within(saved, "points"))
-
-
-def sliding_workspace(n: int) -> SlidingPoints:
-    """Workspace for so many points, without adhesion."""
-    moved, elastic, traction, on_riser = (np.empty((n, 3)) for _ in range(4))
-    before, most, along = np.empty((n, AREA + 1)), np.full(n, np.inf), np.empty((n, 2, 3))
-    return SlidingPoints(before, most, moved, along, elastic, traction, on_riser)
-
-
-@njit
-def find_tractions(
-    resistance: Resistance,
-    near: NearPoints,
-    n: int,
-    force: Array,
-    start: Start,
-    axis: Axis,
-    surface: Surface,
-    out: SlidingPoints,
-) -> None:
-    """Find the tractions of the first n points, pressed by forces (n,) [N]."""
-    k, mu, at = resistance.stiffness, (resistance.mu[0], resistance.mu[1]), slide_workspace(surface.facets.shape[1], 0)
-    for i in range(n):
-        write_slide(near, i, start, axis, surface, at)
-        along, elastic = read_along(at.along.T), sub(vector(out.before[i]), scale(k, vector(at.moved)))
-        limit, _ = limits(force[i] / near.area[i], 0.0, mu, (out.most[i], 0.0))
-        t, _, _ = return_map(components(along, elastic), limit, (0.0, 0.0))
-        traction = vector_of(along, t)
-        write(vector(at.moved), out.moved[i])
-        write_along(along, out.along[i].T)
-        write(elastic, out.elastic[i])
-        write(traction, out.traction[i])
-        write(scale(near.area[i], traction), out.on_riser[i])
-
-
-@njit
-def friction_tangents(
-    resistance: Resistance,
-    near: NearPoints,
-    force: Array,
-    slope: Array,
-    start: Start,
-    axis: Axis,
-    surface: Surface,
-    basis: Array,
-    forms: Array,
-    pairs: Pairs,
-    sliding: SlidingPoints,
-    P: Array,
-) -> Array:
-    """Derivative (m, nr, nr) of the residual of friction by the dofs of its pairs, P (ne, 2, d, r) held. force (n,) [N]
-    and slope (n,) [N/m]: of the pressure; forms: of the gap, see `gap_forms`.
-    """
-    n, _, nz = forms.shape
-    at, by_z = slide_workspace(surface.facets.shape[1], basis.shape[1]), np.zeros((len(pairs.element), nz, nz))
-    left, right = np.empty((n, 4, nz)), np.empty((n, 4, nz))
-    for i in range(n):
-        write_slide(near, i, start, axis, surface, at)
-        write_slide_columns(near, i, axis, basis, at)
-        pushed = force[i] / near.area[i], slope[i] / near.area[i], sliding.most[i]
-        _write_factors(resistance, pushed, sliding.elastic[i], sliding.on_riser[i], at, forms[i], left[i], right[i])
-        for c in range(nz):
-            for j in range(3):
-                left[i, j, c] = -near.area[i] * at.by_z[j, c]
-    add_products(by_z, pairs.pair, left, right)
-    return in_dofs(by_z, pairs.element, P)
-
-
-@njit
-def _write_factors(
-    resistance: Resistance,
-    pushed: tuple[float, float, float],
-    elastic: Array,
-    on_riser: Array,
-    at: Slide,
-    forms: Array,
-    left: Array,
-    right: Array,
-) -> None:
-    """Write the derivative of a point's traction by z (nz,) to right (4, nz), and below it that of its place on the
-    axis; beside which the force, whose point moves along the axis, has the last row of left. pushed: pressure, its
-    slope and adhesion.
-    """
-    k, along, turns = resistance.stiffness, read_along(at.along.T), read_along(at.along_by_s.T)
-    limit, rise = limits(pushed[0], pushed[1], (resistance.mu[0], resistance.mu[1]), (pushed[2], 0.0))
-    t, by_elastic, by_penetration = return_map(components(along, vector(elastic)), limit, rise)
-    by_way, by_gap = resistance_by_movement(along, k, by_elastic), vector_of(along, by_penetration)
-    a, b = components(turns, vector(elastic))
-    c, d = components(along, vector(at.moved_by_s))
-    turned = a - k * c, b - k * d  # t*, with the place on the axis
-    (e, f), (g, h) = by_elastic
-    follows = e * turned[0] + f * turned[1], g * turned[0] + h * turned[1]
-    by_place, force = add(vector_of(along, follows), vector_of(turns, t)), vector(on_riser)
-    for z in range(forms.shape[1]):
-        x, y, up = at.by_z[0, z], at.by_z[1, z], at.by_z[2, z]
-        for j in range(3):
-            elastic_part = by_way[j][0] * x + by_way[j][1] * y + by_way[j][2] * up
-            right[j, z] = by_place[j] * forms[3, z] - by_gap[j] * forms[0, z] - elastic_part
-        right[3, z] = forms[3, z]
-        left[3, z] = -force[0] * at.by_s_z[0, z] - force[1] * at.by_s_z[1, z] - force[2] * at.by_s_z[2, z]
-
-
-class SoilFrictionData(NamedTuple):
-    """For the line solver: what resists; what is kept of the points, and q (ne, 4, 3) of the axis, where the step
-    starts.
-    """
-
-    resistance: Resistance
-    kept: KeptRows
-    q: Array
-
-
-@njit
-def add_friction(
-    touch: TouchData,
-    given: SoilFrictionData,
-    top: TopMotion,
-    out: LineForces,
-    border: Border,
-    workspace: TouchWorkspace,
-    sliding: SlidingPoints,
-) -> None:
-    """Add the residual of friction to that of the line and to the border's, with contact found."""
-    near, n = workspace.pressed.near, workspace.found[POINTS]
-    write_kept(given.kept, near.number, n, sliding.before)
-    touching, start = (near, n, workspace.pressed.force), (given.q, top.accepted)
-    find_tractions(given.resistance, *touching, start, touch.axis, touch.surface, sliding)
-    forces = touch.axis, touch.surface, touch.basis, near, n, sliding.on_riser
-    spread(*forces, out.end_q, top.rows, border.residual, workspace.met)
-
-
-@njit
-def add_friction_tangent(
-    touch: TouchData,
-    given: SoilFrictionData,
-    top: TopMotion,
-    at: Configuration,
-    K: Array,
-    border: Border,
-    workspace: TouchWorkspace,
-    sliding: SlidingPoints,
-) -> None:
-    """Add the derivative of the residual of friction, found last, to K (ne, n, n) and to the border's."""
-    n, found = workspace.found[POINTS], workspace.pressed
-    near, pressed = first_of(found.near, n), (found.force[:n], found.slope[:n])
-    pairs, pipe = paired(near, K.shape[0]), (touch.axis, touch.surface)
-    forms, start = gap_forms(*pipe, near, touch.basis)[0], (given.q, top.accepted)
-    place = start, *pipe, touch.basis
-    by_dofs = friction_tangents(given.resistance, near, *pressed, *place, forms, pairs, sliding, at.P)
-    add_pairs(by_dofs, pairs, top.rows, touch.surface.facets, K, border)
-
-
-class FrictionInLoop(LoopFriction):
-    """Its kernels, and what they read and write beside contact."""
-
-    part: SoilFriction
-
-    def __init__(self, friction: SoilFriction, data: SoilFrictionData) -> None:
-        self.part = friction
-        self._data, self._points = Packed(data), Packed(sliding_workspace(0))
-
-    def begin(self, before: State) -> None:
-        self._data.renew(self.part.at_start(self._data.value, before))
-
-    def make_room(self, count: int) -> None:
-        self._points.renew(sliding_workspace(count))
-
-    def forces(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
-        return Bound(add_friction, touch, self._data, top, *out, self._points)
-
-    def tangent(self, touch: Packed, top: Packed, *out: Packed) -> Bound:
-        return Bound(add_friction_tangent, touch, self._data, top, *out, self._points)
-
-    def account(self, area: Array) -> tuple[float, Work]:
-        points = SlidingPoints(*(each[: len(area)] for each in self._points.value))
-        taken, stored = self.part.exchanged(points, area)
-        return stored, self.part.work_of(taken, stored)

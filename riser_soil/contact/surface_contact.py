@@ -24,24 +24,24 @@ from riser_soil.contact.near_points import (
     points_of,
     points_workspace,
 )
-from riser_soil.contact.pressed_points import Pairs, PressedPoints, pair_tangents, press_workspace, write_axis
-from riser_soil.contact.soil_contact import SOIL, CandidateRange, LoopContact, SoilContact
-from riser_soil.contact.surface_loop import (
-    LoopFriction,
-    TouchData,
-    TouchWorkspace,
-    Watched,
-    add_touch,
-    add_touch_tangent,
-    write_touch_work,
+from riser_soil.contact.on_condensed_soil import FULL, POINTS, Touched
+from riser_soil.contact.pressed_points import (
+    Pairs,
+    PressedPoints,
+    PressWorkspace,
+    Start,
+    pair_tangents,
+    press_workspace,
+    write_axis,
 )
-from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.bound import Bound, Packed
-from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
+from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
+from riser_soil.contact.surface_kernels import SurfaceContactData, Watched
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import Forces, MatrixBlock, State, Weights, Work
 from riser_soil.core.saved_state import Saved, gathered, within
 from riser_soil.riser.line import Line
 from riser_soil.riser.moving_nodes import Trial
-from riser_soil.riser.part_kernels import FULL, POINTS
+from riser_soil.riser.placed_line import LineTrials
 from riser_soil.riser.sections import larger_beside
 from riser_soil.seabed.law import NormalLaw
 
@@ -102,7 +102,7 @@ class SurfaceContact(SoilContact):
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts[:, :2].prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
-        self._stored: float | None = None  # [J] at the accepted state on soil that moves, once one is known
+        self._start: tuple[Array, Array, Start] | None = None  # for which accepted places of line and soil it holds
 
     def evaluate(self, state: State) -> SurfaceState:
         """Riser and soil at a state. What the trial keeps does not hold the trial: Python would find so large a cycle
@@ -115,8 +115,9 @@ class SurfaceContact(SoilContact):
     def _evaluate(self, trial: Trial) -> PressedPoints:
         deformed = self._soil.deformed(trial.state)
         axis, surface = self.axis(trial), self.surface(deformed)
-        elements, facets = self._pairs(axis, deformed, CandidateRange(self._acts_within, self._acts_within))
-        near = near_points(axis, surface, elements, facets, self._acts_within)
+        within = self._acts_within
+        elements, facets = touching_boxes(*boxes(axis, within, within), deformed, self._soil.corners)
+        near = near_points(axis, surface, elements, facets, within)
         return PressedPoints.of(axis, surface, self._basis, near, self.law.kernel_data, self._memory.kept)
 
     @property
@@ -124,28 +125,64 @@ class SurfaceContact(SoilContact):
         """Gap [m] within which the law may act in a step that starts here."""
         return float(self.law.reach if len(self._memory.numbers) else self.law.start)
 
-    def in_loop(self, friction: LoopFriction | None) -> SurfaceInLoop:
-        return SurfaceInLoop(self, friction)
+    def start(self) -> Start:
+        """Where the present step starts; kept until line or soil are accepted elsewhere."""
+        known, here = self._start, (self.line.x, self._soil.committed)
+        if known is None or known[0] is not here[0] or known[1] is not here[1]:
+            placed, q = self.line.once(LineTrials).then, np.empty((self.line.length.size, 4, 3))
+            placed.move(State.at_rest(0.0, max(self.line.part.stop, self._soil.end)))
+            write_axis(self.line.origin, self._basis, placed.at.q, q)
+            known = self._start = *here, (q, self._soil.settled)
+        return known[2]
 
-    def touch_data(self) -> TouchData:
-        """For the line solver, with workspace for axis and surface."""
+    def kernel_data(self, deformed: Array, touched: Touched) -> SurfaceContactData:
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
-        surface, law = self.surface(self._soil.settled), self.law.kernel_data
-        return self.at_start(TouchData(axis, surface, self._basis, self.line.origin, law, self._memory.kept, 0.0))
+        none, box = np.empty(0, dtype=np.int64), np.zeros((self.line.length.size, 3))
+        watched = Watched(PairsByFacet(none, none, none), box, box, 0.0)
+        pipe, law = (axis, self.surface(deformed), self._basis, self.line.origin), self.law.kernel_data
+        return SurfaceContactData(*pipe, law, self._memory.kept, 0.0, watched, self._room(FEW), touched)
 
-    def at_start(self, touch: TouchData) -> TouchData:
-        """Kernel data of the contact for a step that starts here: history, and the gap within which the law may act."""
-        return touch._replace(kept=self._memory.kept, reach=self._acts_within)
+    def _room(self, count: int) -> PressWorkspace:
+        """For so many points that touch."""
+        return press_workspace(points_workspace(count), len(self.law.columns))
 
-    def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
-        """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
-        and the pairs that may touch within; settled (np, 3): the surface.
+    def at_start(self, data: SurfaceContactData) -> SurfaceContactData:
+        """The kernel data of a step that starts here: history, and the gap within which the law may act."""
+        return data._replace(kept=self._memory.kept, reach=self._acts_within)
+
+    def place(self, state: State) -> Axis:
+        """The riser's axis."""
+        return self.axis(self.line.trial(state))
+
+    def place_in(self, data: SurfaceContactData) -> Axis:
+        return data.axis._replace(q=data.axis.q.copy())
+
+    def _boxes(self, axes: Sequence[Axis]) -> tuple[Array, Array]:
+        """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range
+        and as far as the law reaches.
         """
         reach = self.law.reach
         around = [boxes(axis, self._reach.above + reach, self._reach.around + reach) for axis in axes]
-        low, high = np.min([low for low, _ in around], axis=0), np.max([high for _, high in around], axis=0)
-        elements, facets = touching_boxes(low, high, settled, self._soil.corners)
-        return low, high, by_facet(elements, facets, len(self._soil.facets))
+        return np.min([low for low, _ in around], axis=0), np.max([high for _, high in around], axis=0)
+
+    def candidates(self, places: Sequence[Axis], surface: Array) -> CandidatePairs:
+        pairs = touching_boxes(*self._boxes(places), surface, self._soil.corners)
+        return CandidatePairs.of(len(self._soil.facets), *pairs)
+
+    def watch(
+        self, data: SurfaceContactData, places: Sequence[Axis], pairs: CandidatePairs, slack: float
+    ) -> SurfaceContactData:
+        low, high = self._boxes(places)
+        chosen = by_facet(pairs.nodes, pairs.facet, len(self._soil.facets))
+        level = float(data.surface.deformed[:, 2].max()) + slack
+        if data.touched.counts[FULL]:
+            data = data._replace(pressed=self._room(2 * len(data.pressed.force)))
+        return data._replace(watched=Watched(chosen, low + slack, high - slack, level))
+
+    def adopt(self, state: State, data: SurfaceContactData) -> None:
+        found = data.touched.counts[POINTS], float(data.touched.energy[0]), data.pressed
+        pressed = PressedPoints.kept(data.axis, data.surface, self._basis, *found)
+        self.line.trial(state).once((self, "surface"), lambda _: pressed)
 
     def surface(self, deformed: Array) -> Surface:
         """The soil's surface with its points at (np, 3) [m]."""
@@ -166,17 +203,6 @@ class SurfaceContact(SoilContact):
         """Largest of the pipe [m]."""
         return float(self._radius.max())
 
-    @property
-    def around(self) -> float:
-        """How far beside the pipe facets are candidates [m]."""
-        return self._reach.around
-
-    def _pairs(self, axis: Axis, deformed: Array, reach: CandidateRange) -> tuple[IntArray, IntArray]:
-        """Elements and facets (n,) whose boxes touch, those of the pipe wider by the reach."""
-        low, high = boxes(axis, reach.above, reach.around)
-        found: tuple[IntArray, IntArray] = touching_boxes(low, high, deformed, self._soil.corners)
-        return found
-
     def blocks(self) -> dict[str, MatrixBlock]:
         """Those of the pairs; all dofs of each element, whose directors turn."""
         return super().blocks() | {self.line.name: self.line.element_block()}
@@ -184,11 +210,6 @@ class SurfaceContact(SoilContact):
     def pair_dofs(self, on_line: IntArray, facet: IntArray) -> IntArray:
         """Dofs of an element and of a facet."""
         return np.hstack([self.line.element_block().rows[on_line], self._soil.facet_dofs(facet)])
-
-    def candidates(self, state: State) -> CandidatePairs:
-        axis = self.axis(self.line.trial(state))
-        pairs = self._pairs(axis, self._soil.deformed(state), self._reach)
-        return CandidatePairs.of(len(self._soil.facets), *pairs)
 
     def element_forces(self, state: State) -> Array:
         """Element residual (ne, 2 ndof)."""
@@ -219,25 +240,22 @@ class SurfaceContact(SoilContact):
         add_blocks(values[SOIL], self.places(values[SOIL], pairs.element, pairs.facet), by_dofs)
         found.trial.add_turning(values[self.line.name], 1.0, found.pressed.spread(f)[0])
 
-    def energy(self, state: State) -> Energy:
-        """Potential of the penalty."""
-        return Energy(potential=self.evaluate(state).pressed.potential)
+    def potential(self, state: State) -> float:
+        return self.evaluate(state).pressed.potential
+
+    def taken(self, state: State) -> float:
+        pressed = self.evaluate(state).pressed
+        return pressed.work(pressed.on_riser, self.start())
 
     def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of its potential; by the time scheme what
-        it took beyond the work of the law along the step, all of it without suction.
+        """As of all contacts with soil; with suction the time scheme's share is what the force took beyond the work of
+        the law along the step.
         """
-        last = self.evaluate(after).pressed
-        if self._soil.moves:  # by the areas of the step's end; those of its start have stored what was stored
-            first = self._evaluate(self.line.trial(before))
-            stored = first.potential if self._stored is None else self._stored
-        else:
-            first = self.evaluate(before).pressed
-            stored = first.potential
-        taken = last.work(last.on_riser, first)
-        lost = taken - last.potential + stored
-        by_scheme = taken - self._by_law(first.points, last.points) if self.law.columns else lost
-        return Work(dissipated=lost, by_scheme=by_scheme)
+        work = super().work(before, after)
+        if self.law.columns:
+            by_law = self._by_law(self.evaluate(before).pressed.points, self.evaluate(after).pressed.points)
+            work.by_scheme = self.taken(after) - by_law
+        return work
 
     def _by_law(self, first: NearPoints, last: NearPoints) -> float:
         """Work [J] of the law along a step, at points that touch before or after it."""
@@ -251,10 +269,6 @@ class SurfaceContact(SoilContact):
     def commit(self, state: State) -> None:
         """Keep the history of the points."""
         super().commit(state)
-        if not self.active:
-            return
-        if self._soil.moves:
-            self._stored = self.evaluate(state).pressed.potential
         if self.law.columns:
             pressed = self.evaluate(state).pressed
             self._memory.keep(pressed.points.number, pressed.history)
@@ -338,6 +352,7 @@ class SurfaceContact(SoilContact):
         numbers, *places = points_of(self.surface(before), self.surface(settled), near)
         for memory in (self._memory, *memories):
             memory.go_over(numbers, *places)
+        self._start = None
         self._stored = self._evaluate(here).potential
         self.line.forget()
 
@@ -369,74 +384,9 @@ class SurfaceContact(SoilContact):
 
     def state(self) -> Saved:
         """That of the pattern, and the history of the points."""
-        if not self.active:
-            return super().state()
-        stored = {} if self._stored is None else {"stored": np.array(self._stored)}
-        return super().state() | gathered({"points": self._memory}) | stored
+        return super().state() | (gathered({"points": self._memory}) if self.active else {})
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
         if self.active:
             self._memory.restore(within(saved, "points"))
-            self._stored = float(saved["stored"]) if "stored" in saved else None
-
-
-class SurfaceInLoop(LoopContact):
-    """`SurfaceContact` in the line solver, with its friction, if any."""
-
-    contact: SurfaceContact
-
-    def __init__(self, contact: SurfaceContact, friction: LoopFriction | None) -> None:
-        super().__init__(contact, contact.around)
-        self._line, self._friction = contact.line, friction
-        self.parts = (contact,) if friction is None else (contact, friction.part)
-        self._touch = contact.touch_data()
-        self.deformed, ne = self._touch.surface.deformed, self._line.length.size
-        self.met: BoolArray = np.zeros(len(self.deformed), dtype=np.bool_)
-        self._data, self._workspace = Packed(self._touch), Packed(self._with_room(FEW))
-        none, low_high = np.empty(0, dtype=np.int64), (np.zeros((ne, 3)), np.zeros((ne, 3)))
-        self._watched = Packed(Watched(PairsByFacet(none, none, none), *low_high, 0.0))
-
-    def _with_room(self, count: int) -> TouchWorkspace:
-        """For so many points that touch."""
-        if self._friction is not None:
-            self._friction.make_room(count)
-        pressed = press_workspace(points_workspace(count), len(self.contact.law.columns))
-        return TouchWorkspace(pressed, self.found, self.met, self.energy)
-
-    def begin(self, before: State) -> None:
-        self._data.renew(self.contact.at_start(self._touch))
-        if self._friction is not None:
-            self._friction.begin(before)
-
-    def look(self, before: State, tried: bool) -> IntArray:
-        if self.found[FULL]:
-            self._workspace.renew(self._with_room(2 * len(self._workspace.value.pressed.force)))
-        axes = [self.contact.axis(self._line.trial(before))]
-        if tried:
-            axes.append(self._touch.axis._replace(q=self._touch.axis.q.copy()))
-        low, high, pairs = self.contact.watch(axes, self.deformed)
-        level = float(self.deformed[:, 2].max()) + self.slack
-        self._watched.renew(Watched(pairs, low + self.slack, high - self.slack, level))
-        return np.unique(self._touch.surface.facets[pairs.facets])
-
-    def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
-        out = forces, border, self._workspace
-        touched = Bound(add_touch, self._data, self._watched, top, at, *out)
-        return [touched] if self._friction is None else [touched, self._friction.forces(self._data, top, *out)]
-
-    def tangent(self, top: Packed, at: Packed, K: Packed, border: Packed) -> list[Bound]:
-        out = at, K, border, self._workspace
-        touched = Bound(add_touch_tangent, self._data, top, *out)
-        return [touched] if self._friction is None else [touched, self._friction.tangent(self._data, top, *out)]
-
-    def account(self, top: Packed, first: Packed) -> list[Bound]:
-        return [Bound(write_touch_work, self._data, top, first, self._workspace, Packed(self.work))]
-
-    def add_work(self, before: State, after: State, work: dict[str, Work]) -> float:
-        stored = super().add_work(before, after, work)
-        if self._friction is None:
-            return stored
-        by_friction, turned = self._friction.account(self._workspace.value.pressed.near.area[: self.found[POINTS]])
-        work[self._friction.part.name] += turned
-        return stored + by_friction

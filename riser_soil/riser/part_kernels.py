@@ -10,16 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_geometric, collect_nodal, scatter, write_pulled_back
-
-HELD, BEYOND = -1, -2  # in place of a border's row: of dofs that are supported, and of those that are not reached
-# Of what is found of contact beside a line: how many points touch; whether something has left what is watched, and
-# whether more points are near than there is room for.
-POINTS, LEFT, FULL = range(3)
 
 
 class LineForces(NamedTuple):
@@ -49,17 +44,6 @@ class Border(NamedTuple):
     right: Array
     below: Array
     coupled: BoolArray
-
-
-class TopMotion(NamedTuple):
-    """How the watched nodes (k,) of the top move by the increments of the border's first unknowns, the reached dofs
-    (na,): by (3 k, na). accepted (np, 3): where all are before [m]. rows (np, 3): of the border, HELD or BEYOND.
-    """
-
-    nodes: IntArray
-    by: Array
-    accepted: Array
-    rows: IntArray
 
 
 class LineWeights(NamedTuple):

@@ -12,14 +12,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.soil_contact import LoopContact, SoilContact
+from riser_soil.contact.condensed_contact import CondensedContact
+from riser_soil.contact.on_condensed_soil import BEYOND, FULL, HELD, LEFT, TopMotion, Touched
+from riser_soil.contact.soil_contact import SoilContact
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Energy, Part, State, Weights, Work
-from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.riser.part_kernels import BEYOND, FULL, HELD, LEFT, Border, TopMotion
+from riser_soil.riser.part_kernels import Border
 from riser_soil.soil.condensed import CondensedSoil, Reached
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
 from riser_soil.solve.line_system import Coupling
@@ -66,9 +67,9 @@ def add_norm_of_soil(soil: SoilData, border: Border, sums: Array) -> None:
 
 
 @njit
-def find_outgrown(found: IntArray, met: BoolArray, failure: IntArray) -> None:
+def find_outgrown(touched: Touched, failure: IntArray) -> None:
     """Whether something touches what is not watched or not reached."""
-    if found[LEFT] or found[FULL] or met.any():
+    if touched.counts[LEFT] or touched.counts[FULL] or touched.met.any():
         failure[0] = TOO_NARROW
 
 
@@ -118,7 +119,7 @@ def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     others: list[Any] = [part for part in beside if part is not contact and part is not soil]
     if contact is None or soil is None or any(part.name != FRICTION for part in others):
         return None
-    return partial(SoilBorder, system, contact.in_loop(others[0].in_loop() if others else None), soil)
+    return partial(SoilBorder, system, CondensedContact(contact, others[0] if others else None), soil)
 
 
 class SoilBorder(Coupling):
@@ -129,7 +130,7 @@ class SoilBorder(Coupling):
     def __init__(
         self,
         system: System,
-        touching: LoopContact,
+        touching: CondensedContact,
         soil: CondensedSoil,
         dense: DenseBorder,
         lines: Sequence[PackedLine],
@@ -162,7 +163,7 @@ class SoilBorder(Coupling):
         return [Bound(add_norm_of_soil, self._held, self._border, sums)]
 
     def outgrown(self, failure: Packed) -> list[Bound]:
-        return [Bound(find_outgrown, Packed(self._touching.found), Packed(self._touching.met), failure)]
+        return [Bound(find_outgrown, Packed(self._touching.touched), failure)]
 
     def tangent(self) -> list[Bound]:
         """Kernels that write the border's tangent, and add contact's."""
@@ -177,17 +178,13 @@ class SoilBorder(Coupling):
     def above(self, above: Packed) -> list[Bound]:
         return [Bound(find_above, self._held, self._border, above)]
 
-    def account(self, energy: Packed) -> list[Bound]:
-        """Kernels that find what contact took in the step."""
-        return self._touching.account(self._motion, Packed(self._packed.begun))
-
     def begin(self, before: State, step_to: float, guess: Array) -> None:
         if self._soil.outgrown:
             self._soil.rebuild(before)
         committed = self._top.committed
         accepted = np.asarray(self._top.points + committed)
         self._touching.deformed[...] = accepted
-        self._touching.begin(before)
+        self._touching.begin()
         if self._reached is not self._top.reached or self._has_moved(accepted):
             self._look(tried=False)
         self._motion.value.accepted[...] = accepted
@@ -213,8 +210,8 @@ class SoilBorder(Coupling):
 
     def widen(self) -> None:
         """Reach and watch what the last trial touched."""
-        if self._touching.met.any():
-            self._soil.meet(np.flatnonzero(self._touching.met))
+        if self._touching.touched.met.any():
+            self._soil.meet(np.flatnonzero(self._touching.touched.met))
             self._soil.rebuild(self._accepted)
         self._look(tried=True)
 
@@ -270,18 +267,12 @@ class SoilBorder(Coupling):
         return bool(np.abs(self._moved).max(initial=0.0) <= self._touching.slack)
 
     def add_account(self, before: State, state: State, work: dict[str, Work]) -> Energy:
-        work[self._soil.name] += self._soil.work(before, state)
-        stored = self._touching.add_work(before, state, work)
-        return Energy(potential=stored) + self._soil.energy(state)
-
-    def forget_account(self) -> None:
-        self._touching.forget()
-
-    def state(self) -> Saved:
-        return self._touching.state()
-
-    def restore(self, saved: Saved) -> None:
-        self._touching.restore(saved)
+        self._touching.end(state)
+        energy = Energy()
+        for part in self.parts:
+            work[part.name] += part.work(before, state)
+            energy += part.energy(state)
+        return energy
 
 
 def _held(count: int) -> SoilData:

@@ -70,7 +70,8 @@ class Case:
         """Rows of the riser's and of the soil's dofs on which contact acts at x."""
         contact, state = soil_under(self.assembly).contact, self.step.state(self.x)
         if isinstance(contact, NodeContact):
-            touched = contact.detect(state).touching.rows
+            points = contact.touching(state).points
+            touched = contact.pair_dofs(points.node, points.facet)
         else:
             assert isinstance(contact, SurfaceContact)
             pairs = contact.evaluate(state).pressed.pairs

@@ -140,7 +140,7 @@ def test_what_points_remember_goes_over_to_those_that_lie_there_next() -> None:
     before, places = friction.state()["points/rows"].copy(), surface.points + surface.committed
     total = before[:, :3].T @ before[:, 3]
     surface.committed[:, 1] += 0.025
-    made.contact.surface_renewed(places, [friction.anew()])
+    made.contact.surface_renewed(places, [friction.memory])
     after = friction.state()["points/rows"]
     assert after[:, :3].T @ after[:, 3] == pytest.approx(total, rel=0.02, abs=0.02 * np.abs(total).max())
     assert len(after) != 0

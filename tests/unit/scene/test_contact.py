@@ -131,7 +131,7 @@ def test_tangent_is_the_residuals_derivative(kind: str, dimension: int, footprin
     u = small(case)
     K = case.dense_tangent(u)
     assert not case.contact.outgrown
-    assert len(case.contact.detect(case.state(u)).touching.node) > 4
+    assert len(case.contact.touching(case.state(u)).points.node) > 4
     np.testing.assert_allclose(K, differences(case, u), atol=1e-7 * abs(K).max())
     np.testing.assert_allclose(K, K.T, atol=1e-14 * abs(K).max())
 
@@ -140,10 +140,9 @@ def test_tangent_is_the_residuals_derivative(kind: str, dimension: int, footprin
 def test_tangent_needs_the_gaps_second_derivative(kind: str) -> None:
     case = deformed_case(kind, 3)
     state = case.state(small(case))
-    soil = case.contact.detect(state).touching
-    slope = soil.length * LAW.slope(soil.penetration)
-    gradient = soil.forms[:, 0]
-    first = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
+    soil = case.contact.touching(state)
+    gradient = soil.forms[0][:, 0]
+    first = soil.points.slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
     assert abs(soil.hessian - first).max() > 1e-3 * abs(first).max()
 
 
@@ -421,9 +420,7 @@ def test_one_point_on_a_kink_has_no_balance(kind: str) -> None:
 def test_default_footprint_is_an_eighth_of_the_diameter() -> None:
     case = deformed_case("quad4", 3)
     contact = NodeContact(case.riser, np.full(12, RADIUS), case.surface, LAW)
-    np.testing.assert_allclose(
-        contact.detect(case.state()).points.offset[:4, 1], RADIUS / 4 * np.array([-1, 1, -1, 1])
-    )
+    np.testing.assert_allclose(contact.points.offset[:4, 1], RADIUS / 4 * np.array([-1, 1, -1, 1]))
 
 
 def test_riser_far_above_touches_nothing() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.near_points import PairsByFacet, boxes
-from riser_soil.contact.surface_loop import Watched, _leaves
+from riser_soil.contact.surface_kernels import Watched, leaves
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
@@ -148,7 +148,7 @@ def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: p
         return usual(loop, before)
 
     monkeypatch.setattr(LineSolver, "leaves", count)
-    monkeypatch.setattr("riser_soil.contact.soil_contact.SHARE", 1e-4)
+    monkeypatch.setattr("riser_soil.contact.condensed_contact.SHARE", 1e-4)
     found = taken("in a plane", "compiled")
     assert len(left) > 0
     assert_same(found, by_snes("in a plane"))
@@ -227,4 +227,4 @@ def test_an_element_that_leaves_its_box_is_noticed_unless_it_is_above_the_soil(
     q[:, ::2] += np.array(moved)
     none = np.empty(0, dtype=np.int64)
     watched = Watched(PairsByFacet(none, none, none), low, high, -1.0 if above else 1.0)
-    assert _leaves(Axis(q, np.ones(1), np.full(1, 0.1)), watched, 0.0) == (left and not above)
+    assert leaves(Axis(q, np.ones(1), np.full(1, 0.1)), watched, 0.0) == (left and not above)
