@@ -41,10 +41,13 @@ class CondensedContact:
         return self._packed[0].value
 
     def _renew(self, data: Any) -> None:
-        """Go on with other kernel data of the contact."""
-        self._packed[0].renew(data)
+        """Go on with kernel data of the contact; packing them takes as long as an iteration."""
+        renewed = [data]
         if self._friction is not None:
-            self._packed[1].renew(self._friction.renewed(self._packed[1].value, data))
+            renewed.append(self._friction.at_start(self._packed[1].value, data))
+        for packed, value in zip(self._packed, renewed, strict=True):
+            if value is not packed.value:
+                packed.renew(value)
 
     def begin(self) -> None:
         """Begin a step from the accepted state, at which the top's points are written."""

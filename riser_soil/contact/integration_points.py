@@ -24,6 +24,7 @@ Place = tuple[float, float]  # (xi, eta)
 
 LARGEST = 512  # divisions of a facet in each direction
 ENOUGH = 12  # points along a facet or an element, whichever is shorter: they leave 1e-4 of the force, of a cubic gap
+NOBODY = np.iinfo(np.int64).max  # number that no point has
 LEVEL = 1e-6  # parts of a triangle's width below which two corners lie side by side
 
 CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))  # of tri6 in (xi, eta)
@@ -135,37 +136,52 @@ def write_kept(kept: KeptRows, numbers: IntArray, n: int, out: Array) -> None:
 
 
 class PointMemory:
-    """Rows (n, k) by the numbers (n,) of points; `untouched` (k,) where none is kept."""
+    """Rows (n, k) by the numbers (n,) of points; `untouched` (k,) where none is kept.
+
+    kept: for compiled code, others only once there is no room; behind the numbers are some that no point has.
+    """
 
     def __init__(self, untouched: Array) -> None:
-        self._untouched = untouched
-        self.numbers: IntArray = np.empty(0, dtype=np.int64)
-        self.rows: Array = np.empty((0, len(untouched)))
+        self._count = 0
+        self.kept = KeptRows(np.empty(0, dtype=np.int64), np.empty((0, len(untouched))), untouched)
 
     @property
-    def kept(self) -> KeptRows:
-        """For compiled code."""
-        return KeptRows(self.numbers, self.rows, self._untouched)
+    def numbers(self) -> IntArray:
+        """Numbers (n,) of the points, which rise; written to with the next step."""
+        return self.kept.numbers[: self._count]
+
+    @property
+    def rows(self) -> Array:
+        """Rows (n, k) of the points; written to with the next step."""
+        return self.kept.rows[: self._count]
 
     def at(self, numbers: IntArray) -> Array:
         """Rows (n, k) of points (n,)."""
-        out = np.empty((len(numbers), len(self._untouched)))
+        out = np.empty((len(numbers), self.kept.untouched.size))
         write_kept(self.kept, numbers, len(numbers), out)
         return out
 
     def keep(self, numbers: IntArray, rows: Array) -> None:
         """Keep the rows (n, k) of these points (n,), each at most once, and forget those of all others."""
-        changed = np.any(rows != self._untouched, axis=1)
+        changed = np.any(rows != self.kept.untouched, axis=1)
         order = np.argsort(numbers[changed])
-        self.numbers, self.rows = numbers[changed][order], rows[changed][order]
+        self._write(numbers[changed][order], rows[changed][order])
+
+    def _write(self, numbers: IntArray, rows: Array) -> None:
+        self._count = n = len(numbers)
+        if n > len(self.kept.numbers):
+            room, untouched = np.empty((2 * n, rows.shape[1])), self.kept.untouched
+            self.kept = KeptRows(np.empty(2 * n, dtype=np.int64), room, untouched)
+        self.kept.numbers[:n], self.kept.numbers[n:] = numbers, NOBODY
+        self.kept.rows[:n] = rows
 
     def go_over(self, numbers: IntArray, before: Array, after: Array) -> None:
         """Points (n,) that lay at places (n, 3) lie at others now: what is kept stays where it was, see `carried`."""
-        if len(self.numbers):
+        if self._count:
             self.keep(numbers, carried(before, self.at(numbers), after))
 
     def state(self) -> Saved:
-        return {"numbers": self.numbers, "rows": self.rows}
+        return {"numbers": self.numbers.copy(), "rows": self.rows.copy()}
 
     def restore(self, saved: Saved) -> None:
-        self.numbers, self.rows = saved["numbers"], saved["rows"]
+        self._write(saved["numbers"], saved["rows"])

@@ -97,7 +97,8 @@ class SoilContact(RiserContact):
 
     @abstractmethod
     def at_start(self, data: Any) -> Any:
-        """The kernel data of a step that starts at the accepted state."""
+        """The kernel data for a step that starts at the accepted state, the very same where arrays are but written to.
+        """
 
     @abstractmethod
     def place_in(self, data: Any) -> Any:

@@ -99,14 +99,19 @@ class SoilFriction(LinePart):
     def kernel_data(self, contact: SurfaceContactData) -> SoilFrictionData:
         """For the line solver, on soil that does not yield; contact: its kernel data."""
         assert self._adhesion is None
-        room = sliding_workspace(len(contact.pressed.force))
-        return SoilFrictionData(contact, self._resistance, self._memory.kept, self.contact.start()[0], room)
+        room, q = sliding_workspace(len(contact.pressed.force)), np.zeros((self.line.length.size, 4, 3))
+        return SoilFrictionData(contact, self._resistance, self._memory.kept, q, room)
 
-    def renewed(self, data: SoilFrictionData, contact: SurfaceContactData) -> SoilFrictionData:
-        """The kernel data beside those that the contact has now."""
+    def at_start(self, data: SoilFrictionData, contact: SurfaceContactData) -> SoilFrictionData:
+        """The kernel data for a step that starts at the accepted state, beside those that the contact has now; the very
+        same where arrays are but written to.
+        """
+        data.q[...] = self.contact.start()[0]
+        if data.contact is contact and data.kept is self._memory.kept:
+            return data
         room, wanted = data.points, len(contact.pressed.force)
         points = room if len(room.most) == wanted else sliding_workspace(wanted)
-        return data._replace(contact=contact, kept=self._memory.kept, q=self.contact.start()[0], points=points)
+        return data._replace(contact=contact, kept=self._memory.kept, points=points)
 
     def adopt(self, state: State, data: SoilFrictionData) -> None:
         """Take over what the line solver has found at a state, once contact has."""

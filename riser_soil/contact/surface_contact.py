@@ -140,15 +140,16 @@ class SurfaceContact(SoilContact):
         none, box = np.empty(0, dtype=np.int64), np.zeros((self.line.length.size, 3))
         watched = Watched(PairsByFacet(none, none, none), box, box, 0.0)
         pipe, law = (axis, self.surface(deformed), self._basis, self.line.origin), self.law.kernel_data
-        return SurfaceContactData(*pipe, law, self._memory.kept, 0.0, watched, self._room(FEW), touched)
+        return SurfaceContactData(*pipe, law, self._memory.kept, np.zeros(1), watched, self._room(FEW), touched)
 
     def _room(self, count: int) -> PressWorkspace:
         """For so many points that touch."""
         return press_workspace(points_workspace(count), len(self.law.columns))
 
     def at_start(self, data: SurfaceContactData) -> SurfaceContactData:
-        """The kernel data of a step that starts here: history, and the gap within which the law may act."""
-        return data._replace(kept=self._memory.kept, reach=self._acts_within)
+        """The kernel data with the gap within which the law may act in a step that starts here, and the history."""
+        data.reach[0] = self._acts_within
+        return data if data.kept is self._memory.kept else data._replace(kept=self._memory.kept)
 
     def place(self, state: State) -> Axis:
         """The riser's axis."""

@@ -44,8 +44,8 @@ class Watched(NamedTuple):
 
 class SurfaceContactData(NamedTuple):
     """A `SurfaceContact` on condensed soil: axis and surface, with workspace for q and for the present points; basis
-    (3, d), origin (3,): of the line. law: its kernel data, and what is kept of its points; within a gap of `reach` [m]
-    it may act. watched: what may touch. pressed, touched: what was found last, with room for more points.
+    (3, d), origin (3,): of the line. law: its kernel data, and what is kept of its points; within a gap of `reach` (1,)
+    [m] it may act. watched: what may touch. pressed, touched: what was found last, with room for more points.
     """
 
     axis: Axis
@@ -54,7 +54,7 @@ class SurfaceContactData(NamedTuple):
     origin: Array
     law: Any
     kept: KeptRows
-    reach: float
+    reach: Array
     watched: Watched
     pressed: PressWorkspace
     touched: Touched
@@ -64,11 +64,11 @@ class SurfaceContactData(NamedTuple):
 def _surface_contact(
     part: SurfaceContactData, top: TopMotion, at: Configuration, out: LineForces, border: Border
 ) -> None:
-    axis, surface, pressed, counts = part.axis, part.surface, part.pressed, part.touched.counts
+    axis, surface, pressed, counts, reach = part.axis, part.surface, part.pressed, part.touched.counts, part.reach[0]
     write_axis(part.origin, part.basis, at.q, axis.q)
-    n, room = fill_near(axis, surface, part.watched.pairs, part.reach, pressed.near), len(pressed.force)
+    n, room = fill_near(axis, surface, part.watched.pairs, reach, pressed.near), len(pressed.force)
     part.touched.met[:] = False
-    counts[FULL], counts[LEFT] = n > room, leaves(axis, part.watched, part.reach)
+    counts[FULL], counts[LEFT] = n > room, leaves(axis, part.watched, reach)
     n, part.touched.energy[0] = find_pressed(part.law, part.kept, axis, surface, min(n, room), pressed)
     counts[POINTS] = n
     given = axis, surface, part.basis, pressed.near, n, pressed.on_riser
