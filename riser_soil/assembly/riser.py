@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
-from typing import Any
 
 import numpy as np
 
@@ -66,9 +64,8 @@ def elements_along(
     riser: Riser, line_types: Mapping[str, LineType], around: sections.Surroundings
 ) -> sections.Elements:
     """Elements of a riser of these line types; what is around changes mass and weight alone."""
-    types = {name: _line_type(t) for name, t in line_types.items()}
-    segments = [sections.MeshedSegment(types[s.line_type], s.element_lengths) for s in riser.segments]
-    return _stiffened(riser, sections.elements(segments, around), around)
+    segments = [_of_type(line_types[s.line_type], s.element_lengths, around) for s in riser.segments]
+    return _stiffened(riser, sections.joined(segments), around)
 
 
 def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surroundings) -> sections.Elements:
@@ -81,25 +78,34 @@ def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surro
     return elements
 
 
-def _line_type(given: LineType) -> sections.SectionProperties:
-    """A line type as elements have it: properties of the same name as they are given, or the elements' own default."""
+def _of_type(given: LineType, lengths: Sequence[float], around: sections.Surroundings) -> sections.Elements:
+    """Elements of a line type; what it does not give they do not have."""
     EI_y, EI_z = given.bending_stiffness
     outer, inner = given.wall_diameters
-    formed: dict[str, Any] = {
-        "EI_y": EI_y,
-        "EI_z": EI_z,
-        "drag": (given.normal_drag, given.drag.tangential if given.drag else 0.0),
-        "added_mass": (given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
-        "rotary_inertia": None if given.rotary_inertia is True else float(given.rotary_inertia),
-        "damping": given.damping.time if given.damping else 0.0,
-        "wall_outer_diameter": outer,
-        "wall_inner_diameter": inner,
-        "allowable_stress": given.wall.allowable_stress if given.wall else 0.0,
-        "bare_diameter": given.pipe_diameter or 0.0,
-    }
-    names = [each.name for each in fields(sections.SectionProperties) if each.name not in formed]
-    same = {name: getattr(given, name) for name in names}
-    return sections.SectionProperties(**formed, **{name: value for name, value in same.items() if value is not None})
+    return sections.elements(
+        lengths,
+        around,
+        EA=given.EA,
+        EI_y=EI_y,
+        EI_z=EI_z,
+        GJ=given.GJ or 0.0,
+        mass=given.mass or 0.0,
+        outer_diameter=given.outer_diameter or 0.0,
+        inner_diameter=given.inner_diameter,
+        submerged_weight=given.submerged_weight,
+        rotary_inertia=None if given.rotary_inertia is True else float(given.rotary_inertia),
+        bare_diameter=given.pipe_diameter or 0.0,
+        wall_outer_diameter=outer,
+        wall_inner_diameter=inner,
+        allowable_stress=given.wall.allowable_stress if given.wall else 0.0,
+        drag=(given.normal_drag, given.drag.tangential if given.drag else 0.0),
+        added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
+        vortices=given.vortices,
+        in_line_vortices=given.in_line_vortices,
+        damping=given.damping.time if given.damping else 0.0,
+        min_bend_radius=given.min_bend_radius or 0.0,
+        max_tension=given.max_tension or 0.0,
+    )
 
 
 def attachments_of(scene: Scene) -> tuple[PointAttachment, ...]:

@@ -17,23 +17,9 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
-from riser_soil.riser.spatial_directors import SpatialFrames
+from riser_soil.riser.stiffness import LineStiffness
 from riser_soil.riser.tension_only import blend_forces, blend_tangent, blended, heaped, is_heaped
 from riser_soil.riser.vectors import vector
-
-Planar = tuple[beam2d.PlanarReference, beam2d.PlanarSection]
-Spatial = tuple[beam3d.SpatialReference, beam3d.SpatialSection]
-
-
-def in_plane(line: Line, frames: PlanarFrames, elements: Elements) -> Planar:
-    """EI is EI_y, as the second section axis is normal to the plane."""
-    section = beam2d.PlanarSection(elements.EA, elements.stiffness()[0], elements.axial_law)
-    return beam2d.reference(line.chord0, *_ends(frames.alpha0), line.length), section
-
-
-def in_space(line: Line, frames: SpatialFrames, elements: Elements) -> Spatial:
-    section = beam3d.SpatialSection(elements.EA, *elements.stiffness(), elements.GJ, elements.axial_law)
-    return beam3d.reference(line.chord0, *_ends(frames.T0), line.length), section
 
 
 def _ends(orientation: Array) -> tuple[Array, Array]:
@@ -45,20 +31,18 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 
 class PlanarBeam(NamedTuple):
-    """Elements of a plane line: arc lengths (ne,) and load per length (ne, 2) [N/m]."""
+    """Elements of a plane line, and load per length (ne, 2) [N/m]."""
 
     reference: beam2d.PlanarReference
-    section: beam2d.PlanarSection
-    length: Array
+    section: LineStiffness
     load: Array
 
 
 class SpatialBeam(NamedTuple):
-    """Elements of a line in space: arc lengths (ne,) and load per length (ne, 3) [N/m]."""
+    """Elements of a line in space, and load per length (ne, 3) [N/m]."""
 
     reference: beam3d.SpatialReference
-    section: beam3d.SpatialSection
-    length: Array
+    section: LineStiffness
     load: Array
 
 
@@ -85,10 +69,11 @@ class Beam(CompiledPart):
         self._load = np.ascontiguousarray(per_length @ line.basis)
 
     def make_kernel_data(self) -> PlanarBeam | SpatialBeam:
-        line, load = self.line, self._load.copy()
+        line, load, stiffness = self.line, self._load.copy(), self._elements.stiffness(self.line.length)
         if isinstance(line.frames, PlanarFrames):
-            return PlanarBeam(*in_plane(line, line.frames, self._elements), line.length, load)
-        return SpatialBeam(*in_space(line, line.frames, self._elements), line.length, load)
+            return PlanarBeam(beam2d.reference(line.chord0, *_ends(line.frames.alpha0)), stiffness, load)
+        reference = beam3d.reference(line.chord0, *_ends(line.frames.T0), line.length)
+        return SpatialBeam(reference, stiffness, load)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if (factor := self.factor(end)) != self._factor_now:
@@ -106,11 +91,11 @@ def seen_in_plane(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
 @add_forces.of(PlanarBeam)
 def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -> None:
     f, heap = np.empty(6), np.empty(6)
-    for e in range(part.length.size):
+    for e in range(part.load.shape[0]):
         seen = seen_in_plane(at, e)
         beam2d.write_element_forces(e, seen, part.reference, part.section, f)
-        beam2d.add_load_forces(seen, part.length[e], part.load[e], f)
-        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
+        beam2d.add_load_forces(seen, part.section.L[e], part.load[e], f)
+        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
             _blend_planar_forces(part, at, e, seen, f, heap)
         for i in range(6):
             out.force_e[e, i] += f[i]
@@ -121,7 +106,7 @@ def _blend_planar_forces(
     part: PlanarBeam, at: PlanarConfiguration, e: int, seen: beam2d.PlanarCorotated, f: Array, heap: Array
 ) -> None:
     """Make forces f (6,) of an element with its bow those that it has in a heap; workspace heap (6,)."""
-    chord, L, w = at.chord[e], part.length[e], part.load[e]
+    chord, L, w = at.chord[e], part.section.L[e], part.load[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam2d.write_heaped_forces(state, chord, at.end_angle[e, 0], at.end_angle[e, 1], L, w, heap)
     blend_forces(state, chord, L, _more_than_in_planar_heap(part, at, e, seen), f, heap)
@@ -130,7 +115,7 @@ def _blend_planar_forces(
 @njit
 def _more_than_in_planar_heap(part: PlanarBeam, at: PlanarConfiguration, e: int, seen: beam2d.PlanarCorotated) -> float:
     """Energy [J] of an element with its bow less that in a heap."""
-    L, chord = part.length[e], at.chord[e]
+    L, chord = part.section.L[e], at.chord[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     bowed = beam2d.element_energy(e, seen, part.reference, part.section)
     bowed += beam2d.load_potential(seen, L, part.load[e], 0.0, 0.0)
@@ -142,9 +127,9 @@ def _more_than_in_planar_heap(part: PlanarBeam, at: PlanarConfiguration, e: int,
 @add_forces.of(SpatialBeam)
 def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces) -> None:
     f, heap = np.empty(12), np.empty(12)
-    for e in range(part.length.size):
+    for e in range(part.load.shape[0]):
         beam3d.write_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, f)
-        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
+        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
             _blend_spatial_forces(part, at, e, f, heap)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
@@ -154,7 +139,7 @@ def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces
 @njit
 def _blend_spatial_forces(part: SpatialBeam, at: SpatialConfiguration, e: int, f: Array, heap: Array) -> None:
     """Make forces f (12,) of an element with its bow those that it has in a heap; workspace heap (12,)."""
-    chord, L, w = at.chord[e], part.length[e], part.load[e]
+    chord, L, w = at.chord[e], part.section.L[e], part.load[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam3d.write_heaped_forces(state, chord, at.frame1[e], at.frame2[e], L, w, heap)
     blend_forces(state, chord, L, _more_than_in_spatial_heap(part, at, e), f, heap)
@@ -163,9 +148,9 @@ def _blend_spatial_forces(part: SpatialBeam, at: SpatialConfiguration, e: int, f
 @njit
 def _more_than_in_spatial_heap(part: SpatialBeam, at: SpatialConfiguration, e: int) -> float:
     """Energy [J] of an element with its bow less that in a heap."""
-    L, chord = part.length[e], at.chord[e]
+    L, chord = part.section.L[e], at.chord[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
-    seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference)
+    seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section)
     bowed = beam3d.element_energy(e, seen, part.reference, part.section)
     bowed += beam3d.element_potential(seen, L, vector(part.load[e]), beam3d.STILL)
     spring = beam3d.heaped_energy(state, chord, at.frame1[e], at.frame2[e], L)
@@ -175,12 +160,12 @@ def _more_than_in_spatial_heap(part: SpatialBeam, at: SpatialConfiguration, e: i
 @add_tangent.of(PlanarBeam)
 def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     f, own, heap, heap_own = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty((6, 6))
-    for e in range(part.length.size):
+    for e in range(part.load.shape[0]):
         seen = seen_in_plane(at, e)
         beam2d.write_element(e, seen, part.reference, part.section, f, own)
-        beam2d.add_load_tangent(seen, part.length[e], part.load[e], own)
-        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
-            beam2d.add_load_forces(seen, part.length[e], part.load[e], f)
+        beam2d.add_load_tangent(seen, part.section.L[e], part.load[e], own)
+        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
+            beam2d.add_load_forces(seen, part.section.L[e], part.load[e], f)
             _blend_planar_tangent(part, at, e, seen, f, own, heap, heap_own)
         for i in range(6):
             for j in range(6):
@@ -199,7 +184,7 @@ def _blend_planar_tangent(
     heap_K: Array,
 ) -> None:
     """Make the tangent K (6, 6) of an element with its bow and forces f (6,) that in a heap; workspaces of both."""
-    chord, L, w, turned = at.chord[e], part.length[e], part.load[e], at.end_angle[e]
+    chord, L, w, turned = at.chord[e], part.section.L[e], part.load[e], at.end_angle[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam2d.write_heaped_forces(state, chord, turned[0], turned[1], L, w, heap)
     beam2d.write_heaped_tangent(state, turned[0], turned[1], L, w, heap_K)
@@ -210,11 +195,11 @@ def _blend_planar_tangent(
 def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     f, own, workspace = np.empty(12), np.empty((12, 12)), beam3d.tangent_workspace()
     heap, heap_own = np.empty(12), np.empty((12, 12))
-    for e in range(part.length.size):
+    for e in range(part.load.shape[0]):
         beam3d.write_element(
             e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, workspace, f, own
         )
-        if is_heaped(part.section.law, e, at.chord[e], part.length[e]):
+        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
             _blend_spatial_tangent(part, at, e, f, own, heap, heap_own)
         rotations.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)
         for i in range(12):
@@ -227,7 +212,7 @@ def _blend_spatial_tangent(
     part: SpatialBeam, at: SpatialConfiguration, e: int, f: Array, K: Array, heap: Array, heap_K: Array
 ) -> None:
     """Make forces f (12,) and tangent K (12, 12) of an element with its bow those in a heap; workspaces of both."""
-    chord, L, more = at.chord[e], part.length[e], _more_than_in_spatial_heap(part, at, e)
+    chord, L, more = at.chord[e], part.section.L[e], _more_than_in_spatial_heap(part, at, e)
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam3d.write_heaped_forces(state, chord, at.frame1[e], at.frame2[e], L, part.load[e], heap)
     beam3d.write_heaped_tangent(state, at.frame1[e], at.frame2[e], L, part.load[e], heap_K)
@@ -238,8 +223,8 @@ def _blend_spatial_tangent(
 @add_energy.of(PlanarBeam)
 def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> None:
     section, load = part.section, part.load
-    for e in range(part.length.size):
-        seen, x, L, chord, turned = seen_in_plane(at, e), at.x, part.length[e], at.chord[e], at.end_angle[e]
+    for e in range(part.load.shape[0]):
+        seen, x, L, chord, turned = seen_in_plane(at, e), at.x, part.section.L[e], at.chord[e], at.end_angle[e]
         stored = beam2d.element_energy(e, seen, part.reference, section)
         by_bow = beam2d.load_potential(seen, L, load[e], 0.0, 0.0)
         if is_heaped(section.law, e, chord, L):
@@ -255,11 +240,11 @@ def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> 
 @add_energy.of(SpatialBeam)
 def _spatial_energy(part: SpatialBeam, at: SpatialConfiguration, energy: Array) -> None:
     section, load = part.section, part.load
-    for e in range(part.length.size):
+    for e in range(part.load.shape[0]):
         seen, x, L, chord = (
-            beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference),
+            beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section),
             at.x,
-            part.length[e],
+            part.section.L[e],
             at.chord[e],
         )
         stored = beam3d.element_energy(e, seen, part.reference, section)

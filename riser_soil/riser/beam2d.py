@@ -34,11 +34,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
+from riser_soil.riser.stiffness import ElementStiffness, LineStiffness, of_element, with_EA
 from riser_soil.riser.tension_only import (
-    ElementLaw,
     Heaped,
-    Law,
-    law_at,
     pulled,
     set_spring_forces,
     set_spring_tangent,
@@ -52,18 +50,9 @@ from riser_soil.riser.tension_only import (
 Vec2 = tuple[float, float]
 
 
-class PlanarSection(NamedTuple):
-    """Section stiffnesses of the elements, each of shape (ne,)."""
-
-    EA: Array  # N
-    EI: Array  # N m2
-    law: Law  # `tension_only`
-
-
 class PlanarReference(NamedTuple):
     """Unstressed configuration of the elements, each of shape (ne,)."""
 
-    L: Array  # arc length, m
     l0: Array  # chord length, m
     theta1: Array  # angles from the chord to the tangents at the ends, rad
     theta2: Array
@@ -72,10 +61,7 @@ class PlanarReference(NamedTuple):
 class PlanarElement(NamedTuple):
     """Stiffnesses and unstressed configuration of one element."""
 
-    L: float
-    EA: float
-    EI_per_L: float
-    law: ElementLaw
+    D: ElementStiffness
     l0: float
     theta1: float
     theta2: float
@@ -113,81 +99,76 @@ def corotate(chord: Array, direction1: float, direction2: float) -> PlanarCorota
 
 
 @njit
-def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array) -> PlanarReference:
-    """Unstressed configuration from chords (ne, 2), tangent directions and arc lengths (each (ne,))."""
-    ne = len(L)
+def reference(chord0: Array, direction0_1: Array, direction0_2: Array) -> PlanarReference:
+    """Unstressed configuration from chords (ne, 2) and tangent directions (each (ne,))."""
+    ne = len(chord0)
     l0, theta1, theta2 = np.empty(ne), np.empty(ne), np.empty(ne)
     for e in range(ne):
         at = corotate(chord0[e], direction0_1[e], direction0_2[e])
         l0[e], theta1[e], theta2[e] = at.length, at.theta1, at.theta2
-    return PlanarReference(L, l0, theta1, theta2)
+    return PlanarReference(l0, theta1, theta2)
 
 
 @njit
-def element_at(ref: PlanarReference, section: PlanarSection, e: int) -> PlanarElement:
+def element_at(ref: PlanarReference, line: LineStiffness, e: int) -> PlanarElement:
     """Stiffnesses and unstressed configuration of element e."""
-    L, law = ref.L[e], law_at(section.law, e)
-    return PlanarElement(L, section.EA[e], section.EI[e] / L, law, ref.l0[e], ref.theta1[e], ref.theta2[e])
-
-
-@njit
-def _with_axial_stiffness(element: PlanarElement, EA: float) -> PlanarElement:
-    L, EI_per_L = element.L, element.EI_per_L
-    return PlanarElement(L, EA, EI_per_L, element.law, element.l0, element.theta1, element.theta2)
+    return PlanarElement(of_element(line, e), ref.l0[e], ref.theta1[e], ref.theta2[e])
 
 
 @njit
 def _strain(element: PlanarElement, at: PlanarCorotated) -> float:
-    stretch = (at.length - element.l0) / element.L
+    stretch = (at.length - element.l0) / element.D.L
     return stretch + bow(at.theta1, at.theta2) - bow(element.theta1, element.theta2)
 
 
 @njit
 def _stress(element: PlanarElement, at: PlanarCorotated, strain: float) -> tuple[float, float, float]:
     """Derivatives of U by the chord's length and by theta_1 and theta_2; strain: N/EA."""
-    N = element.EA * strain
-    m1, m2 = end_moments(element.EI_per_L, at.theta1 - element.theta1, at.theta2 - element.theta2)
+    D = element.D
+    N = D.EA * strain
+    m1, m2 = end_moments(D, at.theta1 - element.theta1, at.theta2 - element.theta2)
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
-    straightening = element.L * with_fold(element.law, N, bow(at.theta1, at.theta2))
+    straightening = D.L * with_fold(D.law, N, bow(at.theta1, at.theta2))
     return N, m1 + straightening * slope1, m2 + straightening * slope2
 
 
 @njit
 def _elastic_variation(
-    element: PlanarElement, at: PlanarCorotated, N: float, stretch: float, dtheta1: float, dtheta2: float
+    D: ElementStiffness, at: PlanarCorotated, N: float, stretch: float, dtheta1: float, dtheta2: float
 ) -> tuple[float, float, float]:
     """Variation of `_stress`, by `stress_variation`."""
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
     bowed, change = bow(at.theta1, at.theta2), slope1 * dtheta1 + slope2 * dtheta2
-    both = with_fold(element.law, N, bowed)
-    dN, dm1, dm2 = stress_variation(element, at, both, stretch, dtheta1, dtheta2)
-    dm1 = with_fold_change(element.law, dm1, element.L * slope1, bowed, change)
-    return dN, dm1, with_fold_change(element.law, dm2, element.L * slope2, bowed, change)
+    both = with_fold(D.law, N, bowed)
+    dN, dm1, dm2 = stress_variation(D, at, both, stretch, dtheta1, dtheta2)
+    dm1 = with_fold_change(D.law, dm1, D.L * slope1, bowed, change)
+    return dN, dm1, with_fold_change(D.law, dm2, D.L * slope2, bowed, change)
 
 
 @njit
 def stress_variation(
-    element: PlanarElement, at: PlanarCorotated, N: float, stretch: float, dtheta1: float, dtheta2: float
+    D: ElementStiffness, at: PlanarCorotated, N: float, stretch: float, dtheta1: float, dtheta2: float
 ) -> tuple[float, float, float]:
     """Variation of the stresses: the Hessian of U times a variation of the chord's length and of theta_i."""
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
-    dN = element.EA * (stretch / element.L + slope1 * dtheta1 + slope2 * dtheta2)
-    dm1, dm2 = end_moments(element.EI_per_L, dtheta1, dtheta2)
+    dN = D.EA * (stretch / D.L + slope1 * dtheta1 + slope2 * dtheta2)
+    dm1, dm2 = end_moments(D, dtheta1, dtheta2)
     dslope1, dslope2 = bow_slopes(dtheta1, dtheta2)
-    dm1 += element.L * (dN * slope1 + N * dslope1)
-    dm2 += element.L * (dN * slope2 + N * dslope2)
+    dm1 += D.L * (dN * slope1 + N * dslope1)
+    dm2 += D.L * (dN * slope2 + N * dslope2)
     return dN, dm1, dm2
 
 
 @njit
-def element_energy(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection) -> float:
+def element_energy(e: int, at: PlanarCorotated, ref: PlanarReference, line: LineStiffness) -> float:
     """Strain energy [J] of element e."""
-    element = element_at(ref, section, e)
+    element = element_at(ref, line, e)
+    D = element.D
     phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
-    m1, m2 = end_moments(element.EI_per_L, phi1, phi2)
-    axial = element.EA * stored(element.law, _strain(element, at))
-    axial = with_fold_energy(element.law, axial, bow(at.theta1, at.theta2))
-    return element.L * axial + 0.5 * (m1 * phi1 + m2 * phi2)
+    m1, m2 = end_moments(D, phi1, phi2)
+    axial = D.EA * stored(D.law, _strain(element, at))
+    axial = with_fold_energy(D.law, axial, bow(at.theta1, at.theta2))
+    return D.L * axial + 0.5 * (m1 * phi1 + m2 * phi2)
 
 
 @njit
@@ -206,10 +187,10 @@ def write_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
 
 
 @njit
-def write_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array) -> None:
+def write_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, line: LineStiffness, f: Array) -> None:
     """Write internal forces f (6,) of element e."""
-    element = element_at(ref, section, e)
-    strain, _ = pulled(element.law, _strain(element, at))
+    element = element_at(ref, line, e)
+    strain, _ = pulled(element.D.law, _strain(element, at))
     N, m1, m2 = _stress(element, at, strain)
     write_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
@@ -222,11 +203,11 @@ def configuration_variation(at: PlanarCorotated, force: Vec2, stretch: float, sp
 
 @njit
 def _vary(
-    element: PlanarElement, at: PlanarCorotated, N: float, force: Vec2, u: Vec2, w1: float, w2: float
+    D: ElementStiffness, at: PlanarCorotated, N: float, force: Vec2, u: Vec2, w1: float, w2: float
 ) -> PlanarNodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1, in its axes, and turn by w_i."""
     stretch, spin = u[0], u[1] / at.length
-    dN, dm1, dm2 = _elastic_variation(element, at, N, stretch, w1 - spin, w2 - spin)
+    dN, dm1, dm2 = _elastic_variation(D, at, N, stretch, w1 - spin, w2 - spin)
     change = nodal_forces(at, dN, dm1, dm2)
     moved = configuration_variation(at, force, stretch, spin)
     total = (change.force[0] + moved[0], change.force[1] + moved[1])
@@ -234,29 +215,29 @@ def _vary(
 
 
 @njit
-def _tangent(element: PlanarElement, at: PlanarCorotated, N: float, force: Vec2, K: Array) -> None:
-    """Write the element's tangent, column by column, to K (6, 6)."""
+def _tangent(D: ElementStiffness, at: PlanarCorotated, N: float, force: Vec2, K: Array) -> None:
+    """Write the tangent of an element, its stiffnesses for a change of strains, column by column to K (6, 6)."""
     c, s = at.axis
     still = (0.0, 0.0)
-    write_forces(at.axis, _vary(element, at, N, force, (c, -s), 0.0, 0.0), K[:, 3])
-    write_forces(at.axis, _vary(element, at, N, force, (s, c), 0.0, 0.0), K[:, 4])
-    write_forces(at.axis, _vary(element, at, N, force, still, 1.0, 0.0), K[:, 2])
-    write_forces(at.axis, _vary(element, at, N, force, still, 0.0, 1.0), K[:, 5])
+    write_forces(at.axis, _vary(D, at, N, force, (c, -s), 0.0, 0.0), K[:, 3])
+    write_forces(at.axis, _vary(D, at, N, force, (s, c), 0.0, 0.0), K[:, 4])
+    write_forces(at.axis, _vary(D, at, N, force, still, 1.0, 0.0), K[:, 2])
+    write_forces(at.axis, _vary(D, at, N, force, still, 0.0, 1.0), K[:, 5])
     for i in range(6):
         K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]
 
 
 @njit
 def write_element(
-    e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array, K: Array
+    e: int, at: PlanarCorotated, ref: PlanarReference, line: LineStiffness, f: Array, K: Array
 ) -> None:
     """Write internal forces f (6,) of element e and their derivative K (6, 6) by displacements and angles."""
-    element = element_at(ref, section, e)
-    strain, stiffness = pulled(element.law, _strain(element, at))
+    element = element_at(ref, line, e)
+    strain, stiffness = pulled(element.D.law, _strain(element, at))
     N, m1, m2 = _stress(element, at, strain)
     response = nodal_forces(at, N, m1, m2)
     write_forces(at.axis, response, f)
-    _tangent(_with_axial_stiffness(element, stiffness * element.EA), at, N, response.force, K)
+    _tangent(with_EA(element.D, stiffness * element.D.EA), at, N, response.force, K)
 
 
 @njit
@@ -272,8 +253,9 @@ def bow_slopes(a: float, b: float) -> tuple[float, float]:
 
 
 @njit
-def end_moments(EI_per_L: float, a: float, b: float) -> tuple[float, float]:
+def end_moments(D: ElementStiffness, a: float, b: float) -> tuple[float, float]:
     """Moments (N m) conjugate to the end rotations a and b of a cubic deflection."""
+    EI_per_L = D.EI_y / D.L
     return EI_per_L * (4.0 * a + 2.0 * b), EI_per_L * (2.0 * a + 4.0 * b)
 
 

@@ -36,9 +36,9 @@ from riser_soil.riser.corotation import (
     turn,
     turned,
 )
+from riser_soil.riser.stiffness import ElementStiffness, LineStiffness, of_element
 from riser_soil.riser.strain3d import (
     Station,
-    Stiffness,
     Strain,
     Stress,
     conjugate,
@@ -54,8 +54,6 @@ from riser_soil.riser.strain3d import (
 )
 from riser_soil.riser.tension_only import (
     Heaped,
-    Law,
-    law_at,
     set_spring_forces,
     set_spring_tangent,
     spring_energy,
@@ -65,20 +63,9 @@ from riser_soil.riser.vectors import Mat, Vec, add, dot, matrix, scale, sub, vec
 STILL = (0.0, 0.0, 0.0)
 
 
-class SpatialSection(NamedTuple):
-    """Section stiffnesses of the elements, each of shape (ne,)."""
-
-    EA: Array  # N
-    EIy: Array  # N m2, bending about the second section axis
-    EIz: Array  # N m2, bending about the third section axis
-    GJ: Array  # N m2, positive
-    law: Law  # `tension_only`
-
-
 class SpatialReference(NamedTuple):
     """Unstressed configuration of the elements."""
 
-    L: Array  # (ne,) arc length, m
     axial: Array  # (ne,) strain measures of `strain3d` in the unstressed shape
     twist: Array  # (ne,)
     curvature: Array  # (ne, 2, 2) station, section axis
@@ -135,7 +122,7 @@ def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> SpatialRefer
         axial[e], twist[e] = at.axial, at.twist
         curvature[e, 0, 0], curvature[e, 0, 1] = at.first
         curvature[e, 1, 0], curvature[e, 1, 1] = at.second
-    return SpatialReference(L, axial, twist, curvature)
+    return SpatialReference(axial, twist, curvature)
 
 
 @njit
@@ -145,23 +132,16 @@ def _unstressed(ref: SpatialReference, e: int) -> Strain:
 
 
 @njit
-def stiffness(ref: SpatialReference, section: SpatialSection, e: int) -> Stiffness:
-    """Stiffnesses of element e."""
-    elastic = section.EA[e], section.EIy[e], section.EIz[e], section.GJ[e]
-    return Stiffness(ref.L[e], *elastic, law_at(section.law, e))
-
-
-@njit
-def element_shape(e: int, chord: Array, frame1: Array, frame2: Array, ref: SpatialReference) -> Shape:
-    """Configuration of element e; arguments as in `forces`."""
-    found: Shape = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+def element_shape(e: int, chord: Array, frame1: Array, frame2: Array, line: LineStiffness) -> Shape:
+    """Configuration of element e, for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
+    found: Shape = shape(line.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
     return found
 
 
 @njit
-def element_energy(e: int, at: Shape, ref: SpatialReference, section: SpatialSection) -> float:
+def element_energy(e: int, at: Shape, ref: SpatialReference, line: LineStiffness) -> float:
     """Strain energy of element e."""
-    return energy(stiffness(ref, section, e), at.strain, difference(at.strain, _unstressed(ref, e)))
+    return energy(of_element(line, e), at.strain, difference(at.strain, _unstressed(ref, e)))
 
 
 @njit
@@ -189,7 +169,7 @@ def _all_forces(at: Shape, N: float, mu1: Vec, mu2: Vec, load: BowLoad) -> Spati
 
 
 @njit
-def _respond(D: Stiffness, unstressed: Strain, at: Shape, w: Vec) -> tuple[SpatialResponse, Stiffness]:
+def _respond(D: ElementStiffness, unstressed: Strain, at: Shape, w: Vec) -> tuple[SpatialResponse, ElementStiffness]:
     """Forces of an element under a load, and its stiffnesses for a change of the strains."""
     elastic, tangent = pulled_strain(D, difference(at.strain, unstressed))
     return respond(D.L, at, elastic, stress(D, at.strain, elastic), bow_load(at.frame.axes, D.L, w)), tangent
@@ -215,16 +195,16 @@ def write_element_forces(
     frame1: Array,
     frame2: Array,
     ref: SpatialReference,
-    section: SpatialSection,
+    line: LineStiffness,
     load: Array,
     f: Array,
 ) -> None:
     """Write internal forces f (12,) of element e, less those of a load per length (ne, 3) [N/m], for chords (ne, 3) and
     section frames (ne, 3, 3) of both ends.
     """
-    at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])
-    response, _ = _respond(stiffness(ref, section, e), _unstressed(ref, e), at, w)
-    _write_loaded_forces(ref.L[e], at, response, w, f)
+    at, w = element_shape(e, chord, frame1, frame2, line), vector(load[e])
+    response, _ = _respond(of_element(line, e), _unstressed(ref, e), at, w)
+    _write_loaded_forces(line.L[e], at, response, w, f)
 
 
 @njit
@@ -271,7 +251,7 @@ def forces_change(
 
 
 @njit
-def _vary(D: Stiffness, at: Shape, response: SpatialResponse, u: Vec, w1: Vec, w2: Vec) -> SpatialNodalForces:
+def _vary(D: ElementStiffness, at: Shape, response: SpatialResponse, u: Vec, w1: Vec, w2: Vec) -> SpatialNodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1 and spin by w1, w2."""
     m = move(at, u, w1, w2)
     change = strain_of(D.L, at, m)
@@ -287,7 +267,7 @@ def tangent_workspace() -> Array:
 
 
 @njit
-def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, workspace: Array, K: Array) -> None:
+def _tangent(D: ElementStiffness, at: Shape, response: SpatialResponse, workspace: Array, K: Array) -> None:
     """Write the element's tangent to K (12, 12): the changes, columns of workspace[1], by the moves, columns of
     workspace[0].
     """
@@ -320,7 +300,9 @@ def _write_last_change(at: Shape, response: SpatialResponse, changes: Array) -> 
 
 
 @njit
-def _write_change(D: Stiffness, at: Shape, response: SpatialResponse, moves: Array, changes: Array, k: int) -> None:
+def _write_change(
+    D: ElementStiffness, at: Shape, response: SpatialResponse, moves: Array, changes: Array, k: int
+) -> None:
     """Write how the forces change in move k; by itself so that the loop over all of them is done on vectors."""
     u, w1, w2 = _three(moves, 0, k), _three(moves, 3, k), _three(moves, 6, k)
     change, axes = _vary(D, at, response, u, w1, w2), at.frame.axes
@@ -354,7 +336,7 @@ def write_element(
     frame1: Array,
     frame2: Array,
     ref: SpatialReference,
-    section: SpatialSection,
+    line: LineStiffness,
     load: Array,
     workspace: Array,
     f: Array,
@@ -363,8 +345,8 @@ def write_element(
     """Write forces f (12,) of element e as `write_element_forces`, and their derivative K (12, 12) by displacements and
     spatial spins; workspace: `tangent_workspace`.
     """
-    D, w = stiffness(ref, section, e), vector(load[e])
-    at = element_shape(e, chord, frame1, frame2, ref)
+    D, w = of_element(line, e), vector(load[e])
+    at = element_shape(e, chord, frame1, frame2, line)
     response, tangent = _respond(D, _unstressed(ref, e), at, w)
     _write_loaded_forces(D.L, at, response, w, f)
     _tangent(tangent, at, response, workspace, K)

@@ -1,6 +1,6 @@
 """Stiffness-proportional (Kelvin-Voigt) damping of the plane elements of `beam2d`.
 
-The sections here are viscosities beta EA [N s] and beta EI [N m2 s]. With the rates of the chord and of the section
+The stiffnesses here are viscosities beta EA [N s] and beta EI [N m2 s]. With the rates of the chord and of the section
 angles as seen from the element's frame, the stresses are the Hessian of the elastic energy at no stress times the
 rates of the strains. A rigid motion has none, so it is never damped, however fast it turns. All costs a quarter of
 `damping3d` (`benchmarks.twins`).
@@ -12,18 +12,15 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam2d import (
     PlanarCorotated,
-    PlanarElement,
     PlanarNodalForces,
-    PlanarReference,
-    PlanarSection,
     Vec2,
     bow_slopes,
     configuration_variation,
-    element_at,
     nodal_forces,
     stress_variation,
     write_forces,
 )
+from riser_soil.riser.stiffness import ElementStiffness, LineStiffness, of_element
 
 STILL = (0.0, 0.0)
 
@@ -60,18 +57,18 @@ def _rates_change(at: PlanarCorotated, rates: PlanarChange, m: PlanarChange, shi
 
 @njit
 def _stress_change(
-    element: PlanarElement, at: PlanarCorotated, N: float, rates: PlanarChange, m: PlanarChange, d: PlanarChange
+    D: ElementStiffness, at: PlanarCorotated, N: float, rates: PlanarChange, m: PlanarChange, d: PlanarChange
 ) -> tuple[float, float, float]:
     """Change of the viscous stresses when the element moves by m and the rates change by d."""
     slope1, slope2 = bow_slopes(m.theta1, m.theta2)
-    bowing = element.L * (slope1 * rates.theta1 + slope2 * rates.theta2)
-    dN, dm1, dm2 = stress_variation(element, at, 0.0, d.stretch + bowing, d.theta1, d.theta2)
-    return dN, dm1 + N * element.L * slope1, dm2 + N * element.L * slope2
+    bowing = D.L * (slope1 * rates.theta1 + slope2 * rates.theta2)
+    dN, dm1, dm2 = stress_variation(D, at, 0.0, d.stretch + bowing, d.theta1, d.theta2)
+    return dN, dm1 + N * D.L * slope1, dm2 + N * D.L * slope2
 
 
 @njit
 def _vary(
-    element: PlanarElement,
+    D: ElementStiffness,
     at: PlanarCorotated,
     N: float,
     force: Vec2,
@@ -79,7 +76,7 @@ def _vary(
     m: PlanarChange,
     shift_v: float,
 ) -> PlanarNodalForces:
-    dN, dm1, dm2 = _stress_change(element, at, N, rates, m, _rates_change(at, rates, m, shift_v))
+    dN, dm1, dm2 = _stress_change(D, at, N, rates, m, _rates_change(at, rates, m, shift_v))
     change = nodal_forces(at, dN, dm1, dm2)
     moved = configuration_variation(at, force, m.stretch, m.spin)
     total = (change.force[0] + moved[0], change.force[1] + moved[1])
@@ -90,8 +87,7 @@ def _vary(
 def write_element_forces(
     e: int,
     at: PlanarCorotated,
-    ref: PlanarReference,
-    viscosity: PlanarSection,
+    viscosity: LineStiffness,
     chord_rate: Array,
     turn_rate: Array,
     f: Array,
@@ -100,8 +96,8 @@ def write_element_forces(
     rad/s.
     """
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
-    element = element_at(ref, viscosity, e)
-    N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
+    D = of_element(viscosity, e)
+    N, m1, m2 = stress_variation(D, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
     write_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
 
@@ -109,8 +105,7 @@ def write_element_forces(
 def write_element_tangent(
     e: int,
     at: PlanarCorotated,
-    ref: PlanarReference,
-    viscosity: PlanarSection,
+    viscosity: LineStiffness,
     chord_rate: Array,
     turn_rate: Array,
     shift_v: float,
@@ -118,8 +113,8 @@ def write_element_tangent(
 ) -> None:
     """Write their derivative K (6, 6) by displacements and angles, which the rates follow by shift_v [1/s]."""
     rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
-    element = element_at(ref, viscosity, e)
-    N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
+    D = of_element(viscosity, e)
+    N, m1, m2 = stress_variation(D, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
     force = nodal_forces(at, N, m1, m2).force
     c, s = at.axis
     moves = (
@@ -129,6 +124,6 @@ def write_element_tangent(
         _move(at, STILL, 0.0, 1.0),
     )
     for j in range(4):
-        write_forces(at.axis, _vary(element, at, N, force, rates, moves[j], shift_v), K[:, 2 + j])
+        write_forces(at.axis, _vary(D, at, N, force, rates, moves[j], shift_v), K[:, 2 + j])
     for i in range(6):
         K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]

@@ -1,7 +1,7 @@
 """Stiffness-proportional (Kelvin-Voigt) damping of the spatial elements of `beam3d`.
 
-The sections here are viscosities: beta EA [N s], beta EI and beta GJ [N m2 s]. Rates are those of the chord (m/s) and
-the spatial angular velocities of the nodes (rad/s). Strains do not change in a rigid motion, so it is never damped,
+The stiffnesses here are viscosities: beta EA [N s], beta EI and beta GJ [N m2 s]. Rates are those of the chord (m/s)
+and the spatial angular velocities of the nodes (rad/s). Strains do not change in a rigid motion, so it is never damped,
 however fast it turns.
 """
 
@@ -13,19 +13,17 @@ from riser_soil.riser.beam3d import (
     STILL,
     Shape,
     SpatialChange,
-    SpatialReference,
     SpatialResponse,
-    SpatialSection,
     forces_change,
     move,
     respond,
-    stiffness,
     strain_of,
     write_forces,
 )
 from riser_soil.riser.corotation import NO_LOAD, SpatialNodalForces, rate, rate_variation
 from riser_soil.riser.rotations import rows_to_increments
-from riser_soil.riser.strain3d import Stiffness, linear_stress, strain_change_variation, total
+from riser_soil.riser.stiffness import ElementStiffness, LineStiffness, of_element
+from riser_soil.riser.strain3d import linear_stress, strain_change_variation, total
 from riser_soil.riser.vectors import (
     Vec,
     add,
@@ -66,7 +64,7 @@ def _flow(at: Shape, chord_rate: Vec, spin1: Vec, spin2: Vec) -> ElementVelociti
 
 
 @njit
-def _respond(D: Stiffness, at: Shape, flow: ElementVelocities) -> SpatialResponse:
+def _respond(D: ElementStiffness, at: Shape, flow: ElementVelocities) -> SpatialResponse:
     strain_rates = strain_of(D.L, at, flow.rates)
     return respond(D.L, at, strain_rates, linear_stress(D, strain_rates), NO_LOAD)
 
@@ -92,7 +90,12 @@ def _rates_change(at: Shape, flow: ElementVelocities, m: SpatialChange, dc: Vec,
 
 @njit
 def _vary(
-    D: Stiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, m: SpatialChange, d: SpatialChange
+    D: ElementStiffness,
+    at: Shape,
+    flow: ElementVelocities,
+    response: SpatialResponse,
+    m: SpatialChange,
+    d: SpatialChange,
 ) -> SpatialNodalForces:
     """Change of an element's forces when it moves by m and its rates change by d."""
     bending = strain_change_variation(D.L, at.stations, flow.rates.da, flow.rates.db, m.da, m.db)
@@ -102,7 +105,7 @@ def _vary(
 
 @njit
 def _element(
-    D: Stiffness, at: Shape, chord_rate: Array, spin1: Array, spin2: Array
+    D: ElementStiffness, at: Shape, chord_rate: Array, spin1: Array, spin2: Array
 ) -> tuple[ElementVelocities, SpatialResponse]:
     flow = _flow(at, vector(chord_rate), vector(spin1), vector(spin2))
     return flow, _respond(D, at, flow)
@@ -112,8 +115,7 @@ def _element(
 def write_element_forces(
     e: int,
     at: Shape,
-    ref: SpatialReference,
-    viscosity: SpatialSection,
+    viscosity: LineStiffness,
     chord_rate: Array,
     spin: Array,
     f: Array,
@@ -122,14 +124,14 @@ def write_element_forces(
 
     chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities.
     """
-    D = stiffness(ref, viscosity, e)
+    D = of_element(viscosity, e)
     _, response = _element(D, at, chord_rate[e], spin[e], spin[e + 1])
     write_forces(at.frame.axes, response.forces, f)
 
 
 @njit
 def _turn_column(
-    D: Stiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, w: Vec, faster: Vec, end: int
+    D: ElementStiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, w: Vec, faster: Vec, end: int
 ) -> SpatialNodalForces:
     """Change of the forces when one end spins by w and its angular velocity grows by `faster`, both in global axes."""
     axes = at.frame.axes
@@ -145,7 +147,7 @@ def _turn_column(
 
 @njit
 def _shift_columns(
-    D: Stiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, shift_v: float, K: Array
+    D: ElementStiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, shift_v: float, K: Array
 ) -> None:
     """Write the columns of both nodes' displacements to K (12, 12)."""
     axes = at.frame.axes
@@ -162,8 +164,7 @@ def _shift_columns(
 def write_element_tangent(
     e: int,
     at: Shape,
-    ref: SpatialReference,
-    viscosity: SpatialSection,
+    viscosity: LineStiffness,
     chord_rate: Array,
     spin: Array,
     nodes: NodeRotations,
@@ -174,7 +175,7 @@ def write_element_tangent(
 
     Velocities and body-axes angular velocities follow by shift_v [1/s].
     """
-    D = stiffness(ref, viscosity, e)
+    D = of_element(viscosity, e)
     flow, response = _element(D, at, chord_rate[e], spin[e], spin[e + 1])
     _shift_columns(D, at, flow, response, shift_v, K)
     for end in range(2):

@@ -19,13 +19,13 @@ The strain energy is
 
     U = EA L axial^2 / 2 + GJ twist^2 / (2 L) + L/4 (sum of k.D k over both stations) - h P^2 L^3 / (24 GJ)
 
-with all strains less those of the unstressed element, D = diag(EIy, EIz), and P = (mean curvature x mean
+with all strains less those of the unstressed element, D = diag(EI_y, EI_z), and P = (mean curvature x mean
 moment)_x, the torque rate. Without bending stiffness the first term is that of `tension_only`. The last one is what the
 twist sets free that deviates from the line between the ends by
 a (1 - 4 x^2/L^2), x from the middle. It is stiffened by GJ and, as it turns the curvature k, by k'.D k' with k' normal
 to k; of both the least energy by a has
 
-    h = 1 / (1 + (EIz ky^2 + EIy kz^2) L^2 / (10 GJ)).
+    h = 1 / (1 + (EI_z ky^2 + EI_y kz^2) L^2 / (10 GJ)).
 
 As P^2 <= (k'.D k') (k.D k), k elastic, U stays positive: an element bent about its soft axis that is long for its
 stiffness ratio would otherwise gain energy without end by bending about the stiff one.
@@ -36,8 +36,8 @@ from typing import NamedTuple
 
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam2d import bow, bow_slopes
+from riser_soil.riser.stiffness import ElementStiffness, with_EA
 from riser_soil.riser.tension_only import (
-    ElementLaw,
     pulled,
     stored,
     with_fold,
@@ -48,17 +48,6 @@ from riser_soil.riser.vectors import Vec, add, dot, scale
 
 ROOT3 = math.sqrt(3.0)
 Pair = tuple[float, float]  # components along the second and third section axis
-
-
-class Stiffness(NamedTuple):
-    """Section stiffnesses and length of one element."""
-
-    L: float  # arc length, m
-    EA: float  # N
-    EIy: float  # N m2, about the second section axis
-    EIz: float  # N m2, about the third section axis
-    GJ: float  # N m2
-    law: ElementLaw  # `tension_only`
 
 
 class Station(NamedTuple):
@@ -234,58 +223,57 @@ def _mean(s: Strain) -> Pair:
 
 
 @njit
-def _torque_rate(k: Pair, elastic: Pair, D: Stiffness) -> float:
+def _torque_rate(k: Pair, elastic: Pair, D: ElementStiffness) -> float:
     """P for the mean curvature k and its elastic part."""
-    return k[0] * D.EIz * elastic[1] - k[1] * D.EIy * elastic[0]
+    return k[0] * D.EI_z * elastic[1] - k[1] * D.EI_y * elastic[0]
 
 
 @njit
-def _torque_rate_slopes(k: Pair, elastic: Pair, D: Stiffness) -> Pair:
+def _torque_rate_slopes(k: Pair, elastic: Pair, D: ElementStiffness) -> Pair:
     """Derivatives of P by the mean curvature; linear in (k, elastic)."""
-    return D.EIz * elastic[1] - D.EIy * k[1], D.EIz * k[0] - D.EIy * elastic[0]
+    return D.EI_z * elastic[1] - D.EI_y * k[1], D.EI_z * k[0] - D.EI_y * elastic[0]
 
 
 @njit
-def _twist_compliance(D: Stiffness) -> float:
+def _twist_compliance(D: ElementStiffness) -> float:
     return D.L**3 / (12.0 * D.GJ)
 
 
 @njit
-def _share(k: Pair, D: Stiffness) -> float:
+def _share(k: Pair, D: ElementStiffness) -> float:
     """h for the mean curvature k."""
-    return 1.0 / (1.0 + 0.1 * D.L**2 / D.GJ * (D.EIz * k[0] ** 2 + D.EIy * k[1] ** 2))
+    return 1.0 / (1.0 + 0.1 * D.L**2 / D.GJ * (D.EI_z * k[0] ** 2 + D.EI_y * k[1] ** 2))
 
 
 @njit
-def _share_slopes(k: Pair, D: Stiffness, h: float) -> Pair:
+def _share_slopes(k: Pair, D: ElementStiffness, h: float) -> Pair:
     """Derivatives of h by the mean curvature."""
     by = -0.2 * D.L**2 / D.GJ * h**2
-    return by * D.EIz * k[0], by * D.EIy * k[1]
+    return by * D.EI_z * k[0], by * D.EI_y * k[1]
 
 
 @njit
-def energy(D: Stiffness, total: Strain, elastic: Strain) -> float:
+def energy(D: ElementStiffness, total: Strain, elastic: Strain) -> float:
     """Strain energy U (J)."""
     U = D.L * with_fold_energy(D.law, D.EA * stored(D.law, elastic.axial), total.bow)
     U += 0.5 * D.GJ / D.L * elastic.twist**2
-    U += 0.25 * D.L * D.EIy * (elastic.first[0] ** 2 + elastic.second[0] ** 2)
-    U += 0.25 * D.L * D.EIz * (elastic.first[1] ** 2 + elastic.second[1] ** 2)
+    U += 0.25 * D.L * D.EI_y * (elastic.first[0] ** 2 + elastic.second[0] ** 2)
+    U += 0.25 * D.L * D.EI_z * (elastic.first[1] ** 2 + elastic.second[1] ** 2)
     k = _mean(total)
     return U - 0.5 * _twist_compliance(D) * _share(k, D) * _torque_rate(k, _mean(elastic), D) ** 2
 
 
 @njit
-def pulled_strain(D: Stiffness, elastic: Strain) -> tuple[Strain, Stiffness]:
+def pulled_strain(D: ElementStiffness, elastic: Strain) -> tuple[Strain, ElementStiffness]:
     """The strains with N/EA for the axial one, and the stiffnesses for a change of them: `tension_only`."""
     axial, stiffness = pulled(D.law, elastic.axial)
-    tangent = Stiffness(D.L, stiffness * D.EA, D.EIy, D.EIz, D.GJ, D.law)
-    return Strain(axial, elastic.twist, elastic.first, elastic.second, elastic.bow), tangent
+    return Strain(axial, elastic.twist, elastic.first, elastic.second, elastic.bow), with_EA(D, stiffness * D.EA)
 
 
 @njit
-def linear_stress(D: Stiffness, elastic: Strain) -> Stress:
+def linear_stress(D: ElementStiffness, elastic: Strain) -> Stress:
     """Stresses but for those of the torque rate."""
-    y, z = 0.5 * D.L * D.EIy, 0.5 * D.L * D.EIz
+    y, z = 0.5 * D.L * D.EI_y, 0.5 * D.L * D.EI_z
     first, second = (
         (y * elastic.first[0], z * elastic.first[1]),
         (y * elastic.second[0], z * elastic.second[1]),
@@ -303,7 +291,7 @@ def _less(s: Stress, moment: Pair, bow: float) -> Stress:
 
 
 @njit
-def stress(D: Stiffness, total: Strain, elastic: Strain) -> Stress:
+def stress(D: ElementStiffness, total: Strain, elastic: Strain) -> Stress:
     """Gradient of U by the strains `total`, of which `elastic` exceeds the unstressed ones, the axial one N/EA."""
     k, e = _mean(total), _mean(elastic)
     linear = linear_stress(D, elastic)
@@ -312,7 +300,7 @@ def stress(D: Stiffness, total: Strain, elastic: Strain) -> Stress:
 
 
 @njit
-def _twisting_moment(D: Stiffness, k: Pair, e: Pair) -> Pair:
+def _twisting_moment(D: ElementStiffness, k: Pair, e: Pair) -> Pair:
     """What P takes off the moment of each station."""
     P, h, half = _torque_rate(k, e, D), _share(k, D), 0.5 * _twist_compliance(D)
     (Py, Pz), (hy, hz) = _torque_rate_slopes(k, e, D), _share_slopes(k, D, h)
@@ -320,7 +308,7 @@ def _twisting_moment(D: Stiffness, k: Pair, e: Pair) -> Pair:
 
 
 @njit
-def stress_change(D: Stiffness, total: Strain, elastic: Strain, change: Strain) -> Stress:
+def stress_change(D: ElementStiffness, total: Strain, elastic: Strain, change: Strain) -> Stress:
     """Hessian of U times a change of the strains; D: stiffnesses for a change of them."""
     k, e, dk = _mean(total), _mean(elastic), _mean(change)
     P, h, half = _torque_rate(k, e, D), _share(k, D), 0.5 * _twist_compliance(D)

@@ -9,14 +9,14 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits, Work
-from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, rotations
-from riser_soil.riser.beam import in_plane, in_space, seen_in_plane
+from riser_soil.riser import beam3d, damping2d, damping3d, rotations
+from riser_soil.riser.beam import seen_in_plane
 from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
-from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.stiffness import LineStiffness, viscosity
 from riser_soil.riser.tension_only import blend_viscous_forces, blend_viscous_tangent, heaped, is_heaped
 from riser_soil.riser.vectors import matrix, matvec, vector
 
@@ -24,16 +24,14 @@ from riser_soil.riser.vectors import matrix, matvec, vector
 class PlanarViscosity(NamedTuple):
     """Viscous elements of a plane line; workspace for the rates of the chords (ne, 2)."""
 
-    reference: beam2d.PlanarReference
-    viscosity: beam2d.PlanarSection
+    viscosity: LineStiffness
     chord_rate: Array
 
 
 class SpatialViscosity(NamedTuple):
     """Viscous elements of a line in space; workspace for the rates of the chords (ne, 3) and spatial spins (nn, 3)."""
 
-    reference: beam3d.SpatialReference
-    viscosity: beam3d.SpatialSection
+    viscosity: LineStiffness
     chord_rate: Array
     spin: Array
 
@@ -55,15 +53,11 @@ class StructuralDamping(CompiledPart):
         self._elements = elements
 
     def make_kernel_data(self) -> PlanarViscosity | SpatialViscosity:
-        line, ne, beta = self.line, self.line.length.size, self._elements.damping
-        if isinstance(line.frames, PlanarFrames):
-            flat, planar = in_plane(line, line.frames, self._elements)
-            viscosity = beam2d.PlanarSection(beta * planar.EA, beta * planar.EI, planar.law)
-            return PlanarViscosity(flat, viscosity, np.empty((ne, 2)))
-        bent, spatial = in_space(line, line.frames, self._elements)
-        EA, EIy, EIz, GJ = (beta * D for D in (spatial.EA, spatial.EIy, spatial.EIz, spatial.GJ))
-        viscous = beam3d.SpatialSection(EA, EIy, EIz, GJ, spatial.law)
-        return SpatialViscosity(bent, viscous, np.empty((ne, 3)), np.empty((ne + 1, 3)))
+        ne, stiffness = self.line.length.size, self._elements.stiffness(self.line.length)
+        viscous = viscosity(stiffness, self._elements.damping)
+        if self.line.dimension == 2:
+            return PlanarViscosity(viscous, np.empty((ne, 2)))
+        return SpatialViscosity(viscous, np.empty((ne, 3)), np.empty((ne + 1, 3)))
 
     def viscous_forces(self, state: State) -> Array:
         return self.element_forces(state)
@@ -84,7 +78,7 @@ def _write_chord_rates(v: Array, out: Array) -> None:
 @njit
 def _blend_forces(part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int, f: Array) -> None:
     """Make the forces of element e with its bow those that it has in a heap, if it lies there."""
-    chord, L, viscosity = at.chord[e], part.reference.L[e], part.viscosity
+    chord, L, viscosity = at.chord[e], part.viscosity.L[e], part.viscosity
     if is_heaped(viscosity.law, e, chord, L):
         blend_viscous_forces(heaped(viscosity.law, e, chord, L, viscosity.EA[e]), part.chord_rate[e], f)
 
@@ -94,7 +88,7 @@ def _blend_tangent(
     part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int, shift_v: float, f: Array, K: Array
 ) -> None:
     """Make the tangent of element e with its bow and forces f that in a heap, where it lies."""
-    chord, L, viscosity = at.chord[e], part.reference.L[e], part.viscosity
+    chord, L, viscosity = at.chord[e], part.viscosity.L[e], part.viscosity
     state = heaped(viscosity.law, e, chord, L, viscosity.EA[e])
     blend_viscous_tangent(state, chord, L, part.chord_rate[e], shift_v, f, K)
 
@@ -105,7 +99,7 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
     _write_chord_rates(at.v, part.chord_rate)
     for e in range(at.chord.shape[0]):
         seen = seen_in_plane(at, e)
-        damping2d.write_element_forces(e, seen, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f)
+        damping2d.write_element_forces(e, seen, part.viscosity, part.chord_rate, at.v[:, 2], f)
         _blend_forces(part, at, e, f)
         for i in range(6):
             out.force_e[e, i] += f[i]
@@ -116,9 +110,9 @@ def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, 
     own, f = np.empty((6, 6)), np.empty(6)
     for e in range(at.chord.shape[0]):
         seen, rates = seen_in_plane(at, e), (part.chord_rate, at.v[:, 2])
-        damping2d.write_element_tangent(e, seen, part.reference, part.viscosity, *rates, maps.shift_v, own)
-        if is_heaped(part.viscosity.law, e, at.chord[e], part.reference.L[e]):
-            damping2d.write_element_forces(e, seen, part.reference, part.viscosity, *rates, f)
+        damping2d.write_element_tangent(e, seen, part.viscosity, *rates, maps.shift_v, own)
+        if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
+            damping2d.write_element_forces(e, seen, part.viscosity, *rates, f)
             _blend_tangent(part, at, e, maps.shift_v, f, own)
         for i in range(6):
             for j in range(6):
@@ -133,8 +127,8 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
         spin = matvec(matrix(at.frames[n]), vector(at.v[n, 3:]))
         part.spin[n, 0], part.spin[n, 1], part.spin[n, 2] = spin
     for e in range(at.chord.shape[0]):
-        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference)
-        damping3d.write_element_forces(e, seen, part.reference, part.viscosity, part.chord_rate, part.spin, f)
+        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
+        damping3d.write_element_forces(e, seen, part.viscosity, part.chord_rate, part.spin, f)
         _blend_forces(part, at, e, f)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
@@ -148,10 +142,10 @@ def _spatial_tangent(
     own, f, nodes = np.empty((12, 12)), np.empty(12), damping3d.NodeRotations(at.frames, at.H, at.Rn, at.Theta)
     rates = part.chord_rate, part.spin
     for e in range(at.chord.shape[0]):
-        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference)
-        damping3d.write_element_tangent(e, seen, part.reference, part.viscosity, *rates, nodes, maps.shift_v, own)
-        if is_heaped(part.viscosity.law, e, at.chord[e], part.reference.L[e]):
-            damping3d.write_element_forces(e, seen, part.reference, part.viscosity, *rates, f)
+        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
+        damping3d.write_element_tangent(e, seen, part.viscosity, *rates, nodes, maps.shift_v, own)
+        if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
+            damping3d.write_element_forces(e, seen, part.viscosity, *rates, f)
             rotations.element_to_increments(e, f, at.H)
             _blend_tangent(part, at, e, maps.shift_v, f, own)
         for i in range(12):

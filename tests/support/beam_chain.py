@@ -8,6 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d, beam3d, rotations
+from riser_soil.riser.stiffness import LineStiffness, Stiffness
 from riser_soil.riser.tension_only import Linear
 from riser_soil.riser.vectors import vector
 from tests.support import planar_elements, spatial_elements
@@ -40,12 +41,11 @@ def assemble(f: Array, K: Array) -> tuple[Array, Array]:
 
 @dataclass
 class PlaneChain:
-    """Chain in a plane. x: (nn, 2) nodes, direction: (2, ne) tangents of both element ends, L: (ne,)."""
+    """Chain in a plane. x: (nn, 2) nodes, direction: (2, ne) tangents of both element ends."""
 
     x: Array
     direction: Array
-    L: Array
-    section: beam2d.PlanarSection
+    section: LineStiffness
     element: Element2d = planar_elements.forces_and_tangent
     dofs: int = 3
     theta: Array = field(init=False)
@@ -53,7 +53,7 @@ class PlaneChain:
 
     def __post_init__(self) -> None:
         self.nn, self.theta = len(self.x), np.zeros(len(self.x))
-        self.ref = beam2d.reference(np.diff(self.x, axis=0), self.direction[0], self.direction[1], self.L)
+        self.ref = beam2d.reference(np.diff(self.x, axis=0), self.direction[0], self.direction[1])
 
     def residual(self, u: Array, tip_load: Array) -> tuple[Array, Array]:
         """tip_load: force (2,) and moment."""
@@ -71,19 +71,18 @@ class PlaneChain:
 
 @dataclass
 class SpaceChain:
-    """Chain in space. x: (nn, 3) nodes, T0: (2, ne, 3, 3) section frames of both element ends, L: (ne,)."""
+    """Chain in space. x: (nn, 3) nodes, T0: (2, ne, 3, 3) section frames of both element ends."""
 
     x: Array
     T0: Array
-    L: Array
-    section: beam3d.SpatialSection
+    section: LineStiffness
     dofs: int = 6
     R: Array = field(init=False)
     ref: beam3d.SpatialReference = field(init=False)
 
     def __post_init__(self) -> None:
         self.nn, self.R = len(self.x), np.tile(np.eye(3), (len(self.x), 1, 1))
-        self.ref = beam3d.reference(np.diff(self.x, axis=0), self.T0[0], self.T0[1], self.L)
+        self.ref = beam3d.reference(np.diff(self.x, axis=0), self.T0[0], self.T0[1], self.section.L)
 
     def residual(self, u: Array, tip_load: Array) -> tuple[Array, Array]:
         """tip_load: force (3,) and moment (3,) about axes fixed in space."""
@@ -128,19 +127,22 @@ def load(chain: Chain, tip_load: Array, steps: int, tolerance: float = 1e-10) ->
     return iterations
 
 
+def alike(n: int, L: float, EA: float, EI_y: float, EI_z: float, GJ: float) -> LineStiffness:
+    """Stiffnesses of n elements that are L long together."""
+    length, axial, about_y, about_z, twisting = (np.full(n, value) for value in (L / n, EA, EI_y, EI_z, GJ))
+    return Stiffness(length, axial, about_y, about_z, twisting, Linear())
+
+
 def straight_plane(n: int, L: float, EA: float, EI: float, element: Element2d) -> PlaneChain:
     """Straight chain of n elements along the first axis."""
     x = np.column_stack([np.linspace(0.0, L, n + 1), np.zeros(n + 1)])
-    section = beam2d.PlanarSection(np.full(n, EA), np.full(n, EI), Linear())
-    return PlaneChain(x, np.zeros((2, n)), np.full(n, L / n), section, element)
+    return PlaneChain(x, np.zeros((2, n)), alike(n, L, EA, EI, EI, EI), element)
 
 
 def straight_space(n: int, L: float, EA: float, EI: tuple[float, float], GJ: float) -> SpaceChain:
     """Straight chain of n elements along x."""
     x = np.column_stack([np.linspace(0.0, L, n + 1), np.zeros(n + 1), np.zeros(n + 1)])
-    axial, EIy, EIz, twisting = (np.full(n, value) for value in (EA, *EI, GJ))
-    section = beam3d.SpatialSection(axial, EIy, EIz, twisting, Linear())
-    return SpaceChain(x, np.tile(np.eye(3), (2, n, 1, 1)), np.full(n, L / n), section)
+    return SpaceChain(x, np.tile(np.eye(3), (2, n, 1, 1)), alike(n, L, EA, *EI, GJ))
 
 
 def arc_space(n: int, radius: float, angle: float, EA: float, EI: float, GJ: float) -> SpaceChain:
@@ -150,5 +152,4 @@ def arc_space(n: int, radius: float, angle: float, EA: float, EI: float, GJ: flo
     x = radius * np.column_stack([1.0 - np.cos(s), np.sin(s), o])
     tangent, inward = np.column_stack([np.sin(s), np.cos(s), o]), np.column_stack([np.cos(s), -np.sin(s), o])
     frames = np.stack([tangent, inward, np.cross(tangent, inward)], axis=2)
-    section = beam3d.SpatialSection(np.full(n, EA), np.full(n, EI), np.full(n, EI), np.full(n, GJ), Linear())
-    return SpaceChain(x, np.array([frames[:-1], frames[1:]]), np.full(n, radius * angle / n), section)
+    return SpaceChain(x, np.array([frames[:-1], frames[1:]]), alike(n, radius * angle, EA, EI, EI, GJ))

@@ -4,7 +4,7 @@ equations.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import solve_bvp
@@ -17,12 +17,13 @@ from riser_soil.riser.catenary import Catenary, catenary
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
 from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
-from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.sections import Elements, Surroundings
 from tests.support.dense_chain import solve
+from tests.support.pipes import pipe
 
 LENGTH, TOP = 350.0, np.array([150.0, 0.0, 150.0])
 EI, EA = 20.96e3, 15.38e8
-KIND = SectionProperties(EA, EI, EI, GJ=2.0e4, outer_diameter=0.26, inner_diameter=0.20, mass=57.5)
+KIND = {"EA": EA, "GJ": 2.0e4, "outer_diameter": 0.26, "inner_diameter": 0.20, "mass": 57.5}
 FLOODED = Surroundings(gravity=9.81, contents=1025.0, water=1025.0)
 
 
@@ -50,7 +51,7 @@ class Hanging:
 
 
 def properties(count: int, EI: float = EI) -> Elements:
-    return elements([MeshedSegment.even(replace(KIND, EI_y=EI, EI_z=EI), LENGTH, count)], FLOODED)
+    return pipe(LENGTH, count, FLOODED, EI=EI, **KIND)
 
 
 def guess(e: Elements) -> Catenary:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,41 +17,42 @@ from riser_soil.riser.inertia import Inertia, RotaryInertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, SupportRotation
 from riser_soil.riser.loads import AppliedLoad, PointLoads
-from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.sections import Elements, Surroundings, joined
 from riser_soil.riser.springs import EndSpring
 from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe
+from tests.support.pipes import pipe
 
 DIRECTION = np.array([0.6, 0.8, 0.0])
 UP = np.array([0.0, 0.0, 1.0])
 START = np.array([3.0, -2.0, 5.0])
-THICK = SectionProperties(
-    EA=4.0e4,
-    EI_y=900.0,
-    EI_z=1400.0,
-    GJ=700.0,
-    outer_diameter=0.5,
-    inner_diameter=0.3,
-    mass=150.0,
-    drag=(1.2, 0.1),
-    added_mass=(1.0, 0.2),
-    rotary_inertia=None,
-    damping=0.3,
-)
-THIN = SectionProperties(
-    EA=3.0e4,
-    EI_y=500.0,
-    EI_z=300.0,
-    GJ=250.0,
-    outer_diameter=0.4,
-    mass=120.0,
-    drag=(0.9, 0.05),
-    added_mass=(0.8, 0.0),
-    rotary_inertia=1.7,
-    damping=0.5,
-)
+THICK: dict[str, Any] = {
+    "EA": 4.0e4,
+    "EI_y": 900.0,
+    "EI_z": 1400.0,
+    "GJ": 700.0,
+    "outer_diameter": 0.5,
+    "inner_diameter": 0.3,
+    "mass": 150.0,
+    "drag": (1.2, 0.1),
+    "added_mass": (1.0, 0.2),
+    "rotary_inertia": None,
+    "damping": 0.3,
+}
+THIN: dict[str, Any] = {
+    "EA": 3.0e4,
+    "EI_y": 500.0,
+    "EI_z": 300.0,
+    "GJ": 250.0,
+    "outer_diameter": 0.4,
+    "mass": 120.0,
+    "drag": (0.9, 0.05),
+    "added_mass": (0.8, 0.0),
+    "rotary_inertia": 1.7,
+    "damping": 0.5,
+}
 AROUND = Surroundings(gravity=9.81, contents=850.0, water=1025.0)
 RHO = 1025.0
 
@@ -133,7 +135,7 @@ def sample(
     dimension: int, ends: tuple[End, End] | None = None, offset: int = 0, shaken: bool = True
 ) -> Sample:
     """The riser with an unstressed bend in the plane; shaken: after three random steps."""
-    e = elements([MeshedSegment.even(THICK, 3.0, 2), MeshedSegment.even(THIN, 5.0, 3)], AROUND)
+    e = joined([pipe(3.0, 2, AROUND, **THICK), pipe(5.0, 3, AROUND, **THIN)])
     radius, normal = 6.0, np.cross(UP, DIRECTION)
     bend = shapes.circle(e.arc, START - radius * UP, START, 8.0 / radius, normal)
     layout = shapes.layout(e.arc, e.outer_diameter, bend, shapes.through(e.arc, planar_points()))

@@ -7,29 +7,30 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser import beam3d, rotations
+from riser_soil.riser.stiffness import LineStiffness
 from riser_soil.riser.vectors import vector
 
 
 @njit
 def strain_energy(
-    chord: Array, frame1: Array, frame2: Array, ref: beam3d.SpatialReference, section: beam3d.SpatialSection
+    chord: Array, frame1: Array, frame2: Array, ref: beam3d.SpatialReference, section: LineStiffness
 ) -> Array:
     """Strain energy (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
     for e in range(len(chord)):
-        U[e] = beam3d.element_energy(e, beam3d.element_shape(e, chord, frame1, frame2, ref), ref, section)
+        U[e] = beam3d.element_energy(e, beam3d.element_shape(e, chord, frame1, frame2, section), ref, section)
     return U
 
 
 @njit
 def load_potential(
-    chord: Array, frame1: Array, frame2: Array, middle: Array, ref: beam3d.SpatialReference, load: Array
+    chord: Array, frame1: Array, frame2: Array, middle: Array, section: LineStiffness, load: Array
 ) -> Array:
     """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3): `corotation`."""
     V = np.empty(len(chord))
     for e in range(len(chord)):
-        at, w = beam3d.element_shape(e, chord, frame1, frame2, ref), vector(load[e])
-        V[e] = beam3d.element_potential(at, ref.L[e], w, vector(middle[e]))
+        at, w = beam3d.element_shape(e, chord, frame1, frame2, section), vector(load[e])
+        V[e] = beam3d.element_potential(at, section.L[e], w, vector(middle[e]))
     return V
 
 
@@ -39,7 +40,7 @@ def forces(
     frame1: Array,
     frame2: Array,
     ref: beam3d.SpatialReference,
-    section: beam3d.SpatialSection,
+    section: LineStiffness,
     load: Array,
 ) -> Array:
     """Internal forces f (ne, 12) less those of a load per length (ne, 3) [N/m], for chords (ne, 3) and section frames
@@ -57,7 +58,7 @@ def forces_and_tangent(
     frame1: Array,
     frame2: Array,
     ref: beam3d.SpatialReference,
-    section: beam3d.SpatialSection,
+    section: LineStiffness,
     load: Array,
 ) -> tuple[Array, Array]:
     """Forces f (ne, 12) as in `forces`, and their derivative K (ne, 12, 12) by displacements and spatial spins."""

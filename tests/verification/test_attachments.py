@@ -21,9 +21,9 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
-from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
+from tests.support.pipes import WEIGHTLESS, pipe
 from tests.support.sample_line import sample
 from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
 from tests.support.stage_histories import stage_histories
@@ -135,7 +135,7 @@ TAUT, EI, LENGTH, TENSION = 1.0e10, 500.0, 30.0, 4.0e4
 
 def lowest_frequency(place: float, mass: float, count: int) -> float:
     """Angular frequency [rad/s] of a mass on a taut massless line with pinned ends, in the plane."""
-    e = elements([MeshedSegment.even(SectionProperties(TAUT, EI, EI), LENGTH, count)], Surroundings(gravity=0.0))
+    e = pipe(LENGTH, count, WEIGHTLESS, EA=TAUT, EI=EI)
     straight = shapes.straight(e.arc)
 
     def stretch(t: float) -> Kinematics:

@@ -7,6 +7,7 @@ from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d
+from riser_soil.riser.stiffness import LineStiffness
 from tests.support import planar_elements
 from tests.support.beam_chain import Element2d, arc_space, load, straight_plane, straight_space
 from tests.support.rod_reference import Rod, tip
@@ -41,12 +42,12 @@ def elastica(load_factor: float) -> Array:
 
 
 def second_order_element(
-    chord: Array, direction1: Array, direction2: Array, ref: beam2d.PlanarReference, section: beam2d.PlanarSection
+    chord: Array, direction1: Array, direction2: Array, ref: beam2d.PlanarReference, section: LineStiffness
 ) -> tuple[Array, Array]:
     """The textbook corotational element, that is `beam2d` without the shallow-arch term of its strain."""
     length = np.hypot(*chord.T)
     c, s = chord.T / length
-    o, k = np.zeros_like(c), section.EI / ref.L
+    o, k = np.zeros_like(c), section.EI_y / section.L
     phi1, phi2 = (
         np.arctan2(
             c * np.sin(direction) - s * np.cos(direction), c * np.cos(direction) + s * np.sin(direction)
@@ -54,7 +55,7 @@ def second_order_element(
         - theta0
         for direction, theta0 in ((direction1, ref.theta1), (direction2, ref.theta2))
     )
-    N = section.EA * (length - ref.l0) / ref.L
+    N = section.EA * (length - ref.l0) / section.L
     M1, M2 = k * (4 * phi1 + 2 * phi2), k * (2 * phi1 + 4 * phi2)
     along, across = np.stack([-c, -s, o, c, s, o], axis=1), np.stack([s, -c, o, -s, c, o], axis=1)
     spin = across / length[:, None]
@@ -62,7 +63,7 @@ def second_order_element(
     stiffness = np.array(
         [
             [[a, 0, 0], [0, 4 * b, 2 * b], [0, 2 * b, 4 * b]]
-            for a, b in zip(section.EA / ref.L, k, strict=True)
+            for a, b in zip(section.EA / section.L, k, strict=True)
         ]
     )
     turning = across[:, :, None] * spin[:, None]

@@ -17,12 +17,13 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
 from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.section_forces import element_residual, section_forces
-from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.sections import Elements, elements
+from riser_soil.riser.sections import joined as in_a_row
 from riser_soil.scene.riser import graded_lengths
 from tests.support.dense_chain import solve
+from tests.support.pipes import IN_AIR, WEIGHTLESS, pipe
 
 UP = np.array([0.0, 0.0, 1.0])
-NOTHING = Surroundings(gravity=0.0)
 
 
 def bent(e: Elements, curve: shapes.Curve, force: Array) -> Line:
@@ -46,7 +47,7 @@ def deflection(count: int, per_segment: int = 2) -> float:
     """Of the tip, by segments that have the stiffness of their middles."""
     joints = np.linspace(0.0, L, count + 1)
     EI = stiffness(0.5 * (joints[1:] + joints[:-1]))
-    e = elements([MeshedSegment.even(SectionProperties(1.0e7, s, s), L / count, per_segment) for s in EI], NOTHING)
+    e = in_a_row([pipe(L / count, per_segment, WEIGHTLESS, EA=1.0e7, EI=each) for each in EI])
     line = bent(e, shapes.straight(e.arc), FORCE * UP)
     return float(line.to_global(line.x)[-1, 2])
 
@@ -83,8 +84,8 @@ def test_stiffeners_of_graded_segments_converge_to_the_taper() -> None:
 def test_an_angle_of_two_pipes_bends_as_a_frame() -> None:
     """A column of height a that carries an arm b, loaded at its tip: the corner turns and keeps its right angle."""
     a, b, columns, arms, P = 2.0, 3.0, 4.0e5, 1.0e5, 2.0
-    types = SectionProperties(1.0e9, columns, columns), SectionProperties(1.0e9, arms, arms)
-    e = elements([MeshedSegment.even(types[0], a, 2), MeshedSegment.even(types[1], b, 3)], NOTHING)
+    column, arm = pipe(a, 2, WEIGHTLESS, EA=1.0e9, EI=columns), pipe(b, 3, WEIGHTLESS, EA=1.0e9, EI=arms)
+    e = in_a_row([column, arm])
     position = np.array([[max(s - a, 0.0), 0.0, min(s, a)] for s in e.arc])
     across, up = np.array([1.0, 0.0, 0.0]), UP
     tangent = np.array([[up, up] if s < a else [across, across] for s in e.arc[:-1]])
@@ -114,10 +115,9 @@ class Joined:
 def joined(n: int) -> Joined:
     """Equal elements in the stiff part, and beyond the joint graded ones, the first half as long as their neighbour."""
     h = LENGTHS[0] / n
-    types = [SectionProperties(EA, EI, EI, submerged_weight=w) for EI, w in zip(STIFFNESSES, WEIGHTS, strict=True)]
-    stiff = MeshedSegment.even(types[0], LENGTHS[0], n)
-    soft = MeshedSegment(types[1], graded_lengths(LENGTHS[1], 0.5 * h, 1.5 * h))
-    e = elements([stiff, soft], Surroundings(gravity=9.81))
+    lengths = (h,) * n, graded_lengths(LENGTHS[1], 0.5 * h, 1.5 * h)
+    each = zip(lengths, STIFFNESSES, WEIGHTS, strict=True)
+    e = in_a_row([elements(L, IN_AIR, EA=EA, EI_y=EI, EI_z=EI, submerged_weight=w) for L, EI, w in each])
     first = catenary(e.arc, np.zeros(3), TOP, float(np.average(e.weight, weights=e.length)), EA)
     layout = shapes.layout(e.arc, e.outer_diameter, shapes.straight(e.arc), first.curve)
     line = Line(2, layout, End(True), End(True))

@@ -12,9 +12,9 @@ from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.inertia import Inertia, RotaryInertia
 from riser_soil.riser.line import End, Line
-from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import tangent
 from tests.support.driven_stage import built, take
+from tests.support.pipes import WEIGHTLESS, pipe
 from tests.support.scenes import AVERAGE, dynamic, riser_scene
 
 LENGTH, EA, EI, GJ, MASS, INERTIA = 30.0, 1.0e10, 5.0e5, 3.0e5, 80.0, 300.0
@@ -23,8 +23,7 @@ MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 
 def frequencies(dimension: int, count: int, moving: list[int]) -> Array:
     """Angular frequencies (rad/s), ascending, of a pinned pipe's dofs `moving`."""
-    kind = SectionProperties(EA, EI, EI, GJ, mass=MASS, rotary_inertia=INERTIA)
-    e = elements([MeshedSegment.even(kind, LENGTH, count)], Surroundings(gravity=0.0))
+    e = pipe(LENGTH, count, WEIGHTLESS, EA=EA, EI=EI, GJ=GJ, mass=MASS, rotary_inertia=INERTIA)
     straight = shapes.straight(e.arc)
     line = Line(dimension, shapes.layout(e.arc, e.outer_diameter, straight, straight), End(True), End(True))
     state, free = State.at_rest(0.0, line.size), np.zeros((line.nodes, line.ndof), dtype=bool)

@@ -11,11 +11,9 @@ from scipy.optimize import brentq
 from scipy.special import jv
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser import beam3d
 from riser_soil.riser.rotations import exp
-from riser_soil.riser.tension_only import Linear
 from riser_soil.riser.vectors import vector
-from tests.support.beam_chain import SpaceChain, load, straight_space
+from tests.support.beam_chain import SpaceChain, alike, load, straight_space
 from tests.support.rod_reference import Rod, first_buckling, tip
 
 FOURTH = 3.6  # least order that counts as fourth on coarse meshes
@@ -159,14 +157,8 @@ def right_angle(n: int) -> SpaceChain:
     at, o = np.linspace(0.0, LEG, n + 1), np.zeros(n + 1)
     first, second = np.stack([at, o, o], axis=1), np.stack([LEG + o, -at, o], axis=1)
     frames = np.repeat(np.stack(LEGS), n, axis=0)
-    count = 2 * n
-    axial, EIy, EIz, twisting = (np.full(count, value) for value in (FRAME_EA, *FRAME_EI, FRAME_GJ))
-    return SpaceChain(
-        np.concatenate([first, second[1:]]),
-        np.stack([frames, frames]),
-        np.full(count, LEG / n),
-        beam3d.SpatialSection(axial, EIy, EIz, twisting, Linear()),
-    )
+    section = alike(2 * n, 2.0 * LEG, FRAME_EA, *FRAME_EI, FRAME_GJ)
+    return SpaceChain(np.concatenate([first, second[1:]]), np.stack([frames, frames]), section)
 
 
 def test_right_angle_frame_buckles_out_of_its_plane() -> None:

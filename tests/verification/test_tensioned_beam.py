@@ -13,11 +13,11 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, Kinematics
-from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.sea.morison import Morison, WaterLoads
 from riser_soil.sea.morison_law import added_masses
 from riser_soil.sea.pipe import Pipe
 from tests.support.dense_chain import solve, tangent
+from tests.support.pipes import WEIGHTLESS, pipe
 
 LENGTH, EA, EI, MASS, TENSION = 30.0, 1.0e10, 5.0e5, 80.0, 4.0e4
 DIAMETER, RHO = 0.3, 1025.0
@@ -32,8 +32,7 @@ def exact(mass: float, n: Array) -> Array:
 
 def frequencies(dimension: int, count: int, tension: float = TENSION, added: float = 0.0) -> Array:
     """All transverse angular frequencies (rad/s), ascending; in space each comes twice."""
-    kind = SectionProperties(EA, EI, EI, GJ=EI, mass=MASS)
-    e = elements([MeshedSegment.even(kind, LENGTH, count)], Surroundings(gravity=0.0))
+    e = pipe(LENGTH, count, WEIGHTLESS, EA=EA, EI=EI, GJ=EI, mass=MASS)
     straight = shapes.straight(e.arc)
 
     def stretch(t: float) -> Kinematics:

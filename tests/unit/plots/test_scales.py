@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from riser_soil.assembly.scales import scales_of
-from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.sections import Elements, joined
+from tests.support.pipes import pipe
 
 EA, LENGTH = 2.0e8, 50.0
 
 
 def line(*weights: float, EI: float = 0.0, diameter: float = 0.0) -> Elements:
     """Segments of ten elements each, LENGTH long altogether."""
-    types = [SectionProperties(EA, EI, EI, outer_diameter=diameter, submerged_weight=w) for w in weights]
-    segments = [MeshedSegment.even(each, LENGTH / len(types), 10) for each in types]
-    return elements(segments, Surroundings())
+    given: dict[str, Any] = {"EA": EA, "EI": EI, "outer_diameter": diameter}
+    return joined([pipe(LENGTH / len(weights), 10, **given, submerged_weight=w) for w in weights])
 
 
 def test_the_heaviest_or_most_buoyant_segment_tells_the_weight() -> None:
@@ -28,9 +30,8 @@ def test_what_weighs_nothing_has_a_weight_that_strains_it_by_a_millionth() -> No
 
 
 def test_the_thickest_segment_tells_the_diameter() -> None:
-    both = [SectionProperties(EA, 1e4, 1e4, outer_diameter=D) for D in (0.2, 0.3)]
-    thick = elements([MeshedSegment.even(each, 10.0, 2) for each in both], Surroundings())
-    assert scales_of(thick).diameter == 0.3
+    both = [pipe(10.0, 2, EA=EA, EI=1e4, outer_diameter=D) for D in (0.2, 0.3)]
+    assert scales_of(joined(both)).diameter == 0.3
 
 
 def test_without_a_diameter_it_is_that_of_a_solid_bar() -> None:

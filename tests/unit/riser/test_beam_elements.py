@@ -17,6 +17,7 @@ from riser_soil.riser import (
     rotations,
     strain3d,
 )
+from riser_soil.riser.stiffness import LineStiffness, Stiffness
 from riser_soil.riser.tension_only import Linear, TensionOnly, pulled
 from riser_soil.riser.vectors import isotropic, matrix, vector
 from tests.support import planar_elements, spatial_elements
@@ -46,7 +47,7 @@ class Space(NamedTuple):
     chord0: Array
     frames0: Array  # (2, ne, 3, 3)
     ref: beam3d.SpatialReference
-    section: beam3d.SpatialSection
+    section: LineStiffness
     chord: Array
     frames: Array
     load: Array  # (ne, 3)
@@ -64,7 +65,7 @@ class Space(NamedTuple):
         """Strain energy and potential of the load."""
         at, middle = self.at(moved), 0.5 * (moved[:, :3] + moved[:, 6:9])
         return spatial_elements.strain_energy(*at, self.ref, self.section) + spatial_elements.load_potential(
-            *at, middle, self.ref, self.load
+            *at, middle, self.section, self.load
         )
 
 
@@ -74,7 +75,7 @@ def space(curved: float, rotation: float, seed: int = 7, load: float = 0.0) -> S
     chord0 = (L * (1.0 - curved**2 / 8))[:, None] * base[:, :, 0]
     frames0 = np.array([turns(rng, curved, NE) @ base, turns(rng, curved, NE) @ base])
     bending = 1 + rng.random(NE), 2 + rng.random(NE), 1.5 + rng.random(NE)
-    section = beam3d.SpatialSection(np.full(NE, EA), *bending, Linear())
+    section = Stiffness(L, np.full(NE, EA), *bending, Linear())
     rigid = turns(rng, 2.0, NE)
     chord = np.einsum("eij,ej->ei", rigid, chord0) * 1.02
     frames = np.array([turns(rng, rotation, NE) @ rigid @ end for end in frames0])
@@ -92,7 +93,7 @@ class Plane(NamedTuple):
     chord0: Array
     directions0: Array  # (2, ne)
     ref: beam2d.PlanarReference
-    section: beam2d.PlanarSection
+    section: LineStiffness
     chord: Array
     directions: Array
 
@@ -112,10 +113,11 @@ def plane(curved: float, rotation: float, seed: int = 7) -> Plane:
     L, base = 1.0 + rng.random(NE), 6.0 * rng.random(NE)
     chord0 = (L * (1.0 - curved**2 / 8)) * np.array([np.cos(base), np.sin(base)])
     directions0 = base + curved * rng.uniform(-1, 1, size=(2, NE))
-    section = beam2d.PlanarSection(np.full(NE, EA), 1 + rng.random(NE), Linear())
+    EI = 1 + rng.random(NE)
+    section = Stiffness(L, np.full(NE, EA), EI, 3 * EI, EI, Linear())
     chord = 1.02 * np.array([[0.6, -0.8], [0.8, 0.6]]) @ chord0
     directions = directions0 + np.arctan2(0.8, 0.6) + rotation * rng.choice([-1.0, 1.0], size=(2, NE))
-    ref = beam2d.reference(chord0.T, directions0[0], directions0[1], L)
+    ref = beam2d.reference(chord0.T, directions0[0], directions0[1])
     return Plane(chord0.T, directions0, ref, section, chord.T, directions)
 
 
@@ -248,13 +250,13 @@ def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float, lo
     w = load * np.random.default_rng(2).normal(size=(NE, 2))
     in_space = flat.chord0 @ np.eye(3)[[0, 2]], flat.chord @ np.eye(3)[[0, 2]]
     frames0, frames = upright(flat.directions0), upright(flat.directions)
-    axial, EI, law = flat.section
-    section = beam3d.SpatialSection(axial, 3 * EI, EI, EI, law)
-    ref = beam3d.reference(in_space[0], frames0[0], frames0[1], flat.ref.L)
+    EI, L = flat.section.EI_y, flat.section.L
+    section = flat.section._replace(EI_y=3 * EI, EI_z=EI)
+    ref = beam3d.reference(in_space[0], frames0[0], frames0[1], L)
     f3, K3 = spatial_elements.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section, w @ np.eye(3)[[0, 2]])
     f2, K2 = flat.call(planar_elements.forces_and_tangent)
-    f2 += planar_elements.load_forces(flat.chord, *flat.directions, flat.ref.L, w)
-    planar_elements.add_load_tangent(K2, 1.0, flat.chord, *flat.directions, flat.ref.L, w)
+    f2 += planar_elements.load_forces(flat.chord, *flat.directions, L, w)
+    planar_elements.add_load_tangent(K2, 1.0, flat.chord, *flat.directions, L, w)
     assert difference(f3 @ TO_PLANE.T, f2) < 1e-12
     assert difference(TO_PLANE @ K3 @ TO_PLANE.T, K2) < 1e-12
     assert np.abs(np.delete(f3, PLANAR, axis=1)).max() < 1e-12 * EA
@@ -384,7 +386,7 @@ def test_torque_that_varies_along_an_element_twists_it_within() -> None:
     1/2 (GJ phi'^2 + k'.D k' phi^2) - P phi is least.
     """
     L, GJ, EI = 3.0, 4.0, np.array([2.0, 5.0])
-    D = strain3d.Stiffness(L, EA, 2.0, 5.0, GJ, Linear())
+    D = Stiffness(L, EA, 2.0, 5.0, GJ, Linear())
     k, k0 = np.array([0.11, -0.07]), np.array([0.03, 0.02])
     P = k[0] * EI[1] * (k - k0)[1] - k[1] * EI[0] * (k - k0)[0]
     s, weight = (0.5 * L * values for values in np.polynomial.legendre.leggauss(5))

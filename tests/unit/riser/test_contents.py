@@ -21,11 +21,12 @@ from riser_soil.riser.hermite import consistent_mass
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
-from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.sections import Surroundings
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Initial, Scene
 from tests.support.dense_chain import residual, tangent
 from tests.support.driven_stage import built
+from tests.support.pipes import pipe
 from tests.support.said import telling
 from tests.support.sample_line import sample
 from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
@@ -139,8 +140,7 @@ SPAN, EI, PIPE, FLUID = 10.0, 2.0e5, 60.0, 50.0  # m, N m2, kg/m
 def hinged(u: float, n: int = 16) -> tuple[Array, Array, Array]:
     """Stiffness, gyroscopic matrix and mass of the motions across."""
     around = Surroundings(gravity=0.0, contents=FLUID / AREA)
-    given = SectionProperties(EA=1.0e9, EI_y=EI, EI_z=EI, mass=PIPE, inner_diameter=BORE)
-    e = elements([MeshedSegment.even(given, SPAN, n)], around)
+    e = pipe(SPAN, n, around, EA=1.0e9, EI=EI, mass=PIPE, inner_diameter=BORE)
     straight = shapes.straight(e.arc)
     line = Line(2, shapes.layout(e.arc, e.outer_diameter, straight, straight), End(True), End(True))
     line.offset = 0

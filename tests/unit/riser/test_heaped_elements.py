@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,14 +15,14 @@ from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
-from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.riser.tension_only import Heaped, TensionOnly, is_heaped
 from riser_soil.riser.tension_only import heaped as heaped_state
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error, moved, slope
+from tests.support.pipes import pipe
 
-CHAIN = SectionProperties(EA=4.0e5, EI_y=0.0, EI_z=0.0, GJ=3.0, submerged_weight=700.0, damping=0.2)
+CHAIN: dict[str, Any] = {"EA": 4.0e5, "EI": 0.0, "GJ": 3.0, "submerged_weight": 700.0, "damping": 0.2}
 SHARES = np.array([0.95, 0.86, 0.8, 0.7, 0.6, 0.52, 0.3, 1e-3])  # of their lengths: chords, those in between most
 LENGTH = 1.5
 STATIC = Weights(0.0, 1.0, 0.0, 0.0)
@@ -30,7 +31,7 @@ dimensions = pytest.mark.parametrize("dimension", [2, 3])
 
 def heaped(dimension: int, shares: Array) -> Beam:
     """A zigzag of chords along x, straight before; weight has a slope."""
-    e = elements([MeshedSegment.even(CHAIN, LENGTH * shares.size, shares.size)], Surroundings())
+    e = pipe(LENGTH * shares.size, shares.size, **CHAIN)
     ahead = np.where(np.arange(shares.size) % 3 == 2, -1.0, 1.0)
     x, up = np.append(0.0, np.cumsum(LENGTH * shares * ahead)), 1e-2 * np.sin(np.arange(shares.size + 1))
     position = np.column_stack([x, 0.0 * x, up * np.append(shares, 1.0)])

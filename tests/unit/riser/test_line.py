@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,10 +23,11 @@ from riser_soil.riser.section_forces import (
     section_input,
     viscous_residual,
 )
-from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.sections import Elements
 from riser_soil.riser.springs import EndSpring
 from tests.support.dense_chain import solve
 from tests.support.line_solver import SECTION_FORCES
+from tests.support.pipes import pipe
 from tests.support.said import line_with, telling
 from tests.support.sample_line import DIRECTION, START, sample
 
@@ -119,12 +120,14 @@ def test_tributary_lengths_add_up() -> None:
     assert line.tributary_length[0] == pytest.approx(0.75)
 
 
-BAR = SectionProperties(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4, outer_diameter=0.2, submerged_weight=50.0)
+STIFF: dict[str, Any] = {"EA": 1.0e7, "EI": 2.0e6, "GJ": 1.0e4}
+HEAVY = {"outer_diameter": 0.2, "submerged_weight": 50.0}
+BAR = STIFF | HEAVY | {"EI": 2.0e4}
 
 
-def bar(dimension: int, start: End, end: End, count: int = 6, kind: SectionProperties = BAR) -> tuple[Line, Elements]:
+def bar(dimension: int, start: End, end: End, count: int = 6, kind: dict[str, Any] = BAR) -> tuple[Line, Elements]:
     """A straight bar of 12 m along x."""
-    e = elements([MeshedSegment.even(kind, 12.0, count)], Surroundings())
+    e = pipe(12.0, count, **kind)
     straight = shapes.straight(e.arc)
     return Line(dimension, shapes.layout(e.arc, e.outer_diameter, straight, straight), start, end), e
 
@@ -165,8 +168,8 @@ def test_loads_that_grow_work_by_their_mean(dimension: int) -> None:
 
 
 def test_small_deflections_give_textbook_section_forces() -> None:
-    fixed, kind = End(True, rotation_fixed=True), replace(BAR, EI_y=2.0e6, EI_z=2.0e6)
-    line, e = bar(3, fixed, fixed, kind=kind)
+    fixed = End(True, rotation_fixed=True)
+    line, e = bar(3, fixed, fixed, kind=STIFF | HEAVY)
     beam = Beam(line, e)
     solve(line, [beam])
     state = State.at_rest(1.0, line.size)
@@ -200,7 +203,7 @@ def test_section_forces_of_many_states_are_those_of_each(dimension: int) -> None
 @both_dimensions
 def test_largest_moment_under_an_even_load_lies_between_nodes(dimension: int) -> None:
     """A beam on two supports, w = 50 N/m: w L²/8 in the middle of 12 m, between nodes at 4.8 and 7.2 m."""
-    line, e = bar(dimension, End(True), End(True), kind=replace(BAR, EI_y=2.0e6, EI_z=2.0e6), count=5)
+    line, e = bar(dimension, End(True), End(True), kind=STIFF | HEAVY, count=5)
     beam = Beam(line, e)
     solve(line, [beam])
     state = State.at_rest(1.0, line.size)
@@ -214,9 +217,7 @@ def test_largest_moment_under_an_even_load_lies_between_nodes(dimension: int) ->
 @both_dimensions
 def test_largest_moment_under_a_point_load_is_not_overshot(dimension: int) -> None:
     """The moment has a corner at the load, at a node beside the middle: P a b/L there, and nowhere more."""
-    kind = SectionProperties(EA=1.0e7, EI_y=2.0e6, EI_z=2.0e6, GJ=1.0e4)
-    line, _ = bar(dimension, End(True), End(True), kind=kind, count=5)
-    e = elements([MeshedSegment.even(kind, 12.0, 5)], Surroundings())
+    line, e = bar(dimension, End(True), End(True), kind=STIFF, count=5)
     parts = (Beam(line, e), PointLoads(line, [AppliedLoad(lambda t: t, 4.8, force=np.array([0.0, 0.0, -50.0]))]))
     solve(line, parts)
     state = State.at_rest(1.0, line.size)
@@ -228,7 +229,7 @@ def test_largest_moment_under_a_point_load_is_not_overshot(dimension: int) -> No
 
 
 def test_curvature_is_resolved_in_section_axes() -> None:
-    kind = SectionProperties(EA=1.0e7, EI_y=2.0e4, EI_z=8.0e4, GJ=1.0e4)
+    kind = {"EA": 1.0e7, "EI_y": 2.0e4, "EI_z": 8.0e4, "GJ": 1.0e4}
     line, e = bar(3, End(True, rotation_fixed=True), End(False), kind=kind)
     moment = np.array([0.0, 30.0, 40.0])
     parts = (Beam(line, e), PointLoads(line, [AppliedLoad(lambda t: t, 12.0, moment=moment)]))
@@ -243,8 +244,7 @@ def test_curvature_is_resolved_in_section_axes() -> None:
 def test_a_spring_holds_the_end_like_its_stiffness_says(dimension: int) -> None:
     line, e = bar(dimension, End(True), End(False))
     loads = PointLoads(line, [AppliedLoad(lambda t: t, 12.0, moment=np.array([0.0, -200.0, 0.0]))])
-    kind = SectionProperties(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4)
-    weightless = Beam(line, elements([MeshedSegment.even(kind, 12.0, 6)], Surroundings()))
+    weightless = Beam(line, pipe(12.0, 6, **STIFF | {"EI": 2.0e4}))
     spring = EndSpring(line, 0, 1000.0)
     solve(line, [weightless, loads, spring])
     state = State.at_rest(1.0, line.size)

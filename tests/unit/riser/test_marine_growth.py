@@ -16,10 +16,11 @@ from riser_soil.core.part import Part
 from riser_soil.errors import SceneError
 from riser_soil.riser import additions
 from riser_soil.riser.additions import Growth, with_growth
-from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.sections import Elements, Surroundings
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
+from tests.support.pipes import pipe
 from tests.support.said import telling
 from tests.support.sample_line import Sample, sample
 from tests.support.scenes import IN_WAVES, Mapping, in_waves, prescribed, riser_scene, static
@@ -72,9 +73,8 @@ def built(scene: Mapping) -> Assembly:
 def test_growth_is_integrated_along_the_elements() -> None:
     """On an upright pipe: thickness linear in height, density too, from the integrals by hand."""
     z, H = np.array([0.0, 10.0]), 10.0
-    pipe = SectionProperties(EA=1e8, EI_y=1e4, EI_z=1e4, outer_diameter=D, mass=100.0)
     around = Surroundings(gravity=G, water=RHO)
-    bare = elements([MeshedSegment.even(pipe, H, 1)], around)
+    bare = pipe(H, 1, around, EA=1e8, EI=1e4, outer_diameter=D, mass=100.0)
     got = with_growth(bare, Growth(z, np.array([0.02, 0.1]), np.array([1200.0, 1400.0])), z, around)
     t, density = np.polynomial.Polynomial([0.02, 0.008]), np.polynomial.Polynomial([1200.0, 20.0])
     section = math.pi * t * (D + t)

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser.strain3d import Stiffness, Strain, energy, stress, stress_change
+from riser_soil.riser.stiffness import Stiffness
+from riser_soil.riser.strain3d import Strain, energy, stress, stress_change
 from riser_soil.riser.tension_only import Linear
 from tests.support.differences import slope
 

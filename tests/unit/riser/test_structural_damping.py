@@ -12,10 +12,11 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
-from riser_soil.riser.sections import MeshedSegment, Surroundings, elements
+from riser_soil.riser.sections import joined
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.structural_damping import StructuralDamping
 from tests.support.dense_chain import residual, tangent
+from tests.support.pipes import WEIGHTLESS, pipe
 from tests.support.sample_line import DIRECTION, START, THICK, THIN, UP, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
@@ -50,7 +51,7 @@ def test_rigid_motion_is_not_damped_however_fast(dimension: int) -> None:
 @both_dimensions
 def test_forces_are_beta_times_the_stiffness_about_the_unstressed_shape(dimension: int) -> None:
     """A bend in the plane; in space a straight line, as the stiffness of a bend has a condensed twist in addition."""
-    e = elements([MeshedSegment.even(THICK, 3.0, 2), MeshedSegment.even(THIN, 5.0, 3)], Surroundings(gravity=0.0))
+    e = joined([pipe(3.0, 2, WEIGHTLESS, **THICK), pipe(5.0, 3, WEIGHTLESS, **THIN)])
     bend = shapes.circle(e.arc, START - 6.0 * UP, START, 8.0 / 6.0, -NORMAL)
     shape = bend if dimension == 2 else shapes.straight(e.arc, START, DIRECTION)
     layout = shapes.layout(e.arc, e.outer_diameter, shape, shape)

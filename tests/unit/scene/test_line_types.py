@@ -9,7 +9,6 @@ import pytest
 
 from riser_soil.assembly.riser import elements_of
 from riser_soil.checks.inventory import inventory
-from riser_soil.riser import sections
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.reader import scene_from_mapping
@@ -57,12 +56,12 @@ GIVEN = {
 
 
 def test_properties_of_the_same_name_reach_the_elements() -> None:
-    """Each by itself, and all that the scene, a line type and the elements call alike."""
+    """Each by itself, and all that a line type and the elements call alike."""
     made = elements_of(scene(**GIVEN))
     for name in GIVEN.keys() - {"submerged_weight"}:
         assert getattr(made, name).tolist() == [GIVEN[name]] * 3, name
     assert made.weight.tolist() == [GIVEN["submerged_weight"]] * 3
-    alike = {each.name for each in fields(Elements)} & {each.name for each in fields(sections.SectionProperties)}
+    alike = {each.name for each in fields(Elements)}
     formed = {"EI_y", "EI_z", "drag", "added_mass", "damping", "rotary_inertia"}
     assert alike & LineType.model_fields.keys() == GIVEN.keys() - {"submerged_weight"} | formed
 
