@@ -58,7 +58,7 @@ def measure(count: int) -> tuple[Cost, Cost]:
     sea = stage.assembly.sea
     assert sea is not None
     series = sea.in_stage(stage.stage)
-    with patch("riser_soil.assembly.waves.WaveField", PlainSums):
+    with patch("riser_soil.assembly.waves.linear_waves", PlainSums):
         summed = sea.in_stage(stage.stage)
     assert series is not None
     assert summed is not None

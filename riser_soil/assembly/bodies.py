@@ -60,7 +60,7 @@ class Body(ABC):
     @property
     @abstractmethod
     def drag(self) -> Array:
-        """Coefficients of drag (ne, 2), normal and tangential, see `WaterLoads`."""
+        """Coefficients of drag (ne, 2), normal and tangential, see `MovingWaterData`."""
 
     @property
     @abstractmethod

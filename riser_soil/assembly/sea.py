@@ -78,7 +78,7 @@ class SeaAssembly:
         """It grows with the load factor in a first static stage, but where a scene begins with the end of another run;
         else it is there in full.
         """
-        from riser_soil.sea.current import ChangingCurrent, SteadyCurrent
+        from riser_soil.sea.current import SteadyCurrent, changing_current
 
         first = stage.name == self.scene.stages[0].name
         grows = isinstance(stage, StaticStage) and first and self.scene.initial is None
@@ -87,7 +87,7 @@ class SeaAssembly:
         if given.history is None:
             return SteadyCurrent(level, velocity[0], grows)
         time, runs = np.array([each.time for each in given.history]), isinstance(stage, DynamicStage)
-        return ChangingCurrent(level, time, velocity, wave_clock(self.scene, stage), runs, grows)
+        return changing_current(level, time, velocity, wave_clock(self.scene, stage), runs, grows)
 
 
 def sea_of(scene: Scene) -> SeaAssembly | None:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 from riser_soil.assembly.bodies import Body, ModulesInWater, PipeInWater
 from riser_soil.assembly.sea import SeaAssembly
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.scene.water import Water
-from riser_soil.sea.morison import Morison, WaterLoads, pushed_masses, through
+from riser_soil.sea.morison import Morison, in_sea, in_still_water, pushed_masses
 from riser_soil.sea.stream_kernels import FlowAtStations
 
 NO_DRAG = ((1.0, 0.0),)
@@ -99,24 +100,26 @@ class _BodyLoads:
 
     @property
     def morison(self) -> Morison:
-        body, water = self.body, self.surface or self.stream
+        body, still = self.body, self.stream is None
+        if still and self.surface is None and not body.pipe.points_alone:
+            return in_still_water(body.pipe, body.drag, body.mass)
         pushed = pushed_masses(body.mass, body.displaced) if self.sea.accelerates_in(self.stage) else None
-        span = None if self.surface is None else body.span
-        return Morison(WaterLoads(body.pipe, body.drag, body.mass, water, pushed, span, self.stream is None))
+        return in_sea(self._flow, body.drag, body.mass, pushed, self._span, dissipative=still)
 
-    def _through(self, dissipative: bool) -> WaterLoads:
-        """Loads of the water on a body that moves through it, on its wet part alone where the water has a surface."""
-        return through(self._flow, None if self.surface is None else self.body.span, dissipative)
+    @property
+    def _span(self) -> Array | None:
+        """Widths of the sections that get dry; None where the water has no surface."""
+        return None if self.surface is None else self.body.span
 
     def _reynolds_drag(self, tables: ReynoldsTables) -> Morison:
         from riser_soil.sea.reynolds_drag import reynolds_drag
 
-        return reynolds_drag(self._through(dissipative=self.stream is None), tables)
+        return reynolds_drag(self._flow, tables, self._span, dissipative=self.stream is None)
 
     def _vortices(self, shedding: Shedding, in_line: bool) -> Vortices:
         from riser_soil.sea.vortices import Vortices
 
-        return Vortices(self._through(dissipative=False), shedding, in_line)
+        return Vortices(self._flow, shedding, in_line, self._span)
 
     @property
     def buoyancy(self) -> Buoyancy:

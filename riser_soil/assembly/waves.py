@@ -14,7 +14,7 @@ from riser_soil.scene.water import Waves
 from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, Regular, WaveKind
 from riser_soil.sea import components, spectra
 from riser_soil.sea.components import Components
-from riser_soil.sea.waves import WaveField
+from riser_soil.sea.waves import WaveField, linear_waves
 
 if TYPE_CHECKING:
     from riser_soil.sea.steady_flow import SteadyFlow
@@ -53,12 +53,12 @@ class DrawnWaves:
         """
         times = self.given.ramp, clock, age
         if self.given.regular is None:
-            return WaveField(self.components, self.depth, level, self.given.stretching or "wheeler", *times)
-        from riser_soil.sea.steady_flow import SteadyFlow
+            return linear_waves(self.components, self.depth, level, self.given.stretching or "wheeler", *times)
+        from riser_soil.sea.steady_flow import steady_flow
 
         wave, train = self.regular, self.given.regular
         assert wave is not None
-        return SteadyFlow(wave, train.toward[0], math.radians(train.phase_deg), level, *times)
+        return steady_flow(wave, train.toward[0], math.radians(train.phase_deg), level, *times)
 
     def _train(self, train: WaveKind, number: int) -> Components:
         """Waves of one train; seas of the same seed differ by the train's number."""

@@ -225,7 +225,7 @@ class BodyDrag(CompiledPart):
             level=float(self._level),
             radius=given.radius,
             turns=self._turns,
-            find=calls(*motion_of(self._sea.kernel_data, motion, t, x)),
+            find=calls(*motion_of(self._sea, motion, t, x)),
             t=t,
             x=x,
             motion=motion,

@@ -7,8 +7,6 @@ current is level and the same all along a height, it carries nothing with it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -36,16 +34,7 @@ def at_heights(z: Array, level: Array, velocity: Array) -> tuple[Array, Array]:
     return values, slopes
 
 
-class CurrentData(NamedTuple):
-    """A `SteadyCurrent`."""
-
-    level: Array
-    velocity: Array
-    grows: bool
-
-
-@dataclass(frozen=True, eq=False)
-class SteadyCurrent:
+class SteadyCurrent(NamedTuple):
     """A current by height.
 
     level (m,) [m], increasing; velocity (m, 2) [m/s] towards x and y. grows: with the stage's time, the load factor of
@@ -56,13 +45,9 @@ class SteadyCurrent:
     velocity: Array
     grows: bool = False
 
-    @property
-    def kernel_data(self) -> CurrentData:
-        return CurrentData(self.level, self.velocity, self.grows)
 
-
-@add_flow.of(CurrentData)
-def _add_current(current: CurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(SteadyCurrent)
+def _add_current(current: SteadyCurrent, motion: WaterMotion, t: Array, x: Array) -> None:
     values, slopes = at_heights(x[:, 2], current.level, current.velocity)
     factor = t[0] if current.grows else 1.0
     for p in range(x.shape[0]):
@@ -71,8 +56,13 @@ def _add_current(current: CurrentData, motion: WaterMotion, t: Array, x: Array) 
             motion.velocity_gradient[p, i, 2] += factor * slopes[p, i]
 
 
-class ChangingCurrentData(NamedTuple):
-    """A `ChangingCurrent`. rate (k, m, 2): of the spline at the given times [m/s2]."""
+class ChangingCurrent(NamedTuple):
+    """A current by height and time, constant before the first time and after the last.
+
+    level (m,) [m] and time (k,) [s], increasing; velocity (k, m, 2) [m/s] towards x and y; rate (k, m, 2) [m/s2]: of
+    its spline at these times. clock: what the time is counted on shows when the stage begins [s]; runs: whether it goes
+    on through the stage, which then is a dynamic one; grows: as of `SteadyCurrent`.
+    """
 
     level: Array
     time: Array
@@ -83,26 +73,11 @@ class ChangingCurrentData(NamedTuple):
     grows: bool
 
 
-@dataclass(frozen=True, eq=False)
-class ChangingCurrent:
-    """A current by height and time, constant before the first time and after the last.
-
-    level (m,) [m] and time (k,) [s], increasing; velocity (k, m, 2) [m/s] towards x and y. clock: what the time is
-    counted on shows when the stage begins [s]; runs: whether it goes on through the stage, which then is a dynamic one;
-    grows: as of `SteadyCurrent`.
-    """
-
-    level: Array
-    time: Array
-    velocity: Array
-    clock: float = 0.0
-    runs: bool = True
-    grows: bool = False
-
-    @cached_property
-    def kernel_data(self) -> ChangingCurrentData:
-        rate = spline_rates(self.time, self.velocity)
-        return ChangingCurrentData(self.level, self.time, self.velocity, rate, self.clock, self.runs, self.grows)
+def changing_current(
+    level: Array, time: Array, velocity: Array, clock: float = 0.0, runs: bool = True, grows: bool = False
+) -> ChangingCurrent:
+    """A `ChangingCurrent` through velocities at given times."""
+    return ChangingCurrent(level, time, velocity, spline_rates(time, velocity), clock, runs, grows)
 
 
 def spline_rates(time: Array, value: Array) -> Array:
@@ -121,8 +96,8 @@ def spline_rates(time: Array, value: Array) -> Array:
     return rates
 
 
-@add_flow.of(ChangingCurrentData)
-def _add_changing(current: ChangingCurrentData, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(ChangingCurrent)
+def _add_changing(current: ChangingCurrent, motion: WaterMotion, t: Array, x: Array) -> None:
     velocity, rate = _at_time(current, current.clock + t[0] if current.runs else current.clock)
     u, shear = at_heights(x[:, 2], current.level, velocity)
     du, shear_rate = at_heights(x[:, 2], current.level, rate)
@@ -136,7 +111,7 @@ def _add_changing(current: ChangingCurrentData, motion: WaterMotion, t: Array, x
 
 
 @njit
-def _at_time(current: ChangingCurrentData, t: float) -> tuple[Array, Array]:
+def _at_time(current: ChangingCurrent, t: float) -> tuple[Array, Array]:
     """Velocity (m, 2) and its rate [m/s2] at the levels."""
     time = current.time
     b = min(max(int(np.searchsorted(time, t, side="right")), 1), time.size - 1)

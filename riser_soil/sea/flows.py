@@ -35,19 +35,12 @@ Water = Callable[[float, Array], WaterMotion]
 """Seconds since the stage began (load factor in statics), points (n, 3) -> the water's motion there."""
 
 
-class SeaData(NamedTuple):
-    """A `Sea`: z of its mean surface [m], inf without one, and the kernel data of its flows."""
-
-    level: float
-    flows: tuple
-
-
 @bound_by_type
 def add_flow(flow: tuple, motion: WaterMotion, t: Array, x: Array) -> None:
     """Add a flow at time t (1,) to the motion of points x (n, 3), whose immersion so far is that under calm water."""
 
 
-def motion_of(sea: SeaData, motion: WaterMotion, t: Array, x: Array) -> list[Bound]:
+def motion_of(sea: Sea, motion: WaterMotion, t: Array, x: Array) -> list[Bound]:
     """Kernels that write the water's motion at time t (1,) and points x (n, 3), as these then are."""
     out, when, places = Packed(motion), Packed(t), Packed(x)
     flows = (bound(add_flow, flow, out, when, places) for flow in sea.flows)
@@ -110,17 +103,12 @@ class Sea:
     Flows don't act on each other: waves run as in still water, and the current isn't stretched with the surface.
     """
 
-    def __init__(self, surface_level: float | None, flows: Sequence[Any] = ()) -> None:
-        """flows: current or waves, each with `kernel_data` of a type with a kernel of `add_flow`."""
-        self._level, self.flows = math.inf if surface_level is None else surface_level, tuple(flows)
+    def __init__(self, surface_level: float | None, flows: Sequence[tuple[Any, ...]] = ()) -> None:
+        """flows: current or waves, each of a type with a kernel of `add_flow`."""
+        self.level, self.flows = math.inf if surface_level is None else surface_level, tuple(flows)
 
     def __call__(self, t: float, x: Array) -> WaterMotion:
         return SeaAtPoints(self, len(x))(t, x)
-
-    @property
-    def kernel_data(self) -> SeaData:
-        """The sea as kernels read it."""
-        return SeaData(self._level, tuple(flow.kernel_data for flow in self.flows))
 
 
 class SeaAtPoints:
@@ -128,7 +116,7 @@ class SeaAtPoints:
 
     def __init__(self, sea: Sea, n: int) -> None:
         self._motion, self._t, self._x = motion_workspace(n, 3), np.zeros(1), np.zeros((n, 3))
-        self._find = in_turn(*motion_of(sea.kernel_data, self._motion, self._t, self._x))
+        self._find = in_turn(*motion_of(sea, self._motion, self._t, self._x))
 
     def __call__(self, t: float, x: Array) -> WaterMotion:
         self._t[0], self._x[...] = t, x

@@ -19,8 +19,7 @@ Source: Morison et al., Petroleum Transactions 189 (1950), in its relative form.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,12 +28,14 @@ from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.part import Traits
 from riser_soil.core.rows import Term, add_pulled_back, as_tuple, times, write_weighed
 from riser_soil.riser import stations
+from riser_soil.riser.bound_parts import KernelData
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
+from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.sea import morison_law as law
-from riser_soil.sea.moving_water_kernels import MovingWaterData, moving_water
+from riser_soil.sea.moving_water_kernels import moving_water
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import FlowAtStations, update
 
@@ -42,41 +43,6 @@ PAIR = fixed(2)
 NG = len(stations.THREE_POINTS.points)
 ELEMENTS = 8  # at once, so that numbers of their stations fill whole vectors
 BATCH = ELEMENTS * NG  # stations at once
-
-
-@dataclass(frozen=True, eq=False)
-class WaterLoads:
-    """Resistance of the water per length [N/m], the negative of its force on a pipe.
-
-    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
-    `morison_law.added_masses` [kg/m]. water: around the pipe, where it moves or has a surface. pushed: masses (ne, 2)
-    [kg/m] on which its acceleration acts, see `pushed_masses`. span: widths (ne, ng) [m] of the sections, where they
-    may get dry. dissipative: whether all work of the group F is lost, as in still water, and none can be put in.
-    """
-
-    pipe: Pipe
-    drag: Array
-    mass: Array
-    water: FlowAtStations | None = None
-    pushed: Array | None = None
-    span: Array | None = None
-    dissipative: bool = True
-
-    def kernel_data(self) -> StillWaterData | MovingWaterData:
-        """The loads as kernels read them: in still water, or in water that moves."""
-        if self.water is None and not self.pipe.points_alone:
-            return still_water(self.pipe, self.drag, self.mass)
-        stream = (self.water or FlowAtStations(self.pipe)).stream
-        found = moving_water(stream, self.pipe, self.drag, self.mass)._replace(dissipative=self.dissipative)
-        if self.pushed is not None:
-            found = found._replace(pushed=self.pushed)
-        return found if self.span is None else found._replace(partly=True, span=self.span)
-
-
-def through(water: FlowAtStations, span: Array | None = None, dissipative: bool = False) -> WaterLoads:
-    """Loads of a law of its own on what moves through the water, without Morison's drag and added mass."""
-    nothing = np.zeros((len(water.pipe.share), 2))
-    return WaterLoads(water.pipe, nothing, nothing, water, None, span, dissipative)
 
 
 def pushed_masses(mass: Array, displaced: Array) -> Array:
@@ -100,8 +66,10 @@ def station_workspace(d: int) -> StationWorkspace:
 
 
 class StillWaterData(NamedTuple):
-    """Stations and their shares (ne, NG) of arc length [m], coefficients of drag and mass (ne, 2) as in `WaterLoads`,
-    and workspace for the stations of one element, NG, and for it.
+    """Loads of still water on a pipe that it covers. drag, mass: as in `MovingWaterData`.
+
+    at: stations, and their shares (ne, NG) of arc length [m]. Workspace: for the stations of one element, NG, and for
+    it.
     """
 
     at: stations.Stations
@@ -340,7 +308,7 @@ def _write_work(seen: StepBatch, workspace: Array, done: Array, k: int, D: Size)
 class Morison(CompiledPart):
     """Loads of the water at the pipe's stations, brought to the line: group I is the added mass, F all the rest.
 
-    formed: what becomes of the loads' kernel data, where they have kernels of their own.
+    make: makes the loads' kernel data, once kernels need them. water: around the pipe, where it moves or has a surface.
 
     Drag of still water dissipates; all that moving water does is external work, of either sign. So a riser at rest in a
     current neither gains nor loses energy, whatever supports it. External, too, is the change of kinetic energy by a
@@ -352,18 +320,30 @@ class Morison(CompiledPart):
     name = "morison"
     traits = Traits("IF", symmetric=False, follows=True)
 
-    def __init__(self, loads: WaterLoads, formed: Callable[[MovingWaterData], tuple[Any, ...]] | None = None) -> None:
-        super().__init__(loads.pipe.line)
-        self._loads, self._formed = loads, formed
+    def __init__(self, line: Line, make: Callable[[], KernelData], water: FlowAtStations | None = None) -> None:
+        super().__init__(line)
+        self._make, self._water = make, water
 
-    def make_kernel_data(self) -> tuple[Any, ...]:
-        found = self._loads.kernel_data()
-        self._seen = found.stream.seen if isinstance(found, MovingWaterData) else None
-        if self._formed is None:
-            return found
-        assert isinstance(found, MovingWaterData)
-        return self._formed(found)
+    def make_kernel_data(self) -> KernelData:
+        return self._make()
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        if self._seen is not None:
-            update(self._seen, start, end)
+        if self._water is not None:
+            update(self._water.stream.seen, start, end)
+
+
+def in_still_water(pipe: Pipe, drag: Array, mass: Array) -> Morison:
+    """Loads on a pipe that still water covers; arguments as in `StillWaterData`."""
+    return Morison(pipe.line, lambda: still_water(pipe, drag, mass))
+
+
+def in_sea(
+    water: FlowAtStations,
+    drag: Array,
+    mass: Array,
+    pushed: Array | None = None,
+    span: Array | None = None,
+    dissipative: bool = False,
+) -> Morison:
+    """Loads in water that may move, or have a surface; arguments as in `moving_water`."""
+    return Morison(water.pipe.line, lambda: moving_water(water, drag, mass, pushed, span, dissipative), water)

@@ -23,8 +23,7 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.flows import WaterMotion
-from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.stream_kernels import Stream, add_at_station, see_end, see_start
+from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, see_end, see_start
 from riser_soil.sea.waterline import wet_share, wet_slope
 
 
@@ -55,10 +54,12 @@ class FlowDerivatives(NamedTuple):
 
 
 class MovingWaterData(NamedTuple):
-    """Loads of the water on what moves in it, see `WaterLoads`.
+    """Resistance of the water per length [N/m], the negative of its force on what moves in it.
 
-    pushed (ne, 2): mass on which the water's acceleration acts. partly: whether it acts on the wet share alone, of
-    sections of width span (ne, ng). alike: whether what moves is alike in all directions.
+    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
+    `morison_law.added_masses` [kg/m]. pushed (ne, 2) [kg/m]: mass on which the water's acceleration acts. partly:
+    whether it acts on the wet share alone, of sections of width span (ne, ng) [m]. alike: whether what moves is alike
+    in all directions. dissipative: whether all work of the group F is lost, as in still water, and none can be put in.
     """
 
     stream: Stream
@@ -75,19 +76,30 @@ class MovingWaterData(NamedTuple):
     change: Array
 
 
-def moving_water(stream: Stream, pipe: Pipe, drag: Array, mass: Array) -> MovingWaterData:
-    """Drag and added mass in water that stands still, or on the motion through it."""
-    d, n = pipe.line.dimension, 2 * pipe.line.ndof
+def moving_water(
+    water: FlowAtStations,
+    drag: Array | None = None,
+    mass: Array | None = None,
+    pushed: Array | None = None,
+    span: Array | None = None,
+    dissipative: bool = False,
+) -> MovingWaterData:
+    """Loads of the water around a pipe, without what is not given.
+
+    pushed: as of `morison.pushed_masses`. span: where sections may get dry.
+    """
+    pipe = water.pipe
+    d, n, nothing = pipe.line.dimension, 2 * pipe.line.ndof, np.zeros((len(pipe.share), 2))
     workspace, first = (FlowWorkspace(*(np.zeros(d) for _ in FlowWorkspace._fields)) for _ in range(2))
     return MovingWaterData(
-        stream=stream,
-        drag=drag,
-        mass=mass,
-        pushed=np.zeros_like(mass),
-        span=np.ones_like(pipe.share),
-        partly=False,
+        stream=water.stream,
+        drag=nothing if drag is None else drag,
+        mass=nothing if mass is None else mass,
+        pushed=nothing if pushed is None else pushed,
+        span=np.ones_like(pipe.share) if span is None else span,
+        partly=span is not None,
         alike=pipe.points_alone,
-        dissipative=True,
+        dissipative=dissipative,
         workspace=workspace,
         first=first,
         by=FlowDerivatives(*(np.zeros((d, d)) for _ in FlowDerivatives._fields)),

@@ -20,9 +20,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import Size
 from riser_soil.sea import through_kernels
-from riser_soil.sea.morison import Morison, WaterLoads
+from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import write_drag_derivatives
-from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData
+from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData, moving_water
+from riser_soil.sea.stream_kernels import FlowAtStations
 from riser_soil.sea.through_kernels import write_derivatives, write_resistance
 
 Rows = Sequence[tuple[float, float]]
@@ -109,6 +110,12 @@ def _write_derivatives(
             by_slope[i, j] -= along / stretch * dyad
 
 
-def reynolds_drag(loads: WaterLoads, tables: ReynoldsTables) -> Morison:
-    """The part of this drag. loads: as of `through`."""
-    return Morison(loads, lambda flow: ReynoldsData(flow, tables))
+def reynolds_drag(
+    water: FlowAtStations, tables: ReynoldsTables, span: Array | None = None, dissipative: bool = False
+) -> Morison:
+    """The part of this drag; span and dissipative as in `moving_water`."""
+
+    def data() -> ReynoldsData:
+        return ReynoldsData(moving_water(water, span=span, dissipative=dissipative), tables)
+
+    return Morison(water.pipe.line, data, water)

@@ -21,9 +21,9 @@ from riser_soil.sea.steady_wave import SteadyWave
 _ramped = njit(smooth_step)
 
 
-class SteadyFlowData(NamedTuple):
-    """A wave of a stage. speed, rise (m,), k, w, depth: as of `SteadyWave`; toward: unit vector; phase [rad]; level: z
-    of the mean surface [m]; ramp, clock, since: as of `WaveField`.
+class SteadyFlow(NamedTuple):
+    """A wave that grows smoothly in a stage. speed, rise (m,), k, w, depth: as of `SteadyWave`; toward: unit vector;
+    phase [rad]; level: z of the mean surface [m]; ramp, clock, since: as of `WaveField`.
     """
 
     speed: Array
@@ -39,19 +39,16 @@ class SteadyFlowData(NamedTuple):
     since: float
 
 
-class SteadyFlow:
-    """A wave that grows smoothly. direction, phase [rad]: of the crest at x = y = 0 and clock 0."""
-
-    def __init__(
-        self, wave: SteadyWave, direction: float, phase: float, level: float, ramp: float, clock: float, since: float
-    ) -> None:
-        of_wave = wave.speed, wave.rise, wave.k, wave.w, wave.depth
-        toward = math.cos(direction), math.sin(direction)
-        self.kernel_data = SteadyFlowData(*of_wave, toward, phase, level, ramp, clock, since)
+def steady_flow(
+    wave: SteadyWave, direction: float, phase: float, level: float, ramp: float, clock: float, since: float
+) -> SteadyFlow:
+    """The flow of a wave. direction, phase [rad]: of the crest at x = y = 0 and clock 0."""
+    of_wave = wave.speed, wave.rise, wave.k, wave.w, wave.depth
+    return SteadyFlow(*of_wave, (math.cos(direction), math.sin(direction)), phase, level, ramp, clock, since)
 
 
-@add_flow.of(SteadyFlowData)
-def _add_steady(wave: SteadyFlowData, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(SteadyFlow)
+def _add_steady(wave: SteadyFlow, motion: WaterMotion, t: Array, x: Array) -> None:
     cx, cy = wave.toward
     factor, rate, _ = _ramped(wave.since + t[0], wave.ramp)
     turned = wave.phase - np.remainder(wave.w * (wave.clock + t[0]), 2.0 * np.pi)
@@ -68,7 +65,7 @@ def _add_steady(wave: SteadyFlowData, motion: WaterMotion, t: Array, x: Array) -
 
 
 @njit
-def _surface(wave: SteadyFlowData, around: complex) -> tuple[float, float]:
+def _surface(wave: SteadyFlow, around: complex) -> tuple[float, float]:
     """Rise of the surface [m] and its slope where the wave has the phase around = exp(i theta)."""
     eta, slope, turn = 0.0, 0.0, complex(1.0, 0.0)
     for n in range(wave.rise.size):
@@ -89,7 +86,7 @@ def _height(z: float, rise: float, slope: float, h: float) -> tuple[float, float
 
 
 @njit
-def _potential(wave: SteadyFlowData, around: complex, z: float) -> tuple[complex, complex, complex]:
+def _potential(wave: SteadyFlow, around: complex, z: float) -> tuple[complex, complex, complex]:
     """f, f' and f'' at a height above the mean surface."""
     f, f1, f2 = complex(0.0, 0.0), complex(0.0, 0.0), complex(0.0, 0.0)
     falling = math.exp(wave.k * z) * around.conjugate()
@@ -108,7 +105,7 @@ def _potential(wave: SteadyFlowData, around: complex, z: float) -> tuple[complex
 @njit
 def _add_water(
     motion: WaterMotion,
-    wave: SteadyFlowData,
+    wave: SteadyFlow,
     p: int,
     potential: tuple[complex, complex, complex],
     ramp: tuple[float, float],

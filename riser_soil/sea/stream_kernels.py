@@ -12,7 +12,7 @@ from riser_soil.core.bound import Bound, Calls, Packed, call_each, calls
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import stations
 from riser_soil.riser.hermite import Size
-from riser_soil.sea.flows import Sea, SeaData, WaterMotion, motion_of, motion_workspace, write_in_plane
+from riser_soil.sea.flows import Sea, WaterMotion, motion_of, motion_workspace, write_in_plane
 from riser_soil.sea.pipe import Pipe
 
 START, END = 0, 1
@@ -61,10 +61,10 @@ class FlowAtStations:
     @cached_property
     def stream(self) -> Stream:
         """For kernels, which find the motion once for trials that differ in rates alone."""
-        return _stream(self.pipe, self._sea.kernel_data)
+        return _stream(self.pipe, self._sea)
 
 
-def _stream(pipe: Pipe, sea: SeaData) -> Stream:
+def _stream(pipe: Pipe, sea: Sea) -> Stream:
     """The sea around a pipe, its motion found nowhere yet."""
     line, n = pipe.line, pipe.share.size
     motions = (motion_workspace(n, line.dimension) for _ in range(2))
@@ -76,7 +76,7 @@ def _stream(pipe: Pipe, sea: SeaData) -> Stream:
     return Stream(find_start, find_end, seen, *at, fixed(line.dimension))
 
 
-def _finding(sea: SeaData, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
+def _finding(sea: Sea, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
     """Kernels that write the motion (n, d) in the line's axes, basis (3, d), at time t (1,) and places x (n, 3)."""
     if basis.shape[1] == 3:
         return motion_of(sea, motion, t, x)

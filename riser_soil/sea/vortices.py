@@ -21,10 +21,10 @@ from riser_soil.riser.part_kernels import keep
 from riser_soil.riser.stations import POINTS
 from riser_soil.sea import through_kernels
 from riser_soil.sea import vortex_law as law
-from riser_soil.sea.morison import WaterLoads
 from riser_soil.sea.morison_law import write_drag, write_drag_derivatives
-from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData
-from riser_soil.sea.stream_kernels import END, see_end, update
+from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData, moving_water
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.stream_kernels import END, FlowAtStations, see_end, update
 from riser_soil.sea.through_kernels import resist, write_derivatives, write_resistance
 
 
@@ -50,25 +50,27 @@ class VortexData(NamedTuple):
 class Vortices(CompiledPart):
     """Force of the vortices on the pipe (group F), whose wake is kept from step to step; all is external work.
 
-    loads: as of `morison.through`. in_line: whether it acts in line with the flow, or across it.
+    in_line: whether it acts in line with the flow, or across it. span: where sections may get dry, see `moving_water`.
     """
 
     traits = Traits("F", symmetric=False, follows=True, path_dependent=True, roles=(Stateful, Starting))
 
-    def __init__(self, loads: WaterLoads, shed: law.Shedding, in_line: bool = False) -> None:
-        super().__init__(loads.pipe.line)
+    def __init__(
+        self, water: FlowAtStations, shed: law.Shedding, in_line: bool = False, span: Array | None = None
+    ) -> None:
+        super().__init__(water.pipe.line)
         self.name = "vortices in line" if in_line else "vortices"
-        self._loads, self._shed, self._in_line, self._wake = loads, shed, in_line, _new_wake(loads)
+        self._water, self._span, self._wake = water, span, _new_wake(water.pipe)
+        self._shed, self._in_line = shed, in_line
 
     def make_kernel_data(self) -> VortexData:
-        flow = self._loads.kernel_data()
-        assert isinstance(flow, MovingWaterData)
+        flow = moving_water(self._water, span=self._span)
         push = Push(self._shed.lift, np.zeros((2, *flow.stream.share.shape)), self._in_line)
         return VortexData(flow, push, self._shed, self._wake)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         """Phases are known before a step, when the wake is kept where it starts."""
-        update(self._data.flow.stream.seen, start, end)
+        update(self._water.stream.seen, start, end)
         for phases, t in zip(self._data.law.phases, (start, end), strict=True):
             phases[:] = law.phases_at(self._wake, t)
 
@@ -90,9 +92,9 @@ class Vortices(CompiledPart):
             values[:] = saved[name]
 
 
-def _new_wake(loads: WaterLoads) -> law.Wake:
+def _new_wake(pipe: Pipe) -> law.Wake:
     """Phases once around along the line, so that no shape is left out; the rates follow."""
-    line, shape = loads.pipe.line, loads.pipe.share.shape
+    line, shape = pipe.line, pipe.share.shape
     arc = line.arc[:-1, None] + line.length[:, None] * POINTS
     return law.Wake(np.zeros(1), 2.0 * np.pi * arc / line.arc[-1], np.zeros(shape), np.zeros(shape))
 

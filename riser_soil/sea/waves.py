@@ -40,10 +40,14 @@ class Heights(NamedTuple):
     gradient: Array
 
 
-class WaveData(NamedTuple):
-    """Waves of a stage, for compiled code. level: z of the mean surface [m]; wheeler: whether z is stretched Wheeler's
-    way; ramp, clock, since: as in `WaveField`. now: (3,) time of the stage that they have been brought to [s], or nan,
-    and the ramp's factor then with its rate [1/s].
+class WaveField(NamedTuple):
+    """Linear waves of a stage that grow smoothly, with surface, velocity and acceleration ramped alike.
+
+    The acceleration is the rate of the ramped velocity, the ramp's own share included.
+    level: z of the mean surface [m]; wheeler: whether z is stretched Wheeler's way. clock: what the waves' clock, which
+    their phases are counted on, shows when the stage begins [s]. ramp [s] is counted from the waves' beginning; since:
+    how long they have acted when the stage begins [s]. now: (3,) time of the stage that they have been brought to [s],
+    or nan, and the ramp's factor then with its rate [1/s].
     """
 
     train: WaveTrain
@@ -56,16 +60,24 @@ class WaveData(NamedTuple):
     now: Array
 
 
-def waves(
-    components: Components, depth: float, level: float, wheeler: bool, ramp: float, clock: float, since: float
-) -> WaveData:
-    """Waves in water of a depth [m], brought to no time yet."""
-    prepared, now = train(components, depth), np.full(3, np.nan)
-    return WaveData(prepared, series.wave_series(prepared), level, wheeler, ramp, clock, since, now)
+def linear_waves(
+    components: Components,
+    depth: float,
+    surface_level: float,
+    stretching: Stretching = "wheeler",
+    ramp: float = 0.0,
+    clock: float = 0.0,
+    since: float | None = None,
+) -> WaveField:
+    """Waves in water of a depth [m], which may be inf, brought to no time yet; since: by default what the clock shows.
+    """
+    prepared, times = train(components, depth), (ramp, clock, clock if since is None else since)
+    of_train = prepared, series.wave_series(prepared)
+    return WaveField(*of_train, surface_level, stretching == "wheeler", *times, np.full(3, np.nan))
 
 
-@add_flow.of(WaveData)
-def _add_waves(sea: WaveData, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(WaveField)
+def _add_waves(sea: WaveField, motion: WaterMotion, t: Array, x: Array) -> None:
     _update(sea, t[0])
     rise, slope = _surface(sea, x)
     z = x[:, 2] - sea.level
@@ -79,7 +91,7 @@ def _add_waves(sea: WaveData, motion: WaterMotion, t: Array, x: Array) -> None:
 
 
 @njit
-def _update(sea: WaveData, t: float) -> None:
+def _update(sea: WaveField, t: float) -> None:
     """Bring the waves to a time, unless they are there."""
     if sea.now[0] != t:
         turn(sea.train, sea.clock + t)
@@ -88,7 +100,7 @@ def _update(sea: WaveData, t: float) -> None:
 
 
 @njit
-def _surface(sea: WaveData, x: Array) -> tuple[Array, Array]:
+def _surface(sea: WaveField, x: Array) -> tuple[Array, Array]:
     """Rise of the surface above its mean at points (n,), and its slope along x and y (n, 2)."""
     rise, slope = np.zeros(len(x)), np.zeros((len(x), 2))
     t, factor, _ = sea.now
@@ -135,7 +147,7 @@ def _place(at: Heights, p: int, z: float, gradient: Vector, h: float) -> None:
 
 
 @njit
-def _add_direction(motion: WaterMotion, sea: WaveData, g: int, x: Array, at: Heights) -> None:
+def _add_direction(motion: WaterMotion, sea: WaveField, g: int, x: Array, at: Heights) -> None:
     """Add the flow of the waves of one direction."""
     t, factor, rate = sea.now
     cx, cy = sea.train.toward[g]
@@ -161,26 +173,3 @@ def _add(v: Array, dv: Array, p: int, value: complex, by_z: complex, cx: float, 
         dv[p, i, 0] += rows[i][0] + rows[i][2] * gradient[p, 0]
         dv[p, i, 1] += rows[i][1] + rows[i][2] * gradient[p, 1]
         dv[p, i, 2] += rows[i][2] * gradient[p, 2]
-
-
-class WaveField:
-    """Linear waves that grow smoothly, with surface, velocity and acceleration ramped alike.
-
-    The acceleration is the rate of the ramped velocity, the ramp's own share included. depth [m] may be inf.
-    surface_level: z of the mean surface [m]. clock: what the waves' clock, which their phases are counted on, shows
-    when the stage begins [s]. ramp [s] is counted from the waves' beginning; since: how long they have acted when the
-    stage begins [s], by default what the clock shows. kernel_data: the same for compiled code.
-    """
-
-    def __init__(
-        self,
-        components: Components,
-        depth: float,
-        surface_level: float,
-        stretching: Stretching = "wheeler",
-        ramp: float = 0.0,
-        clock: float = 0.0,
-        since: float | None = None,
-    ) -> None:
-        times = ramp, clock, clock if since is None else since
-        self.kernel_data = waves(components, depth, surface_level, stretching == "wheeler", *times)

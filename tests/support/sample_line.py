@@ -20,7 +20,7 @@ from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.sections import Elements, Surroundings, joined
 from riser_soil.riser.springs import EndSpring
 from riser_soil.riser.structural_damping import StructuralDamping
-from riser_soil.sea.morison import Morison, WaterLoads
+from riser_soil.sea.morison import Morison, in_still_water
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe
 from tests.support.pipes import pipe
@@ -87,7 +87,7 @@ class Sample:
         e = self.elements
         drag = drag_coefficients(RHO, e.outer_diameter, e.drag[:, 0], e.drag[:, 1])
         mass = added_masses(RHO, e.outer_diameter, e.added_mass[:, 0], e.added_mass[:, 1])
-        return Morison(WaterLoads(Pipe(self.line), drag, mass))
+        return in_still_water(Pipe(self.line), drag, mass)
 
     def spring(self) -> EndSpring:
         return EndSpring(self.line, -1, 800.0)

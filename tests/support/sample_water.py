@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +12,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.attachments import PointAttachment
 from riser_soil.sea.buoyancy import Buoyancy, dry_pipe, dry_stations
 from riser_soil.sea.flows import Sea, WaterMotion, add_flow
-from riser_soil.sea.morison import Morison, WaterLoads, pushed_masses
+from riser_soil.sea.morison import Morison, in_sea, pushed_masses
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe, alike, diameters, pipe_at
 from riser_soil.sea.stream_kernels import FlowAtStations
@@ -38,25 +37,22 @@ ACCELERATION = Uneven(np.array([1.7, -2.3]), np.array([[-0.2, 0.3, 0.4], [0.5, 0
 SURFACE = np.array([0.35, -0.25])  # wave numbers along x and y
 
 
-class GeneralData(NamedTuple):
-    """A `General` flow."""
+class General(NamedTuple):
+    """A flow whose fields have nothing to do with each other, so that each counts by itself; as it is seen
+    from a ship under way (3,) [m/s].
+    """
 
     velocity: Uneven
     acceleration: Uneven
     ship: Array
 
 
-class General:
-    """A flow whose fields have nothing to do with each other, so that each counts by itself; as it is seen
-    from a ship under way (3,) [m/s].
-    """
-
-    def __init__(self, ship: Array | None = None) -> None:
-        self.kernel_data = GeneralData(VELOCITY, ACCELERATION, np.zeros(3) if ship is None else ship)
+def general(ship: Array | None = None) -> General:
+    return General(VELOCITY, ACCELERATION, np.zeros(3) if ship is None else ship)
 
 
 @njit
-def add_to(motion: WaterMotion, flow: GeneralData, t: float, x: Array) -> None:
+def add_to(motion: WaterMotion, flow: General, t: float, x: Array) -> None:
     at = np.empty(3)
     for p in range(x.shape[0]):
         for i in range(3):
@@ -82,39 +78,45 @@ def _add_uneven(field: Uneven, t: float, x: Array, value: Array, gradient: Array
                 gradient[i, j] += field.amplitude[n] * math.cos(phase) * SECTION[n, i] * field.wave_number[n, j]
 
 
-@add_flow.of(GeneralData)
-def _add_general(flow: GeneralData, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(General)
+def _add_general(flow: General, motion: WaterMotion, t: Array, x: Array) -> None:
     add_to(motion, flow, t[0], x)
 
 
-water = Sea(LEVEL, [General()])
+water = Sea(LEVEL, [general()])
 
 
-def still(at: Sample) -> WaterLoads:
+class Resistance(NamedTuple):
+    """Coefficients of drag and added mass (ne, 2) at stations, and the mass of the water in the pipe's place (ne,)."""
+
+    pipe: Pipe
+    drag: Array
+    mass: Array
+    displaced: Array
+
+
+def resistance(at: Sample) -> Resistance:
     D, e = at.elements.outer_diameter, at.elements
-    return WaterLoads(Pipe(at.line), drag_coefficients(RHO, D, *e.drag.T), added_masses(RHO, D, *e.added_mass.T))
+    drag, mass = drag_coefficients(RHO, D, *e.drag.T), added_masses(RHO, D, *e.added_mass.T)
+    return Resistance(Pipe(at.line), drag, mass, displaced(at))
 
 
 def displaced(at: Sample) -> Array:
     return np.asarray(RHO * 0.25 * np.pi * at.elements.outer_diameter**2)
 
 
-def drifting(loads: WaterLoads, sea: Sea = water) -> WaterLoads:
-    """With drag on the motion through a sea."""
-    return replace(loads, water=FlowAtStations(loads.pipe, sea), dissipative=False)
-
-
-def driven(loads: WaterLoads, displaced: Array, sea: Sea = water) -> WaterLoads:
-    """In a sea that accelerates."""
-    return replace(drifting(loads, sea), pushed=pushed_masses(loads.mass, displaced))
+def driven(of: Resistance, sea: Sea = water, span: Array | None = None) -> Morison:
+    """In a sea that moves and accelerates."""
+    return in_sea(FlowAtStations(of.pipe, sea), of.drag, of.mass, pushed_masses(of.mass, of.displaced), span)
 
 
 def current(at: Sample) -> Morison:
-    return Morison(drifting(still(at)))
+    of = resistance(at)
+    return in_sea(FlowAtStations(of.pipe, water), of.drag, of.mass)
 
 
 def waves(at: Sample) -> Morison:
-    return Morison(driven(still(at), displaced(at)))
+    return driven(resistance(at))
 
 
 def calm(pipe: Pipe, level: float = LEVEL) -> FlowAtStations:
@@ -123,13 +125,13 @@ def calm(pipe: Pipe, level: float = LEVEL) -> FlowAtStations:
 
 def half_out(at: Sample) -> Morison:
     """The riser crosses the level of still water."""
-    loads = still(at)
-    return Morison(replace(loads, water=calm(loads.pipe), span=loads.pipe.span))
+    of = resistance(at)
+    return in_sea(calm(of.pipe), of.drag, of.mass, span=of.pipe.span, dissipative=True)
 
 
 def half_out_in_waves(at: Sample) -> Morison:
-    loads = driven(still(at), displaced(at))
-    return Morison(replace(loads, span=loads.pipe.span))
+    of = resistance(at)
+    return driven(of, span=of.pipe.span)
 
 
 MODULES = [
@@ -139,20 +141,19 @@ MODULES = [
 ]
 
 
-def on_modules(at: Sample) -> tuple[WaterLoads, Array]:
-    """Three modules, two of them in one element; what they displace."""
+def on_modules(at: Sample) -> Resistance:
+    """Three modules, two of them in one element."""
     volume, drag_area, Ca = np.array([[m.volume, m.drag_area, m.added_mass] for m in MODULES]).T
-    loads = WaterLoads(pipe_at(at.line, MODULES), alike(0.5 * RHO * drag_area), alike(Ca * RHO * volume))
-    return loads, RHO * volume
+    return Resistance(pipe_at(at.line, MODULES), alike(0.5 * RHO * drag_area), alike(Ca * RHO * volume), RHO * volume)
 
 
 def modules(at: Sample) -> Morison:
-    loads, _ = on_modules(at)
-    return Morison(loads)
+    of = on_modules(at)
+    return in_sea(FlowAtStations(of.pipe), of.drag, of.mass, dissipative=True)
 
 
 def modules_half_out_in_waves(at: Sample) -> Morison:
-    return Morison(replace(driven(*on_modules(at)), span=diameters(MODULES)[:, None]))
+    return driven(on_modules(at), span=diameters(MODULES)[:, None])
 
 
 def modules_floating(at: Sample) -> Buoyancy:

@@ -18,7 +18,7 @@ KernelData = tuple[float, ...]
 
 
 class SummedWaves:
-    """The sea with waves as of `WaveField`. deepest: k d beyond which components are left out at depth d."""
+    """The sea with waves as of `linear_waves`. deepest: k d beyond which components are left out at depth d."""
 
     deepest = 700.0
 

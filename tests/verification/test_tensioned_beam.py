@@ -13,7 +13,7 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, Kinematics
-from riser_soil.sea.morison import Morison, WaterLoads
+from riser_soil.sea.morison import in_still_water
 from riser_soil.sea.morison_law import added_masses
 from riser_soil.sea.pipe import Pipe
 from tests.support.dense_chain import solve, tangent
@@ -43,7 +43,7 @@ def frequencies(dimension: int, count: int, tension: float = TENSION, added: flo
     beam, inertia = Beam(line, e), Inertia(line, e.mass)
     normal, none = np.full(count, added), np.zeros(count)
     masses = added_masses(RHO, np.full(count, DIAMETER), normal, none)
-    water = Morison(WaterLoads(Pipe(line), np.zeros((count, 2)), masses))
+    water = in_still_water(Pipe(line), np.zeros((count, 2)), masses)
     solve(line, [beam], tolerance=1e-9)
     state = State.at_rest(1.0, line.size)
     across = np.zeros((line.nodes, line.ndof), dtype=bool)

@@ -18,7 +18,7 @@ from riser_soil.scene.wave_kinds import relative_directions
 from riser_soil.sea import spectra
 from riser_soil.sea.components import Components
 from riser_soil.sea.flows import Sea
-from riser_soil.sea.waves import WaveField
+from riser_soil.sea.waves import linear_waves
 from tests.support.driven_stage import built
 from tests.support.line_scenes import mooring, shaken
 from tests.support.scenes import ON_SEABED
@@ -135,7 +135,7 @@ def test_a_record_comes_back_where_it_was_taken(tmp_path: Path) -> None:
     (tmp_path / "eta.csv").write_text("t [s], elevation [m]\n" + rows)
     record = {"file": "eta.csv", "position": [12.0, -5.0], "direction_deg": 20.0}
     waves = sea({"record": record}, tmp_path)
-    flow, place = Sea(0.0, [WaveField(waves, DEPTH, 0.0)]), np.array([[12.0, -5.0, 0.0]])
+    flow, place = Sea(0.0, [linear_waves(waves, DEPTH, 0.0)]), np.array([[12.0, -5.0, 0.0]])
     found = [flow(time, place).immersion[0] for time in t]
     nyquist = np.mean(eta * (-1.0) ** np.arange(64)) * (-1.0) ** np.arange(64)
     np.testing.assert_allclose(found, eta - eta.mean() - nyquist, atol=1e-9)

@@ -62,7 +62,7 @@ def test_properties_of_the_same_name_reach_the_elements() -> None:
         assert getattr(made, name).tolist() == [GIVEN[name]] * 3, name
     assert made.weight.tolist() == [GIVEN["submerged_weight"]] * 3
     alike = {each.name for each in fields(Elements)}
-    formed = {"EI_y", "EI_z", "drag", "added_mass", "damping", "rotary_inertia"}
+    formed = {"EI_y", "EI_z", "drag", "added_mass", "damping", "rotary_inertia", "pipe_diameter"}
     assert alike & LineType.model_fields.keys() == GIVEN.keys() - {"submerged_weight"} | formed
 
 

@@ -13,9 +13,8 @@ from riser_soil.assembly.stage import times_to_hit
 from riser_soil.errors import SceneError
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.stages import DynamicStage
-from riser_soil.sea.current import ChangingCurrent, spline_rates
+from riser_soil.sea.current import changing_current, spline_rates
 from riser_soil.sea.flows import Sea
-from riser_soil.sea.morison import Morison
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
@@ -35,7 +34,7 @@ VELOCITY = np.array(
 
 
 def sea(**more: Any) -> Sea:
-    return Sea(5.0, [ChangingCurrent(LEVEL, TIME, VELOCITY, **more)])
+    return Sea(5.0, [changing_current(LEVEL, TIME, VELOCITY, **more)])
 
 
 def test_it_is_linear_between_heights_and_constant_beyond_the_times() -> None:
@@ -55,7 +54,7 @@ def test_its_rates_are_the_splines() -> None:
     time, value = np.array([0.0, 1.0, 2.5, 3.0, 7.0]), np.array([0.3, 1.0, -0.5, 0.2, 0.9])
     theirs = CubicSpline(time, value, bc_type="clamped")
     assert spline_rates(time, value) == pytest.approx(theirs(time, 1), abs=1e-13)
-    current = ChangingCurrent(np.zeros(1), time, np.stack([value, -value], axis=-1)[:, None])
+    current = changing_current(np.zeros(1), time, np.stack([value, -value], axis=-1)[:, None])
     for t in (0.4, 1.0, 2.8, 6.9, 7.0):
         motion = Sea(None, [current])(t, np.zeros((1, 3)))
         assert motion.velocity[0] == pytest.approx(float(theirs(t)) * np.array([1.0, -1.0, 0.0]))
@@ -86,10 +85,10 @@ def test_in_stages_without_time_it_stands_still() -> None:
 
 
 def test_tangent_of_the_loads() -> None:
-    at, loads = sample(3), sample_water.still(sample(3))
+    at = sample(3)
     level, velocity = LEVEL * 0.05 + 5.0, VELOCITY * 3.0
-    sea = Sea(None, [ChangingCurrent(level, TIME * 0.02, velocity)])
-    part = Morison(sample_water.driven(loads, sample_water.displaced(at), sea))
+    sea = Sea(None, [changing_current(level, TIME * 0.02, velocity)])
+    part = sample_water.driven(sample_water.resistance(at), sea)
     assert error(tangent([part], at.state(2), WEIGHTS), difference_tangent(part, at.state(2), WEIGHTS)) < 1e-8
 
 

@@ -13,7 +13,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.sea.components import Components
 from riser_soil.sea.flows import Sea
 from riser_soil.sea.spectra import components, quantiles, spectrum
-from riser_soil.sea.waves import WaveField
+from riser_soil.sea.waves import linear_waves
 
 G, HS, TP, GAMMA, DEPTH = 9.81, 6.0, 11.0, 3.3, 120.0
 PEAK = 2.0 * np.pi / TP
@@ -91,7 +91,7 @@ def record(waves: Components, dt: float, count: int) -> Array:
 
 
 def test_record_is_the_rise_of_the_water() -> None:
-    flow, origin = Sea(0.0, [WaveField(sea(), DEPTH, 0.0)]), np.zeros((1, 3))
+    flow, origin = Sea(0.0, [linear_waves(sea(), DEPTH, 0.0)]), np.zeros((1, 3))
     assert record(sea(), 50.0, 40) == pytest.approx([flow(50.0 * n, origin).immersion[0] for n in range(40)], abs=1e-10)
 
 

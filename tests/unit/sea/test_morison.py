@@ -10,7 +10,7 @@ from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
-from riser_soil.sea.morison import Morison, WaterLoads
+from riser_soil.sea.morison import Morison, in_still_water
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe
 from tests.support.dense_chain import residual
@@ -28,8 +28,8 @@ def inclined(dimension: int) -> tuple[Line, Morison, Array]:
     line = Line(dimension, shapes.layout(arc, np.full(3, D), curve, curve), End(False), End(False))
     ones = np.ones(3)
     drag = drag_coefficients(RHO, D * ones, CD * ones, CDT * ones)
-    loads = WaterLoads(Pipe(line), drag, added_masses(RHO, D * ones, CA * ones, CAT * ones))
-    return line, Morison(loads), tangent
+    mass = added_masses(RHO, D * ones, CA * ones, CAT * ones)
+    return line, in_still_water(Pipe(line), drag, mass), tangent
 
 
 def uniform(line: Line, v: Array, a: Array) -> State:

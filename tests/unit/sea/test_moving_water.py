@@ -14,10 +14,10 @@ from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.components import regular
 from riser_soil.sea.flows import Sea, WaterMotion, add_flow
-from riser_soil.sea.morison import Morison, WaterLoads
+from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.waves import WaveField
+from riser_soil.sea.waves import WaveField, linear_waves
 from tests.support import sample_water
 from tests.support.dense_chain import residual
 from tests.support.sample_line import Sample, sample
@@ -35,20 +35,20 @@ def straight(tangent: Array, D: float, L: float = 0.5) -> Line:
     return Line(3, shapes.layout(arc, np.full(1, D), curve, curve), End(False), End(False))
 
 
-def loads(line: Line, sea: Sea, Cd: float = CD, Ca: float = CA, Cdt: float = 0.0) -> WaterLoads:
+def loads(line: Line, sea: Sea, Cd: float = CD, Ca: float = CA, Cdt: float = 0.0) -> Morison:
     D = line.outer_diameter
     ones, displaced = np.ones_like(D), RHO * 0.25 * np.pi * D**2
     drag, mass = drag_coefficients(RHO, D, Cd * ones, Cdt * ones), added_masses(RHO, D, Ca * ones, 0.0 * ones)
-    return sample_water.driven(WaterLoads(Pipe(line), drag, mass), displaced, sea)
+    return sample_water.driven(sample_water.Resistance(Pipe(line), drag, mass, displaced), sea)
 
 
-def force_on(line: Line, at: WaterLoads, state: State) -> Array:
+def force_on(line: Line, part: Morison, state: State) -> Array:
     """Total force of the water (3,)."""
-    return -line.nodal(residual([Morison(at)], state, ALL))[:, :3].sum(axis=0)
+    return -line.nodal(residual([part], state, ALL))[:, :3].sum(axis=0)
 
 
 def airy() -> WaveField:
-    return WaveField(regular(HEIGHT, PERIOD, 0.5, 0.3, G, DEPTH), DEPTH, 0.0, "vertical")
+    return linear_waves(regular(HEIGHT, PERIOD, 0.5, 0.3, G, DEPTH), DEPTH, 0.0, "vertical")
 
 
 def wave(t: float) -> tuple[float, float, Array, Array]:
@@ -120,21 +120,14 @@ def test_froude_krylov_is_the_pressure_of_the_undisturbed_wave(tangent: Array) -
     assert errors[0] / errors[1] > 3.0
 
 
-class DriftData(NamedTuple):
+class Drift(NamedTuple):
     """A uniform flow (3,) [m/s]."""
 
     velocity: Array
 
 
-class Drift:
-    """A flow: the same everywhere."""
-
-    def __init__(self, velocity: Array) -> None:
-        self.kernel_data = DriftData(velocity)
-
-
-@add_flow.of(DriftData)
-def _drift(flow: DriftData, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(Drift)
+def _drift(flow: Drift, motion: WaterMotion, t: Array, x: Array) -> None:
     for p in range(x.shape[0]):
         for i in range(3):
             motion.velocity[p, i] += flow.velocity[i]
@@ -148,9 +141,9 @@ def test_a_pipe_that_drifts_with_the_current_feels_nothing() -> None:
     at, current = sample(3), np.array([0.7, -1.1, 0.2])
     state = State.at_rest(0.4, at.line.size)
     at.line.nodal(state.v)[:, :3] = current
-    part = Morison(loads(at.line, uniform(current), Cdt=0.2))
+    part = loads(at.line, uniform(current), Cdt=0.2)
     assert np.abs(residual([part], state, ALL)).max() < 1e-20
-    part = Morison(loads(at.line, uniform(1.01 * current), Cdt=0.2))
+    part = loads(at.line, uniform(1.01 * current), Cdt=0.2)
     assert np.abs(residual([part], state, ALL)).max() > 0.01
 
 
@@ -162,8 +155,8 @@ def test_loads_do_not_depend_on_the_frame_of_reference() -> None:
     moved = State(state.t, state.u.copy(), state.v.copy(), state.a)
     at.line.nodal(moved.u)[:, :3] -= ship * state.t
     at.line.nodal(moved.v)[:, :3] -= ship
-    seas = (Sea(sample_water.LEVEL, [sample_water.General(under_way)]) for under_way in (0.0 * ship, ship))
-    parts = [Morison(loads(at.line, sea, Cdt=0.2)) for sea in seas]
+    seas = (Sea(sample_water.LEVEL, [sample_water.general(under_way)]) for under_way in (0.0 * ship, ship))
+    parts = [loads(at.line, sea, Cdt=0.2) for sea in seas]
     found = [residual([part], s, ALL) for part, s in zip(parts, (state, moved), strict=True)]
     assert found[1] == pytest.approx(found[0], rel=1e-11, abs=1e-10 * np.abs(found[0]).max())
 

@@ -13,8 +13,7 @@ from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import reynolds_drag as law
-from riser_soil.sea.flows import Sea
-from riser_soil.sea.morison import Morison, WaterLoads, through
+from riser_soil.sea.morison import Morison, in_still_water
 from riser_soil.sea.morison_law import drag_coefficients
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import FlowAtStations
@@ -38,17 +37,17 @@ def tables(at: Sample, *rows: law.Rows) -> law.ReynoldsTables:
 
 
 def still(at: Sample) -> Morison:
-    water = FlowAtStations(Pipe(at.line), Sea(None))
-    return law.reynolds_drag(through(water, dissipative=True), tables(at, WIDE, CRISIS))
+    water = FlowAtStations(Pipe(at.line))
+    return law.reynolds_drag(water, tables(at, WIDE, CRISIS), dissipative=True)
 
 
 def flowing(at: Sample) -> Morison:
-    return law.reynolds_drag(through(FlowAtStations(Pipe(at.line), sample_water.water)), tables(at, WIDE))
+    return law.reynolds_drag(FlowAtStations(Pipe(at.line), sample_water.water), tables(at, WIDE))
 
 
 def half_out(at: Sample) -> Morison:
     pipe = Pipe(at.line)
-    return law.reynolds_drag(through(FlowAtStations(pipe, sample_water.water), pipe.span), tables(at, WIDE))
+    return law.reynolds_drag(FlowAtStations(pipe, sample_water.water), tables(at, WIDE), pipe.span)
 
 
 @pytest.mark.parametrize(
@@ -93,10 +92,10 @@ def test_a_table_of_one_value_is_a_constant_coefficient() -> None:
     at, state = sample(3), sample(3).state(1)
     e = at.elements
     one, pipe = tables(at, [(1e5, 0.9)]), Pipe(at.line)
-    part = law.reynolds_drag(through(FlowAtStations(pipe, Sea(None)), dissipative=True), one)
+    part = law.reynolds_drag(FlowAtStations(pipe), one, dissipative=True)
     ones = np.ones(e.length.size)
     drag = drag_coefficients(RHO, e.outer_diameter, 0.9 * ones, 0.0 * ones)
-    same = Morison(WaterLoads(pipe, drag, 0.0 * drag))
+    same = in_still_water(pipe, drag, 0.0 * drag)
     for f in (residual, tangent):
         assert error(f([part], state, WEIGHTS), f([same], state, WEIGHTS)) < 1e-12
 

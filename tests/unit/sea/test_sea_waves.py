@@ -12,7 +12,7 @@ from riser_soil.sea import waves
 from riser_soil.sea.components import Components, regular, wave_number
 from riser_soil.sea.current import SteadyCurrent, at_heights
 from riser_soil.sea.flows import Sea, WaterMotion
-from riser_soil.sea.waves import WaveField
+from riser_soil.sea.waves import linear_waves
 
 G, LEVEL = 9.81, 7.0
 DEPTHS = [np.inf, 400.0, 30.0, 4.0]
@@ -97,7 +97,7 @@ def test_one_wave_moves_as_in_the_textbook(h: float) -> None:
     height, period, direction, phase, t = 0.2, 6.0, np.radians(30.0), 0.4, 2.3
     wave, x = one(height, period, h, direction, phase), points(h)
     x[:, 2] = np.minimum(x[:, 2], LEVEL)
-    motion = Sea(LEVEL, [WaveField(wave, h, LEVEL, "vertical")])(t, x)
+    motion = Sea(LEVEL, [linear_waves(wave, h, LEVEL, "vertical")])(t, x)
     k, w, z = wave.wave_number[0], 2.0 * np.pi / period, x[:, 2] - LEVEL
     theta = k * (x[:, 0] * np.cos(direction) + x[:, 1] * np.sin(direction)) - w * t + phase
     if np.isinf(h):
@@ -118,7 +118,7 @@ def _turned(along: Array, up: Array, direction: float) -> Array:
 
 @pytest.mark.parametrize("h", DEPTHS)
 def test_flow_has_neither_divergence_nor_curl(h: float) -> None:
-    motion = Sea(LEVEL, [WaveField(several(h), h, LEVEL, "vertical")])(3.0, np.minimum(points(h), [1e9, 1e9, LEVEL]))
+    motion = Sea(LEVEL, [linear_waves(several(h), h, LEVEL, "vertical")])(3.0, np.minimum(points(h), [1e9, 1e9, LEVEL]))
     for gradient in (motion.velocity_gradient, motion.acceleration_gradient):
         size = np.abs(gradient).max()
         assert size > 1e-4
@@ -129,7 +129,7 @@ def test_flow_has_neither_divergence_nor_curl(h: float) -> None:
 @pytest.mark.parametrize("h", DEPTHS)
 @pytest.mark.parametrize("stretching", STRETCHINGS)
 def test_gradients_are_those_of_what_is_returned(h: float, stretching: Literal["wheeler", "vertical"]) -> None:
-    sea = Sea(LEVEL, [sheared(), WaveField(several(h), h, LEVEL, stretching, ramp=5.0, clock=1.0)])
+    sea = Sea(LEVEL, [sheared(), linear_waves(several(h), h, LEVEL, stretching, ramp=5.0, clock=1.0)])
     x, step, t = points(h), 1e-4, 1.7
     motion = sea(t, x)
     assert np.abs(motion.velocity_gradient[:, 2, 0]).max() > 1e-4
@@ -145,7 +145,7 @@ def test_gradients_are_those_of_what_is_returned(h: float, stretching: Literal["
 @pytest.mark.parametrize("t", [0.5, 3.0, 8.0])
 def test_acceleration_is_the_rate_of_velocity(h: float, t: float) -> None:
     """At fixed points, before, in and after the ramp; without stretching."""
-    sea, step = Sea(LEVEL, [WaveField(several(h), h, LEVEL, "vertical", ramp=5.0, clock=-1.0)]), 1e-4
+    sea, step = Sea(LEVEL, [linear_waves(several(h), h, LEVEL, "vertical", ramp=5.0, clock=-1.0)]), 1e-4
     x = points(h)
     rate = (sea(t + step, x).velocity - sea(t - step, x).velocity) / (2.0 * step)
     acceleration = sea(t, x).acceleration
@@ -155,8 +155,8 @@ def test_acceleration_is_the_rate_of_velocity(h: float, t: float) -> None:
 
 def test_ramp_is_the_smooth_step_on_the_waves_clock() -> None:
     wave, x = one(3.0, 8.0, 50.0), np.array([[4.0, 0.0, LEVEL - 20.0]])
-    full = Sea(LEVEL, [WaveField(wave, 50.0, LEVEL, "vertical")])
-    ramped = Sea(LEVEL, [WaveField(wave, 50.0, LEVEL, "vertical", ramp=10.0, clock=4.0)])
+    full = Sea(LEVEL, [linear_waves(wave, 50.0, LEVEL, "vertical")])
+    ramped = Sea(LEVEL, [linear_waves(wave, 50.0, LEVEL, "vertical", ramp=10.0, clock=4.0)])
     assert ramped(1.0, x).velocity == pytest.approx(0.5 * full(5.0, x).velocity)
     assert ramped(1.0, x).immersion - 20.0 == pytest.approx(0.5 * (full(5.0, x).immersion - 20.0))
     assert ramped(1.0, x).immersion_gradient[:, :2] == pytest.approx(0.5 * full(5.0, x).immersion_gradient[:, :2])
@@ -168,7 +168,7 @@ def test_ramp_is_the_smooth_step_on_the_waves_clock() -> None:
 def test_wheeler_gives_crest_and_trough_what_the_mean_level_has(h: float) -> None:
     height, period = 4.0, 9.0
     wave = one(height, period, h)
-    sea, w, k = Sea(LEVEL, [WaveField(wave, h, LEVEL)]), 2.0 * np.pi / period, wave.wave_number[0]
+    sea, w, k = Sea(LEVEL, [linear_waves(wave, h, LEVEL)]), 2.0 * np.pi / period, wave.wave_number[0]
     speed = 0.5 * height * w / np.tanh(k * h)
     crest = sea(0.0, np.array([[0.0, 0.0, LEVEL + 2.0]]))
     trough = sea(0.0, np.array([[np.pi / k, 0.0, LEVEL - 2.0]]))
@@ -188,7 +188,7 @@ def test_wheeler_keeps_the_bottom() -> None:
 @pytest.mark.parametrize("h", [np.inf, 50.0])
 def test_nothing_overflows(stretching: Literal["wheeler", "vertical"], h: float) -> None:
     """Far above the surface, far below the bottom, far away and after a long time."""
-    sea = Sea(LEVEL, [WaveField(several(h), h, LEVEL, stretching)])
+    sea = Sea(LEVEL, [linear_waves(several(h), h, LEVEL, stretching)])
     x = np.array([[0.0, 0.0, 1e3], [1e5, -1e5, -1e4], [0.0, 0.0, LEVEL - 50.0], [0.0, 0.0, LEVEL - 51.0]])
     with np.errstate(over="raise", invalid="raise"):
         motion = sea(1e5, x)
@@ -203,11 +203,11 @@ def test_waves_are_followed_down_to_round_off(h: float) -> None:
     """A short wave beside a long one, where the short one has decayed to 1e-11; much deeper it is left out."""
     short, long = one(1.0, 3.0, h), one(2.0, 20.0, h)
     w, k = 2.0 * np.pi / 3.0, short.wave_number[0]
-    flow = Sea(LEVEL, [WaveField(short, h, LEVEL, "vertical")])
+    flow = Sea(LEVEL, [linear_waves(short, h, LEVEL, "vertical")])
     x = np.array([[0.0, 0.0, LEVEL - 25.0 / k], [0.0, 0.0, LEVEL - 35.0 / k]])
     assert flow(0.0, x).velocity[:, 0] == pytest.approx([0.5 * w * np.exp(-25.0), 0.0], rel=1e-12)
     both = Components(*(np.concatenate(pair) for pair in zip(short, long, strict=True)))
-    alone, together = (Sea(LEVEL, [WaveField(part, h, LEVEL, "vertical")])(1.0, x).velocity for part in (long, both))
+    alone, together = (Sea(LEVEL, [linear_waves(part, h, LEVEL, "vertical")])(1.0, x).velocity for part in (long, both))
     assert together == pytest.approx(alone, rel=1e-9)
     assert np.abs(alone).max() > 1e-2
 
@@ -215,7 +215,7 @@ def test_waves_are_followed_down_to_round_off(h: float) -> None:
 def test_motion_in_a_plane_sees_the_derivative_along_it() -> None:
     """A riser in a turned vertical plane: the plane's own gradient is that of the motion along it."""
     d = np.array([0.6, 0.8, 0.0])
-    sea, s = Sea(LEVEL, [WaveField(several(30.0), 30.0, LEVEL)]), np.linspace(-5.0, 5.0, 11)
+    sea, s = Sea(LEVEL, [linear_waves(several(30.0), 30.0, LEVEL)]), np.linspace(-5.0, 5.0, 11)
     x = s[:, None] * d + [0.0, 0.0, LEVEL - 3.0]
 
     def along(motion: WaterMotion) -> Array:

@@ -21,10 +21,9 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene
 from riser_soil.sea.components import regular
 from riser_soil.sea.flows import Sea, WaterMotion
-from riser_soil.sea.morison import Morison
-from riser_soil.sea.steady_flow import SteadyFlow
+from riser_soil.sea.steady_flow import steady_flow
 from riser_soil.sea.steady_wave import SteadyWave, choose, highest, steady_wave
-from riser_soil.sea.waves import WaveField
+from riser_soil.sea.waves import linear_waves
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
@@ -44,7 +43,7 @@ cases = pytest.mark.parametrize(("theory", "H", "h"), CASES)
 
 
 def sea(wave: SteadyWave, ramp: float = 0.0, phase: float = 0.4, direction: float = DIRECTION) -> Sea:
-    return Sea(LEVEL, [SteadyFlow(wave, direction, phase, LEVEL, ramp, 0.0, 0.0)])
+    return Sea(LEVEL, [steady_flow(wave, direction, phase, LEVEL, ramp, 0.0, 0.0)])
 
 
 def made(theory: str, H: float, h: float) -> SteadyWave:
@@ -144,7 +143,7 @@ def test_low_waves_are_linear(theory: str, H: float, h: float) -> None:
     x = points(made(theory, H, h)) - [0.0, 0.0, 1.0]
     off = []
     for height in (0.1, 0.05):
-        linear = Sea(LEVEL, [WaveField(regular(height, T, DIRECTION, 0.4, G, h), h, LEVEL, "vertical")])(3.0, x)
+        linear = Sea(LEVEL, [linear_waves(regular(height, T, DIRECTION, 0.4, G, h), h, LEVEL, "vertical")])(3.0, x)
         finite = sea(made(theory, height, h))(3.0, x)
         off.append([np.abs(finite[n] - linear[n]).max() / np.abs(linear[n]).max() for n in (0, 1, 2, 3)])
         rise = np.abs(finite.immersion - linear.immersion).max() / height
@@ -197,9 +196,8 @@ def test_tangent_of_the_loads() -> None:
     """By differences, on a riser that goes through the wave."""
     at = sample(3)
     wave = steady_wave("stream-function", 0.9, 3.0, G, 6.0)
-    loads = sample_water.still(at)
-    sea = Sea(sample_water.LEVEL, [SteadyFlow(wave, 0.3, 0.2, 5.2, 2.0, 0.0, 0.0)])
-    part = Morison(sample_water.driven(loads, sample_water.displaced(at), sea))
+    sea = Sea(sample_water.LEVEL, [steady_flow(wave, 0.3, 0.2, 5.2, 2.0, 0.0, 0.0)])
+    part = sample_water.driven(sample_water.resistance(at), sea)
     state = at.state(2)
     K = difference_tangent(part, state, WEIGHTS)
     assert error(tangent([part], state, WEIGHTS), K) < 1e-8
@@ -259,7 +257,7 @@ def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> Non
     water = water_of(scene, scene.stages[1])
     assert water is not None
     found = water(12.0, np.array([[10.0, 0.0, 60.0]]))
-    direct = Sea(100.0, [SteadyFlow(made("stokes", 8.0, math.inf), math.pi, 0.0, 100.0, 10.0, 0.0, 0.0)])
+    direct = Sea(100.0, [steady_flow(made("stokes", 8.0, math.inf), math.pi, 0.0, 100.0, 10.0, 0.0, 0.0)])
     assert found.velocity == pytest.approx(direct(12.0, np.array([[10.0, 0.0, 60.0]])).velocity)
 
 

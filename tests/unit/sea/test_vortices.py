@@ -13,7 +13,6 @@ from riser_soil.core.part import Forces, State, Weights
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.sea import vortex_law as law
-from riser_soil.sea.morison import through
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import FlowAtStations
 from riser_soil.sea.vortices import Push, Vortices
@@ -45,8 +44,8 @@ def underway(part: Vortices, at: Sample) -> Vortices:
 def in_water(at: Sample, half_out: bool) -> Vortices:
     """In uneven, unsteady water."""
     pipe = Pipe(at.line)
-    loads = through(FlowAtStations(pipe, sample_water.water), pipe.span if half_out else None)
-    return underway(Vortices(loads, shedding(at.line.length.size)), at)
+    water, span = FlowAtStations(pipe, sample_water.water), pipe.span if half_out else None
+    return underway(Vortices(water, shedding(at.line.length.size), span=span), at)
 
 
 def behind(at: Sample) -> Vortices:
@@ -59,8 +58,8 @@ def behind_half_out(at: Sample) -> Vortices:
 
 def in_line(at: Sample) -> Vortices:
     pipe = Pipe(at.line)
-    loads = through(FlowAtStations(pipe, sample_water.water), pipe.span)
-    return underway(Vortices(loads, shedding(at.line.length.size), in_line=True), at)
+    water = FlowAtStations(pipe, sample_water.water)
+    return underway(Vortices(water, shedding(at.line.length.size), in_line=True, span=pipe.span), at)
 
 
 every_one = pytest.mark.parametrize("make", [behind, behind_half_out, in_line])

@@ -77,30 +77,25 @@ def test_an_upright_pipe_floats_by_archimedes(dimension: int) -> None:
     assert np.diff(dry) == pytest.approx(np.diff(out), rel=0.05)
 
 
-class RippleData(NamedTuple):
-    """Wave number of a rippled surface [1/m]."""
+class Ripple(NamedTuple):
+    """A flow: a rippled surface, by its wave number [1/m]."""
 
     k: float
 
 
-class Ripple:
-    """A flow: a surface of 12 m long waves, of which an element holds a tenth."""
-
-    kernel_data = RippleData(2.0 * np.pi / 12.0)
-
-
-@add_flow.of(RippleData)
-def _ripple(flow: RippleData, motion: WaterMotion, t: Array, x: Array) -> None:
+@add_flow.of(Ripple)
+def _ripple(flow: Ripple, motion: WaterMotion, t: Array, x: Array) -> None:
     for p in range(x.shape[0]):
         motion.immersion[p] += 0.2 * math.cos(flow.k * x[p, 0])
         motion.immersion_gradient[p, 0] -= 0.2 * flow.k * math.sin(flow.k * x[p, 0])
 
 
 def test_a_wavy_surface_is_followed_between_the_stations() -> None:
-    at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
-    part = Buoyancy(FlowAtStations(at, Sea(LEVEL, [Ripple()])), dry_pipe(np.ones(5)), flat=False)
-    found = at.line.nodal(residual([part], State.at_rest(0.0, at.line.size)))[:, 1].sum()
+    """Waves of 12 m, of which an element holds a tenth."""
     k = 2.0 * np.pi / 12.0
+    at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
+    part = Buoyancy(FlowAtStations(at, Sea(LEVEL, [Ripple(k)])), dry_pipe(np.ones(5)), flat=False)
+    found = at.line.nodal(residual([part], State.at_rest(0.0, at.line.size)))[:, 1].sum()
     expected = quad(lambda x: 1.0 - wet_share(0.2 * np.cos(k * x) - 0.1, D), 0.0, L, epsabs=1e-10, limit=200)[0]
     assert found == pytest.approx(expected, rel=1e-4)
 

@@ -12,7 +12,7 @@ from riser_soil.sea import spectra, wave_series
 from riser_soil.sea.components import Components, regular
 from riser_soil.sea.flows import Sea, WaterMotion
 from riser_soil.sea.wave_series import number, places
-from riser_soil.sea.waves import WaveField
+from riser_soil.sea.waves import linear_waves
 from tests.support.summed_waves import SummedWaves
 
 G, LEVEL = 9.81, 7.0
@@ -21,8 +21,8 @@ HOURS = 3.0 * 3600.0
 
 
 def in_waves(*given: Any) -> Sea:
-    """The sea with a `WaveField` of these arguments."""
-    return Sea(LEVEL, [WaveField(*given)])
+    """The sea with a `linear_waves` of these arguments."""
+    return Sea(LEVEL, [linear_waves(*given)])
 
 
 KINDS = in_waves, SummedWaves
@@ -95,7 +95,7 @@ def test_waves_go_on_across_the_borders_of_places(h: float) -> None:
     depths = np.concatenate([side * 2.0**level * rows for level in range(7)])
     at = np.zeros((depths.size, 3))
     at[:, 0], at[:, 2] = side * 64.0, LEVEL - depths
-    flow, step = Sea(LEVEL, [WaveField(waves, h, LEVEL, "vertical")]), 1e-9 * side
+    flow, step = Sea(LEVEL, [linear_waves(waves, h, LEVEL, "vertical")]), 1e-9 * side
     for axis in (0, 2):
         shift = step * np.eye(3)[axis]
         before, after = flow(5.0, at - shift), flow(5.0, at + shift)
@@ -108,21 +108,21 @@ def test_waves_go_on_across_the_borders_of_places(h: float) -> None:
 def test_nothing_hangs_on_what_was_evaluated_before() -> None:
     """One field that has been everywhere, in any order, beside one that is new: as after a restart, to the last bit."""
     waves, x = sea(120.0, 9.0, 50, 11), points(120.0, 200.0, 12)
-    draw, used = np.random.default_rng(13), Sea(LEVEL, [WaveField(waves, 120.0, LEVEL, ramp=20.0)])
+    draw, used = np.random.default_rng(13), Sea(LEVEL, [linear_waves(waves, 120.0, LEVEL, ramp=20.0)])
     for _ in range(20):
         t, some = draw.uniform(0.0, 60.0), draw.permutation(len(x))[:50]
         used(draw.uniform(0.0, 60.0), x + draw.uniform(-5.0, 5.0, 3))
-        new = Sea(LEVEL, [WaveField(waves, 120.0, LEVEL, ramp=20.0)])
+        new = Sea(LEVEL, [linear_waves(waves, 120.0, LEVEL, ramp=20.0)])
         for found, expected in zip(used(t, x[some]), new(t, x), strict=True):
             assert np.array_equal(found, expected[some])
 
 
 def test_places_that_find_no_workspace_are_computed_again(monkeypatch: pytest.MonkeyPatch) -> None:
     waves, x = sea(120.0, 9.0, 50, 11), points(120.0, 200.0, 12)
-    roomy = Sea(LEVEL, [WaveField(waves, 120.0, LEVEL)])(4.0, x)
+    roomy = Sea(LEVEL, [linear_waves(waves, 120.0, LEVEL)])(4.0, x)
     monkeypatch.setattr(wave_series, "MOST", 3)
-    field = WaveField(waves, 120.0, LEVEL)
-    assert field.kernel_data.series.cells.places.key.size == 3
+    field = linear_waves(waves, 120.0, LEVEL)
+    assert field.series.cells.places.key.size == 3
     for _ in range(2):
         for found, expected in zip(Sea(LEVEL, [field])(4.0, x), roomy, strict=True):
             assert np.array_equal(found, expected)
@@ -132,9 +132,9 @@ def test_stations_of_a_riser_share_few_places() -> None:
     """1200 stations of a catenary in a storm: fewer than one place for ten of them."""
     along = np.linspace(0.0, 1.0, 1200)
     x = np.stack([150.0 * along, 0.0 * along, 120.0 * along**2], axis=-1)
-    field = WaveField(sea(120.0, 13.0, 200, 1), 120.0, 120.0)
+    field = linear_waves(sea(120.0, 13.0, 200, 1), 120.0, 120.0)
     Sea(120.0, [field])(3.0, x)
-    taken = [int(at.places.taken[0]) for at in (field.kernel_data.series.columns, field.kernel_data.series.cells)]
+    taken = [int(at.places.taken[0]) for at in (field.series.columns, field.series.cells)]
     assert min(taken) > 5
     assert sum(taken) < 100
 
@@ -143,8 +143,8 @@ def test_long_and_short_waves_of_any_unit_of_length() -> None:
     """The same waves in metres and in millionths of them."""
     here, tiny = (regular(0.02 * unit, 6.0, 0.3, 0.2, G * unit, 30.0 * unit) for unit in (1.0, 1e-6))
     x = points(30.0, 50.0, 14) - [0.0, 0.0, LEVEL]
-    first = Sea(0.0, [WaveField(here, 30.0, 0.0)])(2.0, x)
-    second = Sea(0.0, [WaveField(tiny, 30e-6, 0.0)])(2.0, 1e-6 * x)
+    first = Sea(0.0, [linear_waves(here, 30.0, 0.0)])(2.0, x)
+    second = Sea(0.0, [linear_waves(tiny, 30e-6, 0.0)])(2.0, 1e-6 * x)
     assert 1e6 * second.velocity == pytest.approx(first.velocity, abs=1e-14)
     assert 1e6 * second.immersion == pytest.approx(first.immersion, abs=1e-12)
 
