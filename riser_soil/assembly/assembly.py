@@ -182,7 +182,7 @@ class Assembly:
 
     def seen_by_lines(self, stage: Stage) -> list[tuple[LineAssembly, Stage]]:
         """Each line, and a stage of the scene as it sees it."""
-        return [(own, own.seen(stage)) for own in self.lines.values()]
+        return [(own, own.own_stage(stage)) for own in self.lines.values()]
 
     def _hung_in(self, stage: Stage) -> list[Part]:
         return [] if self.hung is None else self.hung.parts_in(self.scene, self.sea, stage)

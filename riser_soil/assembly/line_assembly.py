@@ -103,11 +103,11 @@ class LineAssembly:
         """Shortest period [s] on the stiffness of its contact, on soil in series with the soil's own; nan where it
         touches nothing.
         """
-        found = dict(self.contact_stiffness)
-        if "soil" in found and self.scene.soil is not None:
+        stiffness = dict(self.contact_stiffness)
+        if "soil" in stiffness and self.scene.soil is not None:
             E = self.scene.soil.top_law.surface_modulus(self.scales.diameter)
-            found["soil"] *= E / (E + found["soil"])
-        stiffest = max(found.values(), default=math.nan)
+            stiffness["soil"] *= E / (E + stiffness["soil"])
+        stiffest = max(stiffness.values(), default=math.nan)
         return 2.0 * math.pi * math.sqrt(float(self.elements.mass.min()) / stiffest)
 
     @cached_property
@@ -177,20 +177,20 @@ class LineAssembly:
         there, or a joint takes it there.
         """
         end = self.scene.line.end
-        held = isinstance(end, Support) and not end.jointed
-        if self.slack == 0.0 or not held or self.scene.initial is not None:
+        supported = isinstance(end, Support) and not end.jointed
+        if self.slack == 0.0 or not supported or self.scene.initial is not None:
             return None
         assert isinstance(end, Support)
         return MovedEnds(end=end.position)
 
-    def seen(self, stage: Stage) -> Stage:
-        """A stage of the whole scene as this line sees it."""
+    def own_stage(self, stage: Stage) -> Stage:
+        """What a stage of the whole scene is for this line."""
         return next(own for own in self.scene.stages if own.name == stage.name)
 
     def begin(self, stage: Stage) -> list[Part]:
         """Set the ends in motion; the line's parts in a stage, without contact and friction."""
         self.start_places[stage.name] = end_positions(self.line)
-        return self.enter(self.seen(stage), self.start_places[stage.name])
+        return self.enter(self.own_stage(stage), self.start_places[stage.name])
 
     def lay(self, stage: StaticStage) -> list[Part]:
         """Move the ends of a slack line to their places; the line's parts meanwhile, without a current's drag, contact
@@ -202,8 +202,8 @@ class LineAssembly:
     def resume(self, before: Sequence[Stage], stage: Stage) -> list[Part]:
         """The parts of the last stage that was begun, of a line that was restored. before: the stages before."""
         for earlier in before:
-            set_motions(self.line, self.seen(earlier), self.vessels, self.start_places[earlier.name])
-        return self.enter(self.seen(stage), self.start_places[stage.name])
+            set_motions(self.line, self.own_stage(earlier), self.vessels, self.start_places[earlier.name])
+        return self.enter(self.own_stage(stage), self.start_places[stage.name])
 
     def enter(self, stage: Stage, origins: Array) -> list[Part]:
         """Set the ends in motion from origins (2, 3) [m]; the line's parts in a stage as it sees it."""

@@ -115,7 +115,7 @@ def _drag(part: DragData, w: Vec) -> tuple[Vec, Mat]:
 
 @njit
 def _pushed(part: DragData, at: Posture) -> WaterOnBody:
-    """What the water does to a body, where that is; the water's motion there is found."""
+    """What the water does to a body, where that is; the water's motion there is evaluated."""
     c, arm = vector(part.centre), matvec(at.R, vector(part.centre))
     centre = add(at.x, arm)
     for i in range(3):
@@ -137,10 +137,10 @@ def _pushed(part: DragData, at: Posture) -> WaterOnBody:
 
 
 @njit
-def _on_body(part: DragData, at: Posture, found: WaterOnBody) -> tuple[Vec, Vec]:
+def _on_body(part: DragData, at: Posture, water: WaterOnBody) -> tuple[Vec, Vec]:
     """Force and moment about the origin in body axes."""
-    force = add(scale(found.share, add(found.drag, found.push)), scale(found.heave, at.R[2]))
-    return force, add(cross(vector(part.centre), force), scale(found.share, found.twist))
+    force = add(scale(water.share, add(water.drag, water.push)), scale(water.heave, at.R[2]))
+    return force, add(cross(vector(part.centre), force), scale(water.share, water.twist))
 
 
 @add_forces.of(DragData)
@@ -155,41 +155,41 @@ def _add_tangent_of_drag(
     part: DragData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
 ) -> None:
     here = posture(at)
-    found, lever = _pushed(part, here), skew(vector(part.centre))
-    force, moment = _on_body(part, here, found)
-    moved = matscale(-1.0, matmul(skew(found.arm), here.H))  # the centre, by the rotation dofs
-    by_place = _force_by(part, here, found, isotropic(1.0), NONE)
-    by_turn = _force_by(part, here, found, moved, here.T)
-    resists = matscale(maps.shift_v * found.share, found.drag_by)
+    water, lever = _pushed(part, here), skew(vector(part.centre))
+    force, moment = _on_body(part, here, water)
+    moved = matscale(-1.0, matmul(skew(water.arm), here.H))  # the centre, by the rotation dofs
+    by_place = _force_by(part, here, water, isotropic(1.0), NONE)
+    by_turn = _force_by(part, here, water, moved, here.T)
+    resists = matscale(maps.shift_v * water.share, water.drag_by)
     by_place = matadd(by_place, matmul(resists, transpose(here.R)))
     by_turn = matadd(by_turn, matscale(-1.0, matmul(resists, lever)))
-    rise = scale(found.slope, vector(part.motion.immersion_gradient[0]))
-    spun = scaled_rows(scale(maps.shift_v * found.share, found.twist_by), isotropic(1.0))
-    twist_by_turn = matadd(outer(found.twist, vecmat(rise, moved)), spun)
+    rise = scale(water.slope, vector(part.motion.immersion_gradient[0]))
+    spun = scaled_rows(scale(maps.shift_v * water.share, water.twist_by), isotropic(1.0))
+    twist_by_turn = matadd(outer(water.twist, vecmat(rise, moved)), spun)
     by = Changes(
         by_place,
         by_turn,
-        matadd(matmul(lever, by_place), outer(found.twist, rise)),
+        matadd(matmul(lever, by_place), outer(water.twist, rise)),
         matadd(matmul(lever, by_turn), twist_by_turn),
     )
     add_changes(K[0], weights.force, here, vector(at.Theta[0]), force, moment, by)
 
 
 @njit
-def _force_by(part: DragData, at: Posture, found: WaterOnBody, moved: Mat, turned: Mat) -> Mat:
-    """Derivative of the force in body axes, rates held: by dofs that move the centre and turn the body like that."""
+def _force_by(part: DragData, at: Posture, water: WaterOnBody, moved: Mat, turned: Mat) -> Mat:
+    """Derivative of the force in body axes, at constant rates, by dofs that move the centre and turn the body so."""
     motion, inverse, up = part.motion, transpose(at.R), at.R[2]
-    more = scale(found.slope, vecmat(vector(motion.immersion_gradient[0]), moved))
+    more = scale(water.slope, vecmat(vector(motion.immersion_gradient[0]), moved))
     drift = sub(at.v, vector(motion.velocity[0]))
     by_stream = matmul(inverse, matmul(matrix(motion.velocity_gradient[0]), moved))
     through = matadd(matmul(skew(vecmat(drift, at.R)), turned), matscale(-1.0, by_stream))
     pushed = matmul(inverse, matmul(matrix(motion.acceleration_gradient[0]), moved))
     pushed = matadd(pushed, matmul(skew(vecmat(vector(motion.acceleration[0]), at.R)), turned))
     carried = scaled_rows(scale(-1.0, vector(part.pushed)), pushed)
-    out = matscale(found.share, matadd(matmul(found.drag_by, through), carried))
-    out = matadd(out, outer(add(found.drag, found.push), more))
-    rising = scale(-part.buoyancy, add(more, scale(found.calm_slope, moved[2])))
-    return matadd(out, matadd(outer(up, rising), matscale(found.heave, matmul(skew(up), turned))))
+    out = matscale(water.share, matadd(matmul(water.drag_by, through), carried))
+    out = matadd(out, outer(add(water.drag, water.push), more))
+    rising = scale(-part.buoyancy, add(more, scale(water.calm_slope, moved[2])))
+    return matadd(out, matadd(outer(up, rising), matscale(water.heave, matmul(skew(up), turned))))
 
 
 @add_energy.of(DragData)

@@ -82,43 +82,45 @@ class Beam(CompiledPart):
 
 
 @njit
-def seen_in_plane(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
-    """Element e, seen from its own frame."""
-    found: beam2d.PlanarCorotated = beam2d.corotate(at.chord[e], at.end_angle[e, 0], at.end_angle[e, 1])
-    return found
+def corotated(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
+    """Element e in its own frame."""
+    local: beam2d.PlanarCorotated = beam2d.corotate(at.chord[e], at.end_angle[e, 0], at.end_angle[e, 1])
+    return local
 
 
 @add_forces.of(PlanarBeam)
 def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -> None:
     f, heap = np.empty(6), np.empty(6)
     for e in range(part.load.shape[0]):
-        seen = seen_in_plane(at, e)
-        beam2d.write_element_forces(e, seen, part.reference, part.section, f)
-        beam2d.add_load_forces(seen, part.section.L[e], part.load[e], f)
+        local = corotated(at, e)
+        beam2d.write_element_forces(e, local, part.reference, part.section, f)
+        beam2d.add_load_forces(local, part.section.L[e], part.load[e], f)
         if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
-            _blend_planar_forces(part, at, e, seen, f, heap)
+            _blend_planar_forces(part, at, e, local, f, heap)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
 
 @njit
 def _blend_planar_forces(
-    part: PlanarBeam, at: PlanarConfiguration, e: int, seen: beam2d.PlanarCorotated, f: Array, heap: Array
+    part: PlanarBeam, at: PlanarConfiguration, e: int, local: beam2d.PlanarCorotated, f: Array, heap: Array
 ) -> None:
     """Make forces f (6,) of an element with its bow those that it has in a heap; workspace heap (6,)."""
     chord, L, w = at.chord[e], part.section.L[e], part.load[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam2d.write_heaped_forces(state, chord, at.end_angle[e, 0], at.end_angle[e, 1], L, w, heap)
-    blend_forces(state, chord, L, _more_than_in_planar_heap(part, at, e, seen), f, heap)
+    blend_forces(state, chord, L, _more_than_in_planar_heap(part, at, e, local), f, heap)
 
 
 @njit
-def _more_than_in_planar_heap(part: PlanarBeam, at: PlanarConfiguration, e: int, seen: beam2d.PlanarCorotated) -> float:
+def _more_than_in_planar_heap(
+    part: PlanarBeam, at: PlanarConfiguration, e: int, local: beam2d.PlanarCorotated
+) -> float:
     """Energy [J] of an element with its bow less that in a heap."""
     L, chord = part.section.L[e], at.chord[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
-    bowed = beam2d.element_energy(e, seen, part.reference, part.section)
-    bowed += beam2d.load_potential(seen, L, part.load[e], 0.0, 0.0)
+    bowed = beam2d.element_energy(e, local, part.reference, part.section)
+    bowed += beam2d.load_potential(local, L, part.load[e], 0.0, 0.0)
     turned = at.end_angle[e]
     spring = beam2d.heaped_energy(state, chord, turned[0], turned[1], L)
     return bowed - spring - beam2d.heaped_load_potential(turned[0], turned[1], L, part.load[e])
@@ -150,9 +152,9 @@ def _more_than_in_spatial_heap(part: SpatialBeam, at: SpatialConfiguration, e: i
     """Energy [J] of an element with its bow less that in a heap."""
     L, chord = part.section.L[e], at.chord[e]
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
-    seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section)
-    bowed = beam3d.element_energy(e, seen, part.reference, part.section)
-    bowed += beam3d.element_potential(seen, L, vector(part.load[e]), beam3d.STILL)
+    local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section)
+    bowed = beam3d.element_energy(e, local, part.reference, part.section)
+    bowed += beam3d.element_potential(local, L, vector(part.load[e]), beam3d.STILL)
     spring = beam3d.heaped_energy(state, chord, at.frame1[e], at.frame2[e], L)
     return bowed - spring - beam3d.heaped_load_potential(at.frame1[e], at.frame2[e], L, part.load[e])
 
@@ -161,12 +163,12 @@ def _more_than_in_spatial_heap(part: SpatialBeam, at: SpatialConfiguration, e: i
 def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     f, own, heap, heap_own = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     for e in range(part.load.shape[0]):
-        seen = seen_in_plane(at, e)
-        beam2d.write_element(e, seen, part.reference, part.section, f, own)
-        beam2d.add_load_tangent(seen, part.section.L[e], part.load[e], own)
+        local = corotated(at, e)
+        beam2d.write_element(e, local, part.reference, part.section, f, own)
+        beam2d.add_load_tangent(local, part.section.L[e], part.load[e], own)
         if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
-            beam2d.add_load_forces(seen, part.section.L[e], part.load[e], f)
-            _blend_planar_tangent(part, at, e, seen, f, own, heap, heap_own)
+            beam2d.add_load_forces(local, part.section.L[e], part.load[e], f)
+            _blend_planar_tangent(part, at, e, local, f, own, heap, heap_own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
@@ -177,7 +179,7 @@ def _blend_planar_tangent(
     part: PlanarBeam,
     at: PlanarConfiguration,
     e: int,
-    seen: beam2d.PlanarCorotated,
+    local: beam2d.PlanarCorotated,
     f: Array,
     K: Array,
     heap: Array,
@@ -188,7 +190,7 @@ def _blend_planar_tangent(
     state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam2d.write_heaped_forces(state, chord, turned[0], turned[1], L, w, heap)
     beam2d.write_heaped_tangent(state, turned[0], turned[1], L, w, heap_K)
-    blend_tangent(state, chord, L, _more_than_in_planar_heap(part, at, e, seen), f, K, heap, heap_K)
+    blend_tangent(state, chord, L, _more_than_in_planar_heap(part, at, e, local), f, K, heap, heap_K)
 
 
 @add_tangent.of(SpatialBeam)
@@ -224,9 +226,9 @@ def _blend_spatial_tangent(
 def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> None:
     section, load = part.section, part.load
     for e in range(part.load.shape[0]):
-        seen, x, L, chord, turned = seen_in_plane(at, e), at.x, part.section.L[e], at.chord[e], at.end_angle[e]
-        stored = beam2d.element_energy(e, seen, part.reference, section)
-        by_bow = beam2d.load_potential(seen, L, load[e], 0.0, 0.0)
+        local, x, L, chord, turned = corotated(at, e), at.x, part.section.L[e], at.chord[e], at.end_angle[e]
+        stored = beam2d.element_energy(e, local, part.reference, section)
+        by_bow = beam2d.load_potential(local, L, load[e], 0.0, 0.0)
         if is_heaped(section.law, e, chord, L):
             state = heaped(section.law, e, chord, L, section.EA[e])
             stored = blended(state, stored, beam2d.heaped_energy(state, chord, turned[0], turned[1], L))
@@ -241,14 +243,14 @@ def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> 
 def _spatial_energy(part: SpatialBeam, at: SpatialConfiguration, energy: Array) -> None:
     section, load = part.section, part.load
     for e in range(part.load.shape[0]):
-        seen, x, L, chord = (
+        local, x, L, chord = (
             beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section),
             at.x,
             part.section.L[e],
             at.chord[e],
         )
-        stored = beam3d.element_energy(e, seen, part.reference, section)
-        by_bow = beam3d.element_potential(seen, L, vector(load[e]), beam3d.STILL)
+        stored = beam3d.element_energy(e, local, part.reference, section)
+        by_bow = beam3d.element_potential(local, L, vector(load[e]), beam3d.STILL)
         if is_heaped(section.law, e, chord, L):
             state = heaped(section.law, e, chord, L, section.EA[e])
             stored = blended(state, stored, beam3d.heaped_energy(state, chord, at.frame1[e], at.frame2[e], L))

@@ -68,7 +68,7 @@ class PlanarElement(NamedTuple):
 
 
 class PlanarCorotated(NamedTuple):
-    """Configuration of one element seen from its own frame."""
+    """Configuration of one element in its own frame."""
 
     axis: Vec2  # unit vector along the chord
     length: float  # chord, m
@@ -92,7 +92,7 @@ def _without_turns(angle: float) -> float:
 
 @njit
 def corotate(chord: Array, direction1: float, direction2: float) -> PlanarCorotated:
-    """The element seen from its chord, with the directions of its ends' tangents."""
+    """The element in the frame of its chord, by the directions of its ends' tangents."""
     length = math.sqrt(chord[0] * chord[0] + chord[1] * chord[1])
     axis, angle = (chord[0] / length, chord[1] / length), math.atan2(chord[1], chord[0])
     return PlanarCorotated(axis, length, _without_turns(direction1 - angle), _without_turns(direction2 - angle))

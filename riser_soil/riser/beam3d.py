@@ -72,7 +72,7 @@ class SpatialReference(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """Configuration of one element, seen from its own frame, and its strains."""
+    """Configuration of one element in its own frame, and its strains."""
 
     frame: SpatialCorotated
     end1: SwingTwist
@@ -134,8 +134,8 @@ def _unstressed(ref: SpatialReference, e: int) -> Strain:
 @njit
 def element_shape(e: int, chord: Array, frame1: Array, frame2: Array, line: LineStiffness) -> Shape:
     """Configuration of element e, for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
-    found: Shape = shape(line.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-    return found
+    at: Shape = shape(line.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+    return at
 
 
 @njit

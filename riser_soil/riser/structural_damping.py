@@ -10,7 +10,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits, Work
 from riser_soil.riser import beam3d, damping2d, damping3d, rotations
-from riser_soil.riser.beam import seen_in_plane
+from riser_soil.riser.beam import corotated
 from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
@@ -98,8 +98,8 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
     f = np.empty(6)
     _write_chord_rates(at.v, part.chord_rate)
     for e in range(at.chord.shape[0]):
-        seen = seen_in_plane(at, e)
-        damping2d.write_element_forces(e, seen, part.viscosity, part.chord_rate, at.v[:, 2], f)
+        local = corotated(at, e)
+        damping2d.write_element_forces(e, local, part.viscosity, part.chord_rate, at.v[:, 2], f)
         _blend_forces(part, at, e, f)
         for i in range(6):
             out.force_e[e, i] += f[i]
@@ -109,10 +109,10 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
 def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     own, f = np.empty((6, 6)), np.empty(6)
     for e in range(at.chord.shape[0]):
-        seen, rates = seen_in_plane(at, e), (part.chord_rate, at.v[:, 2])
-        damping2d.write_element_tangent(e, seen, part.viscosity, *rates, maps.shift_v, own)
+        local, rates = corotated(at, e), (part.chord_rate, at.v[:, 2])
+        damping2d.write_element_tangent(e, local, part.viscosity, *rates, maps.shift_v, own)
         if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
-            damping2d.write_element_forces(e, seen, part.viscosity, *rates, f)
+            damping2d.write_element_forces(e, local, part.viscosity, *rates, f)
             _blend_tangent(part, at, e, maps.shift_v, f, own)
         for i in range(6):
             for j in range(6):
@@ -127,8 +127,8 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
         spin = matvec(matrix(at.frames[n]), vector(at.v[n, 3:]))
         part.spin[n, 0], part.spin[n, 1], part.spin[n, 2] = spin
     for e in range(at.chord.shape[0]):
-        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
-        damping3d.write_element_forces(e, seen, part.viscosity, part.chord_rate, part.spin, f)
+        local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
+        damping3d.write_element_forces(e, local, part.viscosity, part.chord_rate, part.spin, f)
         _blend_forces(part, at, e, f)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
@@ -142,10 +142,10 @@ def _spatial_tangent(
     own, f, nodes = np.empty((12, 12)), np.empty(12), damping3d.NodeRotations(at.frames, at.H, at.Rn, at.Theta)
     rates = part.chord_rate, part.spin
     for e in range(at.chord.shape[0]):
-        seen = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
-        damping3d.write_element_tangent(e, seen, part.viscosity, *rates, nodes, maps.shift_v, own)
+        local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
+        damping3d.write_element_tangent(e, local, part.viscosity, *rates, nodes, maps.shift_v, own)
         if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
-            damping3d.write_element_forces(e, seen, part.viscosity, *rates, f)
+            damping3d.write_element_forces(e, local, part.viscosity, *rates, f)
             rotations.element_to_increments(e, f, at.H)
             _blend_tangent(part, at, e, maps.shift_v, f, own)
         for i in range(12):

@@ -118,7 +118,7 @@ class VortexForce(BaseModel):
 
     @property
     def of_in_line(self) -> tuple[float, float, float]:
-        """The same in line with it; coefficient 0 for none."""
+        """Coefficient, middle and half width of the frequencies in line with the flow; coefficient 0 for none."""
         given = self.in_line
         if given is None:
             return 0.0, 2.0 * self.frequency, 2.0 * self.width

@@ -26,7 +26,7 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.sea import waterline
 from riser_soil.sea.flows import WaterMotion
-from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, see_end, see_start, update
+from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, evaluate_end, evaluate_start, update
 from riser_soil.sea.waterline import dry_height, wet_share, wet_slope
 
 
@@ -66,7 +66,7 @@ class DryPipeData(NamedTuple):
 @find_water.of(DryStationData)
 @find_water.of(DryPipeData)
 def _find_water(part: DryStationData | DryPipeData, at: Configuration) -> None:
-    see_end(part.stream, at.q)
+    evaluate_end(part.stream, at.q)
 
 
 @njit
@@ -79,16 +79,16 @@ def _lost(part: DryStationData, water: WaterMotion, m: int, g: int) -> float:
 
 @add_forces.of(DryStationData)
 def _station_forces(part: DryStationData, at: Configuration, out: LineForces) -> None:
-    see_end(part.stream, at.q)
+    evaluate_end(part.stream, at.q)
     for m in range(part.stream.element.size):
         for g in range(part.stream.share.shape[1]):
-            part.f[len(at.D) - 1] = _lost(part, part.stream.seen.end, m, g)
+            part.f[len(at.D) - 1] = _lost(part, part.stream.water.end, m, g)
             add_at_station(part.stream, m, g, as_tuple(part.f, at.D), out.force_q)
 
 
 @add_tangent.of(DryStationData)
 def _station_tangent(part: DryStationData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    water, up = part.stream.seen.end, len(at.D) - 1
+    water, up = part.stream.water.end, len(at.D) - 1
     for m in range(part.stream.element.size):
         e = part.stream.element[m]
         part.change[:] = 0.0
@@ -108,7 +108,7 @@ def _station_energy(part: DryStationData, at: Configuration, energy: Array) -> N
         return
     for m in range(part.stream.element.size):
         for g in range(part.stream.share.shape[1]):
-            h = part.stream.seen.end.immersion[m * part.stream.share.shape[1] + g]
+            h = part.stream.water.end.immersion[m * part.stream.share.shape[1] + g]
             energy[2] += part.stream.share[m, g] * part.displaced[m] * dry_height(h, part.span[m, g])
 
 
@@ -116,12 +116,12 @@ def _station_energy(part: DryStationData, at: Configuration, energy: Array) -> N
 def _station_work(part: DryStationData, first: Configuration, last: Configuration, work: Array) -> None:
     if part.flat:
         return
-    see_start(part.stream, first.q)
+    evaluate_start(part.stream, first.q)
     up = len(last.D) - 1
     for m in range(part.stream.element.size):
         e = part.stream.element[m]
         for g in range(part.stream.share.shape[1]):
-            risen, lost = 0.0, _lost(part, part.stream.seen.start, m, g) + _lost(part, part.stream.seen.end, m, g)
+            risen, lost = 0.0, _lost(part, part.stream.water.start, m, g) + _lost(part, part.stream.water.end, m, g)
             for a in range(4):
                 risen += part.stream.at.N[m, g, a] * (last.q[e, a, up] - first.q[e, a, up])
             work[1] -= 0.5 * part.stream.share[m, g] * lost * risen
@@ -143,10 +143,10 @@ def _element(part: DryPipeData, at: Configuration, water: WaterMotion, e: int) -
 
 @add_forces.of(DryPipeData)
 def _pipe_forces(part: DryPipeData, at: Configuration, out: LineForces) -> None:
-    see_end(part.stream, at.q)
+    evaluate_end(part.stream, at.q)
     up = len(at.D) - 1
     for e in range(part.length.size):
-        waterline.write_dry_lengths(part.points, _element(part, at, part.stream.seen.end, e), part.dry)
+        waterline.write_dry_lengths(part.points, _element(part, at, part.stream.water.end, e), part.dry)
         for a in range(4):
             out.force_q[e, a, up] += part.displaced[e] * part.dry[a]
 
@@ -156,8 +156,8 @@ def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: Lin
     ng = part.heights.size
     for e in range(part.length.size):
         weight, N = weights.force * part.displaced[e], part.stream.at.N[e]
-        gradient = part.stream.seen.end.immersion_gradient[e * ng : (e + 1) * ng]
-        wet = _element(part, at, part.stream.seen.end, e)
+        gradient = part.stream.water.end.immersion_gradient[e * ng : (e + 1) * ng]
+        wet = _element(part, at, part.stream.water.end, e)
         waterline.add_element_tangent(K[e], part.points, wet, N, gradient, weight, at.P[e], part.workspace, at.D, at.R)
 
 
@@ -165,7 +165,7 @@ def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: Lin
 def _pipe_energy(part: DryPipeData, at: Configuration, energy: Array) -> None:
     if part.flat:
         for e in range(part.length.size):
-            wet = _element(part, at, part.stream.seen.end, e)
+            wet = _element(part, at, part.stream.water.end, e)
             energy[2] += part.displaced[e] * waterline.dry_potential(part.points, wet)
 
 
@@ -173,11 +173,11 @@ def _pipe_energy(part: DryPipeData, at: Configuration, energy: Array) -> None:
 def _pipe_work(part: DryPipeData, first: Configuration, last: Configuration, work: Array) -> None:
     if part.flat:
         return
-    see_start(part.stream, first.q)
+    evaluate_start(part.stream, first.q)
     up = len(last.D) - 1
     for e in range(part.length.size):
-        waterline.write_dry_lengths(part.points, _element(part, first, part.stream.seen.start, e), part.before)
-        waterline.write_dry_lengths(part.points, _element(part, last, part.stream.seen.end, e), part.dry)
+        waterline.write_dry_lengths(part.points, _element(part, first, part.stream.water.start, e), part.before)
+        waterline.write_dry_lengths(part.points, _element(part, last, part.stream.water.end, e), part.dry)
         for a in range(4):
             risen = last.q[e, a, up] - first.q[e, a, up]
             work[1] -= 0.5 * part.displaced[e] * (part.before[a] + part.dry[a]) * risen
@@ -226,7 +226,7 @@ class Buoyancy(CompiledPart):
         return self._dry(self._water, self._flat)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        update(self._water.stream.seen, start, end)
+        update(self._water.stream.water, start, end)
 
 
 # Fine points that a section's width holds at least, so that an upright pipe gets wet evenly; an element has no more

@@ -68,15 +68,15 @@ def write_at_rest(motion: WaterMotion, level: float, x: Array) -> None:
 
 
 @njit
-def write_in_plane(found: WaterMotion, basis: Array, motion: WaterMotion) -> None:
-    """Write the motion (n, 3) as it is seen in a plane, basis (3, 2)."""
-    for p in range(found.immersion.size):
-        motion.immersion[p] = found.immersion[p]
-        _project(found.velocity[p], basis, motion.velocity[p])
-        _project(found.acceleration[p], basis, motion.acceleration[p])
-        _project(found.immersion_gradient[p], basis, motion.immersion_gradient[p])
-        _project_twice(found.velocity_gradient[p], basis, motion.velocity_gradient[p])
-        _project_twice(found.acceleration_gradient[p], basis, motion.acceleration_gradient[p])
+def write_in_plane(in_space: WaterMotion, basis: Array, motion: WaterMotion) -> None:
+    """Write the share of a motion (n, 3) in a plane, basis (3, 2)."""
+    for p in range(in_space.immersion.size):
+        motion.immersion[p] = in_space.immersion[p]
+        _project(in_space.velocity[p], basis, motion.velocity[p])
+        _project(in_space.acceleration[p], basis, motion.acceleration[p])
+        _project(in_space.immersion_gradient[p], basis, motion.immersion_gradient[p])
+        _project_twice(in_space.velocity_gradient[p], basis, motion.velocity_gradient[p])
+        _project_twice(in_space.acceleration_gradient[p], basis, motion.acceleration_gradient[p])
 
 
 @njit
@@ -112,7 +112,7 @@ class Sea:
 
 
 class SeaAtPoints:
-    """A `Water` at n points, its kernels bound once; what it finds stands until it is asked again."""
+    """A `Water` at n points, its kernels bound once; what it returns is overwritten when it is asked again."""
 
     def __init__(self, sea: Sea, n: int) -> None:
         self._motion, self._t, self._x = motion_workspace(n, 3), np.zeros(1), np.zeros((n, 3))

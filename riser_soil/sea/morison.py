@@ -124,22 +124,22 @@ def _batch(rows: Array, D: Size) -> Batch:
 
 
 @njit
-def _see(part: StillWaterData, at: Configuration, first: int, after: int, seen: Batch) -> None:
-    """Write what there is at the stations of elements first to after, but for accelerations."""
+def _read_stations(part: StillWaterData, at: Configuration, first: int, after: int, batch: Batch) -> None:
+    """Write what the resistance depends on at the stations of elements first to after, but for accelerations."""
     D = at.D
     for e in range(first, after):
         for g in range(NG):
             k, p = (e - first) * NG + g, e * NG + g
             v = stations.value_at(part.at.N, p, at.rate, e, D)
-            tau, seen.stretch[k] = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
+            tau, batch.stretch[k] = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
             for i in range(len(D)):
-                seen.v[i, k], seen.tau[i, k] = v[i], tau[i]
+                batch.v[i, k], batch.tau[i, k] = v[i], tau[i]
             for i in range(2):
-                seen.drag[i, k], seen.mass[i, k] = part.drag[e, i], part.mass[e, i]
+                batch.drag[i, k], batch.mass[i, k] = part.drag[e, i], part.mass[e, i]
 
 
 @njit
-def _see_values(part: StillWaterData, q: Array, first: int, after: int, out: Array, D: Size) -> None:
+def _read_values(part: StillWaterData, q: Array, first: int, after: int, out: Array, D: Size) -> None:
     """Write the values of q, q' or q'' (ne, 4, d) at those stations to columns of out (d, LANES)."""
     for e in range(first, after):
         for g in range(NG):
@@ -152,13 +152,13 @@ def _see_values(part: StillWaterData, q: Array, first: int, after: int, out: Arr
 def _still_forces(part: StillWaterData, at: Configuration, out: LineForces) -> None:
     ne, D, weighted = part.drag.shape[0], at.D, part.at.weighted
     d = len(D)
-    seen, inertia, force = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((d, BATCH)), np.zeros((d, BATCH))
+    batch, inertia, force = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((d, BATCH)), np.zeros((d, BATCH))
     for first in range(0, ne, ELEMENTS):
         after = min(first + ELEMENTS, ne)
-        _see(part, at, first, after, seen)
-        _see_values(part, at.acceleration, first, after, seen.a, D)
+        _read_stations(part, at, first, after, batch)
+        _read_values(part, at.acceleration, first, after, batch.a, D)
         for k in range(BATCH):
-            _write_forces(seen, inertia, force, k, D)
+            _write_forces(batch, inertia, force, k, D)
         for e in range(first, after):
             for g in range(NG):
                 k, p = (e - first) * NG + g, e * NG + g
@@ -167,11 +167,11 @@ def _still_forces(part: StillWaterData, at: Configuration, out: LineForces) -> N
 
 
 @njit
-def _write_forces(seen: Batch, inertia: Array, force: Array, k: int, D: Size) -> None:
+def _write_forces(batch: Batch, inertia: Array, force: Array, k: int, D: Size) -> None:
     """Write the resistance at one station, by groups."""
-    tau = as_tuple(seen.tau[:, k], D)
-    law.write_added(as_tuple(seen.a[:, k], D), tau, as_tuple(seen.mass[:, k], PAIR), inertia[:, k], D)
-    law.write_drag(as_tuple(seen.v[:, k], D), tau, as_tuple(seen.drag[:, k], PAIR), force[:, k], D)
+    tau = as_tuple(batch.tau[:, k], D)
+    law.write_added(as_tuple(batch.a[:, k], D), tau, as_tuple(batch.mass[:, k], PAIR), inertia[:, k], D)
+    law.write_drag(as_tuple(batch.v[:, k], D), tau, as_tuple(batch.drag[:, k], PAIR), force[:, k], D)
 
 
 @add_tangent.of(StillWaterData)
@@ -206,16 +206,16 @@ def _add_whole_tangent(
     part: StillWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array
 ) -> None:
     ne, D, d, workspace = part.drag.shape[0], at.D, len(at.D), part.workspace
-    seen, by = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
+    batch, by = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
     for first in range(0, ne, ELEMENTS):
         after = min(first + ELEMENTS, ne)
-        _see(part, at, first, after, seen)
-        _see_values(part, at.acceleration, first, after, seen.a, D)
+        _read_stations(part, at, first, after, batch)
+        _read_values(part, at.acceleration, first, after, batch.a, D)
         for k in range(BATCH):
-            _write_derivatives(seen, by, k, weights, D)
+            _write_derivatives(batch, by, k, weights, D)
         for e in range(first, after):
             for g in range(NG):
-                _take(by, (e - first) * NG + g, g, workspace, D)
+                _copy_derivatives(by, (e - first) * NG + g, g, workspace, D)
             each = _terms(part, maps, e, 0), _terms(part, maps, e, 1), _terms(part, maps, e, 2)
             write_weighed(part.element, each, D, at.R)
             add_pulled_back(K[e], at.P[e], part.element, D, at.R)
@@ -231,18 +231,18 @@ def _terms(part: StillWaterData, maps: Maps, e: int, g: int) -> tuple[Array, tup
 
 
 @njit
-def _write_derivatives(seen: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
+def _write_derivatives(batch: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
     """Write the weighted derivatives by velocity, acceleration and slope at one station."""
-    tau, stretch, by_slope = as_tuple(seen.tau[:, k], D), seen.stretch[k], by[2, :, :, k]
-    v, drag = as_tuple(seen.v[:, k], D), as_tuple(seen.drag[:, k], PAIR)
+    tau, stretch, by_slope = as_tuple(batch.tau[:, k], D), batch.stretch[k], by[2, :, :, k]
+    v, drag = as_tuple(batch.v[:, k], D), as_tuple(batch.drag[:, k], PAIR)
     law.write_drag_derivatives(v, tau, stretch, drag, weights.force, by[0, :, :, k], by_slope, D)
-    a, mass = as_tuple(seen.a[:, k], D), as_tuple(seen.mass[:, k], PAIR)
+    a, mass = as_tuple(batch.a[:, k], D), as_tuple(batch.mass[:, k], PAIR)
     law.write_added_derivatives(a, tau, stretch, mass, weights.inertia, by[1, :, :, k], by_slope, D)
 
 
 @njit
-def _take(by: Array, k: int, g: int, workspace: StationWorkspace, D: Size) -> None:
-    """Read the derivatives at one station of many."""
+def _copy_derivatives(by: Array, k: int, g: int, workspace: StationWorkspace, D: Size) -> None:
+    """Copy the derivatives at one station of many."""
     for i in range(len(D)):
         for j in range(len(D)):
             of_v, of_a, of_slope = by[0, i, j, k], by[1, i, j, k], by[2, i, j, k]
@@ -268,15 +268,15 @@ def _still_work(part: StillWaterData, first: Configuration, last: Configuration,
     ne, D = part.drag.shape[0], last.D
     d = len(D)
     rows, workspace, done = np.zeros((8 * d + 10, BATCH)), np.zeros((3, d, BATCH)), np.zeros((2, BATCH))
-    seen = StepBatch(_batch(rows, D), _batch(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
+    batch = StepBatch(_batch(rows, D), _batch(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
     for start in range(0, ne, ELEMENTS):
         after = min(start + ELEMENTS, ne)
-        _see(part, first, start, after, seen.first)
-        _see(part, last, start, after, seen.last)
-        _see_values(part, first.q, start, after, seen.began, D)
-        _see_values(part, last.q, start, after, seen.ended, D)
+        _read_stations(part, first, start, after, batch.first)
+        _read_stations(part, last, start, after, batch.last)
+        _read_values(part, first.q, start, after, batch.began, D)
+        _read_values(part, last.q, start, after, batch.ended, D)
         for k in range(BATCH):
-            _write_work(seen, workspace, done, k, D)
+            _write_work(batch, workspace, done, k, D)
         for e in range(start, after):
             for g in range(NG):
                 k, share = (e - start) * NG + g, part.share[e, g]
@@ -286,18 +286,18 @@ def _still_work(part: StillWaterData, first: Configuration, last: Configuration,
 
 
 @njit
-def _write_work(seen: StepBatch, workspace: Array, done: Array, k: int, D: Size) -> None:
+def _write_work(batch: StepBatch, workspace: Array, done: Array, k: int, D: Size) -> None:
     """Write the work per length of the mean drag at one station, and half the change of the added mass along the mean
     velocity.
     """
     before, after, mean, lost, changed = workspace[0, :, k], workspace[1, :, k], workspace[2, :, k], 0.0, 0.0
-    drag, mass = as_tuple(seen.last.drag[:, k], PAIR), as_tuple(seen.last.mass[:, k], PAIR)
-    tau, turned = as_tuple(seen.first.tau[:, k], D), as_tuple(seen.last.tau[:, k], D)
-    law.write_drag(as_tuple(seen.first.v[:, k], D), tau, drag, before, D)
-    law.write_drag(as_tuple(seen.last.v[:, k], D), turned, drag, after, D)
+    drag, mass = as_tuple(batch.last.drag[:, k], PAIR), as_tuple(batch.last.mass[:, k], PAIR)
+    tau, turned = as_tuple(batch.first.tau[:, k], D), as_tuple(batch.last.tau[:, k], D)
+    law.write_drag(as_tuple(batch.first.v[:, k], D), tau, drag, before, D)
+    law.write_drag(as_tuple(batch.last.v[:, k], D), turned, drag, after, D)
     for i in range(len(D)):
-        lost += 0.5 * (before[i] + after[i]) * (seen.ended[i, k] - seen.began[i, k])
-        mean[i] = 0.5 * (seen.first.v[i, k] + seen.last.v[i, k])
+        lost += 0.5 * (before[i] + after[i]) * (batch.ended[i, k] - batch.began[i, k])
+        mean[i] = 0.5 * (batch.first.v[i, k] + batch.last.v[i, k])
     law.write_added(mean, tau, mass, before, D)
     law.write_added(mean, turned, mass, after, D)
     for i in range(len(D)):
@@ -329,7 +329,7 @@ class Morison(CompiledPart):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if self._water is not None:
-            update(self._water.stream.seen, start, end)
+            update(self._water.stream.water, start, end)
 
 
 def in_still_water(pipe: Pipe, drag: Array, mass: Array) -> Morison:

@@ -23,13 +23,13 @@ from riser_soil.riser.part_kernels import (
 )
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.flows import WaterMotion
-from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, see_end, see_start
+from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, evaluate_end, evaluate_start
 from riser_soil.sea.waterline import wet_share, wet_slope
 
 
 class FlowWorkspace(NamedTuple):
-    """What is found at one station, vectors (d,): the pipe's own velocity v, that through the water, and acceleration;
-    tangent; resistance of both groups, wet share counted in, and of one term.
+    """What a kernel evaluates at one station, vectors (d,): the pipe's own velocity v, that through the water, and
+    acceleration; tangent; resistance of both groups, wet share counted in, and of one term.
     """
 
     v: Array
@@ -151,13 +151,13 @@ def wetting(part: MovingWaterData, water: WaterMotion, m: int, g: int) -> float:
 
 @find_water.of(MovingWaterData)
 def _find_water(part: MovingWaterData, at: Configuration) -> None:
-    see_end(part.stream, at.q)
+    evaluate_end(part.stream, at.q)
 
 
 @add_forces.of(MovingWaterData)
 def _forces(part: MovingWaterData, at: Configuration, out: LineForces) -> None:
-    see_end(part.stream, at.q)
-    workspace, water = part.workspace, part.stream.seen.end
+    evaluate_end(part.stream, at.q)
+    workspace, water = part.workspace, part.stream.water.end
     for m in range(part.stream.element.size):
         for g in range(part.stream.share.shape[1]):
             move(part, at, m, g, workspace)
@@ -187,7 +187,7 @@ def _add_mass(part: MovingWaterData, at: Configuration, maps: Maps, weight: floa
         part.change[:] = 0.0
         for g in range(part.stream.share.shape[1]):
             stretch = move(part, at, m, g, workspace)
-            mass, share = part.mass[m], weight * wet(part, part.stream.seen.end, m, g)
+            mass, share = part.mass[m], weight * wet(part, part.stream.water.end, m, g)
             law.write_added_derivatives(workspace.a, workspace.tau, stretch, mass, share, by.by_a, by.by_slope, D)
             moved = part.stream.at.N[m, g], by.by_a, maps.acceleration_rows[e]
             add_weighed(part.change, part.stream.at.weighted[m, g], (moved,), D, at.R)
@@ -204,8 +204,8 @@ def _add_whole_tangent(
         part.change[:] = 0.0
         for g in range(part.stream.share.shape[1]):
             stretch = move(part, at, m, g, part.workspace)
-            _resist(part, part.stream.seen.end, m, g, part.workspace, at.D)
-            _differentiate(part, part.stream.seen.end, m, g, stretch, weights, at.D)
+            _resist(part, part.stream.water.end, m, g, part.workspace, at.D)
+            _differentiate(part, part.stream.water.end, m, g, stretch, weights, at.D)
             N, places = part.stream.at.N[m, g], maps.place_rows[e]
             placed = (part.stream.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
             moved = (N, by.by_v, maps.rate_rows[e]), (N, by.by_a, maps.acceleration_rows[e])
@@ -236,13 +236,13 @@ def _differentiate(
 
 @add_energy.of(MovingWaterData)
 def _energy(part: MovingWaterData, at: Configuration, energy: Array) -> None:
-    """Kinetic energy of the added mass at the pipe's own velocity, wet as the forces have found it last."""
+    """Kinetic energy of the added mass at the pipe's own velocity, wet as when the forces were evaluated last."""
     workspace = part.workspace
     for m in range(part.stream.element.size):
         for g in range(part.stream.share.shape[1]):
             move(part, at, m, g, workspace)
             law.write_added(workspace.v, workspace.tau, part.mass[m], workspace.f, at.D)
-            share = part.stream.share[m, g] * wet(part, part.stream.seen.end, m, g)
+            share = part.stream.share[m, g] * wet(part, part.stream.water.end, m, g)
             for i in range(len(at.D)):
                 energy[0] += 0.5 * share * workspace.v[i] * workspace.f[i]
 
@@ -250,15 +250,15 @@ def _energy(part: MovingWaterData, at: Configuration, energy: Array) -> None:
 @add_work.of(MovingWaterData)
 def _work(part: MovingWaterData, first: Configuration, last: Configuration, work: Array) -> None:
     """Write the work of Morison's forces over a step [J]."""
-    see_start(part.stream, first.q)
-    resisted, changed, seen = 0.0, 0.0, part.stream.seen
+    evaluate_start(part.stream, first.q)
+    resisted, changed, water = 0.0, 0.0, part.stream.water
     for m in range(part.stream.element.size):
         for g in range(part.stream.share.shape[1]):
             move(part, first, m, g, part.first)
-            _resist(part, seen.start, m, g, part.first, last.D)
+            _resist(part, water.start, m, g, part.first, last.D)
             move(part, last, m, g, part.workspace)
-            _resist(part, seen.end, m, g, part.workspace, last.D)
-            before, after = wet(part, seen.start, m, g), wet(part, seen.end, m, g)
+            _resist(part, water.end, m, g, part.workspace, last.D)
+            before, after = wet(part, water.start, m, g), wet(part, water.end, m, g)
             resisted += part.stream.share[m, g] * resisted_at(part, first, last, m, g, before, after)
             changed += part.stream.share[m, g] * _changed(part, m, before, after, last.D)
     if part.dissipative:

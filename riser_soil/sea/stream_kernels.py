@@ -1,4 +1,4 @@
-"""The water around a pipe: its motion at the stations, found once a trial."""
+"""The water around a pipe: its motion at the stations, evaluated once a trial."""
 
 from __future__ import annotations
 
@@ -19,30 +19,31 @@ START, END = 0, 1
 NEAR = 1e-9  # m, within which places where a step starts are those where the last one ended, but for round-off
 
 
-class SeenWater(NamedTuple):
+class WaterInStep(NamedTuple):
     """The water at the n = ne ng stations of a pipe where a step starts and where it ends.
 
-    t, found (2,): times of the step's START and END, and those at which the motion was found, nan at first; places
-    (2, n, 3): those at which it was found; start and end: that motion in the line's axes.
+    t, evaluated (2,): times of the step's START and END, and those at which the motion was evaluated, nan at first;
+    places (2, n, 3): where it was evaluated; start and end: that motion in the line's axes.
     """
 
     t: Array
-    found: Array
+    evaluated: Array
     places: Array
     start: WaterMotion
     end: WaterMotion
 
 
 class Stream(NamedTuple):
-    """The sea that a pipe is in. find_start, find_end: its motion where a step starts and ends, at the stations x.
+    """The sea that a pipe is in.
 
+    write_start, write_end: kernels of its motion where a step starts and where it ends, at the stations x.
     element (ne,): of the line, in which those of the pipe lie; at, share (ne, ng): its stations, see `Pipe`;
     origin (3,) and basis (3, d) of the line; x (n, 3): stations of a trial.
     """
 
-    find_start: Calls
-    find_end: Calls
-    seen: SeenWater
+    write_start: Calls
+    write_end: Calls
+    water: WaterInStep
     element: IntArray
     at: stations.Stations
     share: Array
@@ -60,59 +61,61 @@ class FlowAtStations:
 
     @cached_property
     def stream(self) -> Stream:
-        """For kernels, which find the motion once for trials that differ in rates alone."""
+        """For kernels, which evaluate the motion once for trials that differ in rates alone."""
         return _stream(self.pipe, self._sea)
 
 
 def _stream(pipe: Pipe, sea: Sea) -> Stream:
-    """The sea around a pipe, its motion found nowhere yet."""
+    """The sea around a pipe, its motion evaluated nowhere yet."""
     line, n = pipe.line, pipe.share.size
     motions = (motion_workspace(n, line.dimension) for _ in range(2))
-    seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), np.zeros((2, n, 3)), *motions)
+    water = WaterInStep(np.full(2, np.nan), np.full(2, np.nan), np.zeros((2, n, 3)), *motions)
     basis, x = np.ascontiguousarray(line.basis), np.zeros((n, 3))
-    find_start = calls(*_finding(sea, seen.start, seen.t[:1], x, basis))
-    find_end = calls(*_finding(sea, seen.end, seen.t[1:], x, basis))
+    write_start = calls(*_writing(sea, water.start, water.t[:1], x, basis))
+    write_end = calls(*_writing(sea, water.end, water.t[1:], x, basis))
     at = pipe.element, pipe.at, pipe.share, line.origin, basis, x
-    return Stream(find_start, find_end, seen, *at, fixed(line.dimension))
+    return Stream(write_start, write_end, water, *at, fixed(line.dimension))
 
 
-def _finding(sea: Sea, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
+def _writing(sea: Sea, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
     """Kernels that write the motion (n, d) in the line's axes, basis (3, d), at time t (1,) and places x (n, 3)."""
     if basis.shape[1] == 3:
         return motion_of(sea, motion, t, x)
-    found = motion_workspace(len(x), 3)
-    return [*motion_of(sea, found, t, x), Bound(write_in_plane, *map(Packed, (found, basis, motion)))]
+    in_space = motion_workspace(len(x), 3)
+    return [*motion_of(sea, in_space, t, x), Bound(write_in_plane, *map(Packed, (in_space, basis, motion)))]
 
 
-def update(seen: SeenWater, start: float, end: float) -> None:
+def update(water: WaterInStep, start: float, end: float) -> None:
     """Bring the water to the times of a step, which starts where the last one ended, or that which is tried anew."""
-    if seen.found[END] == start and seen.found[START] != start:
-        for at_start, at_end in zip(seen.start, seen.end, strict=True):
+    if water.evaluated[END] == start and water.evaluated[START] != start:
+        for at_start, at_end in zip(water.start, water.end, strict=True):
             at_start[:] = at_end
-        seen.places[START], seen.found[START] = seen.places[END], start
-    seen.t[:] = start, end
+        water.places[START], water.evaluated[START] = water.places[END], start
+    water.t[:] = start, end
 
 
 @partial(njit, apart=True)
-def see_start(stream: Stream, q: Array) -> None:
-    """Find the motion at the start of a step, q (ne, 4, d), unless it is known there."""
-    seen, t = stream.seen, stream.seen.t[START]
+def evaluate_start(stream: Stream, q: Array) -> None:
+    """Evaluate the motion at the start of a step, q (ne, 4, d), unless it is known there."""
+    water, t = stream.water, stream.water.t[START]
     _place(stream, q)
-    if seen.found[START] != t or not _within(stream.x, seen.places[START], NEAR):
-        call_each(stream.find_start)
-        seen.found[START] = t
-        _copy(stream.x, seen.places[START])
+    if water.evaluated[START] != t or not _within(stream.x, water.places[START], NEAR):
+        call_each(stream.write_start)
+        water.evaluated[START] = t
+        _copy(stream.x, water.places[START])
 
 
 @partial(njit, apart=True)
-def see_end(stream: Stream, q: Array) -> None:
-    """Find the motion of a trial, q (ne, 4, d), unless it is known there: parts at the same stations ask in turn."""
-    seen, t = stream.seen, stream.seen.t[END]
+def evaluate_end(stream: Stream, q: Array) -> None:
+    """Evaluate the motion of a trial, q (ne, 4, d), unless it is known there, as parts at the same stations ask in
+    turn.
+    """
+    water, t = stream.water, stream.water.t[END]
     _place(stream, q)
-    if seen.found[END] != t or not _within(stream.x, seen.places[END], 0.0):
-        call_each(stream.find_end)
-        seen.found[END] = t
-        _copy(stream.x, seen.places[END])
+    if water.evaluated[END] != t or not _within(stream.x, water.places[END], 0.0):
+        call_each(stream.write_end)
+        water.evaluated[END] = t
+        _copy(stream.x, water.places[END])
 
 
 @njit

@@ -32,7 +32,7 @@ from riser_soil.sea.moving_water_kernels import (
     wet,
     wetting,
 )
-from riser_soil.sea.stream_kernels import END, START, add_at_station, see_end, see_start
+from riser_soil.sea.stream_kernels import END, START, add_at_station, evaluate_end, evaluate_start
 
 
 class ThroughData(NamedTuple):
@@ -68,13 +68,13 @@ def resist(
 
 
 def _find_water(part: ThroughData, at: Configuration) -> None:
-    see_end(part.flow.stream, at.q)
+    evaluate_end(part.flow.stream, at.q)
 
 
 def _forces(part: ThroughData, at: Configuration, out: LineForces) -> None:
     flow = part.flow
-    see_end(flow.stream, at.q)
-    workspace, water = flow.workspace, flow.stream.seen.end
+    evaluate_end(flow.stream, at.q)
+    workspace, water = flow.workspace, flow.stream.water.end
     for m in range(flow.stream.element.size):
         for g in range(flow.stream.share.shape[1]):
             resist(part, at, water, END, m, g, workspace)
@@ -92,8 +92,8 @@ def _tangent(part: ThroughData, at: Configuration, maps: Maps, weights: LineWeig
         e = flow.stream.element[m]
         flow.change[:] = 0.0
         for g in range(flow.stream.share.shape[1]):
-            stretch = resist(part, at, flow.stream.seen.end, END, m, g, flow.workspace)
-            _differentiate(part, flow.stream.seen.end, m, g, stretch, weights.force, at.D)
+            stretch = resist(part, at, flow.stream.water.end, END, m, g, flow.workspace)
+            _differentiate(part, flow.stream.water.end, m, g, stretch, weights.force, at.D)
             N, places = flow.stream.at.N[m, g], maps.place_rows[e]
             placed = (flow.stream.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
             moved = (N, by.by_v, maps.rate_rows[e])
@@ -124,13 +124,13 @@ def _energy(part: ThroughData, at: Configuration, energy: Array) -> None:
 
 def _work(part: ThroughData, first: Configuration, last: Configuration, work: Array) -> None:
     """Write the work of a force on what moves through the water over a step [J]."""
-    flow, seen, resisted = part.flow, part.flow.stream.seen, 0.0
-    see_start(flow.stream, first.q)
+    flow, water, resisted = part.flow, part.flow.stream.water, 0.0
+    evaluate_start(flow.stream, first.q)
     for m in range(flow.stream.element.size):
         for g in range(flow.stream.share.shape[1]):
-            resist(part, first, seen.start, START, m, g, flow.first)
-            resist(part, last, seen.end, END, m, g, flow.workspace)
-            before, after = wet(flow, seen.start, m, g), wet(flow, seen.end, m, g)
+            resist(part, first, water.start, START, m, g, flow.first)
+            resist(part, last, water.end, END, m, g, flow.workspace)
+            before, after = wet(flow, water.start, m, g), wet(flow, water.end, m, g)
             resisted += flow.stream.share[m, g] * resisted_at(flow, first, last, m, g, before, after)
     if flow.dissipative:
         work[0] += resisted

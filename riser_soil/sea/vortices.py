@@ -24,7 +24,7 @@ from riser_soil.sea import vortex_law as law
 from riser_soil.sea.morison_law import write_drag, write_drag_derivatives
 from riser_soil.sea.moving_water_kernels import FlowWorkspace, MovingWaterData, moving_water
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.stream_kernels import END, FlowAtStations, see_end, update
+from riser_soil.sea.stream_kernels import END, FlowAtStations, evaluate_end, update
 from riser_soil.sea.through_kernels import resist, write_derivatives, write_resistance
 
 
@@ -70,7 +70,7 @@ class Vortices(CompiledPart):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         """Phases are known before a step, when the wake is kept where it starts."""
-        update(self._water.stream.seen, start, end)
+        update(self._water.stream.water, start, end)
         for phases, t in zip(self._data.law.phases, (start, end), strict=True):
             phases[:] = law.phases_at(self._wake, t)
 
@@ -126,11 +126,11 @@ def _write_derivatives(
 @njit
 def _shed(part: VortexData, at: Configuration, moves: float) -> None:
     """Keep the wake behind a pipe of this share of its motion."""
-    flow, wake, t = part.flow, part.wake, part.flow.stream.seen.t[END]
-    see_end(flow.stream, at.q)
+    flow, wake, t = part.flow, part.wake, part.flow.stream.water.t[END]
+    evaluate_end(flow.stream, at.q)
     for m in range(flow.stream.element.size):
         for g in range(flow.stream.share.shape[1]):
-            resist(part, at, flow.stream.seen.end, END, m, g, flow.workspace)
+            resist(part, at, flow.stream.water.end, END, m, g, flow.workspace)
             workspace, phase = flow.workspace, part.law.phases[END, m, g]
             for i in range(len(at.D)):
                 workspace.v[i] *= moves

@@ -20,7 +20,7 @@ larger ones fit in above: the remainder exp(k z) (k |x|)^ORDER/ORDER!, largest f
 The surface is asked for above all points, however deep: its strips are wider, with SURFACE_RADIUS and SURFACE_ORDER, so
 that there are few of them. Their remainder is below 1e-16, their round-off that of exp(SURFACE_RADIUS), 1e-14.
 
-A series hangs on its place and the time alone. It is computed when a point is seen there, and again at another time; so
+A series hangs on its place and the time alone. It is computed when a point lies there, and again at another time; so
 nothing hangs on what was evaluated before, and there is nothing to save.
 """
 
@@ -235,18 +235,18 @@ def _now(motion: Array, place: int, k: int, j: int, turned: Array) -> complex:
 
 class Places(NamedTuple):
     """Workspace for n places. key: (n,). time: (n,) a time for which something is known there [s]; nan where the place
-    is new. taken: (1,) how many there are. table: (a power of two, at least 2 n) their numbers where their keys lead
+    is new. used: (1,) how many are in use. table: (a power of two, at least 2 n) their numbers where their keys lead
     to, or -1.
     """
 
     key: IntArray
     time: Array
-    taken: IntArray
+    used: IntArray
     table: IntArray
 
 
 def places(n: int) -> Places:
-    """Workspace for n places, none taken."""
+    """Workspace for n places, none in use."""
     size = 1 << (2 * n - 1).bit_length()
     return Places(np.empty(n, np.int64), np.empty(n), np.zeros(1, np.int64), np.full(size, -1))
 
@@ -260,11 +260,11 @@ def number(at: Places, key: int) -> int:
         if at.key[at.table[slot]] == key:
             return at.table[slot]
         slot = (slot + 1) & mask
-    if at.taken[0] == at.key.size:
-        at.taken[0] = 0
+    if at.used[0] == at.key.size:
+        at.used[0] = 0
         at.table[:] = -1
-    new = at.taken[0]
-    at.taken[0], at.table[slot], at.key[new], at.time[new] = new + 1, new, key, np.nan
+    new = at.used[0]
+    at.used[0], at.table[slot], at.key[new], at.time[new] = new + 1, new, key, np.nan
     return new
 
 

@@ -158,7 +158,7 @@ Source = Annotated[
     PlainSerializer(str, when_used="json"),
     WithJsonSchema({"type": "string"}),
 ]
-"""Of the key `from`: "file.py:Class", the file sought beside the scene, or "package.module:Class"."""
+"""Value of the key `from`: "file.py:Class", the file sought beside the scene, or "package.module:Class"."""
 
 
 def arguments(law: type[Any], given: Mapping[str, Any]) -> dict[str, Any]:

@@ -134,7 +134,7 @@ def test_stations_of_a_riser_share_few_places() -> None:
     x = np.stack([150.0 * along, 0.0 * along, 120.0 * along**2], axis=-1)
     field = linear_waves(sea(120.0, 13.0, 200, 1), 120.0, 120.0)
     Sea(120.0, [field])(3.0, x)
-    taken = [int(at.places.taken[0]) for at in (field.series.columns, field.series.cells)]
+    taken = [int(at.places.used[0]) for at in (field.series.columns, field.series.cells)]
     assert min(taken) > 5
     assert sum(taken) < 100
 
