@@ -33,7 +33,7 @@ DOWN = np.array([0.0, 0.0, -1.0])
 class PlanarBeam(NamedTuple):
     """Elements of a plane line, and load per length (ne, 2) [N/m]."""
 
-    reference: beam2d.PlanarReference
+    reference: beam2d.LineReference
     section: LineStiffness
     load: Array
 

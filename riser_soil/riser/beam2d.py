@@ -28,13 +28,13 @@ theta_1 - theta_2 does not change as the chord turns, so V depends on the chord 
 """
 
 import math
-from typing import NamedTuple
+from typing import Generic, NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser.stiffness import ElementStiffness, LineStiffness, of_element, with_EA
+from riser_soil.riser.stiffness import ElementStiffness, LineStiffness, Number, of_element, with_EA
 from riser_soil.riser.tension_only import (
     Heaped,
     pulled,
@@ -50,21 +50,16 @@ from riser_soil.riser.tension_only import (
 Vec2 = tuple[float, float]
 
 
-class PlanarReference(NamedTuple):
-    """Unstressed configuration of the elements, each of shape (ne,)."""
+class PlanarReference(NamedTuple, Generic[Number]):
+    """Unstressed configuration: of all elements of a line, each (ne,), or of one of them."""
 
-    l0: Array  # chord length, m
-    theta1: Array  # angles from the chord to the tangents at the ends, rad
-    theta2: Array
+    l0: Number  # chord length, m
+    theta1: Number  # angles from the chord to the tangents at the ends, rad
+    theta2: Number
 
 
-class PlanarElement(NamedTuple):
-    """Stiffnesses and unstressed configuration of one element."""
-
-    D: ElementStiffness
-    l0: float
-    theta1: float
-    theta2: float
+LineReference = PlanarReference[Array]
+ElementReference = PlanarReference[float]
 
 
 class PlanarCorotated(NamedTuple):
@@ -99,7 +94,7 @@ def corotate(chord: Array, direction1: float, direction2: float) -> PlanarCorota
 
 
 @njit
-def reference(chord0: Array, direction0_1: Array, direction0_2: Array) -> PlanarReference:
+def reference(chord0: Array, direction0_1: Array, direction0_2: Array) -> LineReference:
     """Unstressed configuration from chords (ne, 2) and tangent directions (each (ne,))."""
     ne = len(chord0)
     l0, theta1, theta2 = np.empty(ne), np.empty(ne), np.empty(ne)
@@ -110,23 +105,23 @@ def reference(chord0: Array, direction0_1: Array, direction0_2: Array) -> Planar
 
 
 @njit
-def element_at(ref: PlanarReference, line: LineStiffness, e: int) -> PlanarElement:
-    """Stiffnesses and unstressed configuration of element e."""
-    return PlanarElement(of_element(line, e), ref.l0[e], ref.theta1[e], ref.theta2[e])
+def _unstressed(ref: LineReference, e: int) -> ElementReference:
+    """The unstressed configuration of element e."""
+    return PlanarReference(ref.l0[e], ref.theta1[e], ref.theta2[e])
 
 
 @njit
-def _strain(element: PlanarElement, at: PlanarCorotated) -> float:
-    stretch = (at.length - element.l0) / element.D.L
-    return stretch + bow(at.theta1, at.theta2) - bow(element.theta1, element.theta2)
+def _strain(D: ElementStiffness, rest: ElementReference, at: PlanarCorotated) -> float:
+    return (at.length - rest.l0) / D.L + bow(at.theta1, at.theta2) - bow(rest.theta1, rest.theta2)
 
 
 @njit
-def _stress(element: PlanarElement, at: PlanarCorotated, strain: float) -> tuple[float, float, float]:
+def _stress(
+    D: ElementStiffness, rest: ElementReference, at: PlanarCorotated, strain: float
+) -> tuple[float, float, float]:
     """Derivatives of U by the chord's length and by theta_1 and theta_2; strain: N/EA."""
-    D = element.D
     N = D.EA * strain
-    m1, m2 = end_moments(D, at.theta1 - element.theta1, at.theta2 - element.theta2)
+    m1, m2 = end_moments(D, at.theta1 - rest.theta1, at.theta2 - rest.theta2)
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
     straightening = D.L * with_fold(D.law, N, bow(at.theta1, at.theta2))
     return N, m1 + straightening * slope1, m2 + straightening * slope2
@@ -160,13 +155,12 @@ def stress_variation(
 
 
 @njit
-def element_energy(e: int, at: PlanarCorotated, ref: PlanarReference, line: LineStiffness) -> float:
+def element_energy(e: int, at: PlanarCorotated, ref: LineReference, line: LineStiffness) -> float:
     """Strain energy [J] of element e."""
-    element = element_at(ref, line, e)
-    D = element.D
-    phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
+    D, rest = of_element(line, e), _unstressed(ref, e)
+    phi1, phi2 = at.theta1 - rest.theta1, at.theta2 - rest.theta2
     m1, m2 = end_moments(D, phi1, phi2)
-    axial = D.EA * stored(D.law, _strain(element, at))
+    axial = D.EA * stored(D.law, _strain(D, rest, at))
     axial = with_fold_energy(D.law, axial, bow(at.theta1, at.theta2))
     return D.L * axial + 0.5 * (m1 * phi1 + m2 * phi2)
 
@@ -187,11 +181,11 @@ def write_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
 
 
 @njit
-def write_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, line: LineStiffness, f: Array) -> None:
+def write_element_forces(e: int, at: PlanarCorotated, ref: LineReference, line: LineStiffness, f: Array) -> None:
     """Write internal forces f (6,) of element e."""
-    element = element_at(ref, line, e)
-    strain, _ = pulled(element.D.law, _strain(element, at))
-    N, m1, m2 = _stress(element, at, strain)
+    D, rest = of_element(line, e), _unstressed(ref, e)
+    strain, _ = pulled(D.law, _strain(D, rest, at))
+    N, m1, m2 = _stress(D, rest, at, strain)
     write_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
 
@@ -229,15 +223,15 @@ def _tangent(D: ElementStiffness, at: PlanarCorotated, N: float, force: Vec2, K:
 
 @njit
 def write_element(
-    e: int, at: PlanarCorotated, ref: PlanarReference, line: LineStiffness, f: Array, K: Array
+    e: int, at: PlanarCorotated, ref: LineReference, line: LineStiffness, f: Array, K: Array
 ) -> None:
     """Write internal forces f (6,) of element e and their derivative K (6, 6) by displacements and angles."""
-    element = element_at(ref, line, e)
-    strain, stiffness = pulled(element.D.law, _strain(element, at))
-    N, m1, m2 = _stress(element, at, strain)
+    D, rest = of_element(line, e), _unstressed(ref, e)
+    strain, stiffness = pulled(D.law, _strain(D, rest, at))
+    N, m1, m2 = _stress(D, rest, at, strain)
     response = nodal_forces(at, N, m1, m2)
     write_forces(at.axis, response, f)
-    _tangent(with_EA(element.D, stiffness * element.D.EA), at, N, response.force, K)
+    _tangent(with_EA(D, stiffness * D.EA), at, N, response.force, K)
 
 
 @njit

@@ -49,7 +49,7 @@ class PlaneChain:
     element: Element2d = planar_elements.forces_and_tangent
     dofs: int = 3
     theta: Array = field(init=False)
-    ref: beam2d.PlanarReference = field(init=False)
+    ref: beam2d.LineReference = field(init=False)
 
     def __post_init__(self) -> None:
         self.nn, self.theta = len(self.x), np.zeros(len(self.x))

@@ -12,7 +12,7 @@ from riser_soil.riser.stiffness import LineStiffness
 
 @njit
 def strain_energy(
-    chord: Array, direction1: Array, direction2: Array, ref: beam2d.PlanarReference, section: LineStiffness
+    chord: Array, direction1: Array, direction2: Array, ref: beam2d.LineReference, section: LineStiffness
 ) -> Array:
     """Strain energy U (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
@@ -23,7 +23,7 @@ def strain_energy(
 
 @njit
 def forces(
-    chord: Array, direction1: Array, direction2: Array, ref: beam2d.PlanarReference, section: LineStiffness
+    chord: Array, direction1: Array, direction2: Array, ref: beam2d.LineReference, section: LineStiffness
 ) -> Array:
     """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
     f = np.empty((len(chord), 6))
@@ -34,7 +34,7 @@ def forces(
 
 @njit
 def forces_and_tangent(
-    chord: Array, direction1: Array, direction2: Array, ref: beam2d.PlanarReference, section: LineStiffness
+    chord: Array, direction1: Array, direction2: Array, ref: beam2d.LineReference, section: LineStiffness
 ) -> tuple[Array, Array]:
     """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
     f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))

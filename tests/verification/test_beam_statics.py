@@ -42,7 +42,7 @@ def elastica(load_factor: float) -> Array:
 
 
 def second_order_element(
-    chord: Array, direction1: Array, direction2: Array, ref: beam2d.PlanarReference, section: LineStiffness
+    chord: Array, direction1: Array, direction2: Array, ref: beam2d.LineReference, section: LineStiffness
 ) -> tuple[Array, Array]:
     """The textbook corotational element, that is `beam2d` without the shallow-arch term of its strain."""
     length = np.hypot(*chord.T)

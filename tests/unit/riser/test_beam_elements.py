@@ -92,7 +92,7 @@ class Plane(NamedTuple):
 
     chord0: Array
     directions0: Array  # (2, ne)
-    ref: beam2d.PlanarReference
+    ref: beam2d.LineReference
     section: LineStiffness
     chord: Array
     directions: Array
