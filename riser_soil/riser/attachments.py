@@ -43,8 +43,8 @@ class PointAttachment:
 
 def places(line: Line, attachments: Sequence[PointAttachment]) -> tuple[IntArray, Array]:
     """Elements (m,) of the attachments, and where they sit in them, xi (m,)."""
-    found = [line.element_at(attachment.arc) for attachment in attachments]
-    return np.array([e for e, _ in found], dtype=np.int64), np.array([xi for _, xi in found])
+    at = [line.element_at(attachment.arc) for attachment in attachments]
+    return np.array([e for e, _ in at], dtype=np.int64), np.array([xi for _, xi in at])
 
 
 def _shares(line: Line, attachments: Sequence[PointAttachment]) -> tuple[IntArray, Array]:

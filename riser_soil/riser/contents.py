@@ -81,8 +81,8 @@ class Flow:
     def stretches(self, t: float, end: float) -> list[tuple[float, float, float]]:
         """First and last arc length [m] of the slugs in the pipe, and density beyond the contents around [kg/m3]."""
         moved = abs(self.speed) * (self.clock + (t if self.runs else 0.0))
-        found = [(front - slug.length, front, slug.density) for slug in self.slugs for front in slug.fronts(moved, end)]
-        within = [(max(first, 0.0), min(last, end), density) for first, last, density in found]
+        slugs = [(front - slug.length, front, slug.density) for slug in self.slugs for front in slug.fronts(moved, end)]
+        within = [(max(first, 0.0), min(last, end), density) for first, last, density in slugs]
         return within if self.speed >= 0.0 else [(end - last, end - first, density) for first, last, density in within]
 
 

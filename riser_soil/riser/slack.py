@@ -36,10 +36,10 @@ def heap(chain: BarChain, h: float, surface: float = np.inf) -> tuple[Array, Cab
     """
     if (chain.W <= 0.0).all() and np.isfinite(surface):
         up = surface, surface - (chain.z1 - chain.z0)
-        found = None if min(up) < 0.0 else _heap(replace(chain, W=-chain.W, z0=up[0], z1=up[1]), h)
-        if found is None:
+        mirrored = None if min(up) < 0.0 else _heap(replace(chain, W=-chain.W, z0=up[0], z1=up[1]), h)
+        if mirrored is None:
             return None
-        x, hung = found
+        x, hung = mirrored
         return x, replace(hung, chain=chain, z=chain.z0 + surface - hung.z, V=-hung.V)
     return _heap(chain, h) if chain.hover is not None and (chain.W >= 0.0).all() else None
 

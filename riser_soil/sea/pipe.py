@@ -33,8 +33,8 @@ class PointsOnLine(NamedTuple):
 class Pipe:
     """Gauss stations of a line.
 
-    points: seen at these m points instead, each as if it were an element with one station; forces per length are then
-    forces, and the arc length that a point stands for is 1. What sits there is alike in all directions.
+    points: m single points in the place of Gauss stations, each as if it were an element with one station; forces per
+    length are then forces, and the arc length of a point is 1. What sits there is alike in all directions.
     """
 
     def __init__(self, line: Line, points: PointsOnLine | None = None) -> None:
@@ -43,7 +43,7 @@ class Pipe:
 
     @property
     def points_alone(self) -> bool:
-        """Whether it is seen at single points, not all along."""
+        """Whether its stations are single points, not all along."""
         return self._points is not None
 
     @property
@@ -53,7 +53,7 @@ class Pipe:
 
     @cached_property
     def share(self) -> Array:
-        """Arc length that each station stands for (ne, ng) [m]."""
+        """Arc length of each station (ne, ng) [m]: its share of the integral along the line."""
         if self._points is not None:
             return np.ones(self.at.N.shape[:2])
         return self.line.length[:, None] * stations.GAUSS
@@ -61,13 +61,13 @@ class Pipe:
     @property
     def span(self) -> Array:
         """Widths (ne, ng) [m] of sections that get wet as lying ones do, see `waterline`: the diameter, but no less
-        than the arc length that a station stands for, along which an upright pipe gets wet.
+        than the arc length of a station, along which an upright pipe gets wet.
         """
         return np.maximum(self.line.outer_diameter[:, None], self.share)
 
 
 def pipe_at(line: Line, modules: Sequence[PointAttachment]) -> Pipe:
-    """The pipe seen at the modules (m,) alone: ne = m, ng = 1, forces in N instead of N/m."""
+    """The pipe with stations at the modules (m,) alone: ne = m, ng = 1, forces in N instead of N/m."""
     element, xi = places(line, modules)
     return Pipe(line, PointsOnLine(element, stations.points(line.length[element], xi)))
 

@@ -120,13 +120,13 @@ def highest(L: float, h: float) -> float:
 
 
 class _NoWaveError(Exception):
-    """No wave was found."""
+    """There is no such wave."""
 
 
 def _refuse_long(H: float, h: float) -> None:
-    if (found := ursell(H, linear_length(h), h)) > LONGEST_STOKES:
+    if (number := ursell(H, linear_length(h), h)) > LONGEST_STOKES:
         problem = (
-            f"Ursell's number H L^2/h^3 = {found:.3g} is above {LONGEST_STOKES:g}: the water is too shallow for it"
+            f"Ursell's number H L^2/h^3 = {number:.3g} is above {LONGEST_STOKES:g}: the water is too shallow for it"
         )
         raise SceneError(f"theory: stokes: {problem}; take stream-function or auto")
 
@@ -153,18 +153,18 @@ def _stokes(H: float, h: float) -> tuple[float, Array, Array]:
 def _stream(H: float, h: float) -> tuple[float, Array, Array]:
     from raschii import FentonWave
 
-    h, found = _at_most_deep(h), None
+    h, series = _at_most_deep(h), None
     for N in ORDERS:
         try:
             wave = _of_period(partial(FentonWave, H, h, N=N, g=2.0 * math.pi, relax=1.0), H, h)
         except _NoWaveError:
             break
-        found = _of_stream(wave, h)
-        if _last_term(*found) <= LAST_TERM:
-            return found
-    if found is None or _last_term(*found) > ROUGH:
+        series = _of_stream(wave, h)
+        if _last_term(*series) <= LAST_TERM:
+            return series
+    if series is None or _last_term(*series) > ROUGH:
         raise _NoWaveError
-    return found
+    return series
 
 
 def _of_stream(wave: Any, h: float) -> tuple[float, Array, Array]:
@@ -210,7 +210,7 @@ def _of_period(make: Callable[[float], Any], H: float, h: float) -> Any:
 
 
 def _possible(make: Callable[[float], Any], H: float, h: float, length: float) -> Any:
-    """The wave of this length, or None where it would break or is not found."""
+    """The wave of this length, or None where it would break or the iteration does not converge."""
     from raschii import NonConvergenceError
 
     if highest(length, h) < H:

@@ -95,12 +95,12 @@ def fine_points(n: int) -> FinePoints:
 def _immersion(xi: float, lag: Array, at: WetElement) -> float:
     """Immersion of one point."""
     N = shape(xi, at.L)
-    found = 0.0
+    immersion = 0.0
     for g in range(lag.size):
-        found += lag[g] * (at.h[g] + at.stations[g])
+        immersion += lag[g] * (at.h[g] + at.stations[g])
     for a in range(4):
-        found -= N[a] * at.z[a]
-    return found
+        immersion -= N[a] * at.z[a]
+    return immersion
 
 
 @njit
@@ -208,7 +208,7 @@ def add_element_tangent(
     R: Size,
 ) -> None:
     """Add to out (n, n) the derivative by the dofs of a load, weight times the dry lengths along z, on an element that
-    reaches the surface; N (ng, 4) of its stations, gradient (ng, d) of their immersion, P = dt/dTheta (2, d, r) held.
+    reaches the surface; N (ng, 4) of its stations, gradient (ng, d) of their immersion, P = dt/dTheta (2, d, r) fixed.
     """
     if submerged(at):
         return
