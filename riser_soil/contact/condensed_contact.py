@@ -57,9 +57,9 @@ class CondensedContact:
         """Find what may touch near the accepted place and, where asked for, near the last trial: the top's nodes (k,).
         """
         places = [self.contact.place(before), *([self.contact.place_in(self._data)] if tried else [])]
-        data, nodes = self.contact.watching(self._data, places, self.deformed, self.slack)
-        self._renew(data)
-        return nodes
+        pairs = self.contact.candidates(places, self.deformed)
+        self._renew(self.contact.watch(self._data, places, pairs, self.slack))
+        return self.contact.nodes_of(pairs)
 
     def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
         """Kernels that add to the residuals of the line and of the border."""

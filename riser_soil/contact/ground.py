@@ -25,17 +25,12 @@ EMPTY = np.empty(0, dtype=np.int64)
 
 
 class DeformedSurface:
-    """The deformed surface: its facets, and the dofs of their nodes.
-
-    rows (np, 3): of the nodes in the surface's slice of local arrays; unreached (np,): none that these lack.
-    """
+    """The deformed surface: its facets, and the dofs of their nodes."""
 
     def __init__(self, surface: SoilSurface) -> None:
         self._surface = surface
         self._pairing = FacetSearch(surface.points, surface.facets)
         self.corners = self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)  # without those beside strips
-        self.rows = np.arange(surface.size).reshape(-1, 3)
-        self.unreached = np.zeros(len(self.rows), dtype=np.bool_)
 
     @property
     def moves(self) -> bool:

@@ -22,7 +22,6 @@ from riser_soil.contact.touching_nodes import (
     find_touching,
     first_touching,
     points_below,
-    spread_touching,
     touching_workspace,
 )
 from riser_soil.core.arrays import Array, IntArray
@@ -120,11 +119,7 @@ class NodeContact(SoilContact):
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
-        touching, nodal = self.touching(state), self.line.nodal(forces.end)
-        soil = self._soil.rows, forces.end[self._soil.part], self._soil.unreached
-        spread_touching(
-            touching.points, touching.forms[0], self._soil.facets, self.line.dimension, nodal, *soil
-        )
+        self.touching(state).add_residual(self.line.nodal(forces.end), forces.end[self._soil.part])
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
@@ -135,7 +130,7 @@ class NodeContact(SoilContact):
     def potential(self, state: State) -> float:
         return self.touching(state).potential
 
-    def taken(self, state: State) -> float:
+    def work_to(self, state: State) -> float:
         touching = self.touching(state)
         rows = self.pair_dofs(touching.points.node, touching.points.facet)
         return float(np.sum(touching.gradient * state.u[rows]))

@@ -86,8 +86,8 @@ class SoilContact(RiserContact):
         """Energy stored [J] at a state."""
 
     @abstractmethod
-    def taken(self, state: State) -> float:
-        """Work [J] that the forces at a state take out on the way there from the accepted state."""
+    def work_to(self, state: State) -> float:
+        """Work [J] of riser and soil against the forces at a state, on the way there from the accepted state."""
 
     @abstractmethod
     def kernel_data(self, deformed: Array, touched: Touched) -> Any:
@@ -106,8 +106,8 @@ class SoilContact(RiserContact):
 
     @abstractmethod
     def watch(self, data: Any, places: Sequence[Any], pairs: CandidatePairs, slack: float) -> Any:
-        """The kernel data with the candidates near places of the riser, and what may move how far until others may
-        touch; the soil by `slack` [m].
+        """The kernel data with the pairs that are candidates near places of the riser, and how far the riser may move
+        from there until others may touch, while the soil moves by no more than `slack` [m].
         """
 
     @abstractmethod
@@ -149,14 +149,9 @@ class SoilContact(RiserContact):
     def _around(self, state: State) -> CandidatePairs:
         return self.candidates([self.place(state)], self._soil.deformed(state))
 
-    def watching(
-        self, data: Any, places: Sequence[Any], surface: Array, slack: float
-    ) -> tuple[Any, IntArray]:
-        """The line solver's kernel data with the candidates near places of the riser, and the nodes (k,) of their
-        facets; surface and slack: see `candidates` and `watch`.
-        """
-        pairs = self.candidates(places, surface)
-        return self.watch(data, places, pairs, slack), np.unique(self._soil.facets[pairs.facet])
+    def nodes_of(self, pairs: CandidatePairs) -> IntArray:
+        """Nodes (k,) of the surface that pairs have in their facets."""
+        return np.unique(self._soil.facets[pairs.facet])
 
     def energy(self, state: State) -> Energy:
         """Potential of the penalty."""
@@ -170,7 +165,7 @@ class SoilContact(RiserContact):
         vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
         """
         stored = self.potential(before) if self._stored is None else self._stored
-        lost = self.taken(after) - self.potential(after) + stored
+        lost = self.work_to(after) - self.potential(after) + stored
         return Work(dissipated=lost, by_scheme=lost)
 
     def commit(self, state: State) -> None:

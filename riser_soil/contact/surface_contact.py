@@ -244,7 +244,7 @@ class SurfaceContact(SoilContact):
     def potential(self, state: State) -> float:
         return self.evaluate(state).pressed.potential
 
-    def taken(self, state: State) -> float:
+    def work_to(self, state: State) -> float:
         pressed = self.evaluate(state).pressed
         return pressed.work(pressed.on_riser, self.start())
 
@@ -255,7 +255,7 @@ class SurfaceContact(SoilContact):
         work = super().work(before, after)
         if self.law.columns:
             by_law = self._by_law(self.evaluate(before).pressed.points, self.evaluate(after).pressed.points)
-            work.by_scheme = self.taken(after) - by_law
+            work.by_scheme = self.work_to(after) - by_law
         return work
 
     def _by_law(self, first: NearPoints, last: NearPoints) -> float:

@@ -110,6 +110,12 @@ class TouchingNodes:
         """dψ/dz (n, nz) [N]: minus the forces on riser and soil."""
         return np.asarray(-self.points.force[:, None] * self.forms[0][:, 0])
 
+    def add_residual(self, nodal: Array, soil: Array) -> None:
+        """Add dψ/du to the residual of the line's nodes (nn, ndof), and to that of the soil's surface (3 np,)."""
+        rows, met = np.arange(soil.size).reshape(-1, 3), np.empty(0, dtype=np.bool_)  # all nodes are reached
+        forms, d = self.forms[0], self.basis.shape[1]
+        spread_touching(self.points, forms, self.facets, d, nodal, rows, soil, met)
+
     @property
     def hessian(self) -> Array:
         """d²ψ/dz² (n, nz, nz) [N/m]."""

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.contact.condensed_contact import CondensedContact
 from riser_soil.contact.on_condensed_soil import BEYOND, FULL, HELD, LEFT, TopMotion, Touched
 from riser_soil.contact.soil_contact import SoilContact
+from riser_soil.contact.soil_friction import SoilFriction
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
@@ -27,8 +28,6 @@ from riser_soil.solve.line_system import Coupling
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import above_round_off
 from riser_soil.solve.step_kernels import TOO_NARROW
-
-FRICTION = "soil friction"
 
 
 class SoilData(NamedTuple):
@@ -116,10 +115,10 @@ def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
     """That of lines on condensed soil, one of which touches it; None where there are no kernels."""
     contact = next((part for part in beside if isinstance(part, SoilContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
-    others: list[Any] = [part for part in beside if part is not contact and part is not soil]
-    if contact is None or soil is None or any(part.name != FRICTION for part in others):
+    friction = next((part for part in beside if isinstance(part, SoilFriction)), None)
+    if contact is None or soil is None or any(part not in (contact, soil, friction) for part in beside):
         return None
-    return partial(SoilBorder, system, CondensedContact(contact, others[0] if others else None), soil)
+    return partial(SoilBorder, system, CondensedContact(contact, friction), soil)
 
 
 class SoilBorder(Coupling):
