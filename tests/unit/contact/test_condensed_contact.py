@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -24,11 +21,6 @@ METHODS = pytest.mark.parametrize("method", ["node", "surface"])
 NARROW = CandidateRange(above=0.02, around=0.02)
 
 
-@cache
-def kernel(data: type) -> Any:
-    return add_contact.kernels[data]
-
-
 class Beside:
     """A riser's contact in the line solver, the soil's dofs all held or, where asked for, free and not reached."""
 
@@ -39,7 +31,8 @@ class Beside:
         none, size = np.empty(0, dtype=np.int64), made.surface.points.shape
         self._top = TopMotion(none, np.zeros((0, 0)), made.surface.points, np.full(size, reached))
         n, nodes = made.line.size, made.line.nodes
-        self._border = Border(*np.zeros((2, 0)), np.zeros((0, 0)), *np.zeros((2, n, 0)), np.zeros(nodes, np.bool_))
+        square, beside = np.zeros((0, 0)), np.zeros((n, 0))
+        self._border = Border(np.zeros(0), np.zeros(0), square, beside, beside, np.zeros(nodes, dtype=np.bool_))
         self.touching.begin()
         self.touching.look(made.state(), tried=False)
 
@@ -48,7 +41,7 @@ class Beside:
         placed = self.made.line.once(LineTrials).now
         placed.move(state)
         out, data = forces_at(placed.at), self.touching._data
-        kernel(type(data))(data, self._top, placed.at, out, self._border)
+        add_contact.kernels[type(data)](data, self._top, placed.at, out, self._border)
         return out
 
     def moved(self, *by: float) -> State:
