@@ -11,7 +11,6 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.snapshot import instants_at
 from riser_soil.core.system import Timer
 from riser_soil.results.instants import InstantReader
 from riser_soil.scene.reader import read_scene
@@ -44,9 +43,9 @@ class StepHistory(StatelessObserver):
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
-        seen = instants_at(self._instants.instant_of([self._instants.look(stepper)]), 0)
-        self.tension.append(float(seen.riser.effective_tension[-1]))
-        self.touchdown.append(float(seen.touch.touchdown_arc))
+        seen = self._instants.record_of([self._instants.look(stepper)]).at(0)
+        self.tension.append(float(seen.effective_tension[-1]))
+        self.touchdown.append(float(seen.touchdown_arc))
         self.cuts += step.cuts
         self.iterations = stepper.newton.iterations
 

@@ -20,7 +20,7 @@ from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
 from riser_soil.errors import SceneError, SolveError
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, solve_stages
@@ -191,7 +191,7 @@ class _LastStep(StatelessObserver):
             self.values = [self._value(hung, stepper) for hung in self._ends]
 
     def _value(self, hung: HungEnd, stepper: TimeStepper) -> float:
-        riser, at_end = riser_snapshot(self._assembly.lines[hung.line], stepper), hung.name == "end"
+        riser, at_end = riser_record(self._assembly.lines[hung.line], stepper), hung.name == "end"
         if hung.asked.angle is None:
             return float(riser.effective_tension[-1 if at_end else 0])
         return from_vertical(riser.end_tangent if at_end else -riser.start_tangent)

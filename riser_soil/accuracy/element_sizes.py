@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import Instant
+from riser_soil.core.snapshot import Record
 from riser_soil.variants.key_results import FORCE_FLOOR
 
 INTERPOLATION = 0.5  # error between nodes, over the accuracy asked for
@@ -37,9 +37,9 @@ class CurveEnvelope:
     pull: Array = field(default_factory=lambda: np.zeros(0))
     force: float = 0.0
 
-    def add(self, instant: Instant) -> None:
-        """Extend the envelope by one more instant."""
-        riser, arc = instant.riser, instant.arc
+    def add(self, riser: Record) -> None:
+        """Extend the envelope by the record of one more instant."""
+        arc = riser.arc
         second = np.stack([_second(arc, riser.moment_vector), _second(arc, riser.effective_tension[:, None])])
         if not self.arc.size:
             self.arc, self.second, self.pull = arc, second, np.zeros(arc.size)

@@ -30,7 +30,7 @@ from riser_soil.scene.line_types import LineType
 
 
 class Criterion(NamedTuple):
-    """A criterion of a code: the field of `CodeSnapshot` with its utilisation, its words, and its clause."""
+    """A criterion of a code: the name of its utilisation, less that word,, its words, and its clause."""
 
     field: str
     words: str

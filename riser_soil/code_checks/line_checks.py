@@ -16,7 +16,7 @@ from riser_soil.code_checks.load_effects import LoadEffects, SectionEffects
 from riser_soil.code_checks.reference import Reference
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import CodeCheckFacts, CodeSnapshot
+from riser_soil.core.snapshot import CodeCheckFacts
 from riser_soil.riser.section_forces import at_most
 from riser_soil.riser.sections import larger_beside
 from riser_soil.scene.code_check import DnvCheck, checks_of
@@ -57,7 +57,7 @@ class LineChecks:
 
     @property
     def facts(self) -> tuple[CodeCheckFacts, ...]:
-        """What is checked, in the order of `CodeSnapshot.largest`."""
+        """What is checked, in the order of `code_largest`."""
         return tuple(
             CodeCheckFacts(
                 line_type=part.line_type,
@@ -74,7 +74,7 @@ class LineChecks:
 
     @property
     def fields(self) -> frozenset[str]:
-        """Fields of `CodeSnapshot` that there are."""
+        """Utilisations that there are, by their criteria."""
         return frozenset(criterion.field for part in self._parts for criterion in part.criteria.criteria)
 
     @property
@@ -98,8 +98,9 @@ class LineChecks:
         pressures: tuple[Array, Array, Array],
         curvature_beside: Array,
         contact_force: Array,
-    ) -> CodeSnapshot:
-        """Utilisations at instants of the present stage, in turn.
+    ) -> dict[str, Array]:
+        """Utilisations at instants of the present stage, in turn: the largest of all, of each criterion, and of each
+        check with its place, see `Record`; nan where not checked.
 
         effects (nt, nn). pressures: inside and outside (nt, nn), and inside at the level that the contents' pressure
         refers to (nt, 1) [Pa]. curvature_beside (nt, ne, 2): at the elements' ends [1/m]. contact_force (nt, nn): N/m.
@@ -120,7 +121,7 @@ class LineChecks:
                 values[..., part.nodes] = np.maximum(values[..., part.nodes], used)
                 largest.append(used.max(axis=-1))
                 places.append(self._arc[part.nodes[used.argmax(axis=-1)]])
-        return _snapshot(at_nodes, largest, places)
+        return _values(at_nodes, largest, places)
 
     def state(self) -> Saved:
         return gathered(self._owners)
@@ -168,11 +169,9 @@ def _of_part(effects: LoadEffects, part: CheckedPart) -> LoadEffects:
     )
 
 
-def _snapshot(at_nodes: Mapping[str, Array], largest: Sequence[Array], places: Sequence[Array]) -> CodeSnapshot:
+def _values(at_nodes: Mapping[str, Array], largest: Sequence[Array], places: Sequence[Array]) -> dict[str, Array]:
     """at_nodes (nt, nn): -inf where not checked; largest and places (nt,): of each check."""
     most = np.max([*at_nodes.values()], axis=0)
-    known = {field: np.where(np.isfinite(values), values, np.nan) for field, values in at_nodes.items()}
-    of_all = np.where(np.isfinite(most), most, np.nan)
-    return CodeSnapshot(
-        utilisation=of_all, largest=np.stack(largest, axis=-1), place=np.stack(places, axis=-1), **known
-    )
+    of_each = {f"{field}_utilisation": values for field, values in at_nodes.items()}
+    known = {name: np.where(np.isfinite(v), v, np.nan) for name, v in ({"code_utilisation": most} | of_each).items()}
+    return known | {"code_largest": np.stack(largest, axis=-1), "code_place": np.stack(places, axis=-1)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, cast
 
 from riser_soil.core.lazy import LazyModule
 
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array
+    from riser_soil.core.snapshot import Record
 else:
     np = LazyModule("numpy")
 
@@ -83,9 +84,10 @@ class OutputQuantity(Generic[Seen]):
     """A quantity of the results.
 
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
-    get: the value by what is seen, `Instant`, `SoilSnapshot` or `StepRecord`; (nn,) at nodes, (nv,) at points of the
-    soil, (nc,) in its cells, (ns,) of sections, (ns, m) across them, one number in the rest; by three where it is a
-    vector, in global axes. Of many instants all have one axis more in front: `position[..., 2]`, not `[:, 2]`.
+    get: the value by a `Record`, `SoilSnapshot` or `StepRecord`; without it, that of its name in a `Record`. It is
+    (nn,) at nodes, (nv,) at points of the soil, (nc,) in its cells, (ns,) of sections, (ns, m) across them, one number
+    in the rest; by three where it is a vector, in global axes. Of many instants all have one axis more in front:
+    `position[..., 2]`, not `[:, 2]`.
     needs: what must be known for it. always: recorded along the riser even where the scene does not request it.
     """
 
@@ -94,13 +96,17 @@ class OutputQuantity(Generic[Seen]):
     units: str
     text: str
     where: Where
-    get: Callable[[Seen], Any]
     sign: str = ""
+    get: Callable[[Seen], Any] | None = None
     vector: bool = False
     dtype: str = "f8"
     needs: Need = ""
     always: bool = False
     figures: tuple[Figure, ...] = ()
+
+    def value(self, seen: Seen) -> Any:
+        """See `get`; None where it is not known."""
+        return cast("Record", seen).get(self.name) if self.get is None else self.get(seen)
 
     @property
     def chosen(self) -> bool:

@@ -1,14 +1,15 @@
-"""Snapshots for the recorder: results of a state as plain arrays, SI units, global axes (z up).
+"""Results of states for the recorder, as plain arrays in SI units, global axes (z up): the record of a line, the soil.
 
-nn riser nodes in the order of the arc length; nv points and nc cells of the soil's output mesh. Those of the riser and
-its contact are of one state, or of many, by one axis more in front of all arrays.
+nn riser nodes in the order of the arc length; nv points and nc cells of the soil's output mesh.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 
@@ -18,75 +19,6 @@ class ExtremeAlong(NamedTuple):
 
     value: Array | float
     arc: Array | float
-
-
-class WallSnapshot(NamedTuple):
-    """Loads and stress of the pipe's wall at the nodes (nn,); stresses are nan where there is no wall, and at a joint
-    those of the side with the larger von Mises' stress. Moments about the section's axes, exerted by the part towards
-    `end` on the part towards `start`.
-    """
-
-    internal_pressure: Array  # Pa
-    external_pressure: Array  # Pa
-    moment_y: Array  # N.m
-    moment_z: Array  # N.m, 0 in a plane
-    torque: Array  # N.m, 0 in a plane
-    axial_stress: Array  # Pa, of the wall tension, positive in tension
-    bending_stress: Array  # Pa >= 0, largest around the outer surface
-    hoop_stress: Array  # Pa, at the inner surface, positive in tension
-    von_mises_stress: Array  # Pa, largest around, inside and outside
-    stress_utilisation: Array | None  # over the allowable stress; None where none is given
-    most_used_stress: Array | None  # Pa, von Mises', of the side with the larger utilisation
-
-
-class CodeSnapshot(NamedTuple):
-    """Utilisations by codes at the nodes (nn,), nan where not checked; None where no line type is checked so.
-
-    utilisation: the largest of all. largest (m,): of each check of each line type, and place (m,): its arc length [m].
-    """
-
-    utilisation: Array
-    largest: Array
-    place: Array
-    bursting: Array | None = None
-    hoop_buckling: Array | None = None
-    propagating_buckling: Array | None = None
-    combined_loading: Array | None = None
-    bend_radius: Array | None = None
-    tension_limit: Array | None = None
-    compression: Array | None = None
-    crushing: Array | None = None
-    capacity_curve: Array | None = None
-
-
-class RiserSnapshot(NamedTuple):
-    """The riser at one instant.
-
-    Forces and moments at the ends are exerted by the support on the riser; moments by the right-hand rule.
-    """
-
-    position: Array  # (nn, 3) m
-    effective_tension: Array  # (nn,) N, positive in tension
-    wall_tension: Array | None  # (nn,) N, positive in tension; None where the pressures are unknown
-    bending_moment: Array  # (nn,) N.m, magnitude >= 0
-    curvature: Array  # (nn,) 1/m, magnitude >= 0
-    bend_utilisation: Array | None  # (nn,) curvature times the least bend radius allowed; None where none is given
-    least_tension: ExtremeAlong  # N, effective
-    largest_moment: ExtremeAlong  # N.m
-    largest_curvature: ExtremeAlong  # 1/m
-    largest_bend_utilisation: ExtremeAlong  # nan where no least bend radius is given
-    tightest_radius: Array | float  # m, where the bend utilisation is largest; the same
-    contact_force: Array  # (nn,) N/m, positive where the ground pushes, negative where it holds the riser by suction
-    moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`
-    start_force: Array  # (3,) N
-    end_force: Array  # (3,) N
-    start_moment: Array  # (3,) N.m
-    end_moment: Array  # (3,) N.m
-    start_tangent: Array  # (3,) unit tangent at the start, in the direction of growing arc length
-    end_tangent: Array  # (3,) the same at the end
-    tension_utilisation: Array | None = None  # (nn,) effective tension over the largest allowed; None without one
-    wall: WallSnapshot | None = None  # None where no wall is given
-    code: CodeSnapshot | None = None  # None where no code check is made
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,57 +41,60 @@ class SoilMesh:
     cells: IntArray  # (nc, 8), (nc, 4) or (nc, 10)
 
 
-class SectionSnapshot(NamedTuple):
-    """The soil's settlement at m offsets across the riser, in ns sections; nan where no section is laid yet."""
+class Record(Mapping[str, Array]):
+    """All that is known of a line and its contact: each quantity by its name, an array with the instants in front.
 
-    arc: Array  # (ns,) m, of the riser where it lay over the section
-    position: Array  # (ns, 3) m, of the riser's axis there
-    direction: Array  # (ns, 3) horizontal unit vector of growing offset
-    settlement: Array  # (ns, m) m, positive downwards; nan beside the soil
+    arc (nn,): unstressed arc length of the nodes from the start [m]. Quantities that `outputs` has are by its names,
+    with its units, places and signs. Others, which these and the summary follow from:
+
+    least_tension [N], largest_moment [N m], largest_curvature [1/m], largest_bend_utilisation: along the riser, between
+    nodes too, each with its place `…_arc` [m]; tightest_radius [m]: where the bend utilisation is largest;
+    start_tangent, end_tangent (3,): unit tangents in the direction of growing arc length; most_used_stress (nn,): von
+    Mises' stress on the side with the larger utilisation [Pa]; code_largest, code_place (m,): the largest utilisation
+    of each code check, and its arc length [m].
+
+    A quantity that is not known, or not wanted, is not there. Each may be had as an attribute, too: `record.position`.
+    Of one instant the arrays have no axis for the instants.
+    """
+
+    def __init__(self, arc: Array, values: Mapping[str, Array | None]) -> None:
+        self.arc = arc
+        self._values = {name: value for name, value in values.items() if value is not None}
+
+    def __getitem__(self, name: str) -> Array:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __getattr__(self, name: str) -> Array:
+        if name.startswith("_") or name not in self._values:
+            raise AttributeError(name)
+        return self._values[name]
+
+    def extreme(self, name: str) -> ExtremeAlong | None:
+        """A largest or least value along the riser, with its place."""
+        return ExtremeAlong(self[name], self[f"{name}_arc"]) if name in self else None
+
+    def at(self, index: Any) -> Record:
+        """The record of the instants, of many, that an index of their axis selects; one, by its number, without it."""
+        return Record(self.arc, {name: value[index] for name, value in self.items()})
+
+    def with_values(self, **values: Array | None) -> Record:
+        """With other values, or further ones; None takes one out."""
+        return Record(self.arc, {**self, **values})
 
 
-class ContactSnapshot(NamedTuple):
-    """Contact of the riser with seabed and soil: touchdown, penetration and contact force."""
-
-    touchdown_arc: Array | float  # m, nan when nothing touches
-    touchdown_position: Array  # (3,) m, of the riser's axis there; nan when nothing touches
-    touchdown_points: IntArray | int  # places where the riser comes down or leaves the seabed; its ends don't count
-    max_penetration: Array | float  # m, 0 when nothing touches
-    contact_force: Array  # (3,) N, the sum over the riser, exerted on the riser
-    penetration: Array | None = None  # (nn,) m, of the underside into the ground as it is now; None where not wanted
-    embedment: Array | None = None  # (nn,) m, greatest depth yet below the ground as it lay at first; the same
-    slip: Array | None = None  # (nn,) m, way slid over seabed and soil so far; None without friction, or not wanted
-    settlement: Array | None = None  # (nn,) m, of the soil's surface below the nodes, nan beside it; None not wanted
-    force_on_soil: Array | None = None  # (nn, 3) N/m, exerted by the riser on the soil; None where not wanted
-    sections: SectionSnapshot | None = None  # None without soil, or where not wanted
+Records = Mapping[str, Record]
+"""Records of all lines by their names, "" of the only one."""
 
 
-class Instant(NamedTuple):
-    """The riser and its contact at one instant. arc: (nn,) m, unstressed arc length of the nodes from the start."""
-
-    arc: Array
-    riser: RiserSnapshot
-    touch: ContactSnapshot
-
-
-Instants = Mapping[str, Instant]
-"""Instants of all lines by their names, "" of the only one."""
-
-
-def instants_at(instants: Instant, at: Any) -> Instant:
-    """The instants, of many, that an index of their axis selects; one, by its number, without that axis."""
-    both = instants.riser, instants.touch
-    return Instant(instants.arc, *(mapped(lambda values: values[at], each) for each in both))
-
-
-def mapped(change: Callable[..., Any], *values: Any) -> Any:
-    """What a function makes of arrays of one place in nested tuples; None stays."""
-    first = values[0]
-    if first is None:
-        return None
-    if isinstance(first, tuple):
-        return type(first)(*(mapped(change, *each) for each in zip(*values, strict=True)))
-    return change(*values)
+def stacked(records: Sequence[Mapping[str, Array]]) -> dict[str, Array]:
+    """Values of single instants, all of the same quantities, one after another."""
+    return {name: np.stack([each[name] for each in records]) for name in records[0]}
 
 
 class StepStatistics(NamedTuple):

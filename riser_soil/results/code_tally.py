@@ -9,7 +9,7 @@ from typing import Any
 
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
-from riser_soil.core.snapshot import CodeCheckFacts, CodeSnapshot
+from riser_soil.core.snapshot import CodeCheckFacts, Record
 from riser_soil.results.largest import Largest
 
 
@@ -20,10 +20,10 @@ class CodeTally:
         self._facts = tuple(facts)
         self._used = Largest(len(self._facts), beside=1)
 
-    def update(self, times: Array, found: CodeSnapshot | None) -> None:
-        """times (nt,), of the instants found."""
-        if found is not None:
-            self._used.update(times, found.largest, found.place)
+    def update(self, times: Array, record: Record) -> None:
+        """times (nt,), of the record's instants."""
+        if "code_largest" in record:
+            self._used.update(times, record.code_largest, record.code_place)
 
     def as_list(self) -> list[dict[str, Any]]:
         """The summary's `code_check`; empty where nothing is checked, or before the first instant."""

@@ -14,7 +14,7 @@ from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import Figure
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot
+from riser_soil.core.snapshot import Record, SoilMesh, SoilSnapshot
 from riser_soil.results.largest import Range
 
 _END = ("position", "force", "resultant_force", "moment", "effective_tension", "angle_deg")
@@ -44,7 +44,7 @@ FIGURE_NAMES = frozenset(figure.name for _, figure in _FIGURES)
 # Left out where nothing is known of what they need, or they are not wanted.
 _SOMETIMES = frozenset(figure.name for output, figure in _FIGURES if output.needs)
 _SIZE = sum(figure.size for _, figure in _FIGURES)
-_OUTPUTS = [(output.name, output.get) for output in outputs.of_instant() if output.figures]
+_OUTPUTS = [(output.name, output.value) for output in outputs.of_instant() if output.figures]
 _FIRST = itertools.accumulate((figure.size for _, figure in _FIGURES), initial=0)
 # Of each figure: its output, where it stands in a packed vector, how it follows from the output's value.
 _PLACES: list[tuple[str, int | slice, Callable[[Any], Any]]] = [
@@ -64,22 +64,22 @@ _PACKED = [
 ]
 
 
-def pack(instants: Instant) -> Array:
+def pack(record: Record) -> Array:
     """All figures of one instant as one vector, of many as rows, in the order of the summary, and behind them the arc
     lengths [m] of those that sit somewhere along the riser; nan for what is not known.
     """
-    vector = np.full((*instants.riser.position.shape[:-2], _SIZE + len(_PLACED)), np.nan)
+    vector = np.full((*record.position.shape[:-2], _SIZE + len(_PLACED)), np.nan)
     for get, figures, placed in _PACKED:
-        if (value := get(instants)) is not None:
+        if (value := get(record)) is not None:
             for at, of in figures:
                 vector[..., at] = of(value)
             for n, figure in placed:
-                vector[..., n] = _arc(figure, value, instants.arc)
+                vector[..., n] = _arc(figure, value, record.arc)
     return vector
 
 
-def _values(instant: Instant) -> dict[str, Any]:
-    return {name: get(instant) for name, get in _OUTPUTS}
+def _values(record: Record) -> dict[str, Any]:
+    return {name: get(record) for name, get in _OUTPUTS}
 
 
 def _figure(figure: Figure, value: Any) -> Any:
@@ -110,9 +110,9 @@ def places_of(name: str) -> slice:
 _AT_PLACED = np.array([places_of(figure.name).start for _, figure in _PLACED])
 
 
-def final_state(instant: Instant) -> dict[str, Any]:
+def final_state(record: Record) -> dict[str, Any]:
     """The summary's `final`: one instant's figures, with the arc length [m] of those that sit along the riser."""
-    values = _values(instant)
+    values = _values(record)
     final: dict[str, Any] = {}
     for output, figure in _FIGURES:
         found = _figure(figure, values[output.name])
@@ -120,7 +120,7 @@ def final_state(instant: Instant) -> dict[str, Any]:
             continue
         value: Any = [float(x) for x in found] if figure.size > 1 else float(found)
         if figure.placed:
-            value = {"value": value, "arc": float(_arc(figure, values[output.name], instant.arc))}
+            value = {"value": value, "arc": float(_arc(figure, values[output.name], record.arc))}
         _put(final, figure.path, value)
     return final
 
@@ -195,7 +195,7 @@ def with_largest(largest: dict[str, Any], where: dict[str, Array], t: float, soi
     grown = dict(largest)
     for output in outputs.OF_SOIL:
         for figure in output.figures:
-            values = output.get(soil)
+            values = output.value(soil)
             value = float(figure.of(values))
             if figure.node is None or (figure.name in grown and not _exceeds(value, grown[figure.name]["value"])):
                 continue

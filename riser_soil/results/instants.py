@@ -1,4 +1,4 @@
-"""Instants of a run: a look at each accepted state, and what results tell of many looks at once.
+"""Records of a run: a look at each accepted state, and all that follows from many looks at once.
 
 A look is what has to be taken before the riser moves on, a few vectors. All that follows from them is found for many
 steps together, as each of its operations takes an interpreter longer than the numbers of one instant do.
@@ -16,9 +16,9 @@ from riser_soil.contact.touchdown import ContactInterval, contact_intervals
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import ContactSnapshot, Instant, SectionSnapshot, mapped
+from riser_soil.core.snapshot import Record, stacked
 from riser_soil.results.bending_misfit import bending_misfits
-from riser_soil.results.riser_snapshot import code_snapshot, snapshot_of
+from riser_soil.results.riser_record import code_values, riser_values
 from riser_soil.results.settlement_trough import sections_of
 from riser_soil.riser.hermite import axis_at
 from riser_soil.riser.line import Line
@@ -26,34 +26,27 @@ from riser_soil.riser.section_forces import SectionForces
 from riser_soil.solve.time_stepper import TimeStepper
 
 if TYPE_CHECKING:
+    from riser_soil.assembly.soil_assembly import SoilAssembly
     from riser_soil.code_checks.line_checks import LineChecks
     from riser_soil.contact.contact import ContactResults
 
 
-class OnGround(NamedTuple):
-    """What is told of the ground beside `ContactResults`, as in `ContactSnapshot`; None where it is not wanted."""
-
-    slip: Array | None
-    settlement: Array | None
-    force_on_soil: Array | None
-    sections: SectionSnapshot | None
-
-
 class Look(NamedTuple):
     """Vectors that later steps leave as they are: inside, see `SectionInput`, and of each contact, see
-    `ContactResults.within`. pressure: change of that inside since the first stage began [Pa].
+    `ContactResults.within`. pressure: change of that inside since the first stage began [Pa]. ground: quantities of the
+    ground, by their names in a `Record`.
     """
 
     inside: Array
     pressure: float
     contacts: tuple[Array, ...]
-    ground: OnGround
+    ground: dict[str, Array]
 
 
 class InstantReader:
     """Looks at a run's states, and tells of them; on the rank that holds the riser.
 
-    fields: those of `ContactSnapshot` wanted. checks: its code checks, None for none.
+    fields: names of the quantities wanted, of those of contact and ground. checks: its code checks, None for none.
     """
 
     def __init__(self, riser: LineAssembly, fields: Sequence[str] = (), checks: LineChecks | None = None) -> None:
@@ -81,26 +74,28 @@ class InstantReader:
             self._sections.lay(of_one.position[0], of_one.tangent[0], float(arc[0]))
         return Look(inside, self._riser.pressure_change(state.t), found, self._ground(state))
 
-    def _ground(self, state: State) -> OnGround:
+    def _ground(self, state: State) -> dict[str, Array]:
         wanted = self._fields if self._riser.contacts else ()
-        return OnGround(
-            slip=self._slip() if "slip" in wanted else None,
-            settlement=self._settlement(state) if "soil_settlement" in wanted else None,
-            force_on_soil=self._on_soil(state) if "force_on_soil" in wanted else None,
-            sections=self._sections.look(state) if self._sections is not None else None,
-        )
+        found = {} if self._sections is None else self._sections.look(state)
+        if "slip" in wanted:
+            found["slip"] = self._slip()
+        if "soil_settlement" in wanted and self._riser.soil is not None:
+            found["soil_settlement"] = self._settlement(self._riser.soil, state)
+        if "force_on_soil" in wanted:
+            found["force_on_soil"] = self._on_soil(state)
+        return found
 
-    def instant_of(self, looks: Sequence[Look]) -> Instant:
-        """All that is recorded of looks, each told once, in their order."""
+    def record_of(self, looks: Sequence[Look]) -> Record:
+        """All that is recorded of looks, each of them once, in their order."""
         inside = self._inside(np.stack([each.inside for each in looks]))
         found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
         pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
-        ground = mapped(lambda *values: np.stack(values), *(each.ground for each in looks))
         pressure = np.array([each.pressure for each in looks])
-        riser = snapshot_of(self._riser, inside, pressed, pressure)
+        values = riser_values(self._riser, inside, pressed, pressure)
         if self._checks is not None:
-            riser = riser._replace(code=code_snapshot(self._riser, self._checks, inside, pressed, pressure))
-        return Instant(self._riser.line.arc, riser, self._touch(inside, found, ground))
+            values |= code_values(self._riser, self._checks, inside, pressed, pressure)
+        values |= self._touch(inside, found) | stacked([each.ground for each in looks])
+        return Record(self._riser.line.arc, values)
 
     def bending_misfits(self, looks: Sequence[Look]) -> tuple[Array, Array]:
         """See there, each (nt, ne)."""
@@ -120,19 +115,18 @@ class InstantReader:
         sizes = [contact.along.arc.size for contact in contacts]
         return [ContactResults.within(own, nodes, size) for own, size in zip(numbers, sizes, strict=True)]
 
-    def _touch(self, inside: SectionForces, found: Sequence[ContactResults], ground: OnGround) -> ContactSnapshot:
+    def _touch(self, inside: SectionForces, found: Sequence[ContactResults]) -> dict[str, Array | None]:
         count = len(inside.position)
         arc, position, points = self._touchdown(inside, found)
-        return ContactSnapshot(
-            touchdown_arc=arc,
-            touchdown_position=position,
-            touchdown_points=points,
-            max_penetration=np.max([np.zeros(count), *(of.deepest[:, 0] for of in found)], axis=0),
-            contact_force=np.sum([np.zeros((count, 3)), *(of.on_riser for of in found)], axis=0),
-            penetration=self._deepest([of.penetration for of in found]) if "penetration" in self._fields else None,
-            embedment=self._embedded([of.depth for of in found]) if "embedment" in self._fields else None,
-            **ground._asdict(),
-        )
+        return {
+            "touchdown_arc": arc,
+            "touchdown_position": position,
+            "touchdown_points": points,
+            "max_penetration": np.max([np.zeros(count), *(of.deepest[:, 0] for of in found)], axis=0),
+            "contact_force_sum": np.sum([np.zeros((count, 3)), *(of.on_riser for of in found)], axis=0),
+            "penetration": self._deepest([of.penetration for of in found]) if "penetration" in self._fields else None,
+            "embedment": self._embedded([of.depth for of in found]) if "embedment" in self._fields else None,
+        }
 
     def _touchdown(self, inside: SectionForces, found: Sequence[ContactResults]) -> tuple[Array, Array, IntArray]:
         """Arc length (nt,) and position (nt, 3) of the touchdown point, number of touchdown points (nt,)."""
@@ -163,9 +157,8 @@ class InstantReader:
     def _slip(self) -> Array:
         return np.sum([friction.slip() for friction in self._riser.frictions], axis=0)
 
-    def _settlement(self, state: State) -> Array | None:
-        soil, xy = self._riser.soil, self._riser.line.positions3(state)[:, :2]
-        return None if soil is None else soil.contact.settlement(xy, state)
+    def _settlement(self, soil: SoilAssembly, state: State) -> Array:
+        return soil.contact.settlement(self._riser.line.positions3(state)[:, :2], state)
 
     def _on_soil(self, state: State) -> Array:
         """Force per length on the soil [N/m], of contact and friction together."""

@@ -25,12 +25,11 @@ from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import (
     CodeCheckFacts,
-    Instants,
+    Records,
     RunFacts,
     SoilSnapshot,
     StepRecord,
     StepStatistics,
-    instants_at,
 )
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
@@ -55,7 +54,7 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
 
-_CHECKED: tuple[Need, ...] = (  # fields of `CodeSnapshot`
+_CHECKED: tuple[Need, ...] = (  # utilisations of a `Record`
     *("bursting", "hoop buckling", "propagating buckling", "combined loading"),
     *("bend radius", "tension limit", "compression", "crushing", "capacity curve"),
 )
@@ -170,10 +169,10 @@ class Observer:
         """Record the state before all stages, where no static stage comes first."""
         soil = self._soil()
         if self._recorder is not None:
-            instants = {name: reader.instant_of([reader.look(stepper)]) for name, reader in self._instants.items()}
-            self._recorder.begin_at(instants, soil, looked_at(self._hung, stepper.now))
+            records = {name: reader.record_of([reader.look(stepper)]) for name, reader in self._instants.items()}
+            self._recorder.begin_at(records, soil, looked_at(self._hung, stepper.now))
             if self._peaks is not None:
-                self._peaks.record([0.0], instants)
+                self._peaks.record([0.0], records)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Put an accepted step into the buffer, and write the buffer where it is full; collective."""
@@ -211,15 +210,15 @@ class Observer:
         steps, self._buffer, recorder = self._buffer, [], self._recorder
         if not steps or recorder is None or recorder.closed:
             return
-        records, readers = [each.record for each in steps], self._instants.items()
-        instants = {name: reader.instant_of([each.looks[name] for each in steps]) for name, reader in readers}
+        made, readers = [each.record for each in steps], self._instants.items()
+        records = {name: reader.record_of([each.looks[name] for each in steps]) for name, reader in readers}
         hung = joined([each.hung for each in steps])
-        recorder.accept(records, [each.due for each in steps], instants, steps[-1].soil, hung)
+        recorder.accept(made, [each.due for each in steps], records, steps[-1].soil, hung)
         if self._peaks is not None:
-            self._peaks.record([record.t for record in records], instants)
-        self._check_plausibility(recorder, steps, instants)
+            self._peaks.record([step.t for step in made], records)
+        self._check_plausibility(recorder, steps, records)
 
-    def _check_plausibility(self, recorder: Recorder, steps: Sequence[BufferedStep], instants: Instants) -> None:
+    def _check_plausibility(self, recorder: Recorder, steps: Sequence[BufferedStep], records: Records) -> None:
         """Check whether what was recorded is plausible, for the summary's warnings."""
         self._check_bending(recorder, [each for each in steps if each.due.pictures])
         recorded = [n for n, each in enumerate(steps) if each.due.series]
@@ -227,9 +226,9 @@ class Observer:
             return
         times = [recorder.time_at(steps[n].record.t) for n in recorded]
         for name, plausibility in self._plausibility.items():
-            plausibility.look(times, instants_at(instants[name], recorded).riser)
+            plausibility.look(times, records[name].at(recorded))
             if self._assembly.lines[name].soil is not None:
-                plausibility.look_at_soil(times[-1], steps[-1].state, instants_at(instants[name], -1))
+                plausibility.look_at_soil(times[-1], steps[-1].state, records[name].at(-1))
             stage = recorder.summary.stages[-1].of(name)
             stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
         if self._hung is not None:

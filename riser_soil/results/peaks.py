@@ -17,7 +17,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
-from riser_soil.core.snapshot import Instant, Instants, SoilMesh, SoilSnapshot, instants_at
+from riser_soil.core.snapshot import Record, Records, SoilMesh, SoilSnapshot
 from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places, places_of, with_largest
 from riser_soil.results.hung_figures import HungExtremes
 
@@ -46,11 +46,10 @@ def least_between_nodes(arc: Array, along: Array) -> float:
     return float(vertex(arc[at - 1 : at + 2], along[at - 1 : at + 2]))
 
 
-def pack_peaks(instants: Instant) -> Array:
+def pack_peaks(record: Record) -> Array:
     """Figures of many instants in rows, with the least tension between nodes in place of that at nodes."""
-    rows = pack(instants)
-    tension = instants.riser.effective_tension
-    rows[:, places_of(_TENSION)] = [[least_between_nodes(instants.arc, along)] for along in tension]
+    rows = pack(record)
+    rows[:, places_of(_TENSION)] = [[least_between_nodes(record.arc, along)] for along in record.effective_tension]
     return rows
 
 
@@ -64,17 +63,17 @@ class StagePeaks:
         self.name, self.kind, self._duration = name, kind, duration
         self._windows: Array = np.empty((2, WINDOWS, 0))  # least and largest figures in windows of time
         self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
-        self._last_instant: Instant | None = None
+        self._last_instant: Record | None = None
         self._final: dict[str, Any] | None = None
         self._latest: Array = np.empty(0)
         self.soil: dict[str, Any] = {}
         self._t: list[float] = []
         self._last: list[Array] = []
 
-    def update(self, times: Sequence[float], instants: Instant) -> None:
+    def update(self, times: Sequence[float], record: Record) -> None:
         """Follow the state that a dynamic stage begins with, and accepted steps in turn; times: s or load factors."""
-        self._follow(times, pack(instants), pack_peaks(instants))
-        self._last_instant = instants_at(instants, -1)
+        self._follow(times, pack(record), pack_peaks(record))
+        self._last_instant = record.at(-1)
 
     def begin(self, before: StagePeaks) -> None:
         """With the end of the stage before."""
@@ -217,7 +216,7 @@ class RunPeaks:
     def record(
         self,
         times: Sequence[float],
-        instants: Instants,
+        records: Records,
         soil: SoilSnapshot | None = None,
         hung: Mapping[str, Array] | None = None,
     ) -> None:
@@ -225,9 +224,9 @@ class RunPeaks:
         clearances by path, a row a step.
         """
         self._hung[-1].update(np.array(times), hung or {})
-        for line, instant in instants.items():
+        for line, record in records.items():
             stage = self.stages[-1][line]
-            stage.update(times, instant)
+            stage.update(times, record)
             if soil is not None and self._places is not None and line == self._on_soil:
                 stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
 

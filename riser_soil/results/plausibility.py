@@ -15,7 +15,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
-from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot
+from riser_soil.core.snapshot import Record
 from riser_soil.riser.section_forces import at_most
 from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.scene.stages import Stage
@@ -119,11 +119,11 @@ class Plausibility:
         self._load = self._misfit = self._pushed = LargestValue()
         self._warned: tuple[tuple[object, ...], tuple[str, ...]] | None = None  # of what, and what
 
-    def look(self, times: Sequence[float], riser: RiserSnapshot) -> None:
-        """times: s of the run (static stages: load factor), of the riser's instants."""
+    def look(self, times: Sequence[float], record: Record) -> None:
+        """times: s of the run (static stages: load factor), of the record's instants."""
         arc = self._riser.line.arc
         tension, curvature, moments = map(
-            np.ascontiguousarray, (riser.effective_tension, riser.curvature, riser.bending_moment)
+            np.ascontiguousarray, (record.effective_tension, record.curvature, record.bending_moment)
         )
         axial, at, bending, bent_at, moment = largest_strains(tension, self.EA, curvature, self.radius, moments)
         self._axial = self._axial.or_this(axial, arc, at % arc.size, times[at // arc.size])
@@ -135,33 +135,33 @@ class Plausibility:
             at = int(beyond.argmax())
             self._pushed = self._pushed.or_this(float(beyond.flat[at]), arc, at % arc.size, times[at // arc.size])
 
-    def look_at_soil(self, t: float, state: State, instant: Instant) -> None:
-        """t: as above; instant: the instant of this state, where there is soil."""
+    def look_at_soil(self, t: float, state: State, record: Record) -> None:
+        """t: as above; record: of this state, where there is soil."""
         assert self._riser.soil is not None
-        arc, touch, contact = instant.arc, instant.touch, self._riser.soil.contact
+        arc, contact = record.arc, self._riser.soil.contact
         force = contact.force_per_length(state)
         self._touched = self._touched or bool(force.any())
         if self._bearing is not None:
             borne = over_a_length(force, self._riser.line, self._riser.scales.diameter)
             self._load = self._load.or_larger(borne, arc, t)
-        self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
+        self._beyond = self._beyond.or_larger(self._past_the_block(record), np.array([record.touchdown_arc]), t)
         if not self._riser.scene.soil_moves:
             self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
-        self._look_for_ground(instant.riser, touch)
+        self._look_for_ground(record)
 
-    def _look_for_ground(self, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
-        down = not np.isnan(touch.touchdown_arc)
+    def _look_for_ground(self, record: Record) -> None:
+        down = not np.isnan(record.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
-        self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
+        self._lowest = record.touchdown_position if down else record.position[record.position[:, 2].argmin()]
 
     def look_around(self, boundary: BoundaryStress | None) -> None:
         """At the stage's end; None without soil."""
         self._boundary = boundary
 
-    def _past_the_block(self, touch: ContactSnapshot) -> Array:
+    def _past_the_block(self, record: Record) -> Array:
         """How far the touchdown point lies beyond the soil in plan (1,) [m]; 0 where there is none."""
         assert self._riser.soil is not None
-        grid, at = self._riser.soil.whole.grid, touch.touchdown_position[:2]
+        grid, at = self._riser.soil.whole.grid, record.touchdown_position[:2]
         outside = np.maximum(grid.low[:2] - at, at - grid.high[:2]).max()
         return np.array([max(0.0, float(np.nan_to_num(outside, nan=0.0)))])
 

@@ -14,7 +14,7 @@ from typing import Self
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import Instants, RunFacts, SoilMesh, SoilSnapshot, StepRecord, instants_at
+from riser_soil.core.snapshot import Records, RunFacts, SoilMesh, SoilSnapshot, StepRecord
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
@@ -46,7 +46,7 @@ class Keeping:
 class LastState:
     """The last recorded state, one instant as if of many, and the files that it has been written to."""
 
-    instants: Instants
+    records: Records
     hung: Mapping[str, Array]
     soil: SoilSnapshot | None
     written: DueOutputs
@@ -174,33 +174,33 @@ class Recorder:
         self._series.begin_stage(name)
 
     def begin_at(
-        self, instants: Instants, soil: SoilSnapshot | None = None, hung: Mapping[str, Array] | None = None
+        self, records: Records, soil: SoilSnapshot | None = None, hung: Mapping[str, Array] | None = None
     ) -> None:
         """The state that the run begins with, where its first stage is not static: recorded at time zero.
 
-        instants, hung: of one instant, as if of many.
+        records, hung: of one instant, as if of many.
         """
-        stamp = self._tallies.begin_at(instants)
-        self._record(instants, hung or {}, [DueOutputs(series=True, pictures=True)], [stamp], soil)
+        stamp = self._tallies.begin_at(records)
+        self._record(records, hung or {}, [DueOutputs(series=True, pictures=True)], [stamp], soil)
 
     def accept(
         self,
         steps: Sequence[StepRecord],
         due: Sequence[DueOutputs],
-        instants: Instants,
+        records: Records,
         soil: SoilSnapshot | None = None,
         hung: Mapping[str, Array] | None = None,
     ) -> None:
         """Record accepted steps of the present stage, in turn.
 
-        instants: at the steps' ends. soil: at the last of them; needed where there is a soil mesh and pictures are due,
+        records: at the steps' ends. soil: at the last of them; needed where there is a soil mesh and pictures are due,
         for no other step then. hung: of bodies and joints at the instants, by path.
         """
         hung = hung or {}
-        times, stamps = self._tallies.accept(steps, due, instants, hung)
+        times, stamps = self._tallies.accept(steps, due, records, hung)
         self._series.steps({"step_time": times} | step_rows(steps, self._ledger))
         self._waiting += _STEP * len(steps)
-        self._record(instants, hung, due, stamps, soil)
+        self._record(records, hung, due, stamps, soil)
         if self.flush_is_due or self._waiting > _MOST_WAITING:
             self.flush()
 
@@ -225,9 +225,9 @@ class Recorder:
         drawable = self._frames.drawable(soil)
         if not last.written.series:
             due = [DueOutputs(series=True, pictures=drawable)]
-            self._record(last.instants, last.hung, due, [self._tallies.stamp()], soil)
+            self._record(last.records, last.hung, due, [self._tallies.stamp()], soil)
         elif drawable and not last.written.pictures:
-            self._picture(last.stamp, series_rows([last.stamp], last.instants, self._fields), 0, soil)
+            self._picture(last.stamp, series_rows([last.stamp], last.records, self._fields), 0, soil)
             last.written = DueOutputs(series=True, pictures=True)
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
@@ -301,23 +301,23 @@ class Recorder:
 
     def _record(
         self,
-        instants: Instants,
+        records: Records,
         hung: Mapping[str, Array],
         due: Sequence[DueOutputs],
         stamps: Sequence[float],
         soil: SoilSnapshot | None,
     ) -> None:
         """stamps: of those whose series is due."""
-        last = {line: instants_at(instant, slice(-1, None)) for line, instant in instants.items()}
+        last = {line: record.at(slice(-1, None)) for line, record in records.items()}
         last_hung = {name: values[-1:] for name, values in hung.items()}
         self._last = LastState(last, last_hung, soil, due[-1], stamps[-1] if due[-1].series else 0.0)
         recorded = [n for n, wanted in enumerate(due) if wanted.series]
         if not recorded:
             return
         if len(recorded) < len(due):
-            instants = {line: instants_at(instant, recorded) for line, instant in instants.items()}
+            records = {line: record.at(recorded) for line, record in records.items()}
             hung = {name: values[recorded] for name, values in hung.items()}
-        rows = series_rows(stamps, instants, self._fields) | dict(hung)
+        rows = series_rows(stamps, records, self._fields) | dict(hung)
         self._waiting += self._series.row_size * len(recorded)
         self._series.record(rows)
         for row, n in enumerate(recorded):

@@ -12,7 +12,7 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Stateful
-from riser_soil.core.snapshot import Instant, Instants, Ledger, SoilMesh, SoilSnapshot, StepRecord
+from riser_soil.core.snapshot import Ledger, Record, Records, SoilMesh, SoilSnapshot, StepRecord
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.results import folder as run_folder
 from riser_soil.results.figures import places, with_largest
@@ -21,30 +21,30 @@ from riser_soil.results.summary import StageTally
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 
-def series_rows(stamps: Sequence[float], instants: Instants, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
+def series_rows(stamps: Sequence[float], records: Records, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
     """Rows of many instants by the names of netcdf.SERIES behind those of the lines' groups, without outputs that are
     not among a line's fields.
     """
     along = {
-        f"{group(line)}{name}": get(instant)
-        for line, instant in instants.items()
+        f"{group(line)}{name}": get(record)
+        for line, record in records.items()
         for name, get in _wanted(fields[line])
     }
     return {"time": np.array(stamps)} | along
 
 
 @cache
-def _wanted(fields: tuple[str, ...]) -> list[tuple[str, Callable[[Instant], Any]]]:
+def _wanted(fields: tuple[str, ...]) -> list[tuple[str, Callable[[Record], Any]]]:
     """Names of what is recorded, and how each follows from what is seen."""
     recorded = (output for output in outputs.of_instant() if output.where != "summary")
-    return [(output.name, output.get) for output in recorded if output.name in fields or not output.chosen]
+    return [(output.name, output.value) for output in recorded if output.name in fields or not output.chosen]
 
 
 def step_rows(steps: Sequence[StepRecord], accounts: Collection[str]) -> dict[str, list[float]]:
     """By the names of netcdf.HEALTH and the ledger's accounts; what a step has not booked is 0."""
     booked = [_booked(step.ledger) for step in steps]
     return {
-        **{output.name: [output.get(step) for step in steps] for output in OF_STEP},
+        **{output.name: [output.value(step) for step in steps] for output in OF_STEP},
         **{name: [each.get(name, 0.0) for each in booked] for name in accounts},
     }
 
@@ -58,8 +58,8 @@ def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Fra
     wanted = [output for output in outputs.OF_SOIL if output.name in fields]
     return Frame(
         stamp,
-        {output.name: output.get(soil) for output in wanted if output.where == "soil points"},
-        {output.name: output.get(soil) for output in wanted if output.where == "soil cells"} | {**soil.asked},
+        {output.name: output.value(soil) for output in wanted if output.where == "soil points"},
+        {output.name: output.value(soil) for output in wanted if output.where == "soil cells"} | {**soil.asked},
     )
 
 

@@ -11,7 +11,6 @@ from riser_soil.assembly import LineAssembly
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.snapshot import SectionSnapshot
 from riser_soil.riser.hermite import axis_at
 from riser_soil.riser.line import Line
 
@@ -73,13 +72,14 @@ class TroughSections:
                 self._arc[n], self._position[n] = arc, position
                 self._direction[n] = np.cross([0.0, 0.0, 1.0], level / size)
 
-    def look(self, state: State) -> SectionSnapshot:
-        """The settlement in them at a state."""
+    def look(self, state: State) -> dict[str, Array]:
+        """Their places, and the settlement in them at a state: nan where none is laid yet, or beside the soil."""
         across = self._offsets[None, :, None] * self._direction[:, None, :2]
         xy = self._position[:, None, :2] + across
         found, there = np.full(xy.shape[:2], np.nan), self._there
         found[there] = self._contact.settlement(xy[there].reshape(-1, 2), state).reshape(-1, len(self._offsets))
-        return SectionSnapshot(self._arc.copy(), self._position.copy(), self._direction.copy(), found)
+        places = {"arc": self._arc, "position": self._position, "direction": self._direction}
+        return {f"section_{name}": value.copy() for name, value in places.items()} | {"settlement_across": found}
 
     @property
     def _there(self) -> BoolArray:

@@ -14,7 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
-from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, StepStatistics
+from riser_soil.core.snapshot import Ledger, Record, RunFacts, StepStatistics
 from riser_soil.results.code_tally import CodeTally
 from riser_soil.results.figures import Extremes, final_state
 from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
@@ -122,7 +122,7 @@ class StageTally:
     relaxations: int = 0
     settlings: int = 0
     branch_switches: int = 0
-    last_instant: Instant | None = None
+    last_instant: Record | None = None
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
@@ -148,20 +148,22 @@ class StageTally:
             if abs(ledger.residual) > abs(self.worst_residual[0]):
                 self.worst_residual = ledger.residual, t
 
-    def bend(self, times: Array, riser: RiserSnapshot) -> None:
-        """times (nt,): s (static stages: load factor), of the instants of the riser."""
-        used, arc = riser.largest_bend_utilisation
-        rows = np.column_stack([used, riser.tightest_radius, arc, times])
+    def bend(self, times: Array, record: Record) -> None:
+        """times (nt,): s (static stages: load factor), of the record's instants."""
+        if "largest_bend_utilisation" not in record:
+            return
+        used, arc = record.largest_bend_utilisation, record.largest_bend_utilisation_arc
+        rows = np.column_stack([used, record.tightest_radius, arc, times])
         most = TightestBend(*as_list(rows[np.argmax(np.nan_to_num(rows[:, 0], nan=-np.inf))]))
         if most.utilisation > self.tightest.utilisation:
             self.tightest = most
 
-    def pull(self, times: Array, arc: Array, riser: RiserSnapshot) -> None:
-        """arc (nn,): m, of the nodes. times (nt,): s (static stages: load factor), of the instants of the riser."""
-        wall = riser.wall
-        self.pulled = self.pulled.or_more(riser.tension_utilisation, riser.effective_tension, arc, times)
-        if wall is not None and wall.most_used_stress is not None:
-            self.stressed = self.stressed.or_more(wall.stress_utilisation, wall.most_used_stress, arc, times)
+    def pull(self, times: Array, record: Record) -> None:
+        """times (nt,): s (static stages: load factor), of the record's instants."""
+        arc, tension = record.arc, record.effective_tension
+        self.pulled = self.pulled.or_more(record.get("tension_utilisation"), tension, arc, times)
+        if "most_used_stress" in record:
+            self.stressed = self.stressed.or_more(record.stress_utilisation, record.most_used_stress, arc, times)
 
     def count(self, steps: Sequence[StepStatistics]) -> None:
         self.steps += len(steps)

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import Instants, RunFacts, StepRecord, instants_at
+from riser_soil.core.snapshot import Records, RunFacts, StepRecord
 from riser_soil.results.code_tally import CodeTally
 from riser_soil.results.figures import pack
 from riser_soil.results.hung_figures import HungExtremes
@@ -61,14 +61,14 @@ class Tallies:
             tally.extremes.update(self._time.now, latest)
             tally.indicators.begin(self._time.now, latest)
 
-    def begin_at(self, instants: Instants) -> float:
+    def begin_at(self, records: Records) -> float:
         """Count the state that the run begins with; when it is recorded [s]."""
-        self._latest = {line: pack(instant)[0] for line, instant in instants.items()}
+        self._latest = {line: pack(record)[0] for line, record in records.items()}
         self._begin_from_latest()
         return self.stamp()
 
     def accept(
-        self, steps: Sequence[StepRecord], due: Sequence[DueOutputs], instants: Instants, hung: Mapping[str, Array]
+        self, steps: Sequence[StepRecord], due: Sequence[DueOutputs], records: Records, hung: Mapping[str, Array]
     ) -> tuple[list[float], list[float]]:
         """Count steps; their times in the run [s], and when those are recorded whose series is due."""
         times, stamps = list[float](), list[float]()
@@ -85,23 +85,23 @@ class Tallies:
         stage.balance(times, [step.ledger for step in steps])
         if stage.kind == "dynamic":
             stage.indicators.follow_steps(at, steps)
-        self._count_lines(at, instants)
+        self._count_lines(at, records)
         if hung:
             self._hung.update(at, hung)
             stage.hung = self._hung.nested
         return times, stamps
 
-    def _count_lines(self, at: Array, instants: Instants) -> None:
-        for line, instant in instants.items():
-            tally, rows = self.stage.of(line), pack(instant)
+    def _count_lines(self, at: Array, records: Records) -> None:
+        for line, record in records.items():
+            tally, rows = self.stage.of(line), pack(record)
             self._latest[line] = rows[-1]
             tally.extremes.update(at, rows)
             if self.stage.kind == "dynamic":
                 tally.indicators.follow(at, rows)
-            tally.last_instant = instants_at(instant, -1)
-            tally.bend(at, instant.riser)
-            tally.pull(at, instant.arc, instant.riser)
-            tally.code.update(at, instant.riser.code)
+            tally.last_instant = record.at(-1)
+            tally.bend(at, record)
+            tally.pull(at, record)
+            tally.code.update(at, record)
 
     def stamp(self) -> float:
         """Time of a record made now [s], later than that of every record before."""

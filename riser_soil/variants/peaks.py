@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.core.snapshot import Instant, Instants, SoilSnapshot, instants_at
+from riser_soil.core.snapshot import Record, Records, SoilSnapshot
 from riser_soil.results.hung_figures import hung_reader, looked_at
 from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
@@ -16,14 +16,14 @@ from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, solve_stages
 
-OnInstant = Callable[[str, Instant], None]
+OnRecord = Callable[[str, Record], None]
 """Called on the first rank with a line's name and state, after the last step of static stages, each step of others."""
 
 
-def peaks_of(scene: Scene, comm: Any, on_instant: OnInstant | None = None) -> RunPeaks:
+def peaks_of(scene: Scene, comm: Any, on_record: OnRecord | None = None) -> RunPeaks:
     """Peaks of a scene, on the first rank; collective. Raises the errors of a run."""
     assembly = build(sized(scene), comm)
-    observer = _PeakObserver(assembly, on_instant)
+    observer = _PeakObserver(assembly, on_record)
     solve_stages(assembly, observer)
     return observer.peaks
 
@@ -31,8 +31,8 @@ def peaks_of(scene: Scene, comm: Any, on_instant: OnInstant | None = None) -> Ru
 class _PeakObserver(StatelessObserver):
     """Gathers peaks as the observer of a run does."""
 
-    def __init__(self, assembly: Assembly, on_instant: OnInstant | None) -> None:
-        self._assembly, self._on_instant = assembly, on_instant
+    def __init__(self, assembly: Assembly, on_record: OnRecord | None) -> None:
+        self._assembly, self._on_record = assembly, on_record
         self._readers = {line: InstantReader(own) for line, own in assembly.lines.items()}
         self._hung = hung_reader(assembly)
         output, soil = assembly.scene.output, assembly.soil
@@ -51,12 +51,12 @@ class _PeakObserver(StatelessObserver):
         known = self._assembly.soil if self._schedule.due(step.t, last).pictures else None
         soil = None if known is None else known.recovered().output_fields()
         if self._assembly.comm.rank == 0:
-            instants = self._record(step.t, stepper, soil)
-            if self._on_instant is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
-                for line, instant in instants.items():
-                    self._on_instant(line, instants_at(instant, 0))
+            records = self._record(step.t, stepper, soil)
+            if self._on_record is not None and (last or not isinstance(self._assembly.stage, StaticStage)):
+                for line, record in records.items():
+                    self._on_record(line, record.at(0))
 
-    def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Instants:
-        instants = {line: reader.instant_of([reader.look(stepper)]) for line, reader in self._readers.items()}
-        self.peaks.record([t], instants, soil, looked_at(self._hung, stepper.now))
-        return instants
+    def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Records:
+        records = {line: reader.record_of([reader.look(stepper)]) for line, reader in self._readers.items()}
+        self.peaks.record([t], records, soil, looked_at(self._hung, stepper.now))
+        return records

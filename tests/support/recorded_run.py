@@ -7,27 +7,22 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.snapshot import (
     CodeCheckFacts,
-    CodeSnapshot,
-    ContactSnapshot,
-    ExtremeAlong,
-    Instant,
     Ledger,
-    RiserSnapshot,
+    Record,
     RunFacts,
-    SectionSnapshot,
     SoilMesh,
     SoilSnapshot,
     StepRecord,
     StepStatistics,
-    WallSnapshot,
-    mapped,
 )
+from riser_soil.core.snapshot import stacked as stacked_values
 from riser_soil.results.record import Recorder
 from riser_soil.results.schedule import DueOutputs, Schedule
 
@@ -50,25 +45,42 @@ FACTS = RunFacts(
 SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 0.3}}\n"
 
 
-def _largest(arc: Array, values: Array) -> ExtremeAlong:
-    return ExtremeAlong(float(values.max()), float(arc[values.argmax()]))
+CRITERIA = (
+    *("bursting", "hoop_buckling", "propagating_buckling", "combined_loading", "bend_radius"),
+    *("tension_limit", "compression", "crushing", "capacity_curve"),
+)
 
 
-def _code(arc: Array, used: Array) -> CodeSnapshot:
+def _largest(name: str, arc: Array, values: Array) -> dict[str, Any]:
+    return {name: values.max(), f"{name}_arc": arc[values.argmax()]}
+
+
+def _code(arc: Array, used: Array) -> dict[str, Any]:
     """One check of one line type, as if it were all of them."""
-    return CodeSnapshot(used, np.array([used.max()]), np.array([arc[used.argmax()]]), *(used,) * 9)
+    found = {f"{name}_utilisation": used for name in ("code", *CRITERIA)}
+    return found | {"code_largest": np.array([used.max()]), "code_place": np.array([arc[used.argmax()]])}
 
 
-def _wall(tension: Array, moment: Array) -> WallSnapshot:
+def _wall(tension: Array, moment: Array) -> dict[str, Any]:
     axial, bending, nothing = tension / 0.02, moment / 1.0e-3, np.zeros_like(moment)
-    loads = nothing, nothing, -moment, nothing, nothing
-    return WallSnapshot(*loads, axial, bending, nothing, axial + bending, (axial + bending) / 3.0e8, axial + bending)
+    return {
+        "internal_pressure": nothing,
+        "external_pressure": nothing,
+        "bending_moment_y": -moment,
+        "bending_moment_z": nothing,
+        "torque": nothing,
+        "wall_axial_stress": axial,
+        "wall_bending_stress": bending,
+        "wall_hoop_stress": nothing,
+        "wall_von_mises_stress": axial + bending,
+        "stress_utilisation": (axial + bending) / 3.0e8,
+        "most_used_stress": axial + bending,
+    }
 
 
-def stacked(seen: Sequence[Instant]) -> Instant:
+def stacked(seen: Sequence[Record]) -> Record:
     """Single instants as many."""
-    risers, touches = zip(*((each.riser, each.touch) for each in seen), strict=True)
-    return Instant(seen[0].arc, *(mapped(lambda *values: np.stack(values), *each) for each in (risers, touches)))
+    return Record(seen[0].arc, stacked_values(seen))
 
 
 @dataclass(frozen=True)
@@ -78,7 +90,7 @@ class Catenary:
     a: float
     s0: float
 
-    def riser(self, arc: Array) -> RiserSnapshot:
+    def riser(self, arc: Array) -> dict[str, Any]:
         s = np.maximum(0.0, arc - self.s0)
         a, zero = self.a, np.zeros_like(arc)
         x = np.where(arc < self.s0, arc, self.s0 + a * np.arcsinh(s / a))
@@ -87,17 +99,18 @@ class Catenary:
         tension = WEIGHT * np.hypot(a, s)
         moment = np.stack([zero, -EI * curvature, zero], axis=1)
         top = WEIGHT * np.array([a, 0.0, s[-1]])
-        return RiserSnapshot(
+        return dict(
             position=np.stack([x, zero, z], axis=1),
             effective_tension=tension,
             wall_tension=tension + 1.0e3,
             bending_moment=EI * curvature,
             curvature=curvature,
             bend_utilisation=20.0 * curvature,
-            least_tension=ExtremeAlong(float(tension.min()), float(arc[tension.argmin()])),
-            largest_moment=_largest(arc, EI * curvature),
-            largest_curvature=_largest(arc, curvature),
-            largest_bend_utilisation=_largest(arc, 20.0 * curvature),
+            least_tension=tension.min(),
+            least_tension_arc=arc[tension.argmin()],
+            **_largest("largest_moment", arc, EI * curvature),
+            **_largest("largest_curvature", arc, curvature),
+            **_largest("largest_bend_utilisation", arc, 20.0 * curvature),
             tightest_radius=1.0 / curvature.max(),
             contact_force=np.where(arc < self.s0, WEIGHT, 0.0),
             moment_vector=moment,
@@ -108,29 +121,41 @@ class Catenary:
             start_tangent=np.array([1.0, 0.0, 0.0]),
             end_tangent=top / np.linalg.norm(top),
             tension_utilisation=tension / 2.0e5,
-            wall=_wall(tension, EI * curvature),
-            code=_code(arc, tension / 3.0e5 + 10.0 * curvature),
+            **_wall(tension, EI * curvature),
+            **_code(arc, tension / 3.0e5 + 10.0 * curvature),
         )
 
-    def seen(self, arc: Array) -> Instant:
-        return Instant(arc, self.riser(arc), self.touch(arc))
+    def seen(self, arc: Array) -> Record:
+        return Record(arc, self.riser(arc) | self.touch(arc))
 
-    def touch(self, arc: Array) -> ContactSnapshot:
+    def touch(self, arc: Array) -> dict[str, Any]:
         place, force = np.array([self.s0, 0.0, RADIUS]), np.array([0.0, 0.0, WEIGHT * self.s0])
         depth = np.where(arc < self.s0, 0.002, 0.0)
         on_soil = np.stack([0.0 * arc, 0.0 * arc, np.where(arc < self.s0, -WEIGHT, 0.0)], axis=1)
-        return ContactSnapshot(
-            *(self.s0, place, 1, 0.003, force, depth, 1.5 * depth, 0.1 * depth),
-            settlement=0.5 * depth,
-            force_on_soil=on_soil,
-            sections=self.sections(),
-        )
+        return {
+            "touchdown_arc": np.float64(self.s0),
+            "touchdown_position": place,
+            "touchdown_points": np.int64(1),
+            "max_penetration": np.float64(0.003),
+            "contact_force_sum": force,
+            "penetration": depth,
+            "embedment": 1.5 * depth,
+            "slip": 0.1 * depth,
+            "soil_settlement": 0.5 * depth,
+            "force_on_soil": on_soil,
+            **self.sections(),
+        }
 
-    def sections(self) -> SectionSnapshot:
+    def sections(self) -> dict[str, Any]:
         """One, where the riser lies at first."""
         position, direction = np.array([[30.0, 0.0, RADIUS]]), np.array([[0.0, 1.0, 0.0]])
         trough = 0.002 * np.exp(-((np.array(FACTS.offsets) / 0.6) ** 2))
-        return SectionSnapshot(np.array([30.0]), position, direction, trough[None] * (self.s0 > 29.0))
+        return {
+            "section_arc": np.array([30.0]),
+            "section_position": position,
+            "section_direction": direction,
+            "settlement_across": trough[None] * (self.s0 > 29.0),
+        }
 
 
 def block(nx: int = 40, ny: int = 10, nz: int = 5, *, tetrahedra: bool = False) -> SoilMesh:

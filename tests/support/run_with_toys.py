@@ -9,23 +9,23 @@ from pathlib import Path
 
 from riser_soil.core import outputs, step_outputs
 from riser_soil.core.output import OutputQuantity, Row, greatest
-from riser_soil.core.snapshot import Instant, SoilSnapshot, StepRecord
+from riser_soil.core.snapshot import Record, SoilSnapshot, StepRecord
 
-HEIGHT: OutputQuantity[Instant] = OutputQuantity(
+HEIGHT: OutputQuantity[Record] = OutputQuantity(
     "height",
     "z",
     "m",
     "height of the riser's axis",
     "nodes",
-    lambda instant: instant.riser.position[..., 2],
     "positive upwards",
+    lambda record: record.position[..., 2],
     figures=(greatest("max_height", Row("greatest height", "km", 1e-3)),),
 )
 SETTLEMENT: OutputQuantity[SoilSnapshot] = OutputQuantity(
-    "settlement", "s", "m", "settlement", "soil points", lambda soil: -soil.displacement[:, 2]
+    "settlement", "s", "m", "settlement", "soil points", get=lambda soil: -soil.displacement[:, 2]
 )
 WHOLE_ENERGY: OutputQuantity[StepRecord] = OutputQuantity(
-    "stored_energy", "", "J", "all energy stored", "step", lambda step: step.ledger.stored
+    "stored_energy", "", "J", "all energy stored", "step", get=lambda step: step.ledger.stored
 )
 
 

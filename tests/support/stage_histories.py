@@ -10,9 +10,9 @@ from mpi4py import MPI
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.snapshot import RiserSnapshot
+from riser_soil.core.snapshot import Record
 from riser_soil.core.system import System, Timer
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage
@@ -32,10 +32,10 @@ class StageHistory:
     energy: list[float] = field(default_factory=list)
     work: list[float] = field(default_factory=list)
     position: list[Array] = field(default_factory=list)
-    last: RiserSnapshot | None = None
+    last: Record | None = None
 
     @property
-    def end(self) -> RiserSnapshot:
+    def end(self) -> Record:
         assert self.last is not None
         return self.last
 
@@ -54,7 +54,7 @@ def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
             now.energy.append(step.energy.total)
             now.work.append(step.work - step.dissipated)
             now.position.append(assembly.riser.line.positions3(stepper.now))
-            now.last = riser_snapshot(assembly.riser, stepper)
+            now.last = riser_record(assembly.riser, stepper)
 
         before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
         reported.append(now)

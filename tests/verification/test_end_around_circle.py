@@ -20,7 +20,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.results import Run
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
@@ -49,7 +49,7 @@ def led_around(way: int, side: int, time_step: float, elements: int = 60, dimens
     rows, before = list[tuple[float, float, float]](), State.at_rest(0.0, assembly.size)
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        found = riser_snapshot(assembly.riser, stepper)
+        found = riser_record(assembly.riser, stepper)
         rows.append((found.effective_tension[0], found.effective_tension[-1], found.bending_moment.max()))
 
     for stage in assembly.scene.stages:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import RiserSnapshot
+from riser_soil.core.snapshot import Record
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.scenes import prescribed, riser_scene, static
 from tests.support.stage_histories import distance, stage_histories
@@ -18,7 +18,7 @@ W, STIFFNESS, SLOPE = 700.0, 1e5, 3.0  # N/m, N/m2, deg
 PIPE = {"EA": 3e8, "EI": 2e4, "GJ": 1e4, "outer_diameter": 0.3, "submerged_weight": W}
 
 
-def lying(folder: Path, seabed: dict[str, Any], dimension: int = 3) -> RiserSnapshot:
+def lying(folder: Path, seabed: dict[str, Any], dimension: int = 3) -> Record:
     """A riser from the ground at its start, where its axis rests, to 60 m above and 110 m away."""
     scene = riser_scene(
         static(),

@@ -29,7 +29,7 @@ from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.newton import Newton
@@ -164,7 +164,7 @@ def top_tension(dt: float) -> Array:
     before = take(assembly, scene.stages[0])
 
     def watch(stepper: TimeStepper, _: AcceptedStep) -> None:
-        tension.append(float(riser_snapshot(assembly.riser, stepper).effective_tension[-1]))
+        tension.append(float(riser_record(assembly.riser, stepper).effective_tension[-1]))
 
     run_stage(assembly, scene.stages[1], before, Watcher(watch), Timer.new())
     return np.array(tension)

@@ -11,10 +11,10 @@ import pytest
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.laid_guess import laid_guess
 from riser_soil.core.part import State
-from riser_soil.core.snapshot import RiserSnapshot
+from riser_soil.core.snapshot import Record
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
@@ -73,12 +73,12 @@ class Laid(Watcher):
     def __init__(self, assembly: Assembly) -> None:
         super().__init__(self._see)
         self.assembly, self.iterations, self.cuts = assembly, list[int](), 0
-        self.end: list[RiserSnapshot] = []
+        self.end: list[Record] = []
 
     def _see(self, stepper: TimeStepper, step: AcceptedStep) -> None:
         self.iterations.append(step.solution.iterations)
         self.cuts += step.cuts
-        self.end.append(riser_snapshot(self.assembly.riser, stepper))
+        self.end.append(riser_record(self.assembly.riser, stepper))
 
 
 def laid(mapping: Mapping) -> Laid:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import RiserSnapshot
+from riser_soil.core.snapshot import Record
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene
@@ -31,7 +31,7 @@ def lying(
     more_stages: tuple[Mapping, ...] = (),
     more_contact: Mapping | None = None,
     **more: Any,
-) -> RiserSnapshot:
+) -> Record:
     """A riser from the ground at its start, where its axis rests, to 60 m above and 110 m away; after all stages."""
     ground = {"kind": "spring", "stiffness": 1e5, "contact_at": "axis"} | seabed
     scene = riser_scene(
@@ -51,7 +51,7 @@ def lying(
     return stage_histories(scene)[-1].end
 
 
-def resting(found: RiserSnapshot) -> slice:
+def resting(found: Record) -> slice:
     """Nodes well within the stretch that lies on the ground."""
     touching = np.flatnonzero(found.contact_force > 0.0)
     return slice(int(touching[0]) + 12, int(touching[-1]) - 12)
@@ -71,7 +71,7 @@ def test_riser_on_a_slope(method: str, dimension: int) -> None:
     assert total[2] == pytest.approx(150.0 * W - np.sum(_tributary(found) * found.contact_force) * cosine, rel=1e-6)
 
 
-def _tributary(found: RiserSnapshot) -> np.ndarray:
+def _tributary(found: Record) -> np.ndarray:
     share = np.full(len(found.contact_force), 1.0)
     share[[0, -1]] = 0.5
     return share

@@ -17,7 +17,7 @@ from riser_soil.assembly import build
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.results import Run
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
@@ -60,7 +60,7 @@ def reported(elements: int, time_step: float) -> tuple[float, float, float]:
     tension, energy = list[tuple[float, float]](), list[float]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        found = riser_snapshot(assembly.riser, stepper).effective_tension
+        found = riser_record(assembly.riser, stepper).effective_tension
         tension.append((float(found[-1]), float(found.max())))
         energy.append(stepper.energy.total)
 

@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
@@ -65,7 +65,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
     assembly, found = built(scene), list[Found]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        riser, line = riser_snapshot(assembly.riser, stepper), assembly.riser.line
+        riser, line = riser_record(assembly.riser, stepper), assembly.riser.line
         assert assembly.riser.seabed is not None
         tangent = line.trial(stepper.now).turn.tangent
         slope = np.append(tangent[:, 0, 1] / tangent[:, 0, 0], tangent[-1, 1, 1] / tangent[-1, 1, 0])

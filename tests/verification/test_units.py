@@ -18,7 +18,7 @@ from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
@@ -79,7 +79,7 @@ def reported_of(scene: Mapping, s: float) -> Array:
     rows = list[list[float]]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        riser, contact = riser_snapshot(assembly.riser, stepper), assembly.contacts[0]
+        riser, contact = riser_record(assembly.riser, stepper), assembly.contacts[0]
         forces = [riser.start_force[0] / s**3, riser.effective_tension[-1] / s**3, riser.bending_moment.max() / s**4]
         places = [contact.touchdown_arc(stepper.now) / s, float(riser.position[:, 2].min()) / s]
         time = 0.0 if len(rows) == 0 else step.t / s**0.5

@@ -18,7 +18,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.results.riser_snapshot import riser_snapshot
+from riser_soil.results.riser_record import riser_record
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
@@ -141,7 +141,7 @@ def taut_peak(folder: Path, steps: int, elements: int, rho_inf: float = 0.8) -> 
 
 
 def _start_force(assembly: Assembly, stepper: TimeStepper) -> float:
-    return -float(riser_snapshot(assembly.riser, stepper).start_force[0])
+    return -float(riser_record(assembly.riser, stepper).start_force[0])
 
 
 def _moving_off(file: Path) -> Path:

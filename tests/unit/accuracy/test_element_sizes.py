@@ -12,7 +12,7 @@ import pytest
 from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.assembly.graded_segments import graded
 from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import Instant
+from riser_soil.core.snapshot import Record
 from riser_soil.scene.riser import Segment
 from tests.support.recorded_run import Catenary
 
@@ -22,16 +22,16 @@ MISSED = 5.0  # N m: half of the share of the largest moment, 1e3 N m; the other
 LIMP = {"curvature": np.zeros(ARC.size)}  # no EI that tension acts against
 
 
-def seen(moment: Array, tension: Array, **more: Array) -> Instant:
+def seen(moment: Array, tension: Array, **more: Array) -> Record:
     """A riser with such a moment about y and tension along it."""
     line = Catenary(32.0, 30.0)
     vector = np.zeros((ARC.size, 3))
     vector[:, 1] = moment
     given: dict[str, Any] = {"moment_vector": vector, "bending_moment": np.abs(moment), "effective_tension": tension}
-    return Instant(ARC, line.riser(ARC)._replace(**(given | LIMP | more)), line.touch(ARC))
+    return line.seen(ARC).with_values(**(given | LIMP | more))
 
 
-def envelope(*instants: Instant) -> CurveEnvelope:
+def envelope(*instants: Record) -> CurveEnvelope:
     made = CurveEnvelope()
     for instant in instants:
         made.add(instant)

@@ -5,13 +5,11 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
-from types import SimpleNamespace
-from typing import cast
 
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import RiserSnapshot
+from riser_soil.core.snapshot import Record
 from riser_soil.results.plausibility import LargestValue, Plausibility
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -99,8 +97,8 @@ def test_compression_beyond_what_elements_bear_is_reported(EI: float, push: floa
     seen.begin_stage(assembly.scene.stages[0])
     seen.EA = np.full(3, 1.0e9)
     tension = np.array([[1.0e4, -push, 20.0]])
-    riser = SimpleNamespace(effective_tension=tension, curvature=still, bending_moment=still)
-    seen.look([1.0], cast("RiserSnapshot", riser))
+    values = {"effective_tension": tension, "curvature": still, "bending_moment": still}
+    seen.look([1.0], Record(assembly.riser.line.arc, values))
     assert len(seen.warnings()) == bool(said)
     for words in said:
         line_with(seen.warnings(), words)

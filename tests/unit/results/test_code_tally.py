@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import CodeCheckFacts, CodeSnapshot
+from riser_soil.core.snapshot import CodeCheckFacts, Record
 from riser_soil.results.code_tally import CodeTally
 from tests.support.said import line_with
 
@@ -13,10 +13,11 @@ FACTS = [
 ]
 
 
-def seen(*rows: tuple[float, float], place: float = 10.0) -> CodeSnapshot:
+def seen(*rows: tuple[float, float], place: float = 10.0) -> Record:
     """Utilisations of both checks at instants in turn, at arcs 10 m and 20 m."""
     largest = np.array(rows)
-    return CodeSnapshot(largest, largest, np.broadcast_to([place, 2.0 * place], largest.shape))
+    places = np.broadcast_to([place, 2.0 * place], largest.shape)
+    return Record(np.zeros(1), {"code_largest": largest, "code_place": places})
 
 
 def followed() -> CodeTally:
@@ -41,7 +42,7 @@ def test_what_is_exceeded_is_a_warning() -> None:
 
 def test_nothing_is_reported_before_anything_is_checked() -> None:
     tally = CodeTally(FACTS)
-    tally.update(np.array([1.0]), None)
+    tally.update(np.array([1.0]), Record(np.zeros(1), {}))
     assert tally.as_list() == []
     assert [*tally.warnings("s")] == []
 

@@ -1,4 +1,4 @@
-"""Instants of a run, many at once: what is told of them is what is told of each."""
+"""Records of a run, of many instants at once: each is what it is alone."""
 
 from __future__ import annotations
 
@@ -6,20 +6,12 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import views
-from riser_soil.core.snapshot import Instant, instants_at, mapped
 from riser_soil.results.figures import Extremes, pack
 from riser_soil.riser.wall_stress import Wall, wall_sections
 from tests.support.recorded_run import Catenary, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)
 SEEN = [Catenary(a, 60.0 - a).seen(ARC) for a in (30.0, 34.0, 31.0)]
-
-
-def leaves(seen: Instant) -> list[np.ndarray]:
-    found: list[np.ndarray] = []
-    for snapshot in (seen.riser, seen.touch):
-        mapped(lambda values: found.append(np.asarray(values)), snapshot)
-    return found
 
 
 def test_views_are_of_the_vector_and_of_each_row() -> None:
@@ -34,8 +26,10 @@ def test_views_are_of_the_vector_and_of_each_row() -> None:
 
 @pytest.mark.parametrize("n", range(3))
 def test_one_of_many_is_itself(n: int) -> None:
-    for found, expected in zip(leaves(instants_at(stacked(SEEN), n)), leaves(SEEN[n]), strict=True):
-        np.testing.assert_array_equal(found, expected)
+    found = stacked(SEEN).at(n)
+    assert list(found) == list(SEEN[n])
+    for name, expected in SEEN[n].items():
+        np.testing.assert_array_equal(found[name], expected)
 
 
 def test_figures_of_many_are_those_of_each() -> None:
@@ -55,3 +49,13 @@ def test_walls_of_many_are_those_of_each() -> None:
     stress = np.array([[1.0, 2.0, 5.0, 6.0], [1.0, 5.0, 2.0, 6.0]])
     found = sections.at_nodes(-stress, stress, 3)
     assert found.tolist() == [sections.at_nodes(-row, row, 3).tolist() for row in stress] == 2 * [[-1.0, -5.0, -6.0]]
+
+
+def test_what_is_not_known_is_not_there() -> None:
+    record = SEEN[0].with_values(slip=None, largest_moment=None)
+    assert "slip" not in record
+    assert record.get("slip") is None
+    assert record.extreme("largest_moment") is None
+    assert record.extreme("largest_curvature") == (record.largest_curvature, 30.0)
+    with pytest.raises(AttributeError, match="slip"):
+        _ = record.slip

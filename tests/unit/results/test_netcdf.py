@@ -45,7 +45,7 @@ def test_xarray_reads_what_was_recorded(tmp_path: Path) -> None:
     data = xr.open_dataset(tmp_path / "run" / "results.nc", engine="h5netcdf")
     assert dict(data.sizes) == {"time": 11, "step": 12, "arc": arc.size, "component": 3, "section": 1, "offset": 5}
     np.testing.assert_allclose(data["time"], 0.1 * np.arange(11), atol=1e-12)
-    first = Catenary(32.0, 30.0).riser(arc)
+    first = Catenary(32.0, 30.0).seen(arc)
     np.testing.assert_array_equal(data["position"].sel(time=0.0), first.position)
     np.testing.assert_array_equal(data["effective_tension"][0], first.effective_tension)
     np.testing.assert_array_equal(data["end_force"][0], first.end_force)

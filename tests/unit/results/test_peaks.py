@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import as_list
-from riser_soil.core.snapshot import ExtremeAlong, Instant
+from riser_soil.core.snapshot import Record
 from riser_soil.results.figures import pack, places_of
 from riser_soil.results.peaks import WINDOWS, RunPeaks, least_between_nodes, pack_peaks, vertex
 from tests.support.recorded_run import Catenary, stacked
@@ -35,20 +35,17 @@ def test_peak_at_an_end_stays_there() -> None:
     assert least_between_nodes(np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 3.0])) == 0.0
 
 
-def seen(t: float) -> Instant:
+def seen(t: float) -> Record:
     """Catenary whose largest moment grows and falls with time."""
-    line = Catenary(32.0, 30.0)
-    riser = line.riser(ARC)
-    moment = ExtremeAlong(riser.largest_moment.value * float(np.cos(t)), riser.largest_moment.arc)
-    return Instant(ARC, riser._replace(largest_moment=moment), line.touch(ARC))
+    record = Catenary(32.0, 30.0).seen(ARC)
+    return record.with_values(largest_moment=record.largest_moment * np.cos(t))
 
 
 def test_only_what_sits_between_nodes_is_replaced() -> None:
     """Of the figures, the least tension alone is told at nodes."""
     tension = (ARC - 67.0) ** 2
-    at_node = ExtremeAlong(float(tension.min()), float(ARC[tension.argmin()]))
-    hanging = seen(0.0).riser._replace(effective_tension=tension, least_tension=at_node)
-    least = Instant(ARC, hanging, seen(0.0).touch)
+    at_node = {"least_tension": tension.min(), "least_tension_arc": ARC[tension.argmin()]}
+    least = seen(0.0).with_values(effective_tension=tension, **at_node)
     plain, (peaked,) = pack(least), pack_peaks(stacked([least]))
     changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
     assert set(changed) == {places_of("min_effective_tension").start}
@@ -67,7 +64,7 @@ def test_extremes_of_a_stage_three_ways() -> None:
         for which in ("sampled", "of_nodes", "peaks")
     }
     top = pack_peaks(stacked([seen(0.0)]))[0][places_of("max_bending_moment")].item()
-    assert largest["sampled"] == pytest.approx(seen(0.1).riser.largest_moment.value)
+    assert largest["sampled"] == pytest.approx(seen(0.1).largest_moment)
     assert largest["of_nodes"] == pytest.approx(top * np.cos(0.1))
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)
 
@@ -102,9 +99,9 @@ def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str
     """Peaks of a stage of a catenary whose largest moment is given at steps t."""
     peaks = RunPeaks()
     peaks.begin_stage("motion", kind, duration)
-    line = Catenary(32.0, 30.0)
-    risers = [line.riser(ARC)._replace(largest_moment=ExtremeAlong(float(size), 0.0)) for size in moment]
-    peaks.record(as_list(t), {"": stacked([Instant(ARC, riser, line.touch(ARC)) for riser in risers])})
+    line = Catenary(32.0, 30.0).seen(ARC)
+    of_steps = [line.with_values(largest_moment=size, largest_moment_arc=ARC[0]) for size in moment]
+    peaks.record(as_list(t), {"": stacked(of_steps)})
     return peaks
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.output import angle_deg
-from riser_soil.core.snapshot import ContactSnapshot, ExtremeAlong, Instant, Ledger
+from riser_soil.core.snapshot import Ledger, Record
 from riser_soil.results.figures import Extremes, final_state, pack, unpack
 from riser_soil.results.summary import StageTally, Summary, plain_json
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record, stacked
@@ -58,7 +58,7 @@ def strictly(text: str) -> Any:
 
 
 def test_final_state_of_a_catenary() -> None:
-    final = final_state(Instant(ARC, LINE.riser(ARC), LINE.touch(ARC)))
+    final = final_state(LINE.seen(ARC))
     assert set(final) == {"start", "end", PLACE} | WHOLE
     assert set(final["start"]) == set(final["end"]) == END
     assert final["start"]["force"] == pytest.approx([-WEIGHT * 32.0, 0.0, 0.0])
@@ -79,32 +79,32 @@ def test_final_state_of_a_catenary() -> None:
 
 
 def test_what_is_unknown_is_left_out() -> None:
-    unused = ExtremeAlong(math.nan, math.nan)
-    riser = LINE.riser(ARC)._replace(wall_tension=None, largest_bend_utilisation=unused)
-    riser = riser._replace(tension_utilisation=None, wall=None, code=None)
-    touch, extremes = LINE.touch(ARC)._replace(embedment=None), Extremes()
-    extremes.update(0.0, pack(Instant(ARC, riser, touch)))
+    sometimes: tuple[str, ...] = ("wall_tension", "largest_bend_utilisation", "tension_utilisation", "embedment")
+    sometimes += ("wall_von_mises_stress", "stress_utilisation", *(name.removeprefix("max_") for name in CODE))
+    record = LINE.seen(ARC).with_values(**dict.fromkeys(sometimes))
+    extremes = Extremes()
+    extremes.update(0.0, pack(record))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
     unknown |= {"max_tension_utilisation", "max_wall_von_mises_stress", "max_stress_utilisation", *CODE}
-    for found in (final_state(Instant(ARC, riser, touch)), extremes.nested()):
+    for found in (final_state(record), extremes.nested()):
         assert set(found) == {"start", "end", PLACE} | WHOLE - unknown
 
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
-    riser = LINE.riser(ARC)._replace(largest_curvature=ExtremeAlong(0.0, 0.0))
-    final = final_state(Instant(ARC, riser, LINE.touch(ARC)))
+    straight = dict.fromkeys(("largest_curvature", "largest_curvature_arc"), np.zeros(()))
+    final = final_state(LINE.seen(ARC).with_values(**straight))
     assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 
 
 def test_a_pipe_bent_too_much_is_a_warning() -> None:
     stage = StageTally("heave", "dynamic")
-    stage.bend(np.array([0.1]), stacked([Catenary(25.0, 30.0).seen(ARC)]).riser)
+    stage.bend(np.array([0.1]), stacked([Catenary(25.0, 30.0).seen(ARC)]))
     both = stacked([Catenary(a, 30.0).seen(ARC) for a in (16.0, 18.0)])
-    stage.bend(np.array([0.2, 0.3]), both.riser)
+    stage.bend(np.array([0.2, 0.3]), both)
     (warning,) = stage.warnings
     line_with([warning], "min_bend_radius", "1.25 times", "arc 30 m and 0.2 s", "radius is 16 m")
     stage = StageTally("heave", "dynamic")
-    stage.bend(np.array([0.1]), stacked([Catenary(20.1, 30.0).seen(ARC)]).riser)
+    stage.bend(np.array([0.1]), stacked([Catenary(20.1, 30.0).seen(ARC)]))
     assert stage.warnings == []
 
 
@@ -118,7 +118,7 @@ def test_angle_from_the_horizontal(tangent: tuple[float, ...], angle: float) -> 
 def test_extremes_know_when() -> None:
     extremes = Extremes()
     for t, a in ((0.0, 32.0), (0.1, 35.0), (0.2, 30.0)):
-        extremes.update(t, pack(Instant(ARC, Catenary(a, 30.0).riser(ARC), LINE.touch(ARC))))
+        extremes.update(t, pack(Catenary(a, 30.0).seen(ARC)))
     nested = extremes.nested()
     assert nested["end"]["force"]["max"][0] == pytest.approx(WEIGHT * 35.0)
     assert nested["end"]["force"]["t_max"][0] == 0.1
@@ -137,7 +137,7 @@ def test_extremes_know_when() -> None:
 def test_extremes_know_where() -> None:
     extremes = Extremes()
     for t, (a, s0) in enumerate([(32.0, 30.0), (35.0, 40.0), (30.0, 20.0)]):
-        extremes.update(t, pack(Instant(ARC, Catenary(a, s0).riser(ARC), LINE.touch(ARC))))
+        extremes.update(t, pack(Catenary(a, s0).seen(ARC)))
     found = extremes.nested()
     assert (found["max_bending_moment"]["arc_min"], found["max_bending_moment"]["arc_max"]) == (40.0, 20.0)
     assert {"arc_min", "arc_max"} <= found["min_effective_tension"].keys()
@@ -146,7 +146,7 @@ def test_extremes_know_where() -> None:
 
 def test_extremes_mirror_the_final_state() -> None:
     extremes = Extremes()
-    extremes.update(0.0, pack(Instant(ARC, LINE.riser(ARC), LINE.touch(ARC))))
+    extremes.update(0.0, pack(LINE.seen(ARC)))
     nested = extremes.nested()
     assert set(nested) == {"start", "end", PLACE} | WHOLE
     assert set(nested["start"]) == set(nested["end"]) == END
@@ -157,16 +157,18 @@ def test_extremes_mirror_the_final_state() -> None:
 def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
     extremes = Extremes()
     for t, arc in ((0.0, math.nan), (0.1, 20.0), (0.2, math.nan)):
-        extremes.update(t, pack(Instant(ARC, LINE.riser(ARC), LINE.touch(ARC)._replace(touchdown_arc=arc))))
+        extremes.update(t, pack(LINE.seen(ARC).with_values(touchdown_arc=np.array(arc))))
     assert extremes.nested()["touchdown_arc"] == {"min": 20.0, "max": 20.0, "t_min": 0.1, "t_max": 0.1}
 
 
 def test_never_touching_is_null(tmp_path: Path) -> None:
     summary = Summary(FACTS)
     stage = StageTally("hang", "static", steps=1)
-    free = ContactSnapshot(math.nan, np.full(3, math.nan), 0, 0.0, np.zeros(3))
-    stage.extremes.update(1.0, pack(Instant(ARC, LINE.riser(ARC), free)))
-    stage.final = final_state(Instant(ARC, LINE.riser(ARC), free))
+    free = {"touchdown_arc": np.float64(math.nan), "touchdown_position": np.full(3, math.nan)}
+    free |= {"touchdown_points": np.int64(0), "max_penetration": np.float64(0.0), "contact_force_sum": np.zeros(3)}
+    record = Record(ARC, LINE.riser(ARC) | free)
+    stage.extremes.update(1.0, pack(record))
+    stage.final = final_state(record)
     summary.stages.append(stage)
     summary.write(tmp_path / "summary.json")
     written = strictly((tmp_path / "summary.json").read_text())["stages"][0]

@@ -8,21 +8,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import Instant, RunFacts
+from riser_soil.core.snapshot import RunFacts
 from riser_soil.results.figures import final_state, pack
 from riser_soil.results.summary import StageTally, Summary, plain_json
 from riser_soil.variants.key_results import KeyResult, key_results
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary
 
 ARC = np.linspace(0.0, 150.0, 301)
-LENGTH = math.dist((0.0, 0.0, 0.15), Catenary(32.0, 30.0).riser(ARC).position[-1])
+LENGTH = math.dist((0.0, 0.0, 0.15), Catenary(32.0, 30.0).seen(ARC).position[-1])
 
 
 def summary(kind: str, *parameters: float, facts: RunFacts = FACTS, **soil: Any) -> Any:
     """Of one stage that went through catenaries of these parameters [m], as read from summary.json."""
     whole, tally = Summary(facts), StageTally("lay", kind)
     for t, a in enumerate(parameters):
-        seen = Instant(ARC, Catenary(a, 62.0 - a).riser(ARC), Catenary(a, 62.0 - a).touch(ARC))
+        seen = Catenary(a, 62.0 - a).seen(ARC)
         tally.extremes.update(float(t), pack(seen))
         tally.final, tally.steps = final_state(seen), t + 1
     tally.soil = soil

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from riser_soil.assembly import LineAssembly
 from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import CodeSnapshot, ExtremeAlong, RiserSnapshot, WallSnapshot
+from riser_soil.core.snapshot import Record
 from riser_soil.riser.bending_peaks import largest_between_nodes
 from riser_soil.riser.section_forces import SectionForces, at_most
 from riser_soil.riser.sections import larger_beside
@@ -19,45 +20,48 @@ if TYPE_CHECKING:
     from riser_soil.code_checks.line_checks import LineChecks
 
 
-def riser_snapshot(riser: LineAssembly, stepper: TimeStepper) -> RiserSnapshot:
-    """The riser at the accepted state; on the rank that holds it."""
+def riser_record(riser: LineAssembly, stepper: TimeStepper) -> Record:
+    """The riser at the accepted state, without its touchdown; on the rank that holds it."""
     line, accepted = riser.line, stepper.newton.accepted
     inside = SectionForces(line, riser.elements, accepted.section_input(line, stepper.now))
     pressed = [contact.force_per_length(stepper.now) for contact in riser.contacts]
     contact_force = np.sum([np.zeros(riser.line.nodes), *pressed], axis=0)
-    return snapshot_of(riser, inside, contact_force, riser.pressure_change(stepper.now.t))
+    return Record(line.arc, riser_values(riser, inside, contact_force, riser.pressure_change(stepper.now.t)))
 
 
-def snapshot_of(
+def riser_values(
     riser: LineAssembly, inside: SectionForces, contact_force: Array, pressure: Array | float
-) -> RiserSnapshot:
-    """From its section forces, the contact force per length (nn,) and the change of the pressure inside [Pa], at one
-    instant or at many.
+) -> dict[str, Array | None]:
+    """Quantities by the section forces, the contact force per length (nn,) and the change of the pressure inside [Pa],
+    at one instant or at many; None where something is not known.
     """
-    most_used, tightest = _tightest_bend(riser, inside)
-    return RiserSnapshot(
-        position=inside.position,
-        effective_tension=inside.effective_tension,
-        wall_tension=_wall_tension(riser, inside, pressure),
-        bending_moment=inside.bending_moment,
-        curvature=inside.curvature,
-        bend_utilisation=_bend_utilisation(riser, inside.curvature_beside),
-        least_tension=ExtremeAlong(*inside.least_tension),
-        largest_moment=ExtremeAlong(*inside.largest_moment),
-        largest_curvature=ExtremeAlong(*inside.largest_curvature),
-        largest_bend_utilisation=most_used,
-        tightest_radius=tightest,
-        contact_force=contact_force,
-        moment_vector=inside.moment,
-        start_force=inside.end_force[..., 0, :],
-        end_force=inside.end_force[..., 1, :],
-        start_moment=inside.end_moment[..., 0, :],
-        end_moment=inside.end_moment[..., 1, :],
-        start_tangent=inside.tangent[..., 0, 0, :],
-        end_tangent=inside.tangent[..., -1, 1, :],
-        tension_utilisation=_tension_utilisation(riser, inside.effective_tension),
-        wall=_wall(riser, inside, pressure),
-    )
+    return {
+        "position": inside.position,
+        "effective_tension": inside.effective_tension,
+        "wall_tension": _wall_tension(riser, inside, pressure),
+        "bending_moment": inside.bending_moment,
+        "curvature": inside.curvature,
+        "bend_utilisation": _bend_utilisation(riser, inside.curvature_beside),
+        **_along("least_tension", *inside.least_tension),
+        **_along("largest_moment", *inside.largest_moment),
+        **_along("largest_curvature", *inside.largest_curvature),
+        **_tightest_bend(riser, inside),
+        "contact_force": contact_force,
+        "moment_vector": inside.moment,
+        "start_force": inside.end_force[..., 0, :],
+        "end_force": inside.end_force[..., 1, :],
+        "start_moment": inside.end_moment[..., 0, :],
+        "end_moment": inside.end_moment[..., 1, :],
+        "start_tangent": inside.tangent[..., 0, 0, :],
+        "end_tangent": inside.tangent[..., -1, 1, :],
+        "tension_utilisation": _tension_utilisation(riser, inside.effective_tension),
+        **_wall(riser, inside, pressure),
+    }
+
+
+def _along(name: str, value: Array, arc: Array) -> dict[str, Array]:
+    """A largest or least value along the riser, with its place."""
+    return {name: value, f"{name}_arc": arc}
 
 
 def _bend_utilisation(riser: LineAssembly, curvature: Array) -> Array | None:
@@ -67,16 +71,15 @@ def _bend_utilisation(riser: LineAssembly, curvature: Array) -> Array | None:
     return at_most(riser.elements.min_bend_radius[:, None] * curvature)
 
 
-def _tightest_bend(riser: LineAssembly, inside: SectionForces) -> tuple[ExtremeAlong, Array]:
-    """The largest bend utilisation, and the radius [m] there; nan where no least radius is given."""
-    allowed = riser.elements.min_bend_radius
+def _tightest_bend(riser: LineAssembly, inside: SectionForces) -> dict[str, Array]:
+    """The largest bend utilisation, and the radius [m] there; nothing where no least radius is given."""
     if not riser.elements.limits_bending:
-        unknown = np.full(inside.effective_tension.shape[:-1], np.nan)[()]
-        return ExtremeAlong(unknown, unknown), unknown
+        return {}
+    allowed = riser.elements.min_bend_radius
     rows = (allowed[:, None] * values for values in (inside.curvature_beside, inside.curvature_slope))
     used, arc, e = largest_between_nodes(riser.line.arc, *rows)
     radius = np.divide(allowed[e], used, out=np.full(np.shape(used), np.inf), where=used > 0.0)
-    return ExtremeAlong(used, arc), radius[()]
+    return _along("largest_bend_utilisation", used, arc) | {"tightest_radius": radius}
 
 
 def _wall_tension(riser: LineAssembly, inside: SectionForces, pressure: Array | float) -> Array | None:
@@ -96,17 +99,16 @@ def _tension_utilisation(riser: LineAssembly, tension: Array) -> Array | None:
     return np.where(share > 0.0, tension * share, np.nan)
 
 
-def _wall(riser: LineAssembly, inside: SectionForces, pressure: Array | float) -> WallSnapshot | None:
-    sections = riser.wall_sections
-    if sections is None:
-        return None
-
-    return wall_snapshot(riser, sections, inside, pressure)
+def _wall(riser: LineAssembly, inside: SectionForces, pressure: Array | float) -> Mapping[str, Array | None]:
+    return {} if riser.wall_sections is None else wall_values(riser, riser.wall_sections, inside, pressure)
 
 
-def wall_snapshot(
+def wall_values(
     riser: LineAssembly, sections: WallSections, forces: SectionForces, pressure: Array | float
-) -> WallSnapshot:
+) -> dict[str, Array | None]:
+    """Loads and stress of the pipe's wall; stresses are nan where there is no wall, and at a joint those of the side
+    with the larger von Mises' stress.
+    """
     assert riser.pressures is not None  # scenes with a wall are refused without
     wall, nodes = sections.wall, riser.line.nodes
     inside, outside = riser.pressures.at(forces.position[..., 2], pressure)
@@ -119,24 +121,24 @@ def wall_snapshot(
     def governing(stress: Array) -> Array:
         return sections.at_nodes(stress, von_mises, nodes)
 
-    return WallSnapshot(
-        internal_pressure=inside,
-        external_pressure=outside,
-        moment_y=moment_y,
-        moment_z=moment_z,
-        torque=torque,
-        axial_stress=governing(loads.tension / wall.area),
-        bending_stress=governing(bending_stress(loads.moment, wall.outer_diameter, wall)),
-        hoop_stress=governing(hoop_and_radial_stress(loads, wall.inner_diameter, wall)[0]),
-        von_mises_stress=governing(von_mises),
-        stress_utilisation=used,
-        most_used_stress=most_used,
-    )
+    return {
+        "internal_pressure": inside,
+        "external_pressure": outside,
+        "bending_moment_y": moment_y,
+        "bending_moment_z": moment_z,
+        "torque": torque,
+        "wall_axial_stress": governing(loads.tension / wall.area),
+        "wall_bending_stress": governing(bending_stress(loads.moment, wall.outer_diameter, wall)),
+        "wall_hoop_stress": governing(hoop_and_radial_stress(loads, wall.inner_diameter, wall)[0]),
+        "wall_von_mises_stress": governing(von_mises),
+        "stress_utilisation": used,
+        "most_used_stress": most_used,
+    }
 
 
-def code_snapshot(
+def code_values(
     riser: LineAssembly, checks: LineChecks, forces: SectionForces, contact_force: Array, pressure: Array
-) -> CodeSnapshot:
+) -> dict[str, Array]:
     """Utilisations by codes at many instants; pressure (nt,): change of that inside [Pa]."""
     from riser_soil.code_checks.load_effects import SectionEffects
 
