@@ -136,7 +136,7 @@ def add_blocks(values: Array, places: IntArray, blocks: Array) -> None:
 
 @dataclass(frozen=True, eq=False)
 class CandidatePairs:
-    """Candidate pairs of a node and a facet, sorted and without repetition.
+    """Candidate pairs of a node or an element of the riser and a facet, sorted and without repetition.
 
     pairs (mp,): node·facets + facet, where `facets` is the number of facets.
     """

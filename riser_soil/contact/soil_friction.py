@@ -75,7 +75,7 @@ class SoilFriction(LinePart):
         self.line.forget()
 
     def blocks(self) -> dict[str, MatrixBlock]:
-        """Those of contact."""
+        """Blocks of contact."""
         return self.contact.blocks()
 
     def evaluate(self, state: State) -> SlidingState:

@@ -205,7 +205,7 @@ class SurfaceContact(SoilContact):
         return float(self._radius.max())
 
     def blocks(self) -> dict[str, MatrixBlock]:
-        """Those of the pairs; all dofs of each element, whose directors turn."""
+        """Blocks of the pairs, and of each element, whose directors turn."""
         return super().blocks() | {self.line.name: self.line.element_block()}
 
     def pair_dofs(self, on_line: IntArray, facet: IntArray) -> IntArray:
@@ -223,7 +223,7 @@ class SurfaceContact(SoilContact):
         self.add_residual(found, found.pressed.on_riser, forces)
 
     def add_residual(self, found: SurfaceState, f: Array, forces: Forces) -> None:
-        """Add that of forces f (n, 3) on the pipe at the points."""
+        """Add the residual of forces f (n, 3) on the pipe at the points."""
         F, soil = found.pressed.spread(f)
         self.line.scatter(found.on_elements(F), forces.end)
         forces.end[self._soil.part] += soil.ravel()
@@ -249,8 +249,8 @@ class SurfaceContact(SoilContact):
         return pressed.work(pressed.on_riser, self.start())
 
     def work(self, before: State, after: State) -> Work:
-        """As of all contacts with soil; with suction the time scheme's share is what the force took beyond the work of
-        the law along the step.
+        """Energy dissipated, see `SoilContact`; with suction the time scheme's share is what the force took beyond
+        the work of the law along the step.
         """
         work = super().work(before, after)
         if self.law.columns:
@@ -384,7 +384,7 @@ class SurfaceContact(SoilContact):
         return np.asarray(x[:, 2] - radius - self._soil.heights(x[:, :2], surface))
 
     def state(self) -> Saved:
-        """That of the pattern, and the history of the points."""
+        """The pattern, the energy stored, and the history of the points."""
         return super().state() | (gathered({"points": self._memory}) if self.active else {})
 
     def restore(self, saved: Saved) -> None:

@@ -31,7 +31,7 @@ from riser_soil.solve.step_kernels import TOO_NARROW
 
 
 class SoilData(NamedTuple):
-    """Of condensed soil: stiffness (nb, nb) [N/m] of its reached dofs; how far these were moved as accepted (nb,) [m],
+    """Condensed soil: stiffness (nb, nb) [N/m] of its reached dofs; how far these were moved as accepted (nb,) [m],
     and the forces (nb,) [N] that hold them there. terms (nb,): see `step_kernels.write_terms`.
     """
 
@@ -112,7 +112,7 @@ def find_above(soil: SoilData, border: Border, above: BoolArray) -> None:
 
 
 def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
-    """That of lines on condensed soil, one of which touches it; None where there are no kernels."""
+    """What makes the border of lines on condensed soil, one of which touches it; None where a part has no kernels."""
     contact = next((part for part in beside if isinstance(part, SoilContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
     friction = next((part for part in beside if isinstance(part, SoilFriction)), None)
