@@ -28,10 +28,10 @@ from riser_soil.bodies.body import (
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Calls, call_each, calls
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State, Traits, Work
+from riser_soil.core.part import State, Traits, Weights, Work
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
@@ -152,7 +152,7 @@ def _add_drag(part: DragData, at: SpatialConfiguration, out: LineForces) -> None
 
 @add_tangent.of(DragData)
 def _add_tangent_of_drag(
-    part: DragData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: DragData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     here = posture(at)
     water, lever = _pushed(part, here), skew(vector(part.centre))
@@ -160,11 +160,11 @@ def _add_tangent_of_drag(
     moved = matscale(-1.0, matmul(skew(water.arm), here.H))  # the centre, by the rotation dofs
     by_place = _force_by(part, here, water, isotropic(1.0), NONE)
     by_turn = _force_by(part, here, water, moved, here.T)
-    resists = matscale(maps.shift_v * water.share, water.drag_by)
+    resists = matscale(weights.shift_v * water.share, water.drag_by)
     by_place = matadd(by_place, matmul(resists, transpose(here.R)))
     by_turn = matadd(by_turn, matscale(-1.0, matmul(resists, lever)))
     rise = scale(water.slope, vector(part.motion.immersion_gradient[0]))
-    spun = scaled_rows(scale(maps.shift_v * water.share, water.twist_by), isotropic(1.0))
+    spun = scaled_rows(scale(weights.shift_v * water.share, water.twist_by), isotropic(1.0))
     twist_by_turn = matadd(outer(water.twist, vecmat(rise, moved)), spun)
     by = Changes(
         by_place,

@@ -39,13 +39,13 @@ from riser_soil.bodies.body import (
 )
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State, Traits
+from riser_soil.core.part import State, Traits, Weights
 from riser_soil.core.roles import Starting
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.rotations import moment_stiffness
 from riser_soil.riser.vectors import (
     Mat,
@@ -108,9 +108,9 @@ def _add_inertia(part: InertiaData, at: SpatialConfiguration, out: LineForces) -
 
 @add_tangent.of(InertiaData)
 def _add_tangent_of_inertia(
-    part: InertiaData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: InertiaData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
-    here, shift_v, shift_a = posture(at), maps.shift_v, maps.shift_a
+    here, shift_v, shift_a = posture(at), weights.shift_v, weights.shift_a
     b, P, L, force, moment = _inertial(part, here)
     inverse, spin, drift = transpose(here.R), skew(here.W), skew(b)
     b_by_place, b_by_turn = matscale(shift_v, inverse), matmul(drift, here.T)
@@ -205,7 +205,7 @@ def _add_inertia_over_step(part: MidpointInertiaData, at: SpatialConfiguration, 
 
 @add_tangent.of(MidpointInertiaData)
 def _add_tangent_over_step(
-    part: MidpointInertiaData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: MidpointInertiaData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     if part.elapsed[0] == 0.0:
         add_tangent(part.instant, at, maps, weights, K)
@@ -213,7 +213,7 @@ def _add_tangent_over_step(
         start, end = _end_of_step(part, at, -1.0), _end_of_step(part, at, 1.0)
         _, moment = _over_step(part, at, start, end)
         Rn, Theta, H = matrix(at.Rn[0]), vector(at.Theta[0]), matrix(at.H[0])
-        follows, by = maps.shift_v + part.elapsed[0] * maps.shift_a, 0.5 / part.elapsed[0]
+        follows, by = weights.shift_v + part.elapsed[0] * weights.shift_a, 0.5 / part.elapsed[0]
         spin, inverse = matscale(2.0, matmul(Rn, rotations.left_tangent(scale(2.0, Theta)))), transpose(end.R)
         by_place = _momenta_by(part.instant, matscale(follows, inverse), NONE)
         by_turn = _momenta_by(part.instant, matmul(inverse, matmul(skew(end.v), spin)), isotropic(follows))
@@ -221,7 +221,7 @@ def _add_tangent_over_step(
         p_by_turn = matadd(matmul(end.R, by_turn[0]), matscale(-1.0, matmul(skew(end.linear), spin)))
         l_by_turn = matadd(matmul(end.R, by_turn[1]), matscale(-1.0, matmul(skew(end.angular), spin)))
         drift = matscale(0.5, skew(vector(at.v[0, :3])))
-        carried = matscale(-0.5 * maps.shift_v, skew(add(start.linear, end.linear)))
+        carried = matscale(-0.5 * weights.shift_v, skew(add(start.linear, end.linear)))
         moment_by_place = matadd(matadd(matscale(by, l_by_place), matmul(drift, p_by_place)), carried)
         moment_by_turn = matadd(matscale(by, l_by_turn), matmul(drift, p_by_turn))
         turning = matadd(matmul(transpose(H), moment_by_turn), moment_stiffness(Rn, Theta, moment))

@@ -21,11 +21,11 @@ from riser_soil.bodies.body import (
 )
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Traits
+from riser_soil.core.part import Traits, Weights
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.rotations import moment_stiffness
 from riser_soil.riser.vectors import (
     Vec,
@@ -77,7 +77,7 @@ def _add_weight(part: WeightData, at: SpatialConfiguration, out: LineForces) -> 
 
 @add_tangent.of(WeightData)
 def _add_tangent_of_weight(
-    part: WeightData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: WeightData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     here, Rn, Theta = posture(at), matrix(at.Rn[0]), vector(at.Theta[0])
     for arm, force, slope in _lifts(part, here):
@@ -148,7 +148,7 @@ def _add_release(part: ReleaseData, at: SpatialConfiguration, out: LineForces) -
 
 @add_tangent.of(ReleaseData)
 def _add_tangent_of_release(
-    part: ReleaseData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: ReleaseData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     here, left = posture(at), part.left[0]
     turn = _turned(part, here)

@@ -16,11 +16,11 @@ from riser_soil.bodies.body import MovingBody, add_tangent_at, add_to_dofs, post
 from riser_soil.contact.along_step import work_at
 from riser_soil.contact.seabed_kernels import by_position
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import State, Traits
+from riser_soil.core.part import State, Traits, Weights
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import add, cross, dot, matrix, matscale, matvec, scale, vecmat, vector, write
 from riser_soil.seabed.compiled_law import answer, may_act
 from riser_soil.seabed.grounds import Ground, distance_at
@@ -82,7 +82,7 @@ def _press(part: BodyContactData, at: SpatialConfiguration, out: LineForces) -> 
 
 @add_tangent.of(BodyContactData)
 def _add_tangent_of_contact(
-    part: BodyContactData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: BodyContactData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     here, found = posture(at), part.found
     Rn, Theta = matrix(at.Rn[0]), vector(at.Theta[0])

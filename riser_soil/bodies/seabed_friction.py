@@ -25,9 +25,9 @@ from riser_soil.contact.friction import (
 )
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State
+from riser_soil.core.part import State, Weights
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import Vec, add, cross, dot, matrix, matscale, scale, sub, vecmat, vector, write
 
 ALONG_X = (1.0, 0.0, 0.0)  # no seabed is so steep that it is square to it
@@ -84,7 +84,7 @@ def _resist(part: BodyFrictionData, at: SpatialConfiguration, out: LineForces) -
 
 @add_tangent.of(BodyFrictionData)
 def _add_tangent_of_friction(
-    part: BodyFrictionData, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: BodyFrictionData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     here, found, length = posture(at), part.contact.found, part.contact.length
     Rn, Theta = matrix(at.Rn[0]), vector(at.Theta[0])

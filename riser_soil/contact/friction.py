@@ -20,7 +20,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State, Traits
+from riser_soil.core.part import State, Traits, Weights
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
@@ -28,7 +28,7 @@ from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.moving_nodes import MovingNodes
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
@@ -286,7 +286,7 @@ def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> 
 
 
 @add_tangent.of(FrictionData)
-def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     contact, found, workspace = part.contact, part.contact.found, part.contact.element
     for e in range(part.stiffness.size):
         if not found.touches[e]:

@@ -14,11 +14,12 @@ from riser_soil.contact.contact import ContactResults, write_results
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.part import Weights
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
@@ -239,7 +240,7 @@ def _press(part: SeabedData, at: Configuration, e: int, out: LineForces) -> None
 
 
 @add_tangent.of(SeabedData)
-def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     found, workspace = part.found, part.element
     for e in range(part.radius.size):
         if not found.touches[e]:

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -46,8 +46,7 @@ class State:
         return cls(t, np.zeros(size), np.zeros(size), np.zeros(size))
 
 
-@dataclass(frozen=True)
-class Weights:
+class Weights(NamedTuple):
     """Weights of the groups in the time scheme, and how rates follow increments (dv/du [1/s], da/du [1/s2])."""
 
     inertia: float

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -177,7 +177,7 @@ class System:
         """Sizes (size,) of the terms that this rank's residual is made of, to be summed by the numbering [N]: those of
         the tangent at held rates, which takes the matrix' place, times those of the coordinates. See `residual_norm`.
         """
-        self.assemble(state, replace(weights, shift_v=0.0, shift_a=0.0))
+        self.assemble(state, weights._replace(shift_v=0.0, shift_a=0.0))
         return self.matrix.magnitudes(np.concatenate([f.magnitudes(state) for f in self.model.fields]))
 
     def energy(self, state: State) -> Energy:

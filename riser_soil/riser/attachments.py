@@ -16,12 +16,12 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State, Traits
+from riser_soil.core.part import State, Traits, Weights
 from riser_soil.riser import hermite
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import UP, Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ def _given_forces(part: GivenForces, at: Configuration, out: LineForces) -> None
 
 
 @add_tangent.of(GivenForces)
-def _given_tangent(part: GivenForces, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _given_tangent(part: GivenForces, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     """The loads do not change."""
 
 

@@ -9,13 +9,13 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Traits
+from riser_soil.core.part import Traits, Weights
 from riser_soil.riser import beam2d, beam3d, rotations
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.stiffness import LineStiffness
 from riser_soil.riser.tension_only import blend_forces, blend_tangent, blended, heaped, is_heaped
@@ -160,7 +160,7 @@ def _more_than_in_spatial_heap(part: SpatialBeam, at: SpatialConfiguration, e: i
 
 
 @add_tangent.of(PlanarBeam)
-def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weights: Weights, K: Array) -> None:
     f, own, heap, heap_own = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty((6, 6))
     for e in range(part.load.shape[0]):
         local = corotated(at, e)
@@ -194,7 +194,7 @@ def _blend_planar_tangent(
 
 
 @add_tangent.of(SpatialBeam)
-def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array) -> None:
     f, own, workspace = np.empty(12), np.empty((12, 12)), beam3d.tangent_workspace()
     heap, heap_own = np.empty(12), np.empty((12, 12))
     for e in range(part.load.shape[0]):

@@ -43,7 +43,8 @@ def top_of_cubic(first: Array, second: Array, rise: Array, fall: Array) -> tuple
     Each rises at 0 and falls at 1, so that the largest value lies between.
     """
     a, b = 3.0 * (rise + fall - 2.0 * (second - first)), 2.0 * (3.0 * (second - first) - 2.0 * rise - fall)
-    x = 2.0 * rise / (np.sqrt(b * b - 4.0 * a * rise) - b)  # of a x^2 + b x + rise, the slope at x
+    root, turned = np.sqrt(b * b - 4.0 * a * rise), b > 0.0  # of a x^2 + b x + rise, the slope at x
+    x = np.where(turned, -b - root, 2.0 * rise) / np.where(turned, 2.0 * a, root - b)  # without cancellation
     return first + x * (rise + x * (0.5 * b + x * a / 3.0)), x
 
 

@@ -63,9 +63,9 @@ class BoundParts:
         """Add the tangent of some of the parts, but for `turning`, to K; maps must be written there."""
         return [bound(add_tangent, each, self.packed_at, maps, weights, K) for each in data]
 
-    def write_maps(self, maps: Packed) -> Bound:
-        """Write the maps of the tangent, with their shifts."""
-        return bound(write_maps, self.at, maps)
+    def write_maps(self, maps: Packed, weights: Packed) -> Bound:
+        """Write the maps of the tangent, rates by the shifts of the weights."""
+        return bound(write_maps, self.at, maps, weights)
 
     def turning(self, weights: Packed, K: Packed) -> list[Bound]:
         """Add to K what the residuals found change by as the elements' ends turn."""

@@ -13,6 +13,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.part import Weights
 from riser_soil.riser import directors, hermite, line_kernels, moving_nodes, spatial_directors
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.hermite import Size
@@ -99,14 +100,12 @@ Configuration = PlanarConfiguration | SpatialConfiguration
 
 
 class Maps(NamedTuple):
-    """How the rates and accelerations of element ends' tangents (ne, 2, d, r) follow the rotation dofs; the shifts; and
-    how places, rates and accelerations of an element follow its dofs, rows (ne, d, n) as of `hermite.write_rows`.
+    """How the rates and accelerations of element ends' tangents (ne, 2, d, r) follow the rotation dofs; and how places,
+    rates and accelerations of an element follow its dofs, rows (ne, d, n) as of `hermite.write_rows`.
     """
 
     rate: Array
     acceleration: Array
-    shift_v: float
-    shift_a: float
     place_rows: Array
     rate_rows: Array
     acceleration_rows: Array
@@ -134,10 +133,10 @@ def workspace_for(line: MovingNodes) -> Configuration:
 
 
 def maps_for(line: MovingNodes) -> Maps:
-    """Maps to be written to, without shifts."""
+    """Maps to be written to."""
     ne, d, r = line.length.size, line.dimension, line.frames.dofs
     rows = (np.empty((ne, d, 2 * (d + r))) for _ in range(3))
-    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0, *rows)
+    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), *rows)
 
 
 def _empty(shapes: dict[str, tuple[int, ...]]) -> dict[str, Any]:
@@ -160,8 +159,8 @@ def write_magnitudes(at: Configuration, out: Array) -> None:
 
 
 @bound_by_type
-def write_maps(at: Configuration, maps: Maps) -> None:
-    """Write the maps of a configuration with their shifts."""
+def write_maps(at: Configuration, maps: Maps, weights: Weights) -> None:
+    """Write the maps of a configuration, rates by the shifts of the weights."""
 
 
 @bound_by_type
@@ -230,27 +229,27 @@ def _write_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
 
 
 @write_maps.of(PlanarConfiguration)
-def _write_maps_in_plane(at: PlanarConfiguration, maps: Maps) -> None:
+def _write_maps_in_plane(at: PlanarConfiguration, maps: Maps, weights: Weights) -> None:
     normal = at.P.reshape((at.P.shape[0], 2, 2))
     directors.write_maps(
-        at.tangent, normal, at.v[:, 2:], at.a[:, 2:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
+        at.tangent, normal, at.v[:, 2:], at.a[:, 2:], weights.shift_v, weights.shift_a, maps.rate, maps.acceleration
     )
-    _write_rows(at, maps)
+    _write_rows(at, maps, weights)
 
 
 @write_maps.of(SpatialConfiguration)
-def _write_maps_in_space(at: SpatialConfiguration, maps: Maps) -> None:
+def _write_maps_in_space(at: SpatialConfiguration, maps: Maps, weights: Weights) -> None:
     spatial_directors.write_maps(
-        at.frames, at.H, at.T0, at.v[:, 3:], at.a[:, 3:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
+        at.frames, at.H, at.T0, at.v[:, 3:], at.a[:, 3:], weights.shift_v, weights.shift_a, maps.rate, maps.acceleration
     )
-    _write_rows(at, maps)
+    _write_rows(at, maps, weights)
 
 
 @njit
-def _write_rows(at: Configuration, maps: Maps) -> None:
+def _write_rows(at: Configuration, maps: Maps, weights: Weights) -> None:
     hermite.write_all_rows(at.P, 1.0, maps.place_rows, at.D, at.R)
-    hermite.write_all_rows(maps.rate, maps.shift_v, maps.rate_rows, at.D, at.R)
-    hermite.write_all_rows(maps.acceleration, maps.shift_a, maps.acceleration_rows, at.D, at.R)
+    hermite.write_all_rows(maps.rate, weights.shift_v, maps.rate_rows, at.D, at.R)
+    hermite.write_all_rows(maps.acceleration, weights.shift_a, maps.acceleration_rows, at.D, at.R)
 
 
 @write_turning.of(PlanarConfiguration)

@@ -28,13 +28,13 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Traits
+from riser_soil.core.part import Traits, Weights
 from riser_soil.riser import hermite
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_mass_to, add_weighed
 from riser_soil.riser.line import UP, Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work
 from riser_soil.riser.stations import gauss
 
 POINTS, SHARES = (tuple(as_list(values)) for values in gauss(4))  # exact for products of two cubics
@@ -206,7 +206,7 @@ def _add_force(matrices: FlowMatrices, up: Array, at: Configuration, out: Array)
 
 
 @add_tangent.of(ContentsData)
-def _add_tangent(part: ContentsData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _add_tangent(part: ContentsData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     add_mass_to(K, weights.inertia, at.P, maps.acceleration_rows, part.now.mass, at.D, at.R)
     add_mass_to(K, weights.force, at.P, maps.rate_rows, part.now.coriolis, at.D, at.R)
     add_mass_to(K, weights.force, at.P, maps.place_rows, part.now.centrifugal, at.D, at.R)

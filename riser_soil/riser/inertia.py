@@ -17,14 +17,14 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State, Traits
+from riser_soil.core.part import State, Traits, Weights
 from riser_soil.riser.attachments import Masses
 from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.hermite import add_mass_to, add_weighed, consistent_mass
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.rotations import left_tangent, right_tangent_derivative
 from riser_soil.riser.vectors import (
     Mat,
@@ -100,15 +100,15 @@ def add_forces_at_ends(part: Mass, at: Configuration, out: LineForces) -> None:
 
 
 @add_tangent.of(Mass)
-def _add_tangent(part: Mass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _add_tangent(part: Mass, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     add_mass_to(K, weights.inertia, at.P, maps.acceleration_rows, part.M, at.D, at.R)
     add_tangent_at_ends(part, at, maps, weights, K)
 
 
 @njit
-def add_tangent_at_ends(part: Mass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def add_tangent_at_ends(part: Mass, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     """Add that of what sits at the line's ends."""
-    follows, last, second = weights.inertia * maps.shift_a, K.shape[0] - 1, K.shape[1] // 2
+    follows, last, second = weights.inertia * weights.shift_a, K.shape[0] - 1, K.shape[1] // 2
     for i in range(len(at.D)):
         K[0, i, i] += follows * part.ends[0]
         K[last, second + i, second + i] += follows * part.ends[1]
@@ -204,10 +204,10 @@ def _spatial_forces(part: SpatialRotaryMass, at: SpatialConfiguration, out: Line
 
 @add_tangent.of(SpatialRotaryMass)
 def _spatial_tangent(
-    part: SpatialRotaryMass, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: SpatialRotaryMass, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     W, A = at.v[:, 3:], at.a[:, 3:]
-    _add_moments_tangent(K, weights.inertia, part.J, at.Theta, W, A, maps.shift_v, maps.shift_a)
+    _add_moments_tangent(K, weights.inertia, part.J, at.Theta, W, A, weights.shift_v, weights.shift_a)
 
 
 @add_forces.of(PlanarRotaryMass)
@@ -219,11 +219,11 @@ def _planar_forces(part: PlanarRotaryMass, at: PlanarConfiguration, out: LineFor
 
 @add_tangent.of(PlanarRotaryMass)
 def _planar_tangent(
-    part: PlanarRotaryMass, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: PlanarRotaryMass, at: PlanarConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     for e in range(part.inertia.size):
         for side in range(2):
-            K[e, 2 + 3 * side, 2 + 3 * side] += weights.inertia * maps.shift_a * part.inertia[e]
+            K[e, 2 + 3 * side, 2 + 3 * side] += weights.inertia * weights.shift_a * part.inertia[e]
 
 
 @add_energy.of(SpatialRotaryMass)

@@ -152,15 +152,14 @@ class CompiledPart(LinePart, ABC):
 class LineParts:
     """Parts of one line that have kernels, evaluated together: a single one, or all that act on it.
 
-    parts: in the order in which they are evaluated; data: their kernel data. forces: their residuals as found last, at
-    the state `found` by the count of the line's configuration. accepted: whether the states are accepted ones, at which
-    the line is placed once for all; but for work, which needs the one where the step begins.
+    name: the line's; parts: in the order in which they are evaluated; data: their kernel data. forces: their residuals
+    as found last, at the state `found` by the count of the line's configuration. accepted: whether the states are
+    accepted ones, at which the line is placed once for all; but for work, which needs the one where the step begins.
     """
 
-    name = "lines"
-
     def __init__(self, line: MovingNodes, parts: Sequence[CompiledPart], accepted: bool = False) -> None:
-        self.line, self.parts, self.data = line, parts, [part.kernel_data() for part in parts]
+        self.line, self.name, self.parts = line, line.name, parts
+        self.data = [part.kernel_data() for part in parts]
         self._trials = line.once(LineTrials)
         self._placed = self._trials.then if accepted else self._trials.now
         self._kernels = BoundParts(self._placed.at, self.data)

@@ -9,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import State, Traits, Work
+from riser_soil.core.part import State, Traits, Weights, Work
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.attachments import GivenForces, add_given
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.moving_nodes import MovingNodes
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.rotations import moment_stiffness
 from riser_soil.riser.vectors import matrix, matvec, transpose, vector
 
@@ -146,7 +146,7 @@ def _moment_forces(part: SpatialMoments, at: SpatialConfiguration, out: LineForc
 
 @add_tangent.of(SpatialMoments)
 def _moment_tangent(
-    part: SpatialMoments, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: SpatialMoments, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     for k in range(part.node.size):
         n = part.node[k]

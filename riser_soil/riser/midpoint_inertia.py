@@ -26,7 +26,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.part import Part, State, Traits
+from riser_soil.core.part import Part, State, Traits, Weights
 from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import hermite
@@ -51,7 +51,7 @@ from riser_soil.riser.midpoint_directors import (
     write_secant,
     write_turning_of,
 )
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 
 
 class MidpointMass(NamedTuple):
@@ -171,12 +171,12 @@ def _go_through_step(part: MidpointMass, at: Configuration) -> None:
 
 
 @add_tangent.of(MidpointMass)
-def _add_tangent(part: MidpointMass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _add_tangent(part: MidpointMass, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     if part.tangents.elapsed[0] == 0.0:
         add_tangent(part.mass, at, maps, weights, K)
     else:
         _go_through_step(part, at)
-        secant, F, follows = part.tangents.secant, part.F, 0.5 * maps.shift_a
+        secant, F, follows = part.tangents.secant, part.F, 0.5 * weights.shift_a
         for e in range(F.shape[0]):
             for side in range(2):
                 for i in range(len(at.D)):
@@ -187,7 +187,7 @@ def _add_tangent(part: MidpointMass, at: Configuration, maps: Maps, weights: Lin
                 for i in range(len(at.D)):
                     for k in range(len(at.R)):
                         secant.by_end[e, side, i, k] *= follows
-        hermite.write_all_rows(secant.by_end, maps.shift_a, part.rows, at.D, at.R)
+        hermite.write_all_rows(secant.by_end, weights.shift_a, part.rows, at.D, at.R)
         hermite.add_mass_to(K, weights.inertia, secant.P, part.rows, part.mass.M, at.D, at.R)
         hermite.add_geometric(K, weights.inertia, part.tangents.turning, len(at.D))
         add_tangent_at_ends(part.mass, at, maps, weights, K)
@@ -252,7 +252,7 @@ def _move_director(part: MidpointRotaryMass, at: Configuration, m: int) -> None:
 
 @add_tangent.of(MidpointRotaryMass)
 def _add_rotary_tangent(
-    part: MidpointRotaryMass, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+    part: MidpointRotaryMass, at: Configuration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     if part.directors.elapsed[0] == 0.0:
         add_tangent(part.instant, at, maps, weights, K)
@@ -262,7 +262,7 @@ def _add_rotary_tangent(
             _move_director(part, at, m)
             write_turning_of(at, part.directors, part.at_ends)
             for e in range(block.shape[0]):
-                follows = 0.5 * maps.shift_a * part.masses[m, e]
+                follows = 0.5 * weights.shift_a * part.masses[m, e]
                 for side in range(2):
                     for j in range(len(at.R)):
                         for c in range(len(at.R)):

@@ -13,6 +13,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
+from riser_soil.core.part import Weights
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import add_geometric, collect_nodal, scatter, write_pulled_back
 
@@ -46,13 +47,6 @@ class Border(NamedTuple):
     coupled: BoolArray
 
 
-class LineWeights(NamedTuple):
-    """Weights of the groups I and F in the tangent."""
-
-    inertia: float
-    force: float
-
-
 def forces_at(at: Configuration) -> LineForces:
     """Workspace for the residuals in a configuration."""
     (_, ndof), ne = at.v.shape, len(at.q)
@@ -72,7 +66,7 @@ def find_water(part: tuple, at: Configuration) -> None:
 
 
 @bound_by_type
-def add_tangent(part: tuple, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def add_tangent(part: tuple, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     """Add to K (ne, n, n) the derivative of a part's residual by the dofs, without that of P in `LineForces`."""
 
 
@@ -125,7 +119,7 @@ def write_residual(at: Configuration, forces: LineForces, out: Array) -> None:
 
 
 @njit
-def weigh(forces: LineForces, weights: LineWeights, conjugate: Array) -> None:
+def weigh(forces: LineForces, weights: Weights, conjugate: Array) -> None:
     """Write what is conjugate to the tangents of the elements' ends (ne, 2, d), groups weighted."""
     for e in range(conjugate.shape[0]):
         for side in range(2):

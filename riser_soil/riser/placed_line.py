@@ -9,7 +9,6 @@ from riser_soil.core.bound import Packed, bound
 from riser_soil.core.part import State, Weights
 from riser_soil.riser.configuration import base_of, maps_for, place, workspace_for, write_maps, write_rates
 from riser_soil.riser.moving_nodes import MovingNodes
-from riser_soil.riser.part_kernels import LineWeights
 
 
 class LineBase:
@@ -40,17 +39,14 @@ class TrialConfiguration:
         self.at, rates = workspace_for(line), (Packed(v), Packed(a))
         self.place = bound(place, self.at, base.packed, Packed(u), *rates)
         self.put_rates = bound(write_rates, self.at, *rates)
-        self.maps, self.weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
-        self.write_maps = bound(write_maps, self.at, self.maps)
+        self.maps, self.weights = Packed(maps_for(line)), Packed(Weights.of_statics())
+        self.write_maps = bound(write_maps, self.at, self.maps, self.weights)
 
     def weigh(self, weights: Weights) -> bool:
-        """Take the weights and shifts of a tangent; whether shifts have changed."""
-        if (weights.inertia, weights.force) != self.weights.value:
-            self.weights.renew(LineWeights(float(weights.inertia), float(weights.force)))
-        kept, shifts = self.maps.value, (float(weights.shift_v), float(weights.shift_a))
-        if (kept.shift_v, kept.shift_a) == shifts:
+        """Take the weights of a tangent; whether they have changed."""
+        if weights == self.weights.value:
             return False
-        self.maps.renew(kept._replace(shift_v=shifts[0], shift_a=shifts[1]))
+        self.weights.renew(Weights(*map(float, weights)))
         return True
 
 

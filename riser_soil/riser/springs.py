@@ -8,12 +8,12 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Traits
+from riser_soil.core.part import Traits, Weights
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work
 from riser_soil.riser.vectors import Vec, add, dot, matadd, matmul, matrix, matscale, matvec, scale, transpose, vector
 
 
@@ -79,7 +79,7 @@ def _planar_forces(part: PlanarSpring, at: PlanarConfiguration, out: LineForces)
 
 
 @add_tangent.of(PlanarSpring)
-def _planar_tangent(part: PlanarSpring, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _planar_tangent(part: PlanarSpring, at: PlanarConfiguration, maps: Maps, weights: Weights, K: Array) -> None:
     e, i = (0, 2) if part.node == 0 else (part.node - 1, 5)
     K[e, i, i] += weights.force * part.stiffness
 
@@ -105,7 +105,7 @@ def _spatial_forces(part: SpatialSpring, at: SpatialConfiguration, out: LineForc
 
 
 @add_tangent.of(SpatialSpring)
-def _spatial_tangent(part: SpatialSpring, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _spatial_tangent(part: SpatialSpring, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array) -> None:
     """H^T k T_L^-1(phi) H of the rotation vector phi, and the change of H at fixed moment."""
     n = part.node
     e, first = (0, 3) if n == 0 else (n - 1, 9)

@@ -8,13 +8,13 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import State, Traits, Work
+from riser_soil.core.part import State, Traits, Weights, Work
 from riser_soil.riser import beam3d, damping2d, damping3d, rotations
 from riser_soil.riser.beam import corotated
 from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.stiffness import LineStiffness, viscosity
 from riser_soil.riser.tension_only import blend_viscous_forces, blend_viscous_tangent, heaped, is_heaped
@@ -106,14 +106,14 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
 
 
 @add_tangent.of(PlanarViscosity)
-def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, weights: Weights, K: Array) -> None:
     own, f = np.empty((6, 6)), np.empty(6)
     for e in range(at.chord.shape[0]):
         local, rates = corotated(at, e), (part.chord_rate, at.v[:, 2])
-        damping2d.write_element_tangent(e, local, part.viscosity, *rates, maps.shift_v, own)
+        damping2d.write_element_tangent(e, local, part.viscosity, *rates, weights.shift_v, own)
         if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
             damping2d.write_element_forces(e, local, part.viscosity, *rates, f)
-            _blend_tangent(part, at, e, maps.shift_v, f, own)
+            _blend_tangent(part, at, e, weights.shift_v, f, own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
@@ -137,17 +137,17 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
 
 @add_tangent.of(SpatialViscosity)
 def _spatial_tangent(
-    part: SpatialViscosity, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+    part: SpatialViscosity, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     own, f, nodes = np.empty((12, 12)), np.empty(12), damping3d.NodeRotations(at.frames, at.H, at.Rn, at.Theta)
     rates = part.chord_rate, part.spin
     for e in range(at.chord.shape[0]):
         local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
-        damping3d.write_element_tangent(e, local, part.viscosity, *rates, nodes, maps.shift_v, own)
+        damping3d.write_element_tangent(e, local, part.viscosity, *rates, nodes, weights.shift_v, own)
         if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
             damping3d.write_element_forces(e, local, part.viscosity, *rates, f)
             rotations.element_to_increments(e, f, at.H)
-            _blend_tangent(part, at, e, maps.shift_v, f, own)
+            _blend_tangent(part, at, e, weights.shift_v, f, own)
         for i in range(12):
             for j in range(12):
                 K[e, i, j] += weights.force * own[i, j]

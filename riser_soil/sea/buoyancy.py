@@ -10,20 +10,12 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.part import Traits
+from riser_soil.core.part import Traits, Weights
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import (
-    LineForces,
-    LineWeights,
-    add_energy,
-    add_forces,
-    add_tangent,
-    add_work,
-    find_water,
-)
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, find_water
 from riser_soil.sea import waterline
 from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, evaluate_end, evaluate_start, update
@@ -87,7 +79,7 @@ def _station_forces(part: DryStationData, at: Configuration, out: LineForces) ->
 
 
 @add_tangent.of(DryStationData)
-def _station_tangent(part: DryStationData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _station_tangent(part: DryStationData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     water, up = part.stream.water.end, len(at.D) - 1
     for m in range(part.stream.element.size):
         e = part.stream.element[m]
@@ -152,7 +144,7 @@ def _pipe_forces(part: DryPipeData, at: Configuration, out: LineForces) -> None:
 
 
 @add_tangent.of(DryPipeData)
-def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _pipe_tangent(part: DryPipeData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     ng = part.heights.size
     for e in range(part.length.size):
         weight, N = weights.force * part.displaced[e], part.stream.at.N[e]

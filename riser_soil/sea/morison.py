@@ -25,7 +25,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.part import Traits
+from riser_soil.core.part import Traits, Weights
 from riser_soil.core.rows import Term, add_pulled_back, as_tuple, times, write_weighed
 from riser_soil.riser import stations
 from riser_soil.riser.bound_parts import KernelData
@@ -33,7 +33,7 @@ from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.moving_water_kernels import moving_water
 from riser_soil.sea.pipe import Pipe
@@ -175,7 +175,7 @@ def _write_forces(batch: Batch, inertia: Array, force: Array, k: int, D: Size) -
 
 
 @add_tangent.of(StillWaterData)
-def _still_tangent(part: StillWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _still_tangent(part: StillWaterData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     if weights.force == 0.0:
         _add_mass(part, at, maps, weights.inertia, K)
     else:
@@ -203,7 +203,7 @@ def _add_mass(part: StillWaterData, at: Configuration, maps: Maps, weight: float
 
 @njit
 def _add_whole_tangent(
-    part: StillWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+    part: StillWaterData, at: Configuration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     ne, D, d, workspace = part.drag.shape[0], at.D, len(at.D), part.workspace
     batch, by = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
@@ -231,7 +231,7 @@ def _terms(part: StillWaterData, maps: Maps, e: int, g: int) -> tuple[Array, tup
 
 
 @njit
-def _write_derivatives(batch: Batch, by: Array, k: int, weights: LineWeights, D: Size) -> None:
+def _write_derivatives(batch: Batch, by: Array, k: int, weights: Weights, D: Size) -> None:
     """Write the weighted derivatives by velocity, acceleration and slope at one station."""
     tau, stretch, by_slope = as_tuple(batch.tau[:, k], D), batch.stretch[k], by[2, :, :, k]
     v, drag = as_tuple(batch.v[:, k], D), as_tuple(batch.drag[:, k], PAIR)

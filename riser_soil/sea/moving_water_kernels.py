@@ -8,19 +8,12 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.part import Weights
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.part_kernels import (
-    LineForces,
-    LineWeights,
-    add_energy,
-    add_forces,
-    add_tangent,
-    add_work,
-    find_water,
-)
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, find_water
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.stream_kernels import FlowAtStations, Stream, add_at_station, evaluate_end, evaluate_start
@@ -171,7 +164,7 @@ def _forces(part: MovingWaterData, at: Configuration, out: LineForces) -> None:
 
 
 @add_tangent.of(MovingWaterData)
-def _tangent(part: MovingWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _tangent(part: MovingWaterData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     if weights.force == 0.0:
         _add_mass(part, at, maps, weights.inertia, K)
     else:
@@ -196,7 +189,7 @@ def _add_mass(part: MovingWaterData, at: Configuration, maps: Maps, weight: floa
 
 @njit
 def _add_whole_tangent(
-    part: MovingWaterData, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+    part: MovingWaterData, at: Configuration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     by = part.by
     for m in range(part.stream.element.size):
@@ -215,7 +208,7 @@ def _add_whole_tangent(
 
 @njit
 def _differentiate(
-    part: MovingWaterData, water: WaterMotion, m: int, g: int, stretch: float, weights: LineWeights, D: Size
+    part: MovingWaterData, water: WaterMotion, m: int, g: int, stretch: float, weights: Weights, D: Size
 ) -> None:
     """Write the weighted derivatives of the force at a station whose resistance is known."""
     workspace, by, p = part.workspace, part.by, m * part.stream.share.shape[1] + g

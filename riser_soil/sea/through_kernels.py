@@ -11,18 +11,11 @@ from typing import Any, NamedTuple
 from riser_soil.core.arrays import Array
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
+from riser_soil.core.part import Weights
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.part_kernels import (
-    LineForces,
-    LineWeights,
-    add_energy,
-    add_forces,
-    add_tangent,
-    add_work,
-    find_water,
-)
+from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, find_water
 from riser_soil.sea.flows import WaterMotion
 from riser_soil.sea.moving_water_kernels import (
     FlowWorkspace,
@@ -84,7 +77,7 @@ def _forces(part: ThroughData, at: Configuration, out: LineForces) -> None:
             add_at_station(flow.stream, m, g, as_tuple(workspace.force, at.D), out.force_q)
 
 
-def _tangent(part: ThroughData, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+def _tangent(part: ThroughData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
     if weights.force == 0.0:
         return
     flow, by = part.flow, part.flow.by

@@ -20,9 +20,9 @@ from riser_soil.bodies.joints import JointPlaces, Joints, Laws, add_tangent, con
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Part, State
+from riser_soil.core.part import Part, State, Weights
 from riser_soil.riser.configuration import SpatialConfiguration
-from riser_soil.riser.part_kernels import Border, LineForces, LineWeights
+from riser_soil.riser.part_kernels import Border, LineForces
 from riser_soil.solve.dense_border import DenseBorder, MakeBorder
 from riser_soil.solve.line_system import Coupling
 from riser_soil.solve.newton_settings import MOST_JOINTS
@@ -82,7 +82,7 @@ def add_to_line(joints: JointData, sides: Sides, forces: LineForces) -> None:
 
 
 @njit
-def write_matrices(joints: JointData, weights: LineWeights) -> None:
+def write_matrices(joints: JointData, weights: Weights) -> None:
     """Write the joints' matrices."""
     joints.K[:] = 0.0
     add_tangent(joints.K, weights.force, joints.laws, joints.places, joints.left[0])

@@ -22,7 +22,7 @@ class PackedLine:
     to, at being the trial configuration.
 
     parts: that act on it; committed: those whose history no kernel keeps. prescribed, levers (size,): of its dofs;
-    weights: `LineWeights` of the step.
+    weights: of the step.
     """
 
     def __init__(self, parts: LineParts, prescribed: BoolArray, levers: Array) -> None:
@@ -36,6 +36,7 @@ class PackedLine:
         self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.weights, self._maps = self._trial.weights, self._trial.maps
+        self._weights_at_held_rates = Packed(Weights.of_statics())
         self.packed_at, self.packed_forces = self._kernels.packed_at, self._kernels.packed_forces
         self.packed_step, self.packed_dofs, self.packed_workspace = map(Packed, (self.step, self.dofs, self.workspace))
         self.K = Packed(self.workspace.K)
@@ -51,7 +52,7 @@ class PackedLine:
 
     def evaluate(self) -> list[Bound]:
         """Kernels that place the trial and find the forces there."""
-        follow = Bound(kernels.follow, self.packed_step, self._maps, self.packed_dofs)
+        follow = Bound(kernels.follow, self.packed_step, self.weights, self.packed_dofs)
         return [follow, self._trial.place, *self._kernels.find_forces()]
 
     def balance(self, sums: Packed) -> list[Bound]:
@@ -69,21 +70,24 @@ class PackedLine:
         """
         others = [each for each in self._kernels.data if all(each is not one for one in self._touching)]
         touched = contact or len(self._touching) > 0
-        bulk, held = Packed(np.empty_like(self.workspace.K)) if touched else self.K, Packed(self._maps.value)
+        bulk = Packed(np.empty_like(self.workspace.K)) if touched else self.K
         begun = [Bound(kernels.begin_with, bulk, self.K)] if touched else []
 
-        def contacts(maps: Packed) -> list[Bound]:
-            return [*begun, *self._kernels.tangent(self._touching, maps, self.weights, self.K)]
+        def contacts(weights: Packed) -> list[Bound]:
+            return [*begun, *self._kernels.tangent(self._touching, self._maps, weights, self.K)]
 
-        moving = self._bulk(others, self._maps, bulk), contacts(self._maps)
-        return *moving, self._bulk(others, held, bulk), contacts(held)
+        moving, at_held_rates = self.weights, self._weights_at_held_rates
+        return (
+            *(self._bulk(others, moving, bulk), contacts(moving)),
+            *(self._bulk(others, at_held_rates, bulk), contacts(at_held_rates)),
+        )
 
-    def _bulk(self, parts: Sequence[KernelData], maps: Packed, K: Packed) -> list[Bound]:
+    def _bulk(self, parts: Sequence[KernelData], weights: Packed, K: Packed) -> list[Bound]:
         return [
-            self._kernels.write_maps(maps),
+            self._kernels.write_maps(self._maps, weights),
             Bound(kernels.set_zero, K),
-            *self._kernels.tangent(parts, maps, self.weights, K),
-            *self._kernels.turning(self.weights, K),
+            *self._kernels.tangent(parts, self._maps, weights, K),
+            *self._kernels.turning(weights, K),
         ]
 
     def terms_of(self, tangent: Sequence[Bound]) -> list[Bound]:
@@ -136,6 +140,7 @@ class PackedLine:
         u, v, a, earlier = self._start
         u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, past
         self._trial.weigh(weights)
+        self._weights_at_held_rates.renew(self.weights.value._replace(shift_v=0.0, shift_a=0.0))
 
     @property
     def folding(self) -> tuple[int, int]:

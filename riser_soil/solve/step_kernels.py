@@ -15,10 +15,10 @@ from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.csr_matrix import add_magnitudes
+from riser_soil.core.part import Weights
 from riser_soil.core.rows import add_multiple
-from riser_soil.riser.configuration import Maps
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.part_kernels import LineForces, LineWeights
+from riser_soil.riser.part_kernels import LineForces
 from riser_soil.solve.residual_norm import above_round_off, square_of, squares_in_play
 
 ONE = fixed(1)
@@ -64,12 +64,12 @@ class MatrixWorkspace(NamedTuple):
 
 
 @njit
-def follow(step: StepData, maps: Maps, dofs: Dofs) -> None:
+def follow(step: StepData, weights: Weights, dofs: Dofs) -> None:
     """Write the rates that follow the increments."""
     n = step.u.size
     u, fixed = step.u.reshape(n), dofs.fixed.reshape(n)
-    write_rates(u, fixed, step.v0.reshape(n), maps.shift_v, step.v.reshape(n))
-    write_rates(u, fixed, step.a0.reshape(n), maps.shift_a, step.a.reshape(n))
+    write_rates(u, fixed, step.v0.reshape(n), weights.shift_v, step.v.reshape(n))
+    write_rates(u, fixed, step.a0.reshape(n), weights.shift_a, step.a.reshape(n))
 
 
 @njit
@@ -81,7 +81,7 @@ def write_rates(u: Array, fixed: BoolArray, start: Array, shift: float, out: Arr
 
 
 @njit
-def combine(forces: LineForces, step: StepData, weights: LineWeights, dofs: Dofs) -> None:
+def combine(forces: LineForces, step: StepData, weights: Weights, dofs: Dofs) -> None:
     """Write the residual of the weighted groups, zero where dofs are fixed."""
     n = dofs.residual.size
     groups = forces.inertia.reshape(n), forces.force.reshape(n), forces.end.reshape(n)

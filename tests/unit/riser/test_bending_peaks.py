@@ -99,3 +99,11 @@ def test_slopes_follow_from_the_shear_across_the_moment() -> None:
     assert slopes(hinged, -force) == pytest.approx(sheared)
     assert slopes(hinged[::-1], force) == pytest.approx(-sheared)
     assert not slopes(0.0 * moment, force).any()
+
+
+@pytest.mark.parametrize("slope", [1e-6, 1e-20, 1e-200])
+def test_a_cubic_that_hardly_rises_and_falls_is_largest_at_its_higher_end(slope: float) -> None:
+    """By its values, 0 and 1, or 1 and 0, and such slopes; without a division by what cancels."""
+    for values, end in (((0.0, 1.0), 1.0), ((1.0, 0.0), 0.0)):
+        top, place = top_of_cubic(*np.array([[values[0]], [values[1]], [slope], [-slope]]))
+        assert (top, place) == (pytest.approx(1.0), pytest.approx(end, abs=slope))
