@@ -106,4 +106,5 @@ def test_a_cubic_that_hardly_rises_and_falls_is_largest_at_its_higher_end(slope:
     """By its values, 0 and 1, or 1 and 0, and such slopes; without a division by what cancels."""
     for values, end in (((0.0, 1.0), 1.0), ((1.0, 0.0), 0.0)):
         top, place = top_of_cubic(*np.array([[values[0]], [values[1]], [slope], [-slope]]))
-        assert (top, place) == (pytest.approx(1.0), pytest.approx(end, abs=slope))
+        assert top == pytest.approx(1.0)
+        assert place == pytest.approx(end, abs=slope)
