@@ -12,7 +12,6 @@ import numpy as np
 from riser_soil.assembly import LineAssembly
 from riser_soil.checks.overload import over_a_length, surface_bearing
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import Record
@@ -85,6 +84,11 @@ class LargestValue:
         at = int(values.argmax())
         return self.or_this(float(values[at]), arcs, at, float(times[at]))
 
+    def or_largest_along(self, values: Array, arc: Array, times: Sequence[float]) -> LargestValue:
+        """The first of the largest values (nt, nn) along the riser at times (nt,), where it is larger."""
+        k, n = divmod(int(values.argmax()), arc.size)
+        return self.or_this(float(values[k, n]), arc, n, times[k])
+
     def or_this(self, value: float, arcs: Array, at: int, t: float) -> LargestValue:
         """This value, at the place of a number, where it is larger."""
         return LargestValue(value, float(arcs[at]), t) if value > self.value else self
@@ -121,19 +125,13 @@ class Plausibility:
 
     def look(self, times: Sequence[float], record: Record) -> None:
         """times: s of the run (static stages: load factor), of the record's instants."""
-        arc = self._riser.line.arc
-        tension, curvature, moments = map(
-            np.ascontiguousarray, (record.effective_tension, record.curvature, record.bending_moment)
-        )
-        axial, at, bending, bent_at, moment = largest_strains(tension, self.EA, curvature, self.radius, moments)
-        self._axial = self._axial.or_this(axial, arc, at % arc.size, times[at // arc.size])
-        self._bending = self._bending.or_this(bending, arc, bent_at % arc.size, times[bent_at // arc.size])
-        self._largest = max(self._largest, moment)
+        arc, tension = self._riser.line.arc, record.effective_tension
+        self._axial = self._axial.or_largest_along(np.abs(tension) / self.EA, arc, times)
+        self._bending = self._bending.or_largest_along(self.radius * record.curvature, arc, times)
+        self._largest = max(self._largest, float(record.bending_moment.max()))
         self._tension = max(self._tension, float(tension.max()))
         if tension.min() < 0.0:
-            beyond = -tension - self.buckling
-            at = int(beyond.argmax())
-            self._pushed = self._pushed.or_this(float(beyond.flat[at]), arc, at % arc.size, times[at // arc.size])
+            self._pushed = self._pushed.or_largest_along(-tension - self.buckling, arc, times)
 
     def look_at_soil(self, t: float, state: State, record: Record) -> None:
         """t: as above; record: of this state, where there is soil."""
@@ -326,27 +324,3 @@ def _not_small(moment: Array, e: IntArray, elements: Elements) -> Array:
     """Misfits [N m] of elements e, each (n,); 0 where the turn of the element is too small to mind."""
     small = moment * elements.length[e] < SMALL_TURN * elements.larger_EI[e]
     return np.where(small, 0.0, moment)
-
-
-@njit
-def largest_strains(
-    tension: Array, EA: Array, curvature: Array, radius: Array, moment: Array
-) -> tuple[float, int, float, int, float]:
-    """Largest strains of nodes at many instants (nt, nn), and where they are.
-
-    The largest size of tension over EA and its place, the largest curvature times radius and its place, and the largest
-    moment; of equal ones the first. Places are counted along all instants; EA and radius (nn,).
-    """
-    axial, bending, largest = -1.0, -1.0, 0.0
-    at = bent_at = 0
-    nodes = EA.size
-    for k in range(tension.shape[0]):
-        for n in range(nodes):
-            stretch, bend = abs(tension[k, n]) / EA[n], radius[n] * curvature[k, n]
-            if stretch > axial:
-                axial, at = stretch, k * nodes + n
-            if bend > bending:
-                bending, bent_at = bend, k * nodes + n
-            if moment[k, n] > largest:
-                largest = moment[k, n]
-    return axial, at, bending, bent_at, largest
