@@ -39,7 +39,7 @@ from riser_soil.results.functional_run import line_checks
 from riser_soil.results.hung_figures import hung_reader, joined, looked_at
 from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.results.plausibility import BoundaryStress, Plausibility, boundary_stress
+from riser_soil.results.plausibility import BoundaryStress, Plausibility, PressedSoil, boundary_stress
 from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.run_clock import RunClock
 from riser_soil.results.schedule import DueOutputs, Schedule
@@ -64,14 +64,15 @@ MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # in the buffer, before it is written
 class BufferedStep(NamedTuple):
     """An accepted step as it waits in the buffer: its record, what is due to be written of it, and its state.
 
-    looks: state of each line, by name; hung: values of bodies and joints; soil: its fields where these are due.
+    looks: state of each line, by name; hung: values of bodies and joints; pressed: the soil under lines that lie on
+    some, where the step is recorded; soil: its fields where these are due.
     """
 
     record: StepRecord
     due: DueOutputs
     looks: dict[str, Look]
     hung: dict[str, Array]
-    state: State
+    pressed: dict[str, PressedSoil]
     soil: SoilSnapshot | None
 
 
@@ -191,16 +192,18 @@ class Observer:
             at_rest = due.series and isinstance(self._stage, StaticStage)
             looks = {name: reader.look(stepper, at_rest) for name, reader in self._instants.items()}
             hung = looked_at(self._hung, stepper.now)
-            self._buffer.append(BufferedStep(record, due, looks, hung, stepper.now, soil))
-            if last or len(self._buffer) >= self._buffer_size or self._recorder.flush_is_due:
+            pressed = self._pressed_soil(stepper.now) if due.series else {}
+            self._buffer.append(BufferedStep(record, due, looks, hung, pressed, soil))
+            drawn = due.pictures and soil is not None  # its fields, which are not kept for long
+            if last or drawn or len(self._buffer) >= self._buffer_size or self._recorder.flush_is_due:
                 self.flush()
         self._relaxed = 0
         self._clock.add("output", since)
 
     @property
     def _buffer_size(self) -> int:
-        """Number of steps to buffer before they are written; 1 with soil, whose state is read at each."""
-        if self._assembly.soil is not None or isinstance(self._stage, StaticStage):
+        """Number of steps to buffer before they are written."""
+        if isinstance(self._stage, StaticStage):
             return 1
         numbers = sum(look.inside.size for look in self._buffer[0].looks.values())
         return max(1, min(MOST_STEPS, MOST_NUMBERS // numbers))
@@ -227,13 +230,19 @@ class Observer:
         times = [recorder.time_at(steps[n].record.t) for n in recorded]
         for name, plausibility in self._plausibility.items():
             plausibility.look(times, records[name].at(recorded))
-            if self._assembly.lines[name].soil is not None:
-                plausibility.look_at_soil(times[-1], steps[-1].state, records[name].at(-1))
+            for t, n in zip(times, recorded, strict=True):
+                if name in steps[n].pressed:
+                    plausibility.look_at_soil(t, steps[n].pressed[name], records[name].at(n))
             stage = recorder.summary.stages[-1].of(name)
             stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
         if self._hung is not None:
             whole = recorder.summary.stages[-1]
             whole.implausible = tuple(self._hung.warnings(whole.hung))
+
+    def _pressed_soil(self, state: State) -> dict[str, PressedSoil]:
+        """Soil under lines that lie on some, by their names."""
+        each = {name: plausibility.pressed_soil(state) for name, plausibility in self._plausibility.items()}
+        return {name: pressed for name, pressed in each.items() if pressed is not None}
 
     def _check_bending(self, recorder: Recorder, steps: Sequence[BufferedStep]) -> None:
         """Check whether the elements resolve the bending where pictures are made, which cost more."""

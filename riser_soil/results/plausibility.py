@@ -51,6 +51,15 @@ class BoundaryStress(NamedTuple):
     sides: float
 
 
+class PressedSoil(NamedTuple):
+    """Contact force per length at the nodes (nn,) [N/m], and the largest stretch in plan of the soil's surface that
+    presses, 1 without; nan at large strain, which no stretch spoils.
+    """
+
+    force: Array
+    stretch: float
+
+
 def boundary_stress(soil: Soil, across: int) -> BoundaryStress:
     """Change of stress at the soil's boundaries in the committed state, beside that at the riser; collective. across:
     the axis, x (0) or y (1), more nearly square to the riser.
@@ -133,18 +142,22 @@ class Plausibility:
         if tension.min() < 0.0:
             self._pushed = self._pushed.or_largest_along(-tension - self.buckling, arc, times)
 
-    def look_at_soil(self, t: float, state: State, record: Record) -> None:
-        """t: as above; record: of this state, where there is soil."""
-        assert self._riser.soil is not None
-        arc, contact = record.arc, self._riser.soil.contact
-        force = contact.force_per_length(state)
-        self._touched = self._touched or bool(force.any())
+    def pressed_soil(self, state: State) -> PressedSoil | None:
+        """The soil under the riser at an accepted state; None without soil."""
+        if self._riser.soil is None:
+            return None
+        contact = self._riser.soil.contact
+        stretch = math.nan if self._riser.scene.soil_moves else contact.stretch(state)
+        return PressedSoil(contact.force_per_length(state), stretch)
+
+    def look_at_soil(self, t: float, pressed: PressedSoil, record: Record) -> None:
+        """t: as above; pressed, record: of one state, where there is soil."""
+        self._touched = self._touched or bool(pressed.force.any())
         if self._bearing is not None:
-            borne = over_a_length(force, self._riser.line, self._riser.scales.diameter)
-            self._load = self._load.or_larger(borne, arc, t)
+            borne = over_a_length(pressed.force, self._riser.line, self._riser.scales.diameter)
+            self._load = self._load.or_larger(borne, record.arc, t)
         self._beyond = self._beyond.or_larger(self._past_the_block(record), np.array([record.touchdown_arc]), t)
-        if not self._riser.scene.soil_moves:
-            self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
+        self._stretch = self._stretch.or_larger(np.array([pressed.stretch]), np.full(1, np.nan), t)
         self._look_for_ground(record)
 
     def _look_for_ground(self, record: Record) -> None:
