@@ -15,7 +15,6 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.part import Energy, Forces, Part, State, Work
-from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LineParts, joined
@@ -212,8 +211,6 @@ class LineSolver(StepResults):
     def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         if solution.state is not self._solved:
-            for each in self._couplings:
-                each.forget_account()
             return super().energy_exchanged(before, solution)
         since = time.perf_counter()
         work = dict(self._no_work)
@@ -225,14 +222,6 @@ class LineSolver(StepResults):
             energy += each.add_account(before, solution.state, work)
         self.system.clock.add("line solver", since)
         return energy, work
-
-    def state(self) -> Saved:
-        """What would be the same but to round-off if it were found anew."""
-        return {name: value for each in self._couplings for name, value in each.state().items()}
-
-    def restore(self, saved: Saved) -> None:
-        for each in self._couplings:
-            each.restore(saved)
 
     def _reason(self, ending: str, norms: list[float]) -> str:
         return failure_text(ending, norms, self._place())

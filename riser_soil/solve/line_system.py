@@ -15,7 +15,6 @@ import numpy as np
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.bound import Bound, Packed, in_turn
 from riser_soil.core.part import Energy, State, Weights, Work
-from riser_soil.core.saved_state import Saved
 from riser_soil.solve import step_kernels as kernels
 from riser_soil.solve.convergence import ITERATING, NOT_SOLVED, OUTGROWN, Convergence, StopLimits
 from riser_soil.solve.newton_loop import iterate
@@ -102,21 +101,12 @@ class Coupling:
         """Add what the border's parts have turned over in the step solved last; the energy stored beside the lines."""
         return Energy()
 
-    def forget_account(self) -> None:
-        """A step was solved elsewhere."""
-
-    def state(self) -> Saved:
-        return {}
-
-    def restore(self, saved: Saved) -> None:
-        """Nothing is kept."""
-
 
 class LineSystem:
     """Residual, tangent and solution of lines and bodies with their couplings, by kernels, for Newton's loop.
 
-    convergence: of the step. evaluate, write_tangent, renew_contact, correct: pieces
-    of the loop, which are looked at alone, too.
+    convergence: of the step. evaluate, write_tangent, renew_contact, correct: pieces of the loop, which are looked at
+    alone, too.
     """
 
     def __init__(self, lines: Sequence[PackedLine], couplings: Sequence[Coupling]) -> None:

@@ -88,16 +88,12 @@ class Newton:
             self._by_parts.renew()
 
     def state(self) -> Saved:
-        """What would be the same but to round-off if it were found anew."""
-        return self._solver.state()
+        """What would be the same but to round-off if it were found anew; of the line solver there is nothing."""
+        return self.by_parts.state() if self.lines is None else {}
 
     def restore(self, saved: Saved) -> None:
-        self._solver.restore(saved)
-
-    @property
-    def _solver(self) -> LineSolver | StepIteration:
-        """The solver of all steps that it can solve."""
-        return self.by_parts if self.lines is None else self.lines
+        if self.lines is None:
+            self.by_parts.restore(saved)
 
     def destroy(self) -> None:
         """Give back what the ranks hold together; collective."""
