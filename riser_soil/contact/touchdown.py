@@ -157,7 +157,8 @@ def _edge(arc: Array, clearance: Array, found: Stretches) -> Array:
     behind = np.minimum(last + 1, arc.size - 1)
     here, there = clearance[row, last], clearance[row, behind]
     leaves = (here < 0.0) & np.isfinite(there) & (behind > last)
-    share = np.divide(here, here - there, out=np.zeros(here.shape), where=leaves)
+    change = np.subtract(here, there, out=np.ones(here.shape), where=leaves)
+    share = np.divide(here, change, out=np.zeros(here.shape), where=leaves)
     return np.asarray(arc[last] + (arc[behind] - arc[last]) * share)
 
 
