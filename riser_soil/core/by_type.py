@@ -13,12 +13,12 @@ own kernels while what calls them is compiled:
 from __future__ import annotations
 
 from collections.abc import Callable
-from inspect import signature
+from functools import wraps
 from typing import Any
 
 from numba.extending import overload
 
-from riser_soil.core.compiled import njit
+from riser_soil.core.compiled import OPTIONS, njit
 from riser_soil.core.kernel_cache import KERNELS_FOR
 
 Kernel = Callable[..., Any]
@@ -30,12 +30,16 @@ def by_type(stub: Any, apart: bool = True) -> Any:
     stub: its name, text and arguments. Its attribute `of` takes the kernel for a type, see the module's text, and
     compiles it like all others; kernels: by type. apart: see `compiled.njit`.
     """
-    kernels: dict[type, Kernel] = {}
+    kernels: dict[type, Any] = {}
 
-    @overload(stub, inline="always", strict=False)
+    @wraps(stub)
+    def chosen(part: Any, *rest: Any) -> Any:
+        return kernels[type(part)](part, *rest)
+
+    @overload(chosen, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)
     def choose(part: Any, *rest: Any) -> Kernel | None:
-        kernel = kernels.get(_type_of(part))
-        return None if kernel is None else _calling(stub, kernel)
+        kernel = kernels.get(getattr(part, "instance_class", type(None)))  # the NamedTuple, as numba sees it
+        return None if kernel is None else kernel.py_func
 
     def of(data: type) -> Callable[[Kernel], Kernel]:
         def keep(kernel: Kernel) -> Kernel:
@@ -45,8 +49,8 @@ def by_type(stub: Any, apart: bool = True) -> Any:
 
         return keep
 
-    stub.of, stub.kernels = of, kernels
-    return stub
+    vars(chosen).update(of=of, kernels=kernels)
+    return chosen
 
 
 def bound_by_type(stub: Any) -> Any:
@@ -54,18 +58,3 @@ def bound_by_type(stub: Any) -> Any:
     is inlined where it is called.
     """
     return by_type(stub, apart=False)
-
-
-def _type_of(part: Any) -> type:
-    """The NamedTuple that an argument is to be, as numba sees it."""
-    found: type = getattr(part, "instance_class", type(None))
-    return found
-
-
-def _calling(stub: Any, kernel: Kernel) -> Kernel:
-    """A function with the arguments of a stub, which numba wants by their names."""
-    names = ", ".join(signature(stub).parameters)
-    made: dict[str, Any] = {"kernel": kernel}
-    exec(f"def calling({names}):\n    return kernel({names})\n", made)
-    calling: Kernel = made["calling"]
-    return calling

@@ -16,29 +16,23 @@ import platform
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import cache
-from inspect import signature
+from functools import cache, update_wrapper
 from pathlib import Path
 from typing import Any
 
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colorama, if there, writes to standard output
 
 import numba
-from llvmlite import binding as llvm
+from numba import config
 from numba.core import event
+from numba.extending import overload
 
-from riser_soil.core.kernel_cache import (
-    CacheByTypes,
-    caching_in,
-    dependencies,
-    first_alone,
-    mark_used,
-    remove_old,
-    version_folder,
-)
+from riser_soil.core.environment import processor
+from riser_soil.core.kernel_cache import caching_in, dependencies, first_alone, mark_used, remove_old, version_folder
 from riser_soil.core.kernel_sources import PACKAGE, SOURCES
+from riser_soil.core.kinds import Kind, kind_of, mark
 
 NAME = PACKAGE.name
 ROOM = 1 << 26  # bytes that all kernels need, and some more
@@ -46,58 +40,56 @@ OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arc
 ANNOUNCEMENT = "compiling kernels (once, about a minute)"
 
 
-def njit(function: Callable[..., object], apart: bool = False) -> Any:
-    """Compile a function when it is first called with arguments of new types; its machine code stays on disk.
+class Kernel:
+    """A function of compiled code, for which it is compiled into what calls it; called from Python it is compiled on
+    its own. With NUMBA_DISABLE_JIT=1 it is the function of Python that it was written as.
+
+    py_func: that function.
+    """
+
+    def __init__(self, function: Callable[..., Any], apart: bool) -> None:
+        self.py_func = function
+        self._compiled: dict[Kind, Any] = {}
+        update_wrapper(self, function)
+        overload(self, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)(lambda *_: function)
+
+    def __call__(self, *arguments: Any) -> Any:
+        if config.DISABLE_JIT:
+            return self.py_func(*arguments)
+        kind = kind_of(arguments)
+        if kind in self._compiled:
+            return self._compiled[kind](*arguments)
+        with keeping(self.py_func, kind):
+            self._compiled[kind] = numba.njit(cache=True, **OPTIONS)(self.py_func)
+            return self._compiled[kind](*arguments)
+
+
+def njit(function: Callable[..., Any], apart: bool = False) -> Any:
+    """Make a function one of compiled code.
 
     apart: not inlined where others call it, so that those that call many are compiled in a bearable time.
     """
-    # numba asks for the signature again and again, which takes a twentieth of a start where it is found anew.
-    vars(function)["__signature__"] = signature(function)
-    made = numba.njit(forceinline=not apart, no_cpython_wrapper=True, **OPTIONS)(function)
-    made.__class__ = _callable_from_python(made.__class__)
-    return _cached(made, function, FOLDER)
+    return Kernel(function, apart)
 
 
-def _cached(made: Any, function: Callable[..., object], folder: Path) -> Any:
-    made._cache = CacheByTypes(function, folder)
-    return made
+@contextmanager
+def keeping(function: Callable[..., Any], kind: Kind, *modules: str) -> Iterator[None]:
+    """What numba compiles meanwhile of a function, for arguments of a kind, stays on disk, or is found there.
 
-
-@cache
-def _callable_from_python(usual: Any) -> Any:
-    """numba's class of compiled functions, of those without the code that takes their arguments from Python, which
-    takes a third of all compilation: what Python calls all the same is compiled once more, with it.
-    """
-
-    def call(self: Any, *arguments: Any) -> Any:
-        if "from_python" not in vars(self):
-            folder = FOLDER / "from_python"
-            folder.mkdir(parents=True, exist_ok=True)
-            self.from_python = _cached(numba.njit(**OPTIONS)(self.py_func), self.py_func, folder)
-        return self.from_python(*arguments)
-
-    return type(usual.__name__, (usual,), {"__call__": call})
-
-
-def entry(function: Callable[[int], None], kinds: Iterable[Any]) -> Any:
-    """Compile a function of one address, to be called by its own; its machine code stays on disk.
-
-    kinds: numba's types of what it finds there, on which it depends as on its module and on that of its caller.
+    modules: others than its own that the machine code comes from. One process does it at a time, see `first_alone`.
     """
     since, counted, name = time.process_time(), _announcer.seconds, f"{function.__module__}.{function.__qualname__}"
-    word = dependencies(function.__module__, kinds, f"{NAME}.core.bound")
-    folder = version_folder(FOLDER / name, word)
-    with caching_in(str(folder)), first_alone(FOLDER, f"{name} {word}"):
-        made = numba.cfunc(numba.types.void(numba.types.intp), cache=True, **OPTIONS)(function)
+    word, mine = dependencies((function.__module__, *modules), kind), f"{name}_{mark(kind)}"
+    with caching_in(str(version_folder(FOLDER / mine, word))), first_alone(FOLDER, f"{mine} {word}"):
+        yield
     if _announcer.seconds > counted:  # it wasn't there
         _announcer.seconds = counted + time.process_time() - since
-    return made
 
 
 def version() -> str:
     """Fingerprint of what all compiled code depends on: versions, and the processor."""
-    machine = f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}"
-    return hashlib.sha256(f"{numba.__version__} {platform.python_version()} {machine}".encode()).hexdigest()[:16]
+    words = f"{numba.__version__} {platform.python_version()} {processor()}"
+    return hashlib.sha256(words.encode()).hexdigest()[:16]
 
 
 def fixed(n: int) -> tuple[int, ...]:

@@ -8,40 +8,36 @@ Compiled code calls it by a name that stands for its address in this process, as
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
-import llvmlite.binding
 import numpy as np
-from llvmlite import ir
 from numba import types
-from numba.extending import get_cython_function_address, intrinsic
-from scipy.linalg import cython_lapack
+from numba.extending import get_cython_function_address, overload
+from scipy.linalg import cython_lapack, lapack
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.machine_code import ADDRESS, NOTHING, items
+from riser_soil.core.rows import name_in_machine_code
 
 HUGE = 1e300  # a pivot beyond it is no number to divide by
 PIVOT = np.intc if "(int *" in str(cython_lapack.__pyx_capi__["dgetrf"]) else np.int64  # LAPACK's integers
-SYMBOL = "riser_soil_dgetrf"
+_DGETRF = types.ExternalFunction("riser_soil_dgetrf", types.void(*[types.voidptr] * 6))
 
-llvmlite.binding.add_symbol(SYMBOL, get_cython_function_address("scipy.linalg.cython_lapack", "dgetrf"))
+name_in_machine_code(_DGETRF.symbol, get_cython_function_address("scipy.linalg.cython_lapack", "dgetrf"))
 
 
-@intrinsic
-def _dgetrf(context: Any, size: Any, a: Any, pivots: Any, info: Any) -> Any:
-    """In compiled code: factorise a matrix of the size (1,); arrays."""
+def _factorise(size: IntArray, a: Array, pivots: IntArray, info: IntArray) -> None:
+    """LAPACK's factors of a matrix of the size (1,) by columns, in its place; info (1,): 0 where all went well."""
+    factors, exchanged, info[0] = lapack.dgetrf(a.T)
+    a[...], pivots[...] = factors.T, exchanged + 1
 
-    assert (a.dtype, a.layout) == (types.float64, "C")
 
-    def call(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        n, matrix, exchanged, info = (builder.bitcast(items(builder, array), ADDRESS) for array in given)
-        known = builder.module.globals.get(SYMBOL)
-        function = known or ir.Function(builder.module, ir.FunctionType(ir.VoidType(), [ADDRESS] * 6), SYMBOL)
-        builder.call(function, [n, n, matrix, n, exchanged, info])
-        return NOTHING
+@overload(_factorise)
+def _by_name(size: IntArray, a: Array, pivots: IntArray, info: IntArray) -> Callable[..., None]:
+    def call(size: IntArray, a: Array, pivots: IntArray, info: IntArray) -> None:
+        _DGETRF(size.ctypes, size.ctypes, a.ctypes, size.ctypes, pivots.ctypes, info.ctypes)
 
-    return types.void(size, a, pivots, info), call
+    return call
 
 
 @njit
@@ -51,7 +47,7 @@ def factorise(a: Array, pivots: IntArray) -> bool:
     if n == 0:
         return True
     size, info = np.full(1, n, pivots.dtype), np.zeros(1, pivots.dtype)
-    _dgetrf(size, a, pivots, info)
+    _factorise(size, a, pivots, info)
     if info[0] != 0:
         return False
     regular = True

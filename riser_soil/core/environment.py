@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import platform
 import sys
+from contextlib import suppress
+from functools import cache
 
 # A child that saw its parent's MPI rank in these would take itself for that rank.
 _MPI = ("OMPI_", "PMIX_", "PMI_", "HYDRA_", "SLURM_")
@@ -20,3 +22,13 @@ def versions() -> dict[str, str]:
     """Version by name; of the packages those that this process has imported: a riser without soil has no dolfinx."""
     there = {name: sys.modules[name] for name in _PACKAGES if name in sys.modules}
     return {"python": platform.python_version()} | {name: module.__version__ for name, module in there.items()}
+
+
+@cache
+def processor() -> str:
+    """Name of the processor, and what it can do where the system says so: the same where machine code is the same."""
+    known = [platform.machine(), platform.processor()]
+    with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8", errors="replace") as told:
+        first = told.read().split("\n\n")[0].splitlines()
+        known += [line for line in first if line.startswith(("model name", "flags", "Features", "CPU part"))]
+    return "\n".join(known)

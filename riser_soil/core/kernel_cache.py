@@ -1,10 +1,10 @@
-"""numba's cache on disk, a folder for each signature and for the sources that the code depends on.
+"""Machine code on disk: numba's own cache, in a folder for each function, kind of arguments, and state of the sources.
 
 numba keeps one index for a function, with all types that it was ever called with, and imports the modules of the
 NamedTuples among them to read it. A kernel that is called with the data of any law or part would import all of them;
 and fail where one is gone, as one of a test is in the next run. Two processes that compile a function for different
-types at the same time may even give the machine code of one the other's place in the index. With one signature in a
-folder they write the same.
+types at the same time may even give the machine code of one the other's place in the index. With one kind in a folder
+they write the same.
 
 What one process compiles, others that need it wait for, and read: ranks and workers that start together ask for the
 same kernels in the same order, and would all compile them.
@@ -19,54 +19,19 @@ import os
 import re
 import shutil
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from numba import config
-from numba.core.caching import FunctionCache
 
 from riser_soil.core.kernel_sources import SOURCES
+from riser_soil.core.kinds import Kind, classes
 
 KEPT = 4  # folders of other versions, the latest ones, for those who go back and forth
 IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
 PATIENCE = 120.0  # s for which a kernel of another process is waited for: that may have been stopped
-
-
-class CacheByTypes:
-    """Cache of one function, in the place of numba's own. Looks for nothing on disk before the function is called."""
-
-    def __init__(self, function: Callable[..., object], folder: Path) -> None:
-        self._function, self._folder = function, folder
-        self._known: dict[str, FunctionCache] = {}  # by the word for the types
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """What isn't there is compiled here next, unless another process has done so until it is this one's turn."""
-        found = self._of(sig).load_overload(sig, target_context)
-        if found is None:
-            self._turn(sig).take()
-            found = self._of(sig).load_overload(sig, target_context)
-            if found is not None:
-                self._turn(sig).leave()
-        return found
-
-    def save_overload(self, sig: Any, data: Any) -> None:
-        self._of(sig).save_overload(sig, data)
-        self._turn(sig).leave()
-
-    def _turn(self, sig: Any) -> Turn:
-        return Turn(str(self._folder), f"{self._function.__module__}.{self._function.__qualname__} {mark(sig)}")
-
-    def _of(self, sig: Any) -> FunctionCache:
-        word = mark(sig)
-        if word not in self._known:
-            module = self._function.__module__
-            folder = version_folder(self._folder / module / word, dependencies(module, sig))
-            with caching_in(str(folder)):
-                self._known[word] = FunctionCache(self._function)
-        return self._known[word]
 
 
 class Turn:
@@ -132,31 +97,17 @@ def caching_in(folder: str) -> Iterator[None]:
         config.CACHE_DIR = before
 
 
-def mark(kinds: Iterable[Any]) -> str:
-    """A word for types of numba."""
-    return hashlib.sha256(" ".join(map(str, kinds)).encode()).hexdigest()[:12]
-
-
-def dependencies(module: str, kinds: Iterable[Any], *more: str) -> str:
-    """A word for the sources that a module's function for arguments of these types depends on: those of the module, of
-    the NamedTuples among the types, and of kernels that are chosen by them. more: further modules.
+def dependencies(modules: Iterable[str], kind: Kind) -> str:
+    """A word for the sources that a function for arguments of a kind depends on: those of modules, of the NamedTuples
+    in the kind, and of kernels that are chosen by them.
     """
-    named = set(_named(kinds))
-    chosen = (each for kind in named for each in KERNELS_FOR.get(kind, ()))
-    return SOURCES.word({module, *more, *(kind.__module__ for kind in named), *chosen})
+    named = set(classes(kind))
+    chosen = (each for one in named for each in KERNELS_FOR.get(one, ()))
+    return SOURCES.word({*modules, *(one.__module__ for one in named), *chosen})
 
 
 KERNELS_FOR: dict[type, set[str]] = {}
 """Modules with kernels that are chosen by a type, see `by_type`."""
-
-
-def _named(types: Iterable[Any]) -> Iterator[type]:
-    """NamedTuples among types of numba, and among what they consist of."""
-    for given in types:
-        if hasattr(given, "instance_class"):
-            yield given.instance_class
-        yield from _named(getattr(given, "types", ()))
-        yield from _named(getattr(given, "field_dict", {}).values())
 
 
 def version_folder(root: Path, word: str) -> Path:

@@ -18,12 +18,12 @@ from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 
-import llvmlite.binding
 import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core import compiled
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.environment import processor
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
@@ -174,7 +174,7 @@ def key_of(arrays: Iterable[Array | IntArray]) -> str:
     threads.
     """
     threads = os.environ.get("OMP_NUM_THREADS", os.cpu_count())
-    made_by = (FORMAT, PETSc.Sys.getVersion(), llvmlite.binding.get_host_cpu_name(), threads)
+    made_by = (FORMAT, PETSc.Sys.getVersion(), processor(), threads)
     digest = hashlib.sha256(repr(made_by).encode())
     for array in arrays:
         digest.update(f"{array.dtype}{array.shape}".encode())

@@ -42,8 +42,8 @@ def given(values: np.ndarray, weight: float = 2.0, last: bool = True) -> Outer:
     return Outer(True, weight, Inner(False, True, values), (3, 5, 7, 11), last)
 
 
-@pytest.mark.parametrize("values", [np.arange(8.0).reshape(2, 4), np.arange(16.0).reshape(2, 8)[:, ::2]])
-def test_a_kernel_finds_what_was_packed(values: np.ndarray) -> None:
+def test_a_kernel_finds_what_was_packed() -> None:
+    values = np.arange(8.0).reshape(2, 4)
     packed, out = Packed(given(values)), np.zeros(2)
     call = Bound(add, packed, Packed(out))
     for weight, last in ((2.0, True), (float_(-1.5), bool_(True)), (1.0, False)):
@@ -62,6 +62,14 @@ def test_kernels_are_called_in_turn() -> None:
     np.testing.assert_allclose(out, 3 * 2.0 * (3 + 7 + 11))
 
 
-def test_what_cannot_be_packed_is_reported() -> None:
-    with pytest.raises(TypeError, match="str can't be packed"):
-        Packed(Inner(True, False, "steel"))
+@pytest.mark.parametrize(
+    ("value", "reported"),
+    [
+        ("steel", "str can't be packed"),
+        (np.arange(16.0).reshape(2, 8)[:, ::2], "an array that is not contiguous or may not be written can't be packed"),
+        (np.broadcast_to(np.ones(4), (2, 4)), "an array that is not contiguous or may not be written can't be packed"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_packed_is_reported(value: Any, reported: str) -> None:
+    with pytest.raises(TypeError, match=reported):
+        Packed(Inner(True, False, value))
