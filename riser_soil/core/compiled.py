@@ -50,18 +50,32 @@ class Kernel:
     def __init__(self, function: Callable[..., Any], apart: bool) -> None:
         self.py_func = function
         self._compiled: dict[Kind, Any] = {}
+        self._latest: dict[tuple[type, ...], Any] = {}
         update_wrapper(self, function)
         overload(self, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)(lambda *_: function)
 
     def __call__(self, *arguments: Any) -> Any:
+        """What was compiled for such types is called, and looked for anew where numba says with a TypeError that arrays
+        are of other kinds: to find kinds takes as long as a short kernel.
+        """
         if config.DISABLE_JIT:
             return self.py_func(*arguments)
+        types = tuple(map(type, arguments))
+        if types in self._latest:
+            try:
+                return self._latest[types](*arguments)
+            except TypeError:
+                del self._latest[types]
+        self._latest[types] = self._for_kind_of(arguments)
+        return self._latest[types](*arguments)
+
+    def _for_kind_of(self, arguments: tuple[Any, ...]) -> Any:
         kind = kind_of(arguments)
-        if kind in self._compiled:
-            return self._compiled[kind](*arguments)
-        with keeping(self.py_func, kind):
-            self._compiled[kind] = numba.njit(cache=True, **OPTIONS)(self.py_func)
-            return self._compiled[kind](*arguments)
+        if kind not in self._compiled:
+            with keeping(self.py_func, kind):
+                signature = tuple(map(numba.typeof, arguments))
+                self._compiled[kind] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
+        return self._compiled[kind]
 
 
 def njit(function: Callable[..., Any], apart: bool = False) -> Any:
