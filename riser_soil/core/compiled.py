@@ -49,7 +49,7 @@ class Kernel:
 
     def __init__(self, function: Callable[..., Any], apart: bool) -> None:
         self.py_func = function
-        self._compiled: dict[Kind, Any] = {}
+        self._made: dict[Kind, Any] = {}
         self._latest: dict[tuple[type, ...], Any] = {}
         update_wrapper(self, function)
         overload(self, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)(lambda *_: function)
@@ -71,11 +71,11 @@ class Kernel:
 
     def _for_kind_of(self, arguments: tuple[Any, ...]) -> Any:
         kind = kind_of(arguments)
-        if kind not in self._compiled:
+        if kind not in self._made:
             with keeping(self.py_func, kind):
                 signature = tuple(map(numba.typeof, arguments))
-                self._compiled[kind] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
-        return self._compiled[kind]
+                self._made[kind] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
+        return self._made[kind]
 
 
 def njit(function: Callable[..., Any], apart: bool = False) -> Any:

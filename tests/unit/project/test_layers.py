@@ -51,6 +51,7 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
     "weasyprint": "riser_soil.report",
     "docx": "riser_soil.report",
     "numba": "riser_soil.core",
+    "llvmlite": "riser_soil.core.rows",
     "fatpack": "riser_soil.fatigue",
     "scipy.optimize": ("riser_soil.calibration", "riser_soil.assembly.hang_off", "riser_soil.hang_off"),
     "scipy.stats": ("riser_soil.calibration", "riser_soil.statistics"),

@@ -1,0 +1,86 @@
+"""Kernels are functions of Python: with numba's compiler off they compute what they do compiled."""
+
+from __future__ import annotations
+
+import json
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.support.on_ranks import ROOT, environment, finished
+from tests.support.pages import blocks
+from tests.support.scenes import LAY, Mapping, heave
+
+OFF = {"NUMBA_DISABLE_JIT": "1"}
+PIPE = {"outer_diameter": 0.3, "inner_diameter": 0.2, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4, "GJ": 4.0e4}
+IN_WATER = {"drag": {"normal": 1.1}, "added_mass": {"normal": 1.0}}
+
+
+def scene(water: Mapping, seabed: Mapping, end: tuple[float, float, float], **more: Any) -> Mapping:
+    """A short pipe of a few elements that comes down on a seabed while its upper end heaves."""
+    segments = [{"line_type": "pipe", "length": length, "elements": n} for length, n in ((12.0, 5), (28.0, 5))]
+    return {
+        "water": {"density": 1025.0, "surface_level": 22.0, **water},
+        "line_types": {"pipe": PIPE | IN_WATER},
+        "riser": {
+            "segments": segments,
+            "contents": {"density": 850.0},
+            "start": {"position": [0.0, 0.0, 0.15]},
+            "end": {"position": list(end)},
+        },
+        "seabed": seabed,
+        "stages": [LAY, heave(1.0)],
+        **more,
+    }
+
+
+PLANE = scene({}, {"kind": "spring", "stiffness": 1.0e5}, (24.0, 0.0, 25.0))
+SPACE = scene(
+    {
+        "waves": {"jonswap": {"Hs": 2.0, "Tp": 8.0, "seed": 1, "components": 5, "direction_deg": 40.0}},
+        "current": {"profile": [[0.0, 0.1, 0.2], [22.0, 0.2, 0.3]]},
+    },
+    {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 2.0e3, "su_gradient": 1.5e3}},
+    (24.0, 2.0, 25.0),
+    contact={"friction": {"axial": 0.4, "lateral": 0.6, "mobilisation": 0.02}},
+)
+SCENES = {"plane": PLANE, "space": SPACE}
+
+
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """What `few_steps` finds of a scene, by its name and whether it is compiled."""
+
+    @cache
+    def steps(name: str, compiled: bool) -> dict[str, Any]:
+        folder = tmp_path_factory.mktemp(name)
+        (folder / "scene.yaml").write_text(json.dumps(SCENES[name]), encoding="utf-8")
+        call = [sys.executable, str(ROOT / "tests/support/few_steps.py"), str(folder / "scene.yaml"), str(folder)]
+        done = finished(call, folder, environment() | ({} if compiled else OFF))
+        assert done.returncode == 0, done.stderr
+        found: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))
+        return found
+
+    return steps
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_step_is_the_same_with_the_compiler_off(name: str, computed: Any) -> None:
+    compiled, plain = computed(name, True), computed(name, False)
+    assert len(plain["kernels"]) == 0
+    assert len(compiled["kernels"]) > 30
+    assert plain["iterations"] == compiled["iterations"]
+    found, expected = np.array(plain["last"]), np.array(compiled["last"])
+    assert np.abs(expected).max() > 0.01
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-8 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("given", [{}, OFF])
+def test_the_examples_of_the_page_on_kernels_run(given: dict[str, str], tmp_path: Path) -> None:
+    (tmp_path / "page.py").write_text("\n".join(blocks(ROOT / "docs/kernels.md", "python")), encoding="utf-8")
+    done = finished([sys.executable, str(tmp_path / "page.py")], ROOT, environment() | given)
+    assert done.returncode == 0, done.stderr
