@@ -18,7 +18,7 @@ from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.stiffness import LineStiffness
-from riser_soil.riser.tension_only import blend_forces, blend_tangent, blended, heaped, is_heaped
+from riser_soil.riser.tension_only import Heaped, blend_forces, blend_tangent, blended, heaped
 from riser_soil.riser.vectors import vector
 
 
@@ -95,30 +95,38 @@ def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -
         local = corotated(at, e)
         beam2d.write_element_forces(e, local, part.reference, part.section, f)
         beam2d.add_load_forces(local, part.section.L[e], part.load[e], f)
-        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
-            _blend_planar_forces(part, at, e, local, f, heap)
+        state = heaped(part.section.law, e, at.chord[e], part.section.L[e], part.section.EA[e])
+        _blend_planar_forces(state, part, at, e, local, f, heap)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
 
 @njit
 def _blend_planar_forces(
-    part: PlanarBeam, at: PlanarConfiguration, e: int, local: beam2d.PlanarCorotated, f: Array, heap: Array
+    state: Heaped | None,
+    part: PlanarBeam,
+    at: PlanarConfiguration,
+    e: int,
+    local: beam2d.PlanarCorotated,
+    f: Array,
+    heap: Array,
 ) -> None:
-    """Make forces f (6,) of an element with its bow those that it has in a heap; workspace heap (6,)."""
+    """Make forces f (6,) of an element with its bow those that it has in its state; workspace heap (6,)."""
+    if state is None:
+        return
+    if state.g == 1.0:
+        return
     chord, L, w = at.chord[e], part.section.L[e], part.load[e]
-    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam2d.write_heaped_forces(state, chord, at.end_angle[e, 0], at.end_angle[e, 1], L, w, heap)
-    blend_forces(state, chord, L, _more_than_in_planar_heap(part, at, e, local), f, heap)
+    blend_forces(state, chord, L, _more_than_in_planar_heap(state, part, at, e, local), f, heap)
 
 
 @njit
 def _more_than_in_planar_heap(
-    part: PlanarBeam, at: PlanarConfiguration, e: int, local: beam2d.PlanarCorotated
+    state: Heaped, part: PlanarBeam, at: PlanarConfiguration, e: int, local: beam2d.PlanarCorotated
 ) -> float:
     """Energy [J] of an element with its bow less that in a heap."""
     L, chord = part.section.L[e], at.chord[e]
-    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     bowed = beam2d.element_energy(e, local, part.reference, part.section)
     bowed += beam2d.load_potential(local, L, part.load[e], 0.0, 0.0)
     turned = at.end_angle[e]
@@ -131,27 +139,31 @@ def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces
     f, heap = np.empty(12), np.empty(12)
     for e in range(part.load.shape[0]):
         beam3d.write_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, f)
-        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
-            _blend_spatial_forces(part, at, e, f, heap)
+        state = heaped(part.section.law, e, at.chord[e], part.section.L[e], part.section.EA[e])
+        _blend_spatial_forces(state, part, at, e, f, heap)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
 
 
 @njit
-def _blend_spatial_forces(part: SpatialBeam, at: SpatialConfiguration, e: int, f: Array, heap: Array) -> None:
-    """Make forces f (12,) of an element with its bow those that it has in a heap; workspace heap (12,)."""
+def _blend_spatial_forces(
+    state: Heaped | None, part: SpatialBeam, at: SpatialConfiguration, e: int, f: Array, heap: Array
+) -> None:
+    """Make forces f (12,) of an element with its bow those that it has in its state; workspace heap (12,)."""
+    if state is None:
+        return
+    if state.g == 1.0:
+        return
     chord, L, w = at.chord[e], part.section.L[e], part.load[e]
-    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     beam3d.write_heaped_forces(state, chord, at.frame1[e], at.frame2[e], L, w, heap)
-    blend_forces(state, chord, L, _more_than_in_spatial_heap(part, at, e), f, heap)
+    blend_forces(state, chord, L, _more_than_in_spatial_heap(state, part, at, e), f, heap)
 
 
 @njit
-def _more_than_in_spatial_heap(part: SpatialBeam, at: SpatialConfiguration, e: int) -> float:
+def _more_than_in_spatial_heap(state: Heaped, part: SpatialBeam, at: SpatialConfiguration, e: int) -> float:
     """Energy [J] of an element with its bow less that in a heap."""
     L, chord = part.section.L[e], at.chord[e]
-    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
     local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section)
     bowed = beam3d.element_energy(e, local, part.reference, part.section)
     bowed += beam3d.element_potential(local, L, vector(part.load[e]), beam3d.STILL)
@@ -166,9 +178,8 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
         local = corotated(at, e)
         beam2d.write_element(e, local, part.reference, part.section, f, own)
         beam2d.add_load_tangent(local, part.section.L[e], part.load[e], own)
-        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
-            beam2d.add_load_forces(local, part.section.L[e], part.load[e], f)
-            _blend_planar_tangent(part, at, e, local, f, own, heap, heap_own)
+        state = heaped(part.section.law, e, at.chord[e], part.section.L[e], part.section.EA[e])
+        _blend_planar_tangent(state, part, at, e, local, f, own, heap, heap_own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
@@ -176,6 +187,7 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
 
 @njit
 def _blend_planar_tangent(
+    state: Heaped | None,
     part: PlanarBeam,
     at: PlanarConfiguration,
     e: int,
@@ -185,12 +197,18 @@ def _blend_planar_tangent(
     heap: Array,
     heap_K: Array,
 ) -> None:
-    """Make the tangent K (6, 6) of an element with its bow and forces f (6,) that in a heap; workspaces of both."""
+    """Make the tangent K (6, 6) of an element with its bow and forces f (6,), to which the load's are added, that in
+    its state; workspaces of both.
+    """
+    if state is None:
+        return
+    if state.g == 1.0:
+        return
     chord, L, w, turned = at.chord[e], part.section.L[e], part.load[e], at.end_angle[e]
-    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    beam2d.add_load_forces(local, L, w, f)
     beam2d.write_heaped_forces(state, chord, turned[0], turned[1], L, w, heap)
     beam2d.write_heaped_tangent(state, turned[0], turned[1], L, w, heap_K)
-    blend_tangent(state, chord, L, _more_than_in_planar_heap(part, at, e, local), f, K, heap, heap_K)
+    blend_tangent(state, chord, L, _more_than_in_planar_heap(state, part, at, e, local), f, K, heap, heap_K)
 
 
 @add_tangent.of(SpatialBeam)
@@ -201,8 +219,8 @@ def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, we
         beam3d.write_element(
             e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, workspace, f, own
         )
-        if is_heaped(part.section.law, e, at.chord[e], part.section.L[e]):
-            _blend_spatial_tangent(part, at, e, f, own, heap, heap_own)
+        state = heaped(part.section.law, e, at.chord[e], part.section.L[e], part.section.EA[e])
+        _blend_spatial_tangent(state, part, at, e, f, own, heap, heap_own)
         rotations.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)
         for i in range(12):
             for j in range(12):
@@ -211,11 +229,21 @@ def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, we
 
 @njit
 def _blend_spatial_tangent(
-    part: SpatialBeam, at: SpatialConfiguration, e: int, f: Array, K: Array, heap: Array, heap_K: Array
+    state: Heaped | None,
+    part: SpatialBeam,
+    at: SpatialConfiguration,
+    e: int,
+    f: Array,
+    K: Array,
+    heap: Array,
+    heap_K: Array,
 ) -> None:
-    """Make forces f (12,) and tangent K (12, 12) of an element with its bow those in a heap; workspaces of both."""
-    chord, L, more = at.chord[e], part.section.L[e], _more_than_in_spatial_heap(part, at, e)
-    state = heaped(part.section.law, e, chord, L, part.section.EA[e])
+    """Make forces f (12,) and tangent K (12, 12) of an element with its bow those in its state; workspaces of both."""
+    if state is None:
+        return
+    if state.g == 1.0:
+        return
+    chord, L, more = at.chord[e], part.section.L[e], _more_than_in_spatial_heap(state, part, at, e)
     beam3d.write_heaped_forces(state, chord, at.frame1[e], at.frame2[e], L, part.load[e], heap)
     beam3d.write_heaped_tangent(state, at.frame1[e], at.frame2[e], L, part.load[e], heap_K)
     blend_tangent(state, chord, L, more, f, K, heap, heap_K)
@@ -226,36 +254,57 @@ def _blend_spatial_tangent(
 def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> None:
     section, load = part.section, part.load
     for e in range(part.load.shape[0]):
-        local, x, L, chord, turned = corotated(at, e), at.x, part.section.L[e], at.chord[e], at.end_angle[e]
+        local, x, L = corotated(at, e), at.x, part.section.L[e]
         stored = beam2d.element_energy(e, local, part.reference, section)
         by_bow = beam2d.load_potential(local, L, load[e], 0.0, 0.0)
-        if is_heaped(section.law, e, chord, L):
-            state = heaped(section.law, e, chord, L, section.EA[e])
-            stored = blended(state, stored, beam2d.heaped_energy(state, chord, turned[0], turned[1], L))
-            by_bow = blended(state, by_bow, beam2d.heaped_load_potential(turned[0], turned[1], L, load[e]))
+        state = heaped(section.law, e, at.chord[e], L, section.EA[e])
+        stored, by_bow = _blended_planar_energy(state, at, e, L, load[e], stored, by_bow)
         energy[1] += stored
         energy[2] += by_bow
         for i in range(2):
             energy[2] -= 0.5 * L * load[e, i] * (x[e, i] + x[e + 1, i])
 
 
+@njit
+def _blended_planar_energy(
+    state: Heaped | None, at: PlanarConfiguration, e: int, L: float, w: Array, stored: float, by_bow: float
+) -> tuple[float, float]:
+    """Strain energy of an element in its state, and potential of the load w on its bow [J], from those with its bow."""
+    if state is None:
+        return stored, by_bow
+    if state.g == 1.0:
+        return stored, by_bow
+    chord, turned = at.chord[e], at.end_angle[e]
+    spring = beam2d.heaped_energy(state, chord, turned[0], turned[1], L)
+    potential = beam2d.heaped_load_potential(turned[0], turned[1], L, w)
+    return blended(state, stored, spring), blended(state, by_bow, potential)
+
+
 @add_energy.of(SpatialBeam)
 def _spatial_energy(part: SpatialBeam, at: SpatialConfiguration, energy: Array) -> None:
     section, load = part.section, part.load
     for e in range(part.load.shape[0]):
-        local, x, L, chord = (
-            beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section),
-            at.x,
-            part.section.L[e],
-            at.chord[e],
-        )
+        local, x, L = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.section), at.x, part.section.L[e]
         stored = beam3d.element_energy(e, local, part.reference, section)
         by_bow = beam3d.element_potential(local, L, vector(load[e]), beam3d.STILL)
-        if is_heaped(section.law, e, chord, L):
-            state = heaped(section.law, e, chord, L, section.EA[e])
-            stored = blended(state, stored, beam3d.heaped_energy(state, chord, at.frame1[e], at.frame2[e], L))
-            by_bow = blended(state, by_bow, beam3d.heaped_load_potential(at.frame1[e], at.frame2[e], L, load[e]))
+        state = heaped(section.law, e, at.chord[e], L, section.EA[e])
+        stored, by_bow = _blended_spatial_energy(state, at, e, L, load[e], stored, by_bow)
         energy[1] += stored
         energy[2] += by_bow
         for i in range(3):
             energy[2] -= 0.5 * L * load[e, i] * (x[e, i] + x[e + 1, i])
+
+
+@njit
+def _blended_spatial_energy(
+    state: Heaped | None, at: SpatialConfiguration, e: int, L: float, w: Array, stored: float, by_bow: float
+) -> tuple[float, float]:
+    """Strain energy of an element in its state, and potential of the load w on its bow [J], from those with its bow."""
+    if state is None:
+        return stored, by_bow
+    if state.g == 1.0:
+        return stored, by_bow
+    chord, frame1, frame2 = at.chord[e], at.frame1[e], at.frame2[e]
+    spring = beam3d.heaped_energy(state, chord, frame1, frame2, L)
+    potential = beam3d.heaped_load_potential(frame1, frame2, L, w)
+    return blended(state, stored, spring), blended(state, by_bow, potential)

@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits, Weights, Work
-from riser_soil.riser import beam3d, damping2d, damping3d, rotations
+from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, rotations
 from riser_soil.riser.beam import corotated
 from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.line import Line
@@ -17,7 +17,7 @@ from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.stiffness import LineStiffness, viscosity
-from riser_soil.riser.tension_only import blend_viscous_forces, blend_viscous_tangent, heaped, is_heaped
+from riser_soil.riser.tension_only import Heaped, blend_viscous_forces, blend_viscous_tangent, heaped
 from riser_soil.riser.vectors import matrix, matvec, vector
 
 
@@ -76,21 +76,21 @@ def _write_chord_rates(v: Array, out: Array) -> None:
 
 
 @njit
-def _blend_forces(part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int, f: Array) -> None:
-    """Make the forces of element e with its bow those that it has in a heap, if it lies there."""
-    chord, L, viscosity = at.chord[e], part.viscosity.L[e], part.viscosity
-    if is_heaped(viscosity.law, e, chord, L):
-        blend_viscous_forces(heaped(viscosity.law, e, chord, L, viscosity.EA[e]), part.chord_rate[e], f)
+def _state(part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int) -> Heaped | None:
+    """State of element e, with its viscosity in place of its stiffness."""
+    found: Heaped | None = heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e], part.viscosity.EA[e])
+    return found
 
 
 @njit
-def _blend_tangent(
-    part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int, shift_v: float, f: Array, K: Array
+def _blend_forces(
+    state: Heaped | None, part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int, f: Array
 ) -> None:
-    """Make the tangent of element e with its bow and forces f that in a heap, where it lies."""
-    chord, L, viscosity = at.chord[e], part.viscosity.L[e], part.viscosity
-    state = heaped(viscosity.law, e, chord, L, viscosity.EA[e])
-    blend_viscous_tangent(state, chord, L, part.chord_rate[e], shift_v, f, K)
+    """Make the forces of element e with its bow those in its state."""
+    if state is None:
+        return
+    if state.g < 1.0:
+        blend_viscous_forces(state, part.chord_rate[e], f)
 
 
 @add_forces.of(PlanarViscosity)
@@ -100,7 +100,7 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
     for e in range(at.chord.shape[0]):
         local = corotated(at, e)
         damping2d.write_element_forces(e, local, part.viscosity, part.chord_rate, at.v[:, 2], f)
-        _blend_forces(part, at, e, f)
+        _blend_forces(_state(part, at, e), part, at, e, f)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
@@ -111,12 +111,30 @@ def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, 
     for e in range(at.chord.shape[0]):
         local, rates = corotated(at, e), (part.chord_rate, at.v[:, 2])
         damping2d.write_element_tangent(e, local, part.viscosity, *rates, weights.shift_v, own)
-        if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
-            damping2d.write_element_forces(e, local, part.viscosity, *rates, f)
-            _blend_tangent(part, at, e, weights.shift_v, f, own)
+        _blend_planar_tangent(_state(part, at, e), part, at, e, local, weights.shift_v, f, own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
+
+
+@njit
+def _blend_planar_tangent(
+    state: Heaped | None,
+    part: PlanarViscosity,
+    at: PlanarConfiguration,
+    e: int,
+    local: beam2d.PlanarCorotated,
+    shift_v: float,
+    f: Array,
+    K: Array,
+) -> None:
+    """Make the tangent K (6, 6) of element e with its bow that in its state; workspace f (6,)."""
+    if state is None:
+        return
+    if state.g < 1.0:
+        rate, L = part.chord_rate, part.viscosity.L[e]
+        damping2d.write_element_forces(e, local, part.viscosity, rate, at.v[:, 2], f)
+        blend_viscous_tangent(state, at.chord[e], L, rate[e], shift_v, f, K)
 
 
 @add_forces.of(SpatialViscosity)
@@ -129,7 +147,7 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
     for e in range(at.chord.shape[0]):
         local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
         damping3d.write_element_forces(e, local, part.viscosity, part.chord_rate, part.spin, f)
-        _blend_forces(part, at, e, f)
+        _blend_forces(_state(part, at, e), part, at, e, f)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
@@ -144,13 +162,31 @@ def _spatial_tangent(
     for e in range(at.chord.shape[0]):
         local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
         damping3d.write_element_tangent(e, local, part.viscosity, *rates, nodes, weights.shift_v, own)
-        if is_heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e]):
-            damping3d.write_element_forces(e, local, part.viscosity, *rates, f)
-            rotations.element_to_increments(e, f, at.H)
-            _blend_tangent(part, at, e, weights.shift_v, f, own)
+        _blend_spatial_tangent(_state(part, at, e), part, at, e, local, weights.shift_v, f, own)
         for i in range(12):
             for j in range(12):
                 K[e, i, j] += weights.force * own[i, j]
+
+
+@njit
+def _blend_spatial_tangent(
+    state: Heaped | None,
+    part: SpatialViscosity,
+    at: SpatialConfiguration,
+    e: int,
+    local: beam3d.Shape,
+    shift_v: float,
+    f: Array,
+    K: Array,
+) -> None:
+    """Make the tangent K (12, 12) of element e with its bow that in its state; workspace f (12,)."""
+    if state is None:
+        return
+    if state.g < 1.0:
+        rate, L = part.chord_rate, part.viscosity.L[e]
+        damping3d.write_element_forces(e, local, part.viscosity, rate, part.spin, f)
+        rotations.element_to_increments(e, f, at.H)
+        blend_viscous_tangent(state, at.chord[e], L, rate[e], shift_v, f, K)
 
 
 @add_energy.of(PlanarViscosity)

@@ -172,7 +172,10 @@ def _with_fold_energy(law: SlackElement, energy: float, bow: float) -> float:
 
 
 class Heaped(NamedTuple):
-    """An element's state as a spring: g and its derivatives by the chord's length over L; stiffness r EA/L [N/m]."""
+    """An element's state as a spring: g and its derivatives by the chord's length over L; stiffness r EA/L [N/m].
+
+    Elements with g = 1 have all of their bow.
+    """
 
     g: float
     slope: float
@@ -181,34 +184,23 @@ class Heaped(NamedTuple):
 
 
 @bound_by_type
-def is_heaped(law: Any, e: int, chord: Array, L: float) -> Any:
-    """Whether an element lacks a part of its bow; chord (d,) m."""
-
-
-@is_heaped.of(Linear)
-def _never(law: Linear, e: int, chord: Array, L: float) -> bool:
-    return False
-
-
-@is_heaped.of(TensionOnly)
-def _where_short(law: TensionOnly, e: int, chord: Array, L: float) -> bool:
-    return law.share[e] < 1.0 and _square_of(chord) < (BOWED * L) ** 2
-
-
-@bound_by_type
 def heaped(law: Any, e: int, chord: Array, L: float, EA: float) -> Any:
-    """State of element e, of `is_heaped`."""
+    """State of element e with its chord (d,) m; None in a line whose elements all bend. A kernel that gets it and
+    returns first if it is None has nothing more compiled for such a line.
+    """
 
 
 @heaped.of(Linear)
-def _not_heaped(law: Linear, e: int, chord: Array, L: float, EA: float) -> Heaped:
-    return Heaped(1.0, 0.0, 0.0, 0.0)
+def _never(law: Linear, e: int, chord: Array, L: float, EA: float) -> None:
+    return None
 
 
 @heaped.of(TensionOnly)
 def _heaped(law: TensionOnly, e: int, chord: Array, L: float, EA: float) -> Heaped:
-    x = (_square_of(chord) ** 0.5 / L - GONE) / (BOWED - GONE)
-    k = law.share[e] * EA / L
+    square, k = _square_of(chord), law.share[e] * EA / L
+    if law.share[e] >= 1.0 or square >= (BOWED * L) ** 2:
+        return Heaped(1.0, 0.0, 0.0, k)
+    x = (square**0.5 / L - GONE) / (BOWED - GONE)
     if x <= 0.0:
         return Heaped(0.0, 0.0, 0.0, k)
     y, width = 1.0 - x, BOWED - GONE
@@ -226,7 +218,7 @@ def _square_of(chord: Array) -> float:
 
 @njit
 def blended(at: Heaped, bowed: float, spring: float) -> float:
-    """An energy of both; where there is no bow its own may be no number."""
+    """An energy, force or stiffness of both; where there is no bow its own may be no number."""
     return spring if at.g == 0.0 else at.g * bowed + (1.0 - at.g) * spring
 
 
@@ -263,13 +255,12 @@ def blend_tangent(at: Heaped, chord: Array, L: float, more: float, f: Array, K: 
     """
     n, d = f.size, chord.size
     half = n // 2
-    if at.g == 0.0:
-        K[:, :] = Ks
-        return
-    length = _square_of(chord) ** 0.5
     for i in range(n):
         for j in range(n):
-            K[i, j] = at.g * K[i, j] + (1.0 - at.g) * Ks[i, j]
+            K[i, j] = blended(at, K[i, j], Ks[i, j])
+    if at.g == 0.0:
+        return
+    length = _square_of(chord) ** 0.5
     by, round_chord = at.slope / L, more * at.slope / (L * length)
     along = more * at.bend / (L * L) - round_chord
     for i in range(d):
@@ -292,11 +283,10 @@ def blend_tangent(at: Heaped, chord: Array, L: float, more: float, f: Array, K: 
 def blend_forces(at: Heaped, chord: Array, L: float, more: float, f: Array, fs: Array) -> None:
     """Make forces f (n,) of the bowed element those of both; arguments as in `blend_tangent`."""
     n, d = f.size, chord.size
-    if at.g == 0.0:
-        f[:] = fs
-        return
     for i in range(n):
-        f[i] = at.g * f[i] + (1.0 - at.g) * fs[i]
+        f[i] = blended(at, f[i], fs[i])
+    if at.g == 0.0:
+        return
     by = more * at.slope / (L * _square_of(chord) ** 0.5)
     for i in range(d):
         f[i] -= by * chord[i]

@@ -35,10 +35,9 @@ def main(scene: str, folder: Path) -> None:
         last[:] = [*stepper.before.v.tolist(), *stepper.before.a.tolist()]
         record(observer, stepper, step, **more)
 
-    record = Observer.record
-    with patch.object(compiled, "keeping", kept), patch.object(bound, "keeping", kept):
-        with patch.object(Observer, "record", recorded):
-            run(shortened(read_scene(scene)), folder / "results", force=True)
+    record, kept_by = Observer.record, [patch.object(module, "keeping", kept) for module in (compiled, bound)]
+    with kept_by[0], kept_by[1], patch.object(Observer, "record", recorded):
+        run(shortened(read_scene(scene)), folder / "results", force=True)
     found = {"last": last, "iterations": iterations, "kernels": sorted(kernels)}
     (folder / "found.json").write_text(json.dumps(found), encoding="utf-8")
 

@@ -11,7 +11,6 @@ import textwrap
 import tomllib
 from collections.abc import Iterator
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import numba
