@@ -6,6 +6,7 @@ which takes some microseconds, and the code of the loop around it stays.
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
 from numba import types
@@ -20,6 +21,11 @@ class CFunction(types.WrapperAddressProtocol):
     def __init__(self, address: int, arguments: int, owner: object) -> None:
         self._address, self._owner = address, owner
         self._signature = types.void(*[types.intp] * arguments)
+        self._call = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * arguments)(address)
+
+    def __call__(self, *addresses: int) -> None:
+        """Call it from Python, as kernels do that are not compiled."""
+        self._call(*map(int, addresses))
 
     def __wrapper_address__(self) -> int:
         return self._address
