@@ -20,7 +20,7 @@ def _add(to: ctypes.Array[ctypes.c_double], value: ctypes.Array[ctypes.c_double]
 
 @njit
 def _call(function: CFunction, to: Array, value: Array) -> None:
-    function(np.intp(to.ctypes.data), np.intp(value.ctypes.data))
+    function(to.ctypes.data + 0, value.ctypes.data + 0)
 
 
 def test_kernels_call_it_compiled_or_not() -> None:
