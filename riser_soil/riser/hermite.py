@@ -209,8 +209,8 @@ def axis_at(nodes: Array, position: Array, tangent: Array, arc: Array) -> tuple[
     e, row = np.clip(np.searchsorted(nodes, arc) - 1, 0, nodes.size - 2), np.arange(arc.size)
     length = nodes[e + 1] - nodes[e]
     xi, q = (arc - nodes[e]) / length, (position[row, e], tangent[row, e, 0], position[row, e + 1], tangent[row, e, 1])
+    of_arrays = (getattr(kernel, "py_func", kernel) for kernel in (shape, slope))  # kernels are for one element
     place, direction = (
-        sum(share[:, None] * each for share, each in zip(shares.py_func(xi, length), q, strict=True))
-        for shares in (shape, slope)
+        sum(share[:, None] * each for share, each in zip(shares(xi, length), q, strict=True)) for shares in of_arrays
     )
     return np.asarray(place), np.asarray(direction)
