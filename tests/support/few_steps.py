@@ -1,42 +1,48 @@
 """The first steps of a scene, and what they were computed with, as JSON: python few_steps.py SCENE.yaml FOLDER.
 
 last: rates of all dofs at the end of the last step; iterations of all; kernels: modules and names of those that Python
-calls, bound to their arguments or not, which numba compiles with all that they call in turn. None of these are counted
-with NUMBA_DISABLE_JIT=1.
+calls, bound to their arguments or not, which are compiled with all that they call in turn.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 
 def main(scene: str, folder: Path) -> None:
-    from riser_soil.core import bound, compiled
+    from riser_soil.core.bound import Bound
+    from riser_soil.core.compiled import Kernel
     from riser_soil.results.observer import Observer
     from riser_soil.scene.reader import read_scene
     from riser_soil.solve.time_stepper import TimeStepper
     from riser_soil.variants.short_runs import shortened
     from riser_soil.whole_run import run
 
-    kernels, last, keeping = set[str](), list[float](), compiled.keeping
-    iterations = []
+    kernels, last, iterations = set[str](), list[float](), list[int]()
+    call, bind, record = Kernel.__call__, Bound.__init__, Observer.record
 
-    def kept(function: Callable[..., Any], *rest: Any) -> Any:
-        kernels.add(f"{function.__module__}.{function.__name__}")
-        return keeping(function, *rest)
+    def name(kernel: Any) -> str:
+        return f"{kernel.py_func.__module__}.{kernel.py_func.__name__}"
+
+    def called(kernel: Kernel, *arguments: Any) -> Any:
+        kernels.add(name(kernel))
+        return call(kernel, *arguments)
+
+    def bound(self: Bound, kernel: Any, *arguments: Any) -> None:
+        kernels.add(name(kernel))
+        bind(self, kernel, *arguments)
 
     def recorded(observer: Observer, stepper: TimeStepper, step: Any, **more: Any) -> None:
         iterations.append(step.solution.iterations)
         last[:] = [*stepper.before.v.tolist(), *stepper.before.a.tolist()]
         record(observer, stepper, step, **more)
 
-    record, kept_by = Observer.record, [patch.object(module, "keeping", kept) for module in (compiled, bound)]
-    with kept_by[0], kept_by[1], patch.object(Observer, "record", recorded):
+    watched = patch.object(Kernel, "__call__", called), patch.object(Bound, "__init__", bound)
+    with watched[0], watched[1], patch.object(Observer, "record", recorded):
         run(shortened(read_scene(scene)), folder / "results", force=True)
     found = {"last": last, "iterations": iterations, "kernels": sorted(kernels)}
     (folder / "found.json").write_text(json.dumps(found), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Rows added as whole vectors."""
+"""Rows as whole vectors: in compiled code they do what the plain loops beside them say."""
 
 from __future__ import annotations
 
@@ -40,15 +40,6 @@ def test_a_row_is_added_where_it_is_asked_for(N: Size) -> None:
     _added(out, 7, -2.5, rows, 30, N)
     np.testing.assert_array_equal(out, expected)
     np.testing.assert_array_equal(interpreted, expected)
-
-
-@pytest.mark.parametrize("to", [0, 2, 6])
-def test_what_is_read_is_read_before_anything_is_written(to: int) -> None:
-    values = np.arange(20.0)
-    expected = values.copy()
-    expected[to : to + 8] += values[4:12]
-    _added(values, to, 1.0, values, 4, fixed(8))
-    np.testing.assert_array_equal(values, expected)
 
 
 @njit
@@ -189,3 +180,37 @@ def test_rows_of_tangents_are_pulled_back(d: int, r: int) -> None:
     _pulled_back(out, P, S, fixed(d), fixed(r))
     np.testing.assert_allclose(out, expected, rtol=1e-13)
     np.testing.assert_allclose(interpreted, expected, rtol=1e-13)
+
+
+@njit
+def _all(
+    values: Array, rows: Array, at: int, x: float, terms: Any, P: Array, N: Size, D: Size, R: Size
+) -> tuple[Array, Array, Array, Any, Any, Any]:
+    """What each function finds or writes of the same numbers, its place in them `at`."""
+    d, n = len(D), 2 * (len(D) + len(R))
+    S, other, out = np.ones((4, d, n)), np.ones((4, d, n)), np.ones((n, n))
+    four, _, lines = terms[0]
+    add_multiple(S, at, x, rows, 2 * at, N)
+    add_shares(S, at, rows, at, as_tuple(values, D), D)
+    add_weighed(S, four, terms, D, R)
+    write_weighed(other, ((four, terms), (four, terms)), D, R)
+    add_pulled_back(out, P, other, D, R)
+    write_blocks(other, rows, x, lines, D, R)
+    polynomials = two_polynomials(rows, at, 0.3 * x, 0.4, fixed_two)
+    return S, other, out, polynomials, numbers_at(rows, at, D), combined(((x, rows, at), (2.0, values, 0)), D)
+
+
+fixed_two = fixed(2)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_each_function_is_its_plain_loops(seed: int) -> None:
+    """Of random numbers, at random places, in a plane and in space."""
+    rng = np.random.default_rng(seed)
+    d, r = ((2, 1), (3, 3))[seed % 2]
+    n, count, at, x = 2 * (d + r), int(rng.integers(1, 9)), int(rng.integers(0, 5)), float(rng.normal())
+    terms = tuple((rng.normal(size=4), rng.normal(size=(d, d)), rng.normal(size=(d, n))) for _ in range(2))
+    given = rng.normal(size=5), rng.normal(size=(5, 4)), at, x, terms, rng.normal(size=(2, d, r))
+    sizes = fixed(count), fixed(d), fixed(r)
+    for found, expected in zip(_all(*given, *sizes), _all.py_func(*given, *sizes), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
