@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,7 @@ from riser_soil.riser.tension_only import Heaped, TensionOnly
 from riser_soil.riser.tension_only import heaped as heaped_state
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error, moved, slope
+from tests.support.on_ranks import ROOT, environment, finished
 from tests.support.pipes import pipe
 
 CHAIN: dict[str, Any] = {"EA": 4.0e5, "EI": 0.0, "GJ": 3.0, "submerged_weight": 700.0, "damping": 0.2}
@@ -142,3 +145,25 @@ def test_the_share_of_the_bow_grows_smoothly() -> None:
     assert state(0.9)[:3] == pytest.approx((1.0, 0.0, 0.0), abs=1e-9)
     assert state(0.91)[:3] == state(2.0)[:3] == (1.0, 0.0, 0.0)
     assert state(0.89).g < 1.0
+
+
+COMPILED = """
+from numba.core import event
+from riser_soil.riser.line_part import LineParts
+from tests.support.sample_line import sample
+
+beam = sample(2).beam()
+with event.install_recorder("numba:compile") as seen:
+    LineParts(beam.line, [beam]).energy(sample(2).state(1))
+print(*(entry.data["dispatcher"].py_func.__name__ for _, entry in seen.buffer))
+"""
+
+
+def test_nothing_of_heaps_is_compiled_for_a_line_that_bends(tmp_path: Path) -> None:
+    """Its forces and its energy, from an empty cache."""
+    given = environment() | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    done = finished([sys.executable, "-c", COMPILED], ROOT, given)
+    assert done.returncode == 0, done.stderr
+    compiled = set(done.stdout.split())
+    assert {"_blend_planar_forces", "element_energy", "_blended_planar_energy"} <= compiled
+    assert not {"heaped_energy", "heaped_load_potential", "blended", "blend_forces", "_square_of"} & compiled
