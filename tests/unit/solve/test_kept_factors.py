@@ -13,7 +13,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.solve.kept_factors import SEEN, KeptFactors
 
-SIDE = 12  # cells along each edge of a cube
+SIDE = 14  # cells along each edge of a cube: factors of fewer are worth too few solves by the counts of MUMPS 5.7
 TOLERANCE = 1e-8
 RANDOM = np.random.default_rng(5)
 
@@ -169,11 +169,11 @@ def test_new_factors_have_the_new_pattern(symmetric: Solver) -> None:
 def test_restored_factors_go_on_to_the_last_bit(symmetric: Solver) -> None:
     for k in range(3):
         symmetric.solution(stiffened(50.0, 1 + k), B)
-    other = Solver(symmetric=True)
+    made, other = symmetric.kept.factorisations, Solver(symmetric=True)
     other.kept.restore(symmetric.kept.state())
     for k in range(3, 20):
         assert np.array_equal(symmetric.solution(stiffened(50.0, k), B), other.solution(stiffened(50.0, k), B))
-    assert other.kept.factorisations == symmetric.kept.factorisations - 1
+    assert other.kept.factorisations == symmetric.kept.factorisations - made
     other.destroy()
 
 
