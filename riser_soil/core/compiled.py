@@ -49,14 +49,14 @@ class Kernel:
 
     def __init__(self, function: Callable[..., Any], apart: bool) -> None:
         self.py_func = function
-        self._made: dict[Kind, Any] = {}
+        self._made: dict[tuple[Any, ...], Any] = {}  # by numba's types of the arguments
         self._latest: dict[tuple[type, ...], Any] = {}
         update_wrapper(self, function)
         overload(self, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)(lambda *_: function)
 
     def __call__(self, *arguments: Any) -> Any:
         """What was compiled for such types is called, and looked for anew where numba says with a TypeError that arrays
-        are of other kinds: to find kinds takes as long as a short kernel.
+        are of other types: to find these takes as long as a short kernel.
         """
         if config.DISABLE_JIT:
             return self.py_func(*arguments)
@@ -66,16 +66,16 @@ class Kernel:
                 return self._latest[types](*arguments)
             except TypeError:
                 del self._latest[types]
-        self._latest[types] = self._for_kind_of(arguments)
+        self._latest[types] = self._made_for(arguments)
         return self._latest[types](*arguments)
 
-    def _for_kind_of(self, arguments: tuple[Any, ...]) -> Any:
-        kind = kind_of(arguments)
-        if kind not in self._made:
-            with keeping(self.py_func, kind):
-                signature = tuple(map(numba.typeof, arguments))
-                self._made[kind] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
-        return self._made[kind]
+    def _made_for(self, arguments: tuple[Any, ...]) -> Any:
+        """What is compiled for arguments, also of a kind, such as arrays that are not packed, that has several types."""
+        signature = tuple(map(numba.typeof, arguments))
+        if signature not in self._made:
+            with keeping(self.py_func, kind_of(arguments)):
+                self._made[signature] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
+        return self._made[signature]
 
 
 def njit(function: Callable[..., Any], apart: bool = False) -> Any:

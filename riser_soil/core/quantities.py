@@ -21,7 +21,7 @@ MOST_ELEMENTS = 1_000_000
 Model = TypeVar("Model", bound=BaseModel)
 
 
-"""Of a riser: each of them costs some 10 kB, and every step of the run half a minute with so many."""
+"""Elements of a riser: each costs some 10 kB, and every step of the run half a minute with so many."""
 
 
 @dataclass(frozen=True)

@@ -115,7 +115,7 @@ class DenseBorder(Coupling):
             self._factors[line].renew(factors)
 
     def _made(self, lines: Sequence[PackedLine]) -> list[tuple[Border, Factors]]:
-        """Of each line, with what is the border's own shared by all."""
+        """Border and factors of each line, all zero, with what is the border's own shared by all."""
         nb = self._soil + self._copies
         own, factors = (np.zeros(nb), np.zeros(nb), np.zeros((nb, nb))), (np.zeros((nb, nb)), np.zeros(nb, PIVOT))
         made = []

@@ -109,7 +109,7 @@ def _farthest(system: System, values: Array) -> float:
 
 
 def _largest(system: System, values: Array) -> float:
-    """The same of this rank's values."""
+    """Largest norm of a translation of the lines among this rank's values."""
     return max(float(_longest(values, line.translation_dofs)) for line in system.model.lines)
 
 

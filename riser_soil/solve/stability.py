@@ -49,7 +49,7 @@ class PivotCounter:
         self._others = 0
 
     def count(self) -> int:
-        """Of the present matrix; collective."""
+        """Negative pivots of the present matrix; collective."""
         system = self.system
         if system.whole_soil is None or any_of(system.comm, system.couples):
             return negative_pivots(system)
@@ -58,7 +58,7 @@ class PivotCounter:
         return int(system.sum([float(mine)])[0]) + self._of_others(rows)
 
     def _of_others(self, rows: int) -> int:
-        """Of the rows behind this rank's first ones."""
+        """Negative pivots of the rows behind this rank's first ones; collective."""
         system, (starts, _, values) = self.system, self.system.matrix.stored.csr()
         present = values[starts[rows] :]
         seen = self._matrix is system.matrix and np.array_equal(present, self._seen)

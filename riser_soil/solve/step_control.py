@@ -74,7 +74,9 @@ class StepControl:
 
     @property
     def dt(self) -> float:
-        """Of the nominal size, not the difference of two times: with its round-off no step would be like the last."""
+        """Size of the step to be tried [s], the nominal one: the round-off of a difference of two times would make each step
+        unlike the last.
+        """
         return self._nominal(self._at) * self._stride / 2**self._levels
 
     def rejection(self, error: float) -> str:

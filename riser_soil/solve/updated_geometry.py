@@ -59,5 +59,5 @@ class UpdatedGeometry:
         )
 
     def _lag(self, state: State) -> float:
-        """Of all parts, collective."""
+        """Largest share by which a facet's area is off the geometry of its forces, of all parts; collective."""
         return max(self._system.comm.allgather(max(part.lag(state) for part in self._parts)))

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core import compiled, kernel_cache
+from riser_soil.core.arrays import Array
 
 DAY = 86400.0
 
@@ -111,6 +112,23 @@ def test_processes_may_start_at_once(tmp_path: Path) -> None:
     running = [subprocess.Popen([sys.executable, "-c", KERNEL], env=environment) for _ in range(4)]
     assert [process.wait(120) for process in running] == [0] * 4
     assert len(list((tmp_path / "riser_soil").iterdir())) == 1
+
+
+def test_arrays_may_lie_in_memory_as_they_will() -> None:
+    """One after the other, in the same function: by rows, by columns, with gaps, and such as may not be written to."""
+    values = np.arange(12.0).reshape(3, 4)
+    fixed, wide = values.copy(), np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)
+    fixed.flags.writeable = False
+    for each in (values, np.asfortranarray(values), wide[::2, ::2], fixed, np.asfortranarray(values), values):
+        assert row_sum(each, 1) == 22.0
+
+
+@compiled.njit
+def row_sum(values: Array, row: int) -> float:
+    total = 0.0
+    for each in values[row]:
+        total += each
+    return total
 
 
 def test_division_by_zero_is_no_crash() -> None:
