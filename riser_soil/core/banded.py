@@ -166,7 +166,7 @@ def inverse_at(ab: Array, pivots: IntArray, at: IntArray, B: Size) -> Array:
 def count_negative_pivots(ab: Array, n: int, B: Size, right: Array, corner: Array) -> int:
     """Negative pivots of a symmetric matrix without row exchanges: its negative eigenvalues. The matrix is lost.
 
-    right (n, nb), corner (nb, nb): of a border, whose Schur complement the corner becomes.
+    right (n, nb), corner (nb, nb): of a border, which is eliminated last; it counts, too.
     """
     b, negative = len(B), 0
     for k in range(n):
@@ -186,6 +186,15 @@ def count_negative_pivots(ab: Array, n: int, B: Size, right: Array, corner: Arra
             if factor != 0.0:
                 for d in range(right.shape[1]):
                     corner[c, d] -= factor * right[k, d]
+    for c in range(corner.shape[0]):
+        pivot = corner[c, c]
+        negative += pivot < 0.0
+        if pivot == 0.0:
+            continue
+        for i in range(c + 1, corner.shape[0]):
+            factor = corner[i, c] / pivot
+            for j in range(c + 1, corner.shape[0]):
+                corner[i, j] -= factor * corner[c, j]
     return negative
 
 

@@ -70,7 +70,7 @@ class Kernel:
         return self._latest[types](*arguments)
 
     def _made_for(self, arguments: tuple[Any, ...]) -> Any:
-        """What is compiled for arguments, also of a kind, such as arrays that are not packed, that has several types."""
+        """What is compiled for arguments; a kind, such as arrays that are not packed, may be of several types."""
         signature = tuple(map(numba.typeof, arguments))
         if signature not in self._made:
             with keeping(self.py_func, kind_of(arguments)):

@@ -83,13 +83,12 @@ class BorderedBand:
 
     def negative_pivots(self) -> int:
         """Those of a symmetric matrix without row exchanges: its number of negative eigenvalues, as many as the band
-        and its Schur complement have together (Haynsworth, Linear Algebra Appl. 1, 1968).
+        and its Schur complement have together (Haynsworth, Linear Algebra Appl. 1, 1968), whatever the units of rows.
         """
         band, right, below, corner = self._new_parts()
         _spread(*self._matrix.stored.csr(), self._places, band, right, below, corner)
         wide = np.zeros(len(self._wide))
-        negative = int(banded.count_negative_pivots(band, len(self._pivots), wide, right, corner))
-        return negative + int(np.count_nonzero(np.linalg.eigvalsh(corner) < 0.0)) if corner.size else negative
+        return int(banded.count_negative_pivots(band, len(self._pivots), wide, right, corner))
 
 
 def band_of(system: System) -> BorderedBand | None:

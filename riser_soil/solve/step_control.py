@@ -74,8 +74,8 @@ class StepControl:
 
     @property
     def dt(self) -> float:
-        """Size of the step to be tried [s], the nominal one: the round-off of a difference of two times would make each step
-        unlike the last.
+        """Size of the step to be tried [s], the nominal one: the round-off of a difference of two times would make
+        each step unlike the last.
         """
         return self._nominal(self._at) * self._stride / 2**self._levels
 

@@ -99,8 +99,10 @@ def test_negative_pivots_of_band_and_border_are_negative_eigenvalues(border: int
     entries[0, 0] = 1.0
     negative = int((np.linalg.eigvalsh(entries) < 0.0).sum())
     assert 5 < negative < len(entries) - 5
-    factors, _ = solver(entries, 30, border)
-    assert factors.negative_pivots() == negative
+    units = 10.0 ** np.random.default_rng(3).uniform(-6.0, 6.0, size=len(entries))  # of rows, as of forces and moments
+    for scale in (np.ones(len(entries)), units):
+        factors, _ = solver(np.outer(scale, scale) * entries, 30, border)
+        assert factors.negative_pivots() == negative
 
 
 @pytest.mark.parametrize("row", [4, 33])
