@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -201,9 +201,9 @@ class Assembly:
         stage, soil = self.stage, self.soil
         assert stage is not None
         parts = [*(part for each in of_lines.values() for part in each), *hung]
-        on_ground = [*self.contacts, *self.frictions]
+        on_ground, model = [*self.contacts, *self.frictions], partial(Model, self.moving, joined=joined)
         if soil is None:
-            return Model(self.moving, [*parts, *on_ground], joined=joined)
+            return model([*parts, *on_ground])
         in_motion = soil.in_motion if isinstance(stage, DynamicStage) else []
         soil.whole.hold(by_boundary=not any(part.name == "soil boundary" for part in in_motion))
         cushion = []
@@ -211,11 +211,11 @@ class Assembly:
             soil.cushion.stays, cushion = not self.soil_bears, [soil.cushion]
         if not self.soil_bears:
             others = [part for part in on_ground if part not in soil.pressed_by]
-            return Model(self.moving, [*parts, *others, *cushion], joined=joined)
+            return model([*parts, *others, *cushion])
         on_ground += cushion
         if soil.condensed is not None:
-            return Model(self.moving, [*parts, *on_ground, *soil.parts], soil.fields, joined)
-        return Model(self.moving, [*parts, *soil.parts, *in_motion, *on_ground, *soil.renewal], soil.fields, joined)
+            return model([*parts, *on_ground, *soil.parts], soil.fields)
+        return model([*parts, *soil.parts, *in_motion, *on_ground, *soil.renewal], soil.fields)
 
     @property
     def soil_bears(self) -> bool:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from riser_soil.commands.exit_status import expected_errors, rank
-from riser_soil.commands.scenes import Overrides, SceneFile, placed, positive, read_solved, read_start
+from riser_soil.commands.scenes import Overrides, SceneFile, at_least_one, placed, positive, read_solved, read_start
 from riser_soil.errors import ResultsError, SolveError
 
 _NAMED = 5
@@ -69,8 +69,7 @@ def compile_(
     with expected_errors():
         if rank() > 0:
             return
-        if jobs is not None and jobs < 1:
-            raise ResultsError(f"--jobs {jobs}: must be 1 or more")
+        at_least_one("jobs", jobs)
         from rich.console import Console
         from rich.progress import Progress
 
@@ -123,8 +122,7 @@ def study(
 
         if not LEAST_LEVELS <= levels <= MOST_LEVELS:
             raise ResultsError(f"--levels {levels}: must be from {LEAST_LEVELS} to {MOST_LEVELS}")
-        if jobs < 1:
-            raise ResultsError(f"--jobs {jobs}: must be 1 or more")
+        at_least_one("jobs", jobs)
         folder = output or Path(f"{Path(scene).stem}-study")
         with placed(scene, overrides):
             done = vary(checked, folder, settings=setting or (), levels=levels, jobs=jobs, force=force, echo=typer.echo)

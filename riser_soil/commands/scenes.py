@@ -143,6 +143,12 @@ def positive(name: str, value: float | None) -> None:
         raise ResultsError(f"--{name} {value:g}: must be greater than 0")
 
 
+def at_least_one(name: str, value: int | None) -> None:
+    """ResultsError where an option is given and less than 1."""
+    if value is not None and value < 1:
+        raise ResultsError(f"--{name} {value}: must be 1 or more")
+
+
 def refuse_existing(file: Path, force: bool) -> None:
     """SceneError where a command would overwrite a file without being asked to."""
     if file.exists() and not force:

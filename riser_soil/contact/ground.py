@@ -33,11 +33,6 @@ class DeformedSurface:
         self.corners = self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)  # without those beside strips
 
     @property
-    def moves(self) -> bool:
-        """Whether the geometry follows the soil, as at large strain."""
-        return bool(self._surface.moves)
-
-    @property
     def has_quads(self) -> bool:
         """Whether facets have four nodes."""
         return self.corners.shape[1] == len(QUAD)

@@ -52,6 +52,7 @@ class SoilContact(RiserContact):
 
     name = "contact"
     traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor, Stateful))
+    _reach: CandidateRange
 
     def __init__(self, line: Line, law: NormalLaw, surface: SoilSurface) -> None:
         super().__init__(line, law)
@@ -60,7 +61,6 @@ class SoilContact(RiserContact):
         if not self.active:
             return
         self._soil = DeformedSurface(surface)
-        self._reach: CandidateRange
         self._patch: CandidatePairs | None = None
         self._missed = CandidatePairs.none(len(self._soil.facets))
 
@@ -164,9 +164,13 @@ class SoilContact(RiserContact):
         ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
         vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
         """
-        stored = self.potential(before) if self._stored is None else self._stored
-        lost = self.work_to(after) - self.potential(after) + stored
-        return Work(dissipated=lost, by_scheme=lost)
+        stored, taken = self.potential(before) if self._stored is None else self._stored, self.work_to(after)
+        lost = taken - self.potential(after) + stored
+        return Work(dissipated=lost, by_scheme=self.lost_by_scheme(taken, lost, before, after))
+
+    def lost_by_scheme(self, taken: float, lost: float, before: State, after: State) -> float:
+        """The time scheme's share [J] of what is lost in a step; taken: what the forces took."""
+        return lost
 
     def commit(self, state: State) -> None:
         """Keep what is stored; what the step has missed on its way is of no concern to the next."""

@@ -37,7 +37,7 @@ from riser_soil.contact.pressed_points import (
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.surface_kernels import SurfaceContactData, Watched
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Forces, MatrixBlock, State, Weights, Work
+from riser_soil.core.part import Forces, MatrixBlock, State, Weights
 from riser_soil.core.saved_state import Saved, gathered, within
 from riser_soil.riser.line import Line
 from riser_soil.riser.moving_nodes import Trial
@@ -248,15 +248,11 @@ class SurfaceContact(SoilContact):
         pressed = self.evaluate(state).pressed
         return pressed.work(pressed.on_riser, self.start())
 
-    def work(self, before: State, after: State) -> Work:
-        """Energy dissipated, see `SoilContact`; with suction the time scheme's share is what the force took beyond
-        the work of the law along the step.
-        """
-        work = super().work(before, after)
-        if self.law.columns:
-            by_law = self._by_law(self.evaluate(before).pressed.points, self.evaluate(after).pressed.points)
-            work.by_scheme = self.work_to(after) - by_law
-        return work
+    def lost_by_scheme(self, taken: float, lost: float, before: State, after: State) -> float:
+        """With suction, what the force took beyond the work of the law along the step [J]; else all that is lost."""
+        if not self.law.columns:
+            return lost
+        return taken - self._by_law(self.evaluate(before).pressed.points, self.evaluate(after).pressed.points)
 
     def _by_law(self, first: NearPoints, last: NearPoints) -> float:
         """Work [J] of the law along a step, at points that touch before or after it."""

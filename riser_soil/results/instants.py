@@ -86,7 +86,7 @@ class InstantReader:
         return found
 
     def record_of(self, looks: Sequence[Look]) -> Record:
-        """All that is recorded of looks, each of them once, in their order."""
+        """All that is recorded of looks, each of them once and in their order: embedments only grow."""
         inside = self._inside(np.stack([each.inside for each in looks]))
         found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
         pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
@@ -98,7 +98,9 @@ class InstantReader:
         return Record(self._riser.line.arc, values)
 
     def bending_misfits(self, looks: Sequence[Look]) -> tuple[Array, Array]:
-        """See there, each (nt, ne)."""
+        """Misfits of the elements' bending [N.m] at looks, by the formula with shear and by the trapezoidal rule;
+        each (nt, ne).
+        """
         sections = self._inside(np.stack([each.inside for each in looks]))
         return bending_misfits(self._riser.line, self._riser.elements, sections)
 

@@ -1,4 +1,6 @@
-"""The one reduction that extremes of a stage are made by: the largest values so far, and when and where they were."""
+"""Extremes of a stage's figures, code checks, bodies and joints by one reduction: the largest values so far, and when
+and where they were.
+"""
 
 from __future__ import annotations
 

@@ -194,8 +194,8 @@ class Observer:
             hung = looked_at(self._hung, stepper.now)
             pressed = self._pressed_soil(stepper.now) if due.series else {}
             self._buffer.append(BufferedStep(record, due, looks, hung, pressed, soil))
-            drawn = due.pictures and soil is not None  # its fields, which are not kept for long
-            if last or drawn or len(self._buffer) >= self._buffer_size or self._recorder.flush_is_due:
+            full = len(self._buffer) >= self._buffer_size or soil is not None  # whose fields are not kept for long
+            if last or full or self._recorder.flush_is_due:
                 self.flush()
         self._relaxed = 0
         self._clock.add("output", since)

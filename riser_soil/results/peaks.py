@@ -46,9 +46,9 @@ def least_between_nodes(arc: Array, along: Array) -> float:
     return float(vertex(arc[at - 1 : at + 2], along[at - 1 : at + 2]))
 
 
-def pack_peaks(record: Record) -> Array:
-    """Figures of many instants in rows, with the least tension between nodes in place of that at nodes."""
-    rows = pack(record)
+def with_least_between_nodes(record: Record, rows: Array) -> Array:
+    """Figures of many instants in rows, the least tension at nodes replaced by that between nodes; a copy."""
+    rows = rows.copy()
     rows[:, places_of(_TENSION)] = [[least_between_nodes(record.arc, along)] for along in record.effective_tension]
     return rows
 
@@ -72,7 +72,8 @@ class StagePeaks:
 
     def update(self, times: Sequence[float], record: Record) -> None:
         """Follow the state that a dynamic stage begins with, and accepted steps in turn; times: s or load factors."""
-        self._follow(times, pack(record), pack_peaks(record))
+        rows = pack(record)
+        self._follow(times, rows, with_least_between_nodes(record, rows))
         self._last_instant = record.at(-1)
 
     def begin(self, before: StagePeaks) -> None:

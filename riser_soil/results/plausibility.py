@@ -114,7 +114,7 @@ class Plausibility:
         elements = riser.elements
         self._riser = riser
         self.EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
-        self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
+        self.radius = larger_beside(0.5 * elements.outer_diameter)
         self.buckling = larger_beside(np.square(np.pi / elements.length) * np.minimum(elements.EI_y, elements.EI_z))
         self._middle = 0.5 * (riser.line.arc[1:] + riser.line.arc[:-1])
         self._touched = riser.soil is None

@@ -112,8 +112,7 @@ def wall_values(
     assert riser.pressures is not None  # scenes with a wall are refused without
     wall, nodes = sections.wall, riser.line.nodes
     inside, outside = riser.pressures.at(forces.position[..., 2], pressure)
-    about_axes = forces.about_axes * riser.elements.bends_beside[:, None]
-    torque, moment_y, moment_z = np.moveaxis(about_axes, -1, 0)
+    torque, moment_y, moment_z = np.moveaxis(forces.about_axes, -1, 0)
     loads = sections.loads(forces.effective_tension, moment_y, moment_z, torque, inside, outside)
     von_mises = largest_von_mises(loads, wall)
     used, most_used = _utilisation(sections, von_mises, nodes)
@@ -142,7 +141,7 @@ def code_values(
     """Utilisations by codes at many instants; pressure (nt,): change of that inside [Pa]."""
     from riser_soil.code_checks.load_effects import SectionEffects
 
-    _, moment_y, moment_z = np.moveaxis(forces.about_axes * riser.elements.bends_beside[:, None], -1, 0)
+    _, moment_y, moment_z = np.moveaxis(forces.about_axes, -1, 0)
     effects = SectionEffects(forces.effective_tension, moment_y, moment_z)
     return checks.at(effects, _pressures(riser, forces, pressure), forces.curvature_beside, contact_force)
 

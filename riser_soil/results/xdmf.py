@@ -8,7 +8,7 @@ are written before the XML that refers to them, so that the XML never refers to 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -17,6 +17,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.saved_state import Saved
+from riser_soil.core.snapshot import stacked
 from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import GrowingFile, appending, behind, cutting_back
 from riser_soil.results.ownership import PROGRAM, XDMF_HEAD, quoted
@@ -90,7 +91,7 @@ class XdmfFile:
             return
         frames = self._waiting
         with appending(self._heavy) as store:
-            on_points, on_cells = (_stacked([getattr(f, of) for f in frames]) for of in ("on_points", "on_cells"))
+            on_points, on_cells = (stacked([getattr(f, of) for f in frames]) for of in ("on_points", "on_cells"))
             times = [float(frame.time) for frame in frames]
             first = vtkhdf.append(store, times, on_points, on_cells, frames[0].geometry)
         self._content = self._content or self._content_of(frames[0])
@@ -180,10 +181,6 @@ class XdmfFile:
 def polyline(nodes: int) -> IntArray:
     """Connectivity (1, nodes) of one line through all points in their order."""
     return np.arange(nodes, dtype=np.int64)[None, :]
-
-
-def _stacked(values: Sequence[Mapping[str, Array]]) -> dict[str, Array]:
-    return {name: np.stack([of_frame[name] for of_frame in values]) for name in values[0]}
 
 
 def _words(numbers: Iterable[int]) -> str:

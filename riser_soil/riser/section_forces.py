@@ -235,10 +235,11 @@ class SectionForces:
         """
         if self._frames is not None:
             moment = at_ends(self._moment, axis=1)
-            return np.stack([mean_beside(dot(axis, moment)) for axis in self._frames], axis=-1)
+            found = np.stack([mean_beside(dot(axis, moment)) for axis in self._frames], axis=-1)
+            return np.asarray(found * self._elements.bends_beside[:, None])
         found, (x, y, _) = np.zeros((*self._moment.shape[1:], 3)), self._line.normal
         found[..., 1] = (y * self._line.basis[0, 0] - x * self._line.basis[1, 0]) * self._moment[0]
-        return found
+        return np.asarray(found * self._elements.bends_beside[:, None])
 
     @cached_property
     def end_force(self) -> Array:

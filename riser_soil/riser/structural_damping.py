@@ -83,14 +83,12 @@ def _state(part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int) 
 
 
 @njit
-def _blend_forces(
-    state: Heaped | None, part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int, f: Array
-) -> None:
-    """Make the forces of element e with its bow those in its state."""
+def _blend_forces(state: Heaped | None, chord_rate: Array, f: Array) -> None:
+    """Make the forces of an element with its bow those in its state. chord_rate (d,): of the element [m/s]."""
     if state is None:
         return
     if state.g < 1.0:
-        blend_viscous_forces(state, part.chord_rate[e], f)
+        blend_viscous_forces(state, chord_rate, f)
 
 
 @add_forces.of(PlanarViscosity)
@@ -100,7 +98,7 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
     for e in range(at.chord.shape[0]):
         local = corotated(at, e)
         damping2d.write_element_forces(e, local, part.viscosity, part.chord_rate, at.v[:, 2], f)
-        _blend_forces(_state(part, at, e), part, at, e, f)
+        _blend_forces(_state(part, at, e), part.chord_rate[e], f)
         for i in range(6):
             out.force_e[e, i] += f[i]
 
@@ -147,7 +145,7 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
     for e in range(at.chord.shape[0]):
         local = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.viscosity)
         damping3d.write_element_forces(e, local, part.viscosity, part.chord_rate, part.spin, f)
-        _blend_forces(_state(part, at, e), part, at, e, f)
+        _blend_forces(_state(part, at, e), part.chord_rate[e], f)
         rotations.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]

@@ -2,8 +2,8 @@
 
 A `Vec` is a tuple of three floats, a `Mat` a tuple of three rows. Tuples live in registers, so a kernel
 allocates nothing per element. `vector` and `matrix` read them from arrays, `store` writes a matrix to one;
-`np.array(A)` works too, also in compiled code. In the plane the third component is 0: `padded`,
-`padded_matrix`, `put` and `write_matrix` take arrays of two components or three.
+`np.array(A)` works too, also in compiled code. In the plane the third component is 0: `padded`, `put` and
+`write_matrix` take arrays of two components or three.
 """
 
 import math
@@ -39,12 +39,6 @@ def store(A: Mat, out: Array) -> None:
 def padded(a: Array) -> Vec:
     """The vector stored in an array of shape (2,) or (3,)."""
     return (a[0], a[1], a[2] if a.size > 2 else 0.0)
-
-
-@njit
-def padded_matrix(a: Array) -> Mat:
-    """The matrix stored in an array of shape (2, 2) or (3, 3)."""
-    return (padded(a[0]), padded(a[1]), padded(a[2]) if len(a) > 2 else (0.0, 0.0, 0.0))
 
 
 @njit

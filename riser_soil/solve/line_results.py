@@ -5,6 +5,7 @@ Elsewhere they are found anew, see `step_results`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -53,12 +54,12 @@ class LineResults:
         """
         return self._element_residual() if self._has_solved(state) and not self._line.turns_axes else None
 
-    def section_input(self, state: State, on_ends: Array | None) -> Array | None:
+    def section_input(self, state: State, on_ends: Callable[[], Array | None]) -> Array | None:
         """Input of section forces at an accepted state, see `SectionInput`; None where the loop has not solved for it.
         """
         if not self._has_solved(state):
             return None
-        return section_input(self._line, self._packed.at, self._element_residual(), on_ends=on_ends)
+        return section_input(self._line, self._packed.at, self._element_residual(), on_ends=on_ends())
 
     def contact_results(self, contact: RiserContact) -> Array | None:
         """Results of a contact where the line was committed last; None where it has not been by the loop."""

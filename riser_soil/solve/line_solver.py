@@ -200,7 +200,7 @@ class LineSolver(StepResults):
 
     def section_input(self, line: Line, state: State) -> Array:
         known = self._results.get(line)
-        found = None if known is None else known.section_input(state, self._on_ends(line, state))
+        found = None if known is None else known.section_input(state, lambda: self._on_ends(line, state))
         return super().section_input(line, state) if found is None else found
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.variants.one_run import task
 from riser_soil.variants.pool import Workers, outcomes
 from riser_soil.variants.runs_folder import Outcome, prepare_attempts
@@ -35,7 +35,7 @@ def shortened(scene: Scene) -> Scene:
 
 
 def _short(stage: Stage) -> Stage:
-    if not isinstance(stage, DynamicStage):
+    if isinstance(stage, StaticStage):
         return stage
     step = AUTO_STEP if stage.time_step == "auto" else stage.time_step
     return stage.model_copy(update={"duration": min(stage.duration, STEPS * step)})

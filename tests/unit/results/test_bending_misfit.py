@@ -10,10 +10,11 @@ import pytest
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.results.bending_misfit import bending_misfits
-from riser_soil.riser.section_forces import SectionForces
+from riser_soil.riser.section_forces import SectionForces, element_residual, placed, section_input, viscous_residual
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
+from tests.support.sample_line import sample
 from tests.support.scenes import Mapping, prescribed, riser_scene, static
 
 
@@ -123,3 +124,23 @@ def test_a_straight_riser_bends_by_round_off_only() -> None:
     start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     reported, _ = found(riser_scene(pull, pipe=pipe, length=30.0, elements=6, start=start, end="free"))
     assert max(reported.smooth, reported.steep) < 1e-6
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_misfits_of_many_states_are_those_of_each(dimension: int) -> None:
+    """To the last bit; and viscous forces, which bend nothing, are left out."""
+    made, rows, undamped = sample(dimension), list[Any](), list[Any]()
+    parts = [made.beam(), made.damping()]
+    for n in range(4):
+        state = made.state(n, size=0.02)
+        residual, at = element_residual(made.line, parts, state), placed(made.line, state)
+        undamped.append(section_input(made.line, at, residual))
+        rows.append(section_input(made.line, at, residual, viscous_residual(made.line, parts, state)))
+
+    def misfits(given: Any) -> tuple[Any, Any]:
+        return bending_misfits(made.line, made.elements, SectionForces(made.line, made.elements, given))
+
+    for n, row in enumerate(rows):
+        for of_one, of_many in zip(misfits(row), misfits(np.stack(rows)), strict=True):
+            np.testing.assert_array_equal(of_one, of_many[n])
+    assert not np.allclose(misfits(np.stack(rows)), misfits(np.stack(undamped)), rtol=1e-3)

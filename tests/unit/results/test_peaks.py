@@ -8,7 +8,7 @@ import pytest
 from riser_soil.core.arrays import as_list
 from riser_soil.core.snapshot import Record
 from riser_soil.results.figures import pack, places_of
-from riser_soil.results.peaks import WINDOWS, RunPeaks, least_between_nodes, pack_peaks, vertex
+from riser_soil.results.peaks import WINDOWS, RunPeaks, least_between_nodes, vertex, with_least_between_nodes
 from tests.support.recorded_run import Catenary, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)
@@ -46,7 +46,8 @@ def test_only_what_sits_between_nodes_is_replaced() -> None:
     tension = (ARC - 67.0) ** 2
     at_node = {"least_tension": tension.min(), "least_tension_arc": ARC[tension.argmin()]}
     least = seen(0.0).with_values(effective_tension=tension, **at_node)
-    plain, (peaked,) = pack(least), pack_peaks(stacked([least]))
+    many = stacked([least])
+    plain, (peaked,) = pack(least), with_least_between_nodes(many, pack(many))
     changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
     assert set(changed) == {places_of("min_effective_tension").start}
     assert plain[changed] == pytest.approx([4.0])
@@ -63,7 +64,7 @@ def test_extremes_of_a_stage_three_ways() -> None:
         which: peaks.as_summary(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
         for which in ("sampled", "of_nodes", "peaks")
     }
-    top = pack_peaks(stacked([seen(0.0)]))[0][places_of("max_bending_moment")].item()
+    top = pack(seen(0.0))[places_of("max_bending_moment")].item()
     assert largest["sampled"] == pytest.approx(seen(0.1).largest_moment)
     assert largest["of_nodes"] == pytest.approx(top * np.cos(0.1))
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)

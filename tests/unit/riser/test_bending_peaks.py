@@ -21,7 +21,7 @@ def largest(arc: Array, values: Array, slope: Array) -> Any:
 
 
 def top(first: float, second: float, rise: float, fall: float) -> Any:
-    """Of the cubic in one element, as of a line that is one."""
+    """Largest value and its place of the cubic in one element, as of a line that is one."""
     value, at, _ = largest(np.arange(2.0), np.array([[first, second]]), np.array([[rise, fall]]))
     return value, at
 

@@ -21,7 +21,7 @@ HOURS = 3.0 * 3600.0
 
 
 def in_waves(*given: Any) -> Sea:
-    """The sea with a `linear_waves` of these arguments."""
+    """The sea with `linear_waves` of these arguments."""
     return Sea(LEVEL, [linear_waves(*given)])
 
 
@@ -134,9 +134,9 @@ def test_stations_of_a_riser_share_few_places() -> None:
     x = np.stack([150.0 * along, 0.0 * along, 120.0 * along**2], axis=-1)
     field = linear_waves(sea(120.0, 13.0, 200, 1), 120.0, 120.0)
     Sea(120.0, [field])(3.0, x)
-    taken = [int(at.places.used[0]) for at in (field.series.columns, field.series.cells)]
-    assert min(taken) > 5
-    assert sum(taken) < 100
+    used = [int(at.places.used[0]) for at in (field.series.columns, field.series.cells)]
+    assert min(used) > 5
+    assert sum(used) < 100
 
 
 def test_long_and_short_waves_of_any_unit_of_length() -> None:
