@@ -144,18 +144,18 @@ class Joints:
         )
 
     @property
-    def _dofs(self) -> IntArray:
-        """Local numbers (m, 12)."""
+    def dofs(self) -> IntArray:
+        """Local numbers (m, 12) of the dofs of both nodes."""
         sides = [side for joint in self.joints for side in joint.sides]
         first = np.array([side.field.offset + side.node * side.field.ndof for side in sides], dtype=np.int64)
         return np.asarray((first[:, None] + np.arange(6)).reshape(-1, 12))
 
     def blocks(self) -> dict[str, MatrixBlock]:
-        dofs = self._dofs
+        dofs = self.dofs
         return {NAME: MatrixBlock(dofs, dofs)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        np.add.at(forces.force, self._dofs, conjugate(self.laws, self._places(state), self.left_at(state.t)))
+        np.add.at(forces.force, self.dofs, conjugate(self.laws, self._places(state), self.left_at(state.t)))
 
     def left_at(self, t: float) -> float:
         """In the static stage in which joints close, less of the gap as its load factor grows."""

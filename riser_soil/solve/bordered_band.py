@@ -1,10 +1,10 @@
 """Exact factors of lines' matrices, bands one behind the other, with a dense border of few other rows.
 
 A riser alone has no border. Where joints couple lines and bodies, the fewest rows that all entries beside the bands lie
-in are the border: a body's own six, of two lines' ends those of one. Condensed soil, whose rows all couple with each
-other, is border, too. Where the whole is positive definite, so is the band, and of no larger condition: eliminating it
-first is as stable as any order (Golub & Van Loan, Matrix Computations, 2013, 4.3). The elimination is that of
-`core.bordered`. It needs no PETSc.
+in are the border: a body's own six, of two lines' ends those of one; in time steps, too (`joint_border`). Condensed
+soil, whose rows all couple with each other, is border as well. Where the whole is positive definite, so is the band,
+and of no larger condition: eliminating it first is as stable as any order (Golub & Van Loan, Matrix Computations, 2013,
+4.3). The elimination is that of `core.bordered`. It needs no PETSc.
 """
 
 from __future__ import annotations
@@ -124,17 +124,24 @@ def _is_dense_behind(matrix: Matrix, first: int) -> bool:
 
 
 def _rows_beside(matrix: Matrix, rows: int, wide: int) -> IntArray:
-    """The fewest of the first rows, as a greedy choice finds them, that all entries farther from the diagonal than a
-    band is wide lie in, or in whose columns; sorted.
+    """The fewest of the first rows that all entries farther from the diagonal than a band is wide lie in, or in whose
+    columns.
     """
     indptr, indices, _ = matrix.stored.csr()
     of_entry, columns = np.repeat(np.arange(rows), np.diff(indptr[: rows + 1])), indices[: indptr[rows]]
     beside = (np.abs(of_entry - columns) > wide) & (columns < rows)
-    row, column, chosen = of_entry[beside], columns[beside], list[int]()
+    return fewest_rows(of_entry[beside], columns[beside])
+
+
+def fewest_rows(row: IntArray, column: IntArray) -> IntArray:
+    """The fewest unknowns, as a greedy choice finds them, so that each coupling (k,) of two unknowns has one of them;
+    sorted. What joints couple beside the lines' bands has these as its border, in statics and in time steps.
+    """
+    chosen = list[int]()
     while row.size:
         chosen.append(int(np.bincount(np.concatenate([row, column])).argmax()))
-        left = (row != chosen[-1]) & (column != chosen[-1])
-        row, column = row[left], column[left]
+        uncovered = (row != chosen[-1]) & (column != chosen[-1])
+        row, column = row[uncovered], column[uncovered]
     return np.array(sorted(chosen), dtype=np.int64)
 
 

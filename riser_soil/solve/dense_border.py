@@ -1,13 +1,13 @@
-"""What couples lines and bodies beside their bands in the line solver: a dense border of further unknowns.
+"""What couples lines and bodies beside their bands in the line solver: a dense border.
 
-Each line has a band, which is factorised on its own; all share the border, see `core.bordered`. The soil's reached dofs
-come first among the border's unknowns, see `soil_border`, then copies of the dofs at joints, see `joint_border`; these
-write the border's matrices.
+Each line has a band, which is factorised on its own; all share the border, see `core.bordered`. Its first unknowns are
+the soil's reached dofs, see `soil_border`. Behind them are dofs of the lines that joints couple, see `joint_border`:
+their rows and columns are moved out of the bands, which have ones on the diagonal there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -22,16 +22,59 @@ from riser_soil.solve.line_system import Coupling
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step_kernels import NONE, SINGULAR, Dofs, MatrixWorkspace
 
+IN_BAND = -1  # in place of an unknown of the border: of dofs that stay in their line's band
+
 
 class Factors(NamedTuple):
-    """Workspace for the factors: the Schur complement (nb, nb) and its pivots; rows (n,) of the line that are coupled,
-    as many as `filled` (1,) says.
+    """Workspace for the factors: the Schur complement (nb, nb) and its pivots; of a line, its dofs `moved` (nm,) to the
+    border and the border's unknown that each dof is, `place` (n,), or IN_BAND; rows (n,) of the band that are coupled
+    with the border, as many as `filled` (1,) says.
     """
 
     schur: Array
     pivots: IntArray
+    moved: IntArray
+    place: IntArray
     rows: IntArray
     filled: IntArray
+
+
+@njit
+def clear_moved(border: Border) -> None:
+    """Write zeros to the tangent's entries in rows and columns of moved dofs."""
+    first, size, ndof = border.u.size, border.residual.size, border.right.shape[0] // border.coupled.size
+    for i in range(first, size):
+        for j in range(size):
+            border.corner[i, j] = border.corner[j, i] = 0.0
+    for n in range(border.coupled.size):
+        if border.coupled[n]:
+            for i in range(n * ndof, (n + 1) * ndof):
+                for j in range(first, size):
+                    border.right[i, j] = border.below[i, j] = 0.0
+
+
+@njit
+def move_rows(workspace: MatrixWorkspace, border: Border, factors: Factors) -> None:
+    """Move rows and columns of a line's tangent to the border: those in its band, and what couples them with soil."""
+    ab, b, place, n = workspace.ab, len(workspace.band), factors.place, factors.place.size
+    ndof = n // border.coupled.size
+    for k in factors.moved:
+        own = place[k]
+        for i in range(max(0, k - b), min(n, k + b + 1)):
+            row, column = ab[k, b + i - k], ab[i, b + k - i]
+            if place[i] != IN_BAND:
+                border.corner[own, place[i]] += row
+            elif row != 0.0 or column != 0.0:
+                border.right[i, own] += column
+                border.below[i, own] += row
+                border.coupled[i // ndof] = True
+        for j in range(border.u.size):
+            border.corner[own, j] += border.right[k, j]
+            border.corner[j, own] += border.below[k, j]
+    for k in factors.moved:
+        for i in range(max(0, k - b), min(n, k + b + 1)):
+            ab[k, b + i - k] = ab[i, b + k - i] = 0.0
+        ab[k, b] = 1.0
 
 
 @njit
@@ -52,7 +95,7 @@ def eliminate(
     fixed, count, ndof = dofs.fixed, 0, dofs.fixed.shape[1]
     for n in range(fixed.shape[0]):
         for i in range(ndof):
-            if border.coupled[n] and not fixed[n, i]:
+            if border.coupled[n] and not fixed[n, i] and factors.place[n * ndof + i] == IN_BAND:
                 factors.rows[count] = n * ndof + i
                 count += 1
     factors.filled[0] = count
@@ -69,8 +112,16 @@ def factorise_schur(factors: Factors, failure: IntArray) -> None:
 
 
 @njit
-def load_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors) -> None:
-    """Forward elimination: condense a line's residual onto that of the border."""
+def load_moved(dofs: Dofs, border: Border, factors: Factors) -> None:
+    """Write the residual of a line's moved dofs to that of the border."""
+    residual = dofs.residual.reshape(dofs.residual.size)
+    for k in factors.moved:
+        border.residual[factors.place[k]] = residual[k]
+
+
+@njit
+def forward_eliminate(workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors) -> None:
+    """Condense a line's residual onto that of the border."""
     rows = factors.rows[: factors.filled[0]]
     if rows.size > 0:
         load = dofs.residual.reshape(dofs.residual.size)
@@ -79,19 +130,22 @@ def load_border(workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors:
 
 
 @njit
-def improve_border(border: Border, factors: Factors) -> None:
-    """Take what the factorised tangent answers, which is left in place of the residual, off the border's increments."""
-    answer = border.residual
-    dense.solve(factors.schur, factors.pivots, answer)
-    for j in range(answer.size):
-        border.u[j] -= answer[j]
+def solve_border(border: Border, factors: Factors) -> None:
+    """Write what the factorised tangent answers in place of the border's residual, and take it off the soil's
+    increments.
+    """
+    dense.solve(factors.schur, factors.pivots, border.residual)
+    for j in range(border.u.size):
+        border.u[j] -= border.residual[j]
 
 
 @njit
-def take_from_line(dofs: Dofs, border: Border, factors: Factors) -> None:
-    """Back substitution: take what the border's answer does off a line's residual."""
+def back_substitute(dofs: Dofs, border: Border, factors: Factors) -> None:
+    """Take what the border's answer does off a line's residual, and write that of its moved dofs there."""
     rows, load = factors.rows[: factors.filled[0]], dofs.residual.reshape(dofs.residual.size)
     bordered.back_substitute(rows, border.right, border.residual, load)
+    for k in factors.moved:
+        load[k] = border.residual[factors.place[k]]
 
 
 class DenseBorder(Coupling):
@@ -101,29 +155,43 @@ class DenseBorder(Coupling):
     """
 
     def __init__(self, lines: Sequence[PackedLine]) -> None:
-        self._soil = self._copies = 0
-        made = list(zip(lines, self._made(lines), strict=True))
+        self._soil = 0
+        self._places = {line: np.full(line.line.size, IN_BAND) for line in lines}
+        made = list(zip(lines, self._made(), strict=True))
         self.of = {line: Packed(border) for line, (border, _) in made}
         self._factors = {line: Packed(factors) for line, (_, factors) in made}
 
-    def make_room(self, *, soil: int | None = None, copies: int | None = None) -> None:
-        """For so many unknowns, as many as before where nothing is said; what was written is lost."""
-        self._soil = self._soil if soil is None else soil
-        self._copies = self._copies if copies is None else copies
-        for line, (border, factors) in zip(self.of, self._made([*self.of]), strict=True):
+    def make_room(self, soil: int) -> None:
+        """For so many dofs of soil; what was written is lost."""
+        self._soil = soil
+        self._renew()
+
+    def move(self, places: Mapping[PackedLine, IntArray]) -> None:
+        """Move dofs of lines to the border: number (n,) of each of a line's dofs among them, IN_BAND of the others."""
+        self._places |= places
+        self._renew()
+
+    def _renew(self) -> None:
+        for line, (border, factors) in zip(self.of, self._made(), strict=True):
             self.of[line].renew(border)
             self._factors[line].renew(factors)
 
-    def _made(self, lines: Sequence[PackedLine]) -> list[tuple[Border, Factors]]:
+    def _made(self) -> list[tuple[Border, Factors]]:
         """Border and factors of each line, all zero, with what is the border's own shared by all."""
-        nb = self._soil + self._copies
-        own, factors = (np.zeros(nb), np.zeros(nb), np.zeros((nb, nb))), (np.zeros((nb, nb)), np.zeros(nb, PIVOT))
-        made = []
-        for packed in lines:
-            n, nodes = packed.line.size, packed.line.nodes
+        moved = {line: np.flatnonzero(place != IN_BAND) for line, place in self._places.items()}
+        nb = self._soil + sum(map(len, moved.values()))
+        own = np.zeros(self._soil), np.zeros(nb), np.zeros((nb, nb))
+        schur, made = (np.zeros((nb, nb)), np.zeros(nb, PIVOT)), []
+        for line, place in self._places.items():
+            n, nodes = line.line.size, line.line.nodes
             coupling = np.zeros((n, nb)), np.zeros((n, nb)), np.zeros(nodes, dtype=np.bool_)
-            made.append((Border(*own, *coupling), Factors(*factors, np.zeros(n, np.int64), np.zeros(1, np.int64))))
+            rows = np.zeros(n, np.int64), np.zeros(1, np.int64)
+            of_line = moved[line], np.where(place == IN_BAND, IN_BAND, self._soil + place)
+            made.append((Border(*own, *coupling), Factors(*schur, *of_line, *rows)))
         return made
+
+    def fill(self) -> list[Bound]:
+        return [Bound(move_rows, line.packed_workspace, self.of[line], self._factors[line]) for line in self.of]
 
     def factorise(self, failure: Packed) -> list[Bound]:
         first, *_ = zip(self.of.values(), self._factors.values(), strict=True)
@@ -136,9 +204,10 @@ class DenseBorder(Coupling):
     def couple(self) -> list[Bound]:
         first, *_ = zip(self.of.values(), self._factors.values(), strict=True)
         return [
-            *(Bound(load_border, line.packed_workspace, *self._given(line)) for line in self.of),
-            Bound(improve_border, *first),
-            *(Bound(take_from_line, *self._given(line)) for line in self.of),
+            *(Bound(load_moved, *self._given(line)) for line in self.of),
+            *(Bound(forward_eliminate, line.packed_workspace, *self._given(line)) for line in self.of),
+            Bound(solve_border, *first),
+            *(Bound(back_substitute, *self._given(line)) for line in self.of),
         ]
 
     def _given(self, line: PackedLine) -> tuple[Packed, Packed, Packed]:

@@ -1,11 +1,8 @@
 """Joints between lines and bodies in the line solver: what couples their bands.
 
-A joint's matrix has a block of each node, which lies in that field's band, and blocks K between them. With copies z of
-the dofs of both nodes of all joints as further unknowns,
-
-    B x + K z = f,    z - x = 0 at the joints,
-
-the bands B stay each on its own, and the copies stand in their border, see `dense_border`.
+A joint's matrix has a block of each node, which is added to that line's band, and blocks between both nodes. The fewest
+dofs that these blocks have in their rows or columns are moved to the border, see `dense_border`: the same that statics
+eliminates last, see `bordered_band`.
 """
 
 from __future__ import annotations
@@ -23,7 +20,8 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import Part, State, Weights
 from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.part_kernels import Border, LineForces
-from riser_soil.solve.dense_border import DenseBorder, MakeBorder
+from riser_soil.solve.bordered_band import fewest_rows
+from riser_soil.solve.dense_border import IN_BAND, DenseBorder, MakeBorder, clear_moved
 from riser_soil.solve.line_system import Coupling
 from riser_soil.solve.newton_settings import MOST_JOINTS
 from riser_soil.solve.packed_line import PackedLine
@@ -32,7 +30,8 @@ from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace
 
 class JointData(NamedTuple):
     """m joints: laws; places of their nodes; left (1,): the share of the first gap that is open; forces (m, 12) and
-    matrices K (m, 12, 12); sizes (m, 12) of the coordinates.
+    matrices K (m, 12, 12); sizes (m, 12) of the coordinates. moved (m, 12): number of each dof among those that are
+    moved to the border, IN_BAND of the others.
     """
 
     laws: Laws
@@ -41,6 +40,7 @@ class JointData(NamedTuple):
     forces: Array
     K: Array
     sizes: Array
+    moved: IntArray
 
 
 class Sides(NamedTuple):
@@ -107,37 +107,30 @@ def add_terms(joints: JointData, sides: Sides, dofs: Dofs) -> None:
 
 
 @njit
-def add_to_band(joints: JointData, sides: Sides, workspace: MatrixWorkspace, dofs: Dofs) -> None:
-    """Add the blocks of a line's nodes to its band."""
-    b, ab, fixed = len(workspace.band), workspace.ab, dofs.fixed
-    for k in range(sides.node.size):
-        j, first, n = sides.joint[k], 6 * sides.side[k], sides.node[k]
-        for i in range(6):
-            for c in range(6):
-                if not (fixed[n, i] or fixed[n, c]):
-                    ab[6 * n + i, b + c - i] += joints.K[j, first + i, first + c]
-
-
-@njit
-def balance_copies(joints: JointData, border: Border) -> None:
-    """The copies are where the dofs are."""
-    for k in range(border.residual.size - joints.forces.size, border.residual.size):
-        border.residual[k] = 0.0
-
-
-@njit
-def write_copies(joints: JointData, sides: Sides, border: Border) -> None:
-    """Write how a line's dofs follow the copies, and these the dofs."""
-    first = border.residual.size - joints.forces.size
+def add_to_matrix(
+    joints: JointData, sides: Sides, workspace: MatrixWorkspace, dofs: Dofs, border: Border
+) -> None:
+    """Add the blocks of a line's nodes to its band, and those that couple other nodes with them to the border."""
+    b, ab, fixed, first = len(workspace.band), workspace.ab, dofs.fixed, border.u.size
     for k in range(sides.node.size):
         j, s, n = sides.joint[k], sides.side[k], sides.node[k]
-        own, other = 6 * s, 6 * (1 - s)
+        own, other, K = 6 * s, 6 * (1 - s), joints.K[j]
         border.coupled[n] = True
         for i in range(6):
-            copy = first + 12 * j + own + i
-            border.below[6 * n + i, copy], border.corner[copy, copy] = -1.0, 1.0
+            if fixed[n, i]:
+                continue
+            row = joints.moved[j, own + i]
             for c in range(6):
-                border.right[6 * n + i, first + 12 * j + other + c] = joints.K[j, own + i, other + c]
+                if not fixed[n, c]:
+                    ab[6 * n + i, b + c - i] += K[own + i, own + c]
+                column = joints.moved[j, other + c]
+                if column == IN_BAND:
+                    continue
+                if row != IN_BAND:
+                    border.corner[first + row, first + column] += K[own + i, other + c]
+                else:
+                    border.right[6 * n + i, first + column] += K[own + i, other + c]
+                    border.below[6 * n + i, first + column] += K[other + c, own + i]
 
 
 @njit
@@ -164,11 +157,12 @@ class JointBorder(Coupling):
         vectors, frames = (m, 2, 3), (m, 2, 3, 3)
         places = JointPlaces(*(np.zeros(shape) for shape in (vectors, vectors, frames, frames, frames)))
         matrices = np.zeros((m, 12)), np.zeros((m, 12, 12)), np.zeros((m, 12))
-        self.data = JointData(joints.laws, places, np.zeros(1), *matrices)
-        self._packed = Packed(self.data)
-        dense.make_room(copies=12 * m)
         found = ((line, _sides_of(joints, line)) for line in lines)
         self.lines = [(line, Packed(sides)) for line, sides in found if sides.node.size]
+        moved = _numbers_of_moved(joints.dofs, lines)
+        dense.move({line: moved[line.line.part] for line in lines})
+        self.data = JointData(joints.laws, places, np.zeros(1), *matrices, moved[joints.dofs])
+        self._packed = Packed(self.data)
 
     def begin(self, before: State, step_to: float, guess: Array) -> None:
         self.data.left[0] = self._joints.left_at(step_to)
@@ -179,7 +173,6 @@ class JointBorder(Coupling):
             *(Bound(look, line.packed_at, sides, data) for line, sides in self.lines),
             Bound(find_forces, data),
             *(Bound(add_to_line, data, sides, line.packed_forces) for line, sides in self.lines),
-            Bound(balance_copies, data, self._dense.of[self.lines[0][0]]),
         ]
 
     def bulk_tangent(self) -> list[Bound]:
@@ -191,14 +184,32 @@ class JointBorder(Coupling):
         return sizes + [Bound(add_terms, self._packed, sides, line.packed_dofs) for line, sides in self.lines]
 
     def fill(self) -> list[Bound]:
-        data = self._packed
-        return [Bound(add_to_band, data, sides, line.packed_workspace, line.packed_dofs) for line, sides in self.lines]
-
-    def factorise(self, failure: Packed) -> list[Bound]:
-        return [Bound(write_copies, self._packed, sides, self._dense.of[line]) for line, sides in self.lines]
+        data, of = self._packed, self._dense.of
+        return [
+            *(Bound(clear_moved, of[line]) for line in of),
+            *(
+                Bound(add_to_matrix, data, sides, line.packed_workspace, line.packed_dofs, of[line])
+                for line, sides in self.lines
+            ),
+        ]
 
     def account(self, energy: Packed) -> list[Bound]:
         return [Bound(add_energy_of_joints, self._packed, energy)]
+
+
+def _numbers_of_moved(dofs: IntArray, lines: Sequence[PackedLine]) -> IntArray:
+    """Number of each local dof up to the lines' last one among those that are moved to the border: the fewest that all
+    entries of the joints' blocks between nodes have in their rows or columns; IN_BAND of the others. dofs (m, 12): of
+    the joints. What is fixed has no entries.
+    """
+    fixed = np.zeros(max(line.line.part.stop for line in lines), dtype=bool)
+    for line in lines:
+        fixed[line.line.part] = line.dofs.fixed.ravel()
+    first, second = np.broadcast_arrays(dofs[:, :6, None], dofs[:, None, 6:])
+    free = ~(fixed[first] | fixed[second])
+    rows, out = fewest_rows(first[free], second[free]), np.full(len(fixed), IN_BAND)
+    out[rows] = np.arange(len(rows))
+    return out
 
 
 def _sides_of(joints: Joints, line: PackedLine) -> Sides:

@@ -243,7 +243,7 @@ class SoilBorder(Coupling):
         held = _held(len(reached.dofs))
         held.stiffness[...] = reached.stiffness
         self._held.renew(held)
-        self._dense.make_room(soil=len(reached.dofs))
+        self._dense.make_room(len(reached.dofs))
         self._reached = reached
 
     @property

@@ -178,7 +178,7 @@ def test_action_is_reaction() -> None:
     spin = np.array([0.7, -1.1, 0.4])
     for move in (*np.eye(3), None):
         power = 0.0
-        for n, dofs in enumerate(joints._dofs.reshape(-1, 2, 6)):
+        for n, dofs in enumerate(joints.dofs.reshape(-1, 2, 6)):
             for s in range(2):
                 speed = np.cross(spin, at.x[n, s]) if move is None else move
                 turn = np.linalg.solve(at.H[n, s], spin) if move is None else np.zeros(3)

@@ -19,7 +19,7 @@ from riser_soil.riser.part_kernels import Border
 from riser_soil.riser.section_forces import SectionForces
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.bordered_band import band_of
-from riser_soil.solve.joint_border import JointBorder
+from riser_soil.solve.dense_border import DenseBorder
 from riser_soil.solve.line_solver import LineSolver
 from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.soil_border import SoilBorder
@@ -168,32 +168,27 @@ def residual(packed: LineSystem, x: Array) -> Array:
 
 
 def matrix(packed: LineSystem) -> Array:
-    """The whole tangent (n, n): the lines' bands, the joints' blocks between lines, and soil with what couples it."""
+    """The whole tangent (n, n) of lines and soil: bands, and the border with what couples it."""
     packed.write_tangent()
-    border = next(each for each in packed.couplings if isinstance(each, JointBorder))
-    ns = len(soil_in(packed, lambda border: border.u))
+    border = next(each for each in packed.couplings if isinstance(each, DenseBorder))
     first = np.cumsum([0, *(line.line.size for line in packed.lines)])
-    out = np.zeros((first[-1] + ns, first[-1] + ns))
+    ns = len(soil_in(packed, lambda border: border.u))
+    n, corner = first[-1] + ns, border.of[packed.lines[0]].value.corner
+    own = np.arange(n - ns, n - ns + len(corner))  # number of each unknown of the border
     for start, line in zip(first, packed.lines, strict=False):
-        coupling, end = border._dense.of[line].value, start + line.line.size
-        out[start:end, first[-1] :], out[first[-1] :, start:end] = coupling.right[:, :ns], coupling.below[:, :ns].T
-    if ns:
-        out[first[-1] :, first[-1] :] = border._dense.of[packed.lines[0]].value.corner[:ns, :ns]
+        factors = border._factors[line].value
+        own[factors.place[factors.moved]] = start + factors.moved
+    out, fixed = np.zeros((n, n)), np.zeros(n, dtype=bool)
+    out[np.ix_(own, own)] = corner
     for start, line in zip(first, packed.lines, strict=False):
-        n, b = line.line.size, len(line.workspace.band)
-        for i in range(n):
-            for j in range(max(0, i - b), min(n, i + b + 1)):
-                out[start + i, start + j] = line.workspace.ab[i, j - i + b]
-    dofs = {
-        (int(j), int(s)): start + 6 * int(node) + np.arange(6)
-        for line, packed_sides in border.lines
-        for start in [first[[each is line for each in packed.lines].index(True)]]
-        for j, s, node in zip(*packed_sides.value[:3], strict=True)
-    }
-    for (j, s), rows in dofs.items():
-        other = dofs[j, 1 - s]
-        out[np.ix_(rows, other)] += border.data.K[j, 6 * s : 6 * s + 6, 6 * (1 - s) : 6 * (1 - s) + 6]
-    fixed = np.concatenate([*(line.dofs.fixed.ravel() for line in packed.lines), np.zeros(ns, dtype=bool)])
+        coupling, at = border.of[line].value, np.arange(start, start + line.line.size)
+        inner = np.setdiff1d(at, own) - start
+        for i in inner:
+            for j in inner[np.abs(inner - i) <= len(line.workspace.band)]:
+                out[start + i, start + j] = line.workspace.ab[i, j - i + len(line.workspace.band)]
+        out[np.ix_(start + inner, own)] = coupling.right[inner]
+        out[np.ix_(own, start + inner)] = coupling.below[inner].T
+        fixed[at] = line.dofs.fixed.ravel()
     out[fixed] = out[:, fixed] = 0.0
     out[fixed, fixed] = 1.0
     return out
@@ -263,7 +258,7 @@ def test_many_joints_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.parametrize(("case", "border"), [("a buoy in waves", 3), ("a rigid buoy", 6), ("a bundle", 21)])
-def test_statics_eliminate_the_fewest_rows_that_joints_have(case: str, border: int) -> None:
+def test_statics_and_steps_eliminate_the_fewest_rows_that_joints_have(case: str, border: int) -> None:
     """A body's own; of lines those of one side: six, and three rotations where the line has a support."""
     scene = scene_from_mapping(SCENES[case]())
     assembly = build(scene, MPI.COMM_SELF)
@@ -272,6 +267,10 @@ def test_statics_eliminate_the_fewest_rows_that_joints_have(case: str, border: i
     found = band_of(system)
     assert found is not None
     assert len(found.rows[1]) == border
+    stage = last_stage(case, "compiled")
+    assert stage.newton.lines is not None
+    in_steps = next(each for each in stage.newton.lines.packed.couplings if isinstance(each, DenseBorder))
+    assert len(in_steps.of[stage.newton.lines.packed.lines[0]].value.residual) == border
     load = np.random.default_rng(3).normal(size=system.numbering.free)
     system.assemble(State.at_rest(0.0, system.numbering.size), STATIC)
     answer = found.solve(load)
