@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core import banded
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Packed, in_turn
 from riser_soil.solve.dense_border import IN_BAND, DenseBorder
 from riser_soil.solve.step_kernels import NONE, Dofs, matrix_workspace
@@ -31,7 +31,7 @@ class Line:
         self.packed_workspace, self.packed_dofs = Packed(self.workspace), Packed(self.dofs)
 
 
-def whole_matrix(starts: IntArray, moved: Array) -> Array:
+def whole_matrix(starts: IntArray, moved: BoolArray) -> Array:
     """Random: entries in the bands, between a moved dof and any other line, and of soil with what touches it."""
     n = int(starts[-1]) + SOIL
     out, (i, j) = np.random.default_rng(5).normal(size=(n, n)), np.indices((n, n))
