@@ -20,7 +20,7 @@ from riser_soil.core.saved_state import AnyArray, Saved, packed, unpacked, withi
 from riser_soil.errors import ResultsError
 from riser_soil.results.folder import synchronise, write_atomically
 
-FORMAT = 2  # grows with each change of what the file holds, or of what its arrays mean
+FORMAT = 3  # grows with each change of what the file holds, or of what its arrays mean
 _ABOUT = "about"
 
 

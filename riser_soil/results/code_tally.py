@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from riser_soil.core.arrays import Array, as_list
-from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
+from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.snapshot import CodeCheckFacts, Record
 from riser_soil.results.largest import Largest
 
@@ -18,19 +18,19 @@ class CodeTally:
 
     def __init__(self, facts: Sequence[CodeCheckFacts] = ()) -> None:
         self._facts = tuple(facts)
-        self._used = Largest(len(self._facts), beside=1)
+        self._largest = Largest(len(self._facts), beside=1)
 
     def update(self, times: Array, record: Record) -> None:
         """times (nt,), of the record's instants."""
         if "code_largest" in record:
-            self._used.update(times, record.code_largest, record.code_place)
+            self._largest.update(times, record.code_largest, record.code_place)
 
     def as_list(self) -> list[dict[str, Any]]:
         """The summary's `code_check`; empty where nothing is checked, or before the first instant."""
-        each = zip(self._facts, *map(as_list, (self._used.values, *self._used.beside, self._used.times)), strict=True)
+        largest = [self._largest.of(n) for n in range(len(self._facts))]
         return [
             asdict(facts) | {"utilisation": used, "arc": arc, "time": t, "exceeded": used > 1.0}
-            for facts, used, arc, t in each
+            for facts, (used, t, arc) in zip(self._facts, largest, strict=True)
             if math.isfinite(used)
         ]
 
@@ -45,8 +45,7 @@ class CodeTally:
                 )
 
     def state(self) -> Saved:
-        return gathered({"used": self._used}) | {"facts": packed([asdict(facts) for facts in self._facts])}
+        return self._largest.state()
 
     def restore(self, saved: Saved) -> None:
-        self._facts = tuple(CodeCheckFacts(**facts) for facts in unpacked(saved["facts"]))
-        restore_all({"used": self._used}, saved)
+        self._largest.restore(saved)

@@ -13,16 +13,17 @@ Each is an estimate of size, calibrated in `tests/verification/test_indicators.p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
-from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
-from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
+from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
+from riser_soil.core.snapshot import Ledger, StepRecord
 from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes, TimeResolution
+from riser_soil.results.largest import Largest
 
 # Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.
 LARGE_LOCAL_ERROR = 2.0
@@ -30,20 +31,6 @@ LARGE_LOCAL_ERROR = 2.0
 LARGE_LOSS = 0.1
 STEPS_OF_IMPACT = 100.0  # in a period of the riser on its contact, which cost 2 to 3 % of the force of an impact
 LOSSES = ("seabed_time_scheme", "contact_time_scheme")
-
-
-@dataclass
-class WorstStep:
-    """The largest local error [m] of a step, and its time [s]; the longest step [s]."""
-
-    local_error: float = 0.0
-    time: float = math.nan
-    dt: float = 0.0
-
-    def follow(self, t: float, health: StepStatistics) -> None:
-        self.dt = max(self.dt, health.time_step)
-        if health.local_error > self.local_error:
-            self.local_error, self.time = health.local_error, t
 
 
 @dataclass
@@ -92,89 +79,57 @@ class ImpactLoss:
         return 1.0 - float((1.0 - self.share) ** 0.25)
 
 
-@dataclass
-class StageIndicators:
-    """Indicators of one stage, gathered while it runs.
+class StepIndicators:
+    """Indicators of a dynamic stage's steps, which all lines share: their largest local error, and losses by impact.
 
-    diameter, weight: of the riser [m], [N]. contact_period: of the riser on its contact's stiffness [s], nan without.
-    automatic: whether the time steps are. bending: the largest misfit of the elements, see `Plausibility`.
+    diameter: of the riser [m]. contact_period: of the riser on its contact's stiffness [s], nan without.
     """
 
-    diameter: float = math.nan
-    weight: float = math.nan
-    contact_period: float = math.nan
-    automatic: bool = False
-    step: WorstStep = field(default_factory=WorstStep)
-    impact: ImpactLoss = field(default_factory=ImpactLoss)
-    bending: dict[str, float] = field(default_factory=dict)
-    resolution: TimeResolution = field(default_factory=lambda: TimeResolution(len(AT)))
-    largest: Array = field(default_factory=lambda: np.zeros(len(AT)))
+    def __init__(self, diameter: float = math.nan, contact_period: float = math.nan) -> None:
+        self._diameter, self._contact_period = diameter, contact_period
+        self._local_error, self._time_step = Largest(floor=0.0), Largest(floor=0.0)
+        self._impact = ImpactLoss()
 
-    def begin(self, t: float, vector: Array) -> None:
-        """The figures, from `figures.pack`, that a dynamic stage begins with."""
-        self.resolution.update(t, vector[AT])
-
-    def follow(self, times: Array, rows: Array) -> None:
-        """Follow the figures of accepted steps: times (nt,) [s] of the run, rows (nt, figures)."""
-        values = rows[:, AT]
-        self.resolution.update(times, values)
-        self.largest = np.fmax(self.largest, np.fmax.reduce(np.abs(values)))
-
-    def follow_steps(self, times: Array, steps: Sequence[StepRecord]) -> None:
+    def follow(self, times: Array, steps: Sequence[StepRecord]) -> None:
         """Follow local errors and energies of accepted steps. times (nt,): s of the run."""
+        self._local_error.update(times, np.array([[step.health.local_error] for step in steps]))
+        self._time_step.update(times, np.array([[step.health.time_step] for step in steps]))
         for t, step in zip(as_list(times), steps, strict=True):
-            self.step.follow(t, step.health)
-            self.impact.follow(t, step.health.time_step, self.contact_period, step.ledger)
+            self._impact.follow(t, step.health.time_step, self._contact_period, step.ledger)
 
-    def as_dict(self, dynamic: bool) -> dict[str, Any]:
-        own, shared = self.of_figures(dynamic), self.of_steps(dynamic)
-        return own | shared | ({"time_step": shared["time_step"] | own["time_step"]} if dynamic else {})
+    def as_dict(self) -> dict[str, Any]:
+        error, time = self._local_error.of()
+        return {"time_step": {"local_error": {"value": error, "time": time}}, "impact": self._impact_as_dict()}
 
-    def of_figures(self, dynamic: bool) -> dict[str, Any]:
-        """Those that one of several lines has of its own."""
-        indicators: dict[str, Any] = {"bending": self.bending} if self.bending else {}
-        if dynamic:
-            errors = zip(JUDGED, self.resolution.of_least, self.resolution.of_most, strict=True)
-            indicators["time_step"] = {name: {"min": float(a), "max": float(b)} for name, a, b in errors}
-        return indicators
-
-    def of_steps(self, dynamic: bool) -> dict[str, Any]:
-        """Those of the whole step, which all lines share."""
-        local = {"value": self.step.local_error, "time": self.step.time}
-        return {"time_step": {"local_error": local}, "impact": self._impact()} if dynamic else {}
-
-    def _impact(self) -> dict[str, float]:
-        steps = self.contact_period / self.step.dt if self.step.dt else math.nan
-        found = {"lost": self.impact.lost, "largest": self.impact.largest, "time": self.impact.time}
-        return found | {
-            "share_of_kinetic": self.impact.share,
-            "force_error": self.impact.force_error,
-            "steps_in_contact_period": steps,
+    def _impact_as_dict(self) -> dict[str, float]:
+        (dt, _), impact = self._time_step.of(), self._impact
+        return {
+            "lost": impact.lost,
+            "largest": impact.largest,
+            "time": impact.time,
+            "share_of_kinetic": impact.share,
+            "force_error": impact.force_error,
+            "steps_in_contact_period": self._contact_period / dt if dt else math.nan,
         }
 
     def warnings(self) -> Iterator[str]:
-        """Warnings of a dynamic stage, with numbers and a remedy."""
-        yield from self.warnings_of_extremes()
-        yield from self._jumps()
-        yield from self._lost_impact()
+        """With numbers and a remedy."""
+        yield from self._misplaced()
+        yield from self._lost_in_impact()
 
-    def warnings_of_extremes(self) -> Iterator[str]:
-        """Those of the figures alone."""
-        judged = JudgedExtremes(self.resolution, self.largest, self.diameter, self.weight)
-        yield from judged.warnings(self.automatic)
-
-    def _jumps(self) -> Iterator[str]:
-        step, allowed = self.step, LARGE_LOCAL_ERROR * self.diameter
-        if step.local_error > allowed:
-            fine = step.dt * (allowed / step.local_error) ** (1 / 3)
+    def _misplaced(self) -> Iterator[str]:
+        (error, time), (dt, _) = self._local_error.of(), self._time_step.of()
+        allowed = LARGE_LOCAL_ERROR * self._diameter
+        if error > allowed:
+            fine = dt * (allowed / error) ** (1 / 3)
             yield (
-                f"the step at {step.time:.5g} s misplaces the riser by some {step.local_error:.3g} m of its own, "
-                f"{step.local_error / self.diameter:.2g} diameters (limit {LARGE_LOCAL_ERROR:g}), by the change "
+                f"the step at {time:.5g} s misplaces the riser by some {error:.3g} m of its own, "
+                f"{error / self._diameter:.2g} diameters (limit {LARGE_LOCAL_ERROR:g}), by the change "
                 f"of its accelerations: take a time_step of {fine:.2g} s or less, or auto"
             )
 
-    def _lost_impact(self) -> Iterator[str]:
-        impact = self.impact
+    def _lost_in_impact(self) -> Iterator[str]:
+        impact = self._impact
         if impact.share > LARGE_LOSS:
             yield (
                 f"at {impact.time:.5g} s impact lost {impact.largest:.3g} J to the time step and not to the ground, "
@@ -183,22 +138,64 @@ class StageIndicators:
             )
 
     def _shorter(self) -> str:
-        if math.isnan(self.contact_period):
+        if math.isnan(self._contact_period):
             return "take a smaller time_step"
-        steps, fine = self.contact_period / self.step.dt, self.contact_period / STEPS_OF_IMPACT
+        steps, fine = self._contact_period / self._time_step.of()[0], self._contact_period / STEPS_OF_IMPACT
         return (
-            f"the riser bounces on its contact with a period of {self.contact_period:.3g} s, {steps:.2g} steps; "
+            f"the riser bounces on its contact with a period of {self._contact_period:.3g} s, {steps:.2g} steps; "
             f"take a time_step of {fine:.2g} s, or a softer contact"
         )
 
     def state(self) -> Saved:
-        records = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
-        plain = {name: getattr(self, name) for name in ("diameter", "weight", "contact_period", "automatic")}
-        return gathered({"resolution": self.resolution}) | {"told": packed(records | plain), "largest": self.largest}
+        return gathered(self._largest) | {"impact": packed(asdict(self._impact))}
 
     def restore(self, saved: Saved) -> None:
-        values: Mapping[str, Any] = unpacked(saved["told"])
-        vars(self).update(values)
-        self.largest = saved["largest"].copy()
-        self.step, self.impact = WorstStep(**values["step"]), ImpactLoss(**values["impact"])
-        restore_all({"resolution": self.resolution}, saved)
+        restore_all(self._largest, saved)
+        self._impact = ImpactLoss(**unpacked(saved["impact"]))
+
+    @property
+    def _largest(self) -> dict[str, Stateful]:
+        return {"local error": self._local_error, "time step": self._time_step}
+
+
+class FigureIndicators:
+    """Indicators of one line's figures in a stage: the time step's error in their extremes, the bending of elements.
+
+    diameter, weight: of the riser [m], [N]. automatic: whether the time steps are. bending: the largest misfit of the
+    elements, see `Plausibility`.
+    """
+
+    def __init__(self, diameter: float = math.nan, weight: float = math.nan, automatic: bool = False) -> None:
+        self._diameter, self._weight, self._automatic = diameter, weight, automatic
+        self._resolution, self._largest = TimeResolution(len(AT)), np.zeros(len(AT))
+        self.bending: dict[str, float] = {}
+
+    def begin(self, t: float, vector: Array) -> None:
+        """The figures, from `figures.pack`, that a dynamic stage begins with."""
+        self._resolution.update(t, vector[AT])
+
+    def follow(self, times: Array, rows: Array) -> None:
+        """Follow the figures of accepted steps: times (nt,) [s] of the run, rows (nt, figures)."""
+        values = rows[:, AT]
+        self._resolution.update(times, values)
+        self._largest = np.fmax(self._largest, np.fmax.reduce(np.abs(values)))
+
+    def as_dict(self, dynamic: bool) -> dict[str, Any]:
+        indicators: dict[str, Any] = {"bending": self.bending} if self.bending else {}
+        if dynamic:
+            errors = zip(JUDGED, self._resolution.of_least, self._resolution.of_most, strict=True)
+            indicators["time_step"] = {name: {"min": float(a), "max": float(b)} for name, a, b in errors}
+        return indicators
+
+    def warnings(self) -> Iterator[str]:
+        """Warnings of a dynamic stage, with numbers and a remedy."""
+        judged = JudgedExtremes(self._resolution, self._largest, self._diameter, self._weight)
+        yield from judged.warnings(self._automatic)
+
+    def state(self) -> Saved:
+        values = {"bending": packed(self.bending), "largest": self._largest.copy()}
+        return gathered({"resolution": self._resolution}) | values
+
+    def restore(self, saved: Saved) -> None:
+        restore_all({"resolution": self._resolution}, saved)
+        self.bending, self._largest = unpacked(saved["bending"]), saved["largest"].copy()

@@ -1,25 +1,27 @@
-"""Extremes of a stage's figures, code checks, bodies and joints by one reduction: the largest values so far, and when
-and where they were.
+"""Largest values of a stage so far, and when and where they were: the one reduction of figures, utilisations, code
+checks, bodies, joints, soil, and of what must stay small for a result to be plausible.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
-from riser_soil.core.saved_state import Saved
+from riser_soil.core.arrays import Array, as_list
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 
 
 class Largest:
-    """Largest values so far of n figures, each with its time and with what belongs to it, as its arc length.
+    """Largest values so far of n figures, each with its time and with m numbers that belong to it, as its arc length.
 
-    Of equal values the first counts; nan does not count. values, times (n,): -inf and nan before the first; beside
-    (m, n): of m kinds.
+    floor: only larger values count, and it is the value before the first of them. tolerance: share of the largest value
+    by which another must exceed it, where a solver leaves so much open. Of equal values the first counts; nan does not
+    count. values, times (n,): floor and nan before the first; beside (m, n): nan before it.
     """
 
-    def __init__(self, size: int, beside: int = 0) -> None:
+    def __init__(self, size: int = 1, beside: int = 0, floor: float = -np.inf, tolerance: float = 0.0) -> None:
         self._rows = np.full((2 + beside, size), np.nan)
-        self._rows[0] = -np.inf
+        self._rows[0] = floor
+        self._tolerance = tolerance
 
     @property
     def values(self) -> Array:
@@ -33,12 +35,17 @@ class Largest:
     def beside(self) -> Array:
         return self._rows[2:]
 
+    def of(self, figure: int = 0) -> list[float]:
+        """Largest value of a figure by its number, its time, and what belongs to it."""
+        return as_list(self._rows[:, figure])
+
     def update(self, times: Array, values: Array, *beside: Array) -> None:
         """Take in values (nt, n) at times (nt,), and what belongs to each, (nt, n)."""
         known = np.where(np.isnan(values), -np.inf, values)
         at, column = known.argmax(axis=0), np.arange(values.shape[1])
         rows = np.stack([known[at, column], times[at], *(each[at, column] for each in beside)])
-        larger = rows[0] > self._rows[0]
+        size = np.where(np.isfinite(self.values), np.abs(self.values), 0.0)
+        larger = rows[0] > self.values + self._tolerance * size
         self._rows[:, larger] = rows[:, larger]
 
     def state(self) -> Saved:
@@ -46,6 +53,15 @@ class Largest:
 
     def restore(self, saved: Saved) -> None:
         self._rows = saved["rows"].copy()
+
+
+def largest_along(values: Array, *beside: Array) -> list[Array]:
+    """The largest values (nt, 1) of rows along the riser (nt, n), the first of equal ones, and what belongs to them.
+
+    beside: (nt, n), or (n,) where it is the same at all times, as the arc length. nan does not count.
+    """
+    at = np.where(np.isnan(values), -np.inf, values).argmax(axis=1)[:, None]
+    return [np.take_along_axis(np.broadcast_to(each, values.shape), at, axis=1) for each in (values, *beside)]
 
 
 class Range:
@@ -69,8 +85,11 @@ class Range:
         return {"min": self._least.beside, "max": self._most.beside}
 
     def state(self) -> Saved:
-        return {"least": self._least.state()["rows"], "most": self._most.state()["rows"]}
+        return gathered(self._owners)
 
     def restore(self, saved: Saved) -> None:
-        for each, name in ((self._least, "least"), (self._most, "most")):
-            each.restore({"rows": saved[name]})
+        restore_all(self._owners, saved)
+
+    @property
+    def _owners(self) -> dict[str, Stateful]:
+        return {"least": self._least, "most": self._most}

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from riser_soil import __version__
 from riser_soil.assembly import Assembly, LineAssembly
 from riser_soil.checks.inventory import inventory, unknowns
 from riser_soil.core import outputs
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.environment import versions
 from riser_soil.core.output import Need
@@ -50,9 +51,6 @@ from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-
-if TYPE_CHECKING:
-    from riser_soil.core.arrays import Array
 
 _CHECKED: tuple[Need, ...] = (  # utilisations of a `Record`
     *("bursting", "hoop buckling", "propagating buckling", "combined loading"),
@@ -227,17 +225,16 @@ class Observer:
         recorded = [n for n, each in enumerate(steps) if each.due.series]
         if not recorded:
             return
-        times = [recorder.time_at(steps[n].record.t) for n in recorded]
+        times, stage = np.array([recorder.time_at(steps[n].record.t) for n in recorded]), recorder.summary.stages[-1]
         for name, plausibility in self._plausibility.items():
             plausibility.look(times, records[name].at(recorded))
-            for t, n in zip(times, recorded, strict=True):
+            for t, n in zip(as_list(times), recorded, strict=True):
                 if name in steps[n].pressed:
                     plausibility.look_at_soil(t, steps[n].pressed[name], records[name].at(n))
-            stage = recorder.summary.stages[-1].of(name)
-            stage.implausible, stage.indicators.bending = plausibility.warnings(), plausibility.bending()
+            tally = stage.lines[name]
+            tally.implausible, tally.indicators.bending = plausibility.warnings(), plausibility.bending()
         if self._hung is not None:
-            whole = recorder.summary.stages[-1]
-            whole.implausible = tuple(self._hung.warnings(whole.hung))
+            stage.implausible = tuple(self._hung.warnings(stage.hung.nested))
 
     def _pressed_soil(self, state: State) -> dict[str, PressedSoil]:
         """Soil under lines that lie on some, by their names."""

@@ -15,11 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Record, Records, SoilMesh, SoilSnapshot
-from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places, places_of, with_largest
+from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places_of
 from riser_soil.results.hung_figures import HungExtremes
+from riser_soil.results.soil_extremes import SoilExtremes, places
 
 _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates of five steps, in the middle one
 # The middle one, and those after it, without what alternates, if that lasts; cubics stay as they are.
@@ -60,13 +61,10 @@ class StagePeaks:
     """
 
     def __init__(self, name: str, kind: str, duration: float) -> None:
-        self.name, self.kind, self._duration = name, kind, duration
+        self.name, self.kind, self.duration = name, kind, duration
         self._windows: Array = np.empty((2, WINDOWS, 0))  # least and largest figures in windows of time
         self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
-        self._last_instant: Record | None = None
-        self._final: dict[str, Any] | None = None
-        self._latest: Array = np.empty(0)
-        self.soil: dict[str, Any] = {}
+        self.soil = SoilExtremes()
         self._t: list[float] = []
         self._last: list[Array] = []
 
@@ -74,12 +72,10 @@ class StagePeaks:
         """Follow the state that a dynamic stage begins with, and accepted steps in turn; times: s or load factors."""
         rows = pack(record)
         self._follow(times, rows, with_least_between_nodes(record, rows))
-        self._last_instant = record.at(-1)
 
     def begin(self, before: StagePeaks) -> None:
         """With the end of the stage before."""
-        self._follow([0.0], before._latest[None], before._last[-1][None])
-        self._final = before.final
+        self._follow([0.0], before.sampled.latest[None], before._last[-1][None])
 
     def _follow(self, times: Sequence[float], sampled: Array, peaked: Array) -> None:
         """Rows (nt, figures) of instants in turn, as recorded and with the tension's between nodes."""
@@ -91,7 +87,6 @@ class StagePeaks:
                 between.extend(self._between_steps(t, row))
             if self.kind != "static":
                 smooth.append(self._smoothed())
-        self._latest = sampled[-1]
         at = np.array(times)
         for extremes, rows in ((self.sampled, sampled), (self.of_nodes, peaked)):
             extremes.update(at, rows)
@@ -115,13 +110,13 @@ class StagePeaks:
         more of a window than short ones.
         """
         for n in range(self._window(self._t[-2]), self._window(self._t[-1])) if len(self._t) > 1 else ():
-            share = ((n + 1) * self._duration / WINDOWS - self._t[-2]) / (self._t[-1] - self._t[-2])
+            share = ((n + 1) * self.duration / WINDOWS - self._t[-2]) / (self._t[-1] - self._t[-2])
             edge = (1.0 - share) * self._last[-2] + share * self._last[-1]
             self._in_window(n, edge)
             self._in_window(n + 1, edge)
 
     def _window(self, t: float) -> int:
-        return min(int(WINDOWS * t / self._duration), WINDOWS - 1)
+        return min(int(WINDOWS * t / self.duration), WINDOWS - 1)
 
     def _in_window(self, n: int, peaked: Array) -> None:
         least, largest = self._windows[:, n]
@@ -131,9 +126,7 @@ class StagePeaks:
     @property
     def final(self) -> dict[str, Any] | None:
         """Figures of the last state that was followed, as the summary has them; None before there is one."""
-        if self._last_instant is not None:
-            self._final, self._last_instant = final_state(self._last_instant), None
-        return self._final
+        return final_state(self.sampled.latest) if self._t else None
 
     def _smoothed(self) -> tuple[float, Array]:
         """The middle one of five steps without ringing; where there are none yet, or uneven ones, the last as it is."""
@@ -164,33 +157,28 @@ class StagePeaks:
 
     def as_summary(self, which: str) -> dict[str, Any]:
         """The stage as the summary has it; which: sampled, of_nodes, peaks or smooth."""
-        if self.final is None:
+        final = self.final
+        if final is None:
             return {"name": self.name, "kind": self.kind, "final": None}
-        final = dict(self.final)
         if which != "sampled":
             final[_TENSION] = {**final[_TENSION], "value": self._last[-1][places_of(_TENSION)].item()}
         extremes = self._smooth_to_the_end() if which == "smooth" else vars(self)[which]
         return {
-            "name": self.name, "kind": self.kind, "final": final, "soil": self.soil,
+            "name": self.name, "kind": self.kind, "final": final, "soil": self.soil.nested(),
             "extremes": extremes.nested(),
         }  # fmt: skip
 
     def state(self) -> Saved:
-        plain: dict[str, Any] = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil}
-        plain |= {"t": self._t, "duration": self._duration}
-        vectors = {"latest": self._latest, "last": np.array(self._last), "windows": self._windows.copy()}
-        return gathered(self._extremes) | vectors | {"told": packed(plain)}
+        values = {"t": np.array(self._t), "last": np.array(self._last), "windows": self._windows.copy()}
+        return gathered(self._owners) | values
 
     def restore(self, saved: Saved) -> None:
-        plain = unpacked(saved["told"])
-        self.name, self.kind, self._final, self.soil = (plain[name] for name in ("name", "kind", "final", "soil"))
-        self._t, self._last, self._latest = plain["t"], list(saved["last"]), saved["latest"]
-        self._duration, self._windows = plain["duration"], saved["windows"].copy()
-        restore_all(self._extremes, saved)
+        self._t, self._last, self._windows = as_list(saved["t"]), list(saved["last"]), saved["windows"].copy()
+        restore_all(self._owners, saved)
 
     @property
-    def _extremes(self) -> dict[str, Stateful]:
-        return {name: vars(self)[name] for name in ("sampled", "of_nodes", "peaks", "smooth")}
+    def _owners(self) -> dict[str, Stateful]:
+        return {name: vars(self)[name] for name in ("sampled", "of_nodes", "peaks", "smooth", "soil")}
 
 
 class RunPeaks:
@@ -229,7 +217,7 @@ class RunPeaks:
             stage = self.stages[-1][line]
             stage.update(times, record)
             if soil is not None and self._places is not None and line == self._on_soil:
-                stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
+                stage.soil.update(times[-1], soil, self._places)
 
     def as_summary(self, which: str) -> dict[str, Any]:
         """The share of a summary that key results are read from; which: sampled, of_nodes, peaks or smooth."""
@@ -237,13 +225,14 @@ class RunPeaks:
         return {"stages": [_stage_summary(of_lines, which) | hung.nested for of_lines, hung in each]}
 
     def state(self) -> Saved:
-        return gathered(self._numbered)
+        begun = [
+            {line: (own.name, own.kind, own.duration) for line, own in of_lines.items()} for of_lines in self.stages
+        ]
+        return gathered(self._numbered) | {"begun": packed(begun)}
 
     def restore(self, saved: Saved) -> None:
-        there = [name.split("/")[:2] for name in saved if name.count("/") == 2 and name.endswith("/told")]
-        self.stages = [{} for _ in {number for number, _ in there}]
-        for number, line in there:
-            self.stages[int(number)][line] = StagePeaks("", "", 1.0)
+        begun = unpacked(saved["begun"])
+        self.stages = [{line: StagePeaks(*stage) for line, stage in of_lines.items()} for of_lines in begun]
         self._hung = [HungExtremes() for _ in self.stages]
         restore_all(self._numbered, saved)
 

@@ -24,7 +24,8 @@ from riser_soil.results.netcdf_layout import Variable
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.run_frames import RunFrames, series_rows, step_rows
 from riser_soil.results.schedule import DueOutputs
-from riser_soil.results.summary import StageTally, Summary
+from riser_soil.results.stage_tally import StageTally
+from riser_soil.results.summary import Summary
 from riser_soil.results.tallies import Tallies
 
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
@@ -71,7 +72,7 @@ class Recorder:
         keeping: Keeping,
         hung: Mapping[str, Variable],
     ) -> None:
-        self._tallies, self._keeping = Tallies(facts, [*arcs]), keeping
+        self._tallies, self._keeping = Tallies(facts, [*arcs], soil_mesh), keeping
         self._lock, self._folder = lock, folder
         self._fields = fields
         left_out = {line: outputs.left_out(wanted) for line, wanted in fields.items()}
@@ -326,8 +327,7 @@ class Recorder:
 
     def _picture(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> None:
         self._waiting += self._frames.add(stamp, rows, row, soil)
-        if self.summary.stages:
-            self._frames.tally(self._tallies.over_soil, self._tallies.now, soil)
+        self._tallies.picture(soil)
 
     def state(self) -> Saved:
         """What is gathered on the way; what is written stays in the folder."""

@@ -15,9 +15,7 @@ from riser_soil.core.saved_state import Stateful
 from riser_soil.core.snapshot import Ledger, Record, Records, SoilMesh, SoilSnapshot, StepRecord
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.results import folder as run_folder
-from riser_soil.results.figures import places, with_largest
 from riser_soil.results.netcdf import group
-from riser_soil.results.summary import StageTally
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 
@@ -86,7 +84,6 @@ class RunFrames:
         if soil_mesh is not None:
             soil = folder / run_folder.SOIL_XDMF
             self._soil = XdmfFile(soil, "soil", soil_mesh.cells, soil_mesh.points, goes_on=goes_on)
-            self._places = places(soil_mesh)
             self._files.append(self._soil)
 
     def drawable(self, soil: SoilSnapshot | None) -> bool:
@@ -108,11 +105,6 @@ class RunFrames:
             raise ValueError("pictures are due, so the soil's snapshot is needed too: both files share one time axis")
         self._soil.add(soil_frame(stamp, soil, {name for fields in self._fields.values() for name in fields}))
         return waiting + _size(vars(soil)) + _size(soil.asked)
-
-    def tally(self, stage: StageTally, now: float, soil: SoilSnapshot | None) -> None:
-        """Take note of the soil's largest values in a stage of the line that lies on it."""
-        if self._soil is not None and soil is not None:
-            stage.soil = with_largest(stage.soil, self._places, now, soil)
 
     def flush(self) -> None:
         """Write all frames so far to disk."""

@@ -8,63 +8,47 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import Records, RunFacts, StepRecord
-from riser_soil.results.code_tally import CodeTally
+from riser_soil.core.snapshot import Records, RunFacts, SoilMesh, SoilSnapshot, StepRecord
 from riser_soil.results.figures import pack
-from riser_soil.results.hung_figures import HungExtremes
-from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.schedule import DueOutputs, SimulatedTime
-from riser_soil.results.summary import StageTally, Summary
+from riser_soil.results.soil_extremes import places
+from riser_soil.results.stage_tally import StageTally
+from riser_soil.results.summary import Summary
 
 
 class Tallies:
-    """Counts what the summary tells, of accepted steps in turn. lines: their names, "" of the only one.
-
-    now: time of the run at the last step [s]; in a static stage its load factor.
+    """Counts what the summary has of accepted steps in turn. lines: their names, "" of the only one. mesh: of the soil,
+    None without.
     """
 
-    def __init__(self, facts: RunFacts, lines: Sequence[str]) -> None:
-        self.summary, self.now = Summary(facts), 0.0
-        self._scales = facts.diameter, facts.weight, facts.contact_period
-        self._lines, self._on_soil, self._code_checks = lines, facts.on_soil, facts.code_checks
-        self._hung, self._time = HungExtremes(), SimulatedTime()
-        self._latest: dict[str, Array] = {}
+    def __init__(self, facts: RunFacts, lines: Sequence[str], mesh: SoilMesh | None = None) -> None:
+        self.summary = Summary(facts, lines)
+        self._on_soil, self._places = facts.on_soil, None if mesh is None else places(mesh)
+        self._time, self._now = SimulatedTime(), 0.0
 
     @property
     def stage(self) -> StageTally:
         """The present one."""
         return self.summary.stages[-1]
 
-    @property
-    def over_soil(self) -> StageTally:
-        """That of the line that lies on the soil."""
-        return self.stage.of(self._on_soil)
-
     def begin_stage(self, name: str, kind: str, automatic: bool) -> None:
-        """Begin a stage: a tally of it for the whole and for each line. automatic: whether its time steps are."""
+        """Begin a stage; one along t with the figures that the stage before ended with. automatic: whether its time
+        steps are.
+        """
         self._time.begin_stage(kind)
-        stage = self._new(name, kind, automatic, "")
-        stage.lines = {line: self._new(name, kind, automatic, line) for line in self._lines if line}
-        self.summary.stages.append(stage)
-        self._hung = HungExtremes()
-        if kind != "static":
-            self._begin_from_latest()
+        self.summary.begin_stage(name, kind, automatic)
+        if kind != "static" and len(self.summary.stages) > 1:
+            before = self.summary.stages[-2].lines
+            self._begin_from({line: tally.extremes.latest for line, tally in before.items()})
 
-    def _new(self, name: str, kind: str, automatic: bool, line: str) -> StageTally:
-        indicators = StageIndicators(*self._scales, automatic=automatic)
-        return StageTally(name, kind, indicators=indicators, code=CodeTally(self._code_checks.get(line, ())))
-
-    def _begin_from_latest(self) -> None:
-        """Count the state that the stage begins with."""
-        for line, latest in self._latest.items():
-            tally = self.stage.of(line)
-            tally.extremes.update(self._time.now, latest)
-            tally.indicators.begin(self._time.now, latest)
+    def _begin_from(self, figures: Mapping[str, Array]) -> None:
+        """Count the packed figures of each line that the stage begins with."""
+        for line, vector in figures.items():
+            self.stage.lines[line].begin(self._time.now, vector)
 
     def begin_at(self, records: Records) -> float:
         """Count the state that the run begins with; when it is recorded [s]."""
-        self._latest = {line: pack(record)[0] for line, record in records.items()}
-        self._begin_from_latest()
+        self._begin_from({line: pack(record)[0] for line, record in records.items()})
         return self.stamp()
 
     def accept(
@@ -79,29 +63,18 @@ class Tallies:
                 stamps.append(self.stamp())
         stage = self.stage
         at = np.array([step.t for step in steps] if stage.kind == "static" else times)
-        self.now = float(at[-1])
-        stage.count([step.health for step in steps])
+        self._now = float(at[-1])
         stage.time = self._time.stage_time
-        stage.balance(times, [step.ledger for step in steps])
-        if stage.kind == "dynamic":
-            stage.indicators.follow_steps(at, steps)
-        self._count_lines(at, records)
-        if hung:
-            self._hung.update(at, hung)
-            stage.hung = self._hung.nested
+        stage.count(times, steps)
+        stage.hung.update(at, hung)
+        for line, record in records.items():
+            stage.lines[line].update(at, record)
         return times, stamps
 
-    def _count_lines(self, at: Array, records: Records) -> None:
-        for line, record in records.items():
-            tally, rows = self.stage.of(line), pack(record)
-            self._latest[line] = rows[-1]
-            tally.extremes.update(at, rows)
-            if self.stage.kind == "dynamic":
-                tally.indicators.follow(at, rows)
-            tally.last_instant = record.at(-1)
-            tally.bend(at, record)
-            tally.pull(at, record)
-            tally.code.update(at, record)
+    def picture(self, soil: SoilSnapshot | None) -> None:
+        """Count the soil at the last step."""
+        if soil is not None and self._places is not None and self.summary.stages:
+            self.stage.lines[self._on_soil].soil.update(self._now, soil, self._places)
 
     def stamp(self) -> float:
         """Time of a record made now [s], later than that of every record before."""
@@ -112,15 +85,12 @@ class Tallies:
         return t if self.stage.kind == "static" else self._time.of_stage(t)
 
     def state(self) -> Saved:
-        latest = {f"latest/{line}" if line else "latest": values for line, values in self._latest.items()}
-        return gathered(self._owners) | latest | {"now": np.array(self.now)}
+        return gathered(self._owners) | {"now": np.array(self._now)}
 
     def restore(self, saved: Saved) -> None:
         restore_all(self._owners, saved)
-        self.now = float(saved["now"])
-        keys = {line: f"latest/{line}" if line else "latest" for line in self._lines}
-        self._latest = {line: saved[key] for line, key in keys.items() if key in saved}
+        self._now = float(saved["now"])
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        return {"summary": self.summary, "time": self._time, "hung": self._hung}
+        return {"summary": self.summary, "time": self._time}

@@ -11,7 +11,7 @@ import numpy as np
 
 from riser_soil.assembly.riser import attachments_of, elements_of
 from riser_soil.results.read import Run
-from riser_soil.results.summary import DOUBTFUL
+from riser_soil.results.stage_tally import DOUBTFUL
 from riser_soil.scene.lines import ENDS, by_line
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, loads_in

@@ -21,14 +21,17 @@ from riser_soil.core.saved_state import (
     values_of,
     within,
 )
+from riser_soil.core.snapshot import Ledger, Record, StepRecord, StepStatistics
 from riser_soil.core.system import System, Timer
-from riser_soil.results.summary import MostUsed, StageTally, TightestBend
+from riser_soil.results.schedule import DueOutputs
+from riser_soil.results.tallies import Tallies
 from riser_soil.solve.adaptive_steps import AutoSteps
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper
+from tests.support.recorded_run import FACTS, Catenary, stacked
 from tests.support.toy_chain import Chain, Inertia, Springs
 
 
@@ -106,16 +109,27 @@ def test_seconds_spent_before_count_too() -> None:
     assert again.seconds == {"riser": 2.5, "matrix": 1.0}
 
 
-def test_a_tally_comes_back_as_it_was() -> None:
-    tally = StageTally("heave", "dynamic", tightest=TightestBend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
-    tally.pulled, tally.stressed = MostUsed(0.2, 1.0e5, 80.0, 0.1), MostUsed(0.7, 2.0e8, 20.0, 0.2)
-    tally.implausible, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
-    again = StageTally("", "")
-    again.restore(tally.state())
-    reported, before = (
-        {k: v for k, v in vars(each).items() if k not in ("extremes", "indicators", "code")} for each in (again, tally)
-    )
-    assert reported == before
+def test_a_summary_comes_back_as_it_was() -> None:
+    """Of a stage that ended, and one under way; other steps follow."""
+    arc = np.linspace(0.0, 150.0, 31)
+    whole, again = Tallies(FACTS, ("",)), Tallies(FACTS, ("",))
+    for kind in ("static", "dynamic"):
+        whole.begin_stage(kind, kind, automatic=False)
+        whole.stage.implausible, whole.stage.lines[""].implausible = ("doubtful",), ("strained",)
+        tallied(whole, 0.1, Catenary(18.0, 30.0).seen(arc), residual=0.2)
+    again.restore(whole.state())
+    assert repr(again.summary.as_dict()) == repr(whole.summary.as_dict())
+    for each in (whole, again):
+        tallied(each, 0.2, Catenary(16.0, 20.0).seen(arc), residual=0.1)
+        each.begin_stage("on", "dynamic", automatic=True)
+        tallied(each, 0.1, Catenary(17.0, 25.0).seen(arc), residual=0.3)
+    assert repr(again.summary.as_dict()) == repr(whole.summary.as_dict())
+
+
+def tallied(tallies: Tallies, t: float, record: Record, residual: float) -> None:
+    ledger = Ledger(residual=residual, turned_over=5.0)
+    step = StepRecord(t, StepStatistics(3, 0.1, 0.0, 0, local_error=residual), ledger)
+    tallies.accept([step], [DueOutputs(series=True, pictures=False)], {"": stacked([record])}, {})
 
 
 @pytest.mark.parametrize("scheme", [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.5)])

@@ -48,7 +48,7 @@ def test_nothing_is_reported_before_anything_is_checked() -> None:
 
 
 def test_another_goes_on_from_what_was_saved() -> None:
-    again = CodeTally()
+    again = CodeTally(FACTS)
     again.restore(followed().state())
     assert again.as_list() == followed().as_list()
     again.update(np.array([9.0]), seen((0.9, 0.1)))

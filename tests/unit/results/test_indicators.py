@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
 from riser_soil.results.doubtful_extremes import AT, JUDGED, TimeResolution
 from riser_soil.results.figures import places_of
-from riser_soil.results.indicators import ImpactLoss, StageIndicators
+from riser_soil.results.indicators import FigureIndicators, ImpactLoss, StepIndicators
 from tests.support.said import line_with
 
 SHARE = 0.3  # of the second difference around an extreme: how far it may be off, as calibrated
@@ -97,9 +98,19 @@ def test_what_is_not_known_is_not_judged() -> None:
     assert found.of_most[0] == 0.0
 
 
-def followed(tensions: list[float], dt: float = 0.1, lost: float = 0.0, local_error: float = 0.0) -> StageIndicators:
+class Indicators(NamedTuple):
+    """Those of a riser's figures, and of its steps."""
+
+    figures: FigureIndicators
+    steps: StepIndicators
+
+    def warnings(self) -> list[str]:
+        return [*self.figures.warnings(), *self.steps.warnings()]
+
+
+def followed(tensions: list[float], dt: float = 0.1, lost: float = 0.0, local_error: float = 0.0) -> Indicators:
     """Indicators of steps with these tensions at the end and a loss by impact in each [J], 100 J of motion."""
-    found, rows = StageIndicators(0.3, 1e3, 0.5), np.zeros((len(tensions), SIZE))
+    found, rows = Indicators(FigureIndicators(0.3, 1e3), StepIndicators(0.3, 0.5)), np.zeros((len(tensions), SIZE))
     rows[:, TENSION] = tensions
     ledgers = [
         Ledger(kinetic=100.0, dissipated_by={"seabed": 7.0, "seabed_time_scheme": lost * n}) for n in range(len(rows))
@@ -107,8 +118,8 @@ def followed(tensions: list[float], dt: float = 0.1, lost: float = 0.0, local_er
     steps = [StepRecord(0.0, StepStatistics(3, dt, 0.0, 0, local_error), ledger) for ledger in ledgers]
     times, half = dt * np.arange(len(rows)), len(rows) // 2  # as many at once as may be
     for some in (slice(half), slice(half, None)):
-        found.follow(times[some], rows[some])
-        found.follow_steps(times[some], steps[some])
+        found.figures.follow(times[some], rows[some])
+        found.steps.follow(times[some], steps[some])
     return found
 
 
@@ -123,12 +134,10 @@ def test_a_tension_that_turns_sharply_is_a_warning() -> None:
 
 def judged(least: list[float], moments: list[float] | None = None, automatic: bool = False) -> list[str]:
     """Warnings of steps of 0.1 s with these least tensions and largest moments, while the end bears 1000 N."""
-    found, vector = StageIndicators(0.3, 1e3, 0.5, automatic), np.zeros(SIZE)
+    found, vector = FigureIndicators(0.3, 1e3, automatic), np.zeros(SIZE)
     for n, tension in enumerate(least):
         vector[[TENSION, LEAST, MOMENT]] = 1000.0, tension, moments[n] if moments else 0.0
-        step = StepRecord(0.0, StepStatistics(3, 0.1, 0.0, 0), Ledger())
         found.follow(np.array([n * 0.1]), vector[None])
-        found.follow_steps(np.array([n * 0.1]), [step])
     return list(found.warnings())
 
 
@@ -219,17 +228,21 @@ def test_steps_that_misplace_the_riser_are_a_warning() -> None:
 
 
 def test_indicators_come_back_as_they_were() -> None:
-    first, again = followed([600.0, 800.0, 1000.0, 700.0], lost=5.0, local_error=0.1), StageIndicators()
-    first.automatic = True
-    first.bending = {"moment_error": 3.0}
-    again.restore(first.state())
-    assert again.as_dict(True) == first.as_dict(True)
-    assert [*again.warnings()] == [*first.warnings()]
+    first = followed([600.0, 800.0, 1000.0, 700.0], lost=50.0, local_error=0.9)
+    again = Indicators(FigureIndicators(0.3, 1e3), StepIndicators(0.3, 0.5))
+    first.figures.bending = {"moment_error": 3.0}
+    again.figures.restore(first.figures.state())
+    again.steps.restore(first.steps.state())
+    assert again.figures.as_dict(True) == first.figures.as_dict(True)
+    assert again.steps.as_dict() == first.steps.as_dict()
+    assert again.warnings() == first.warnings()
+    assert len(first.warnings()) == 3
 
 
 def test_statics_tell_of_bending_alone() -> None:
-    found = StageIndicators()
+    found = FigureIndicators()
     assert found.as_dict(False) == {}
     found.bending = {"moment_error": 3.0}
     assert found.as_dict(False).keys() == {"bending"}
-    assert set(found.as_dict(True)["time_step"]) == {"local_error", *JUDGED}
+    assert set(found.as_dict(True)["time_step"]) == set(JUDGED)
+    assert set(StepIndicators().as_dict()["time_step"]) == {"local_error"}

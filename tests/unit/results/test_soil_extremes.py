@@ -4,22 +4,32 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from riser_soil.core.snapshot import SoilSnapshot
 from riser_soil.results import Run
-from riser_soil.results.figures import places, with_largest
+from riser_soil.results.soil_extremes import SoilExtremes, places
 from tests.support.recorded_run import block, record, soil
 
 MESH = block(4, 3, 2)
 
 
+def followed(*snapshots: SoilSnapshot) -> dict[str, Any]:
+    """Extremes of snapshots at 0.1 s, 0.2 s and so on."""
+    extremes = SoilExtremes()
+    for n, snapshot in enumerate(snapshots):
+        extremes.update(0.1 * (n + 1), snapshot, places(MESH))
+    return extremes.nested()
+
+
 def test_the_largest_is_kept_with_its_place_and_time() -> None:
-    where, first = places(MESH), soil(MESH, 30.0)
+    first = soil(MESH, 30.0)
     cell = 7
     later = replace(first, strength_used=np.where(np.arange(len(MESH.cells)) == cell, 1.5, 0.0))
-    found = with_largest(with_largest(with_largest({}, where, 0.1, first), where, 0.2, later), where, 0.3, first)
+    found = followed(first, later, first)
     centre = MESH.points[MESH.cells[cell]].mean(axis=0).tolist()
     assert found["max_strength_used"] == {"value": 1.5, "position": centre, "time": 0.2}
     assert found["max_von_mises_stress"]["value"] == first.von_mises.max()
@@ -36,8 +46,7 @@ def test_round_off_does_not_choose_among_places() -> None:
     for seed in range(8):
         noise = 1.0 + 1e-12 * np.random.default_rng(seed).normal(size=len(MESH.cells))
         seen = replace(first, strength_used=first.strength_used * noise)
-        found.append(with_largest(with_largest({}, places(MESH), 0.1, first), places(MESH), 0.2, seen))
-        found.append(with_largest({}, places(MESH), 0.1, seen))
+        found += [followed(first, seen), followed(seen)]
     assert len({tuple(each["max_strength_used"]["position"]) for each in found}) == 1
     assert {each["max_strength_used"]["time"] for each in found} == {0.1}
 

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from riser_soil.core.output import angle_deg
-from riser_soil.core.snapshot import Ledger, Record
-from riser_soil.results.figures import Extremes, final_state, pack, unpack
-from riser_soil.results.summary import StageTally, Summary, plain_json
+from riser_soil.core.snapshot import Ledger, Record, StepRecord, StepStatistics
+from riser_soil.results.figures import Extremes, final_state, pack
+from riser_soil.results.limit_tally import LimitTally
+from riser_soil.results.stage_tally import StageTally
+from riser_soil.results.summary import Summary, plain_json
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record, stacked
 from tests.support.said import line_with
 
@@ -58,7 +60,7 @@ def strictly(text: str) -> Any:
 
 
 def test_final_state_of_a_catenary() -> None:
-    final = final_state(LINE.seen(ARC))
+    final = final_state(pack(LINE.seen(ARC)))
     assert set(final) == {"start", "end", PLACE} | WHOLE
     assert set(final["start"]) == set(final["end"]) == END
     assert final["start"]["force"] == pytest.approx([-WEIGHT * 32.0, 0.0, 0.0])
@@ -86,26 +88,51 @@ def test_what_is_unknown_is_left_out() -> None:
     extremes.update(0.0, pack(record))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
     unknown |= {"max_tension_utilisation", "max_wall_von_mises_stress", "max_stress_utilisation", *CODE}
-    for found in (final_state(record), extremes.nested()):
+    for found in (final_state(pack(record)), extremes.nested()):
         assert set(found) == {"start", "end", PLACE} | WHOLE - unknown
 
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
     straight = dict.fromkeys(("largest_curvature", "largest_curvature_arc"), np.zeros(()))
-    final = final_state(LINE.seen(ARC).with_values(**straight))
+    final = final_state(pack(LINE.seen(ARC).with_values(**straight)))
     assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 
 
 def test_a_pipe_bent_too_much_is_a_warning() -> None:
-    stage = StageTally("heave", "dynamic")
-    stage.bend(np.array([0.1]), stacked([Catenary(25.0, 30.0).seen(ARC)]))
-    both = stacked([Catenary(a, 30.0).seen(ARC) for a in (16.0, 18.0)])
-    stage.bend(np.array([0.2, 0.3]), both)
-    (warning,) = stage.warnings
-    line_with([warning], "min_bend_radius", "1.25 times", "arc 30 m and 0.2 s", "radius is 16 m")
-    stage = StageTally("heave", "dynamic")
-    stage.bend(np.array([0.1]), stacked([Catenary(20.1, 30.0).seen(ARC)]))
-    assert stage.warnings == []
+    assert exceeded(bent(20.1), bent(25.0)) == []
+    warnings = exceeded(bent(25.0), bent(16.0), bent(18.0))
+    assert len(warnings) == 1
+    line_with(warnings, "min_bend_radius", "1.25 times", "arc 30 m and 0.2 s", "radius is 16 m")
+
+
+def bent(a: float) -> Record:
+    """A catenary of this parameter [m], whose pipe may be bent to 20 m; weak in nothing else."""
+    others = dict.fromkeys(("tension_utilisation", "stress_utilisation"))
+    return Catenary(a, 30.0).seen(ARC).with_values(**others)
+
+
+def exceeded(*records: Record) -> list[str]:
+    """Warnings of limits that are exceeded at 0.1 s, 0.2 s and so on: in one batch, and in two with a restart."""
+    times = 0.1 * np.arange(1, len(records) + 1)
+    whole, begun, again = LimitTally(), LimitTally(), LimitTally()
+    whole.update(times, stacked(records))
+    begun.update(times[:1], stacked(records[:1]))
+    again.restore(begun.state())
+    again.update(times[1:], stacked(records[1:]))
+    assert [*again.warnings("s")] == [*whole.warnings("s")]
+    return [*whole.warnings("s")]
+
+
+def test_pull_and_stress_beyond_their_limits_are_warnings() -> None:
+    """The largest of all nodes and instants, nan where a line type gives none, with its own tension and stress."""
+    tension = {"tension_utilisation": np.where(ARC < 100.0, np.nan, 1.5)} | {"effective_tension": 10.0 * ARC}
+    stress = {"stress_utilisation": np.where(ARC == 40.0, 1.2, 0.5), "most_used_stress": 1.0e6 * ARC}
+    calm, pulled = bent(25.0), bent(25.0).with_values(**tension, **stress)
+    known = calm.with_values(tension_utilisation=0.5 * np.ones_like(ARC), stress_utilisation=np.zeros_like(ARC))
+    warnings = exceeded(known, pulled, known)
+    assert len(warnings) == 2
+    line_with(warnings, "max_tension", "1.5 times", "arc 100 m and 0.2 s", "tension is 1000 N")
+    line_with(warnings, "yield_stress", "1.2 times", "arc 40 m and 0.2 s", "stress is 4e+07 Pa")
 
 
 @pytest.mark.parametrize(
@@ -163,26 +190,25 @@ def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
 
 def test_never_touching_is_null(tmp_path: Path) -> None:
     summary = Summary(FACTS)
-    stage = StageTally("hang", "static", steps=1)
+    stage = summary.begin_stage("hang", "static")
+    stage.steps = 1
     free = {"touchdown_arc": np.float64(math.nan), "touchdown_position": np.full(3, math.nan)}
     free |= {"touchdown_points": np.int64(0), "max_penetration": np.float64(0.0), "contact_force_sum": np.zeros(3)}
     record = Record(ARC, LINE.riser(ARC) | free)
-    stage.extremes.update(1.0, pack(record))
-    stage.final = final_state(record)
-    summary.stages.append(stage)
+    stage.lines[""].extremes.update(1.0, pack(record))
     summary.write(tmp_path / "summary.json")
     written = strictly((tmp_path / "summary.json").read_text())["stages"][0]
     assert written["final"]["touchdown_arc"] is None
     assert written["extremes"]["touchdown_arc"] == {"min": None, "max": None, "t_min": None, "t_max": None}
 
 
-def test_packing_and_unpacking_agree() -> None:
-    vector = np.arange(52.0)
-    nested = unpack(vector)
-    assert nested["start"]["position"] == [0.0, 1.0, 2.0]
-    assert nested["end"]["angle_deg"] == 23.0
-    assert nested["touchdown_position"] == [25.0, 26.0, 27.0]
-    assert nested["contact_force"] == 41.0
+def test_a_packed_vector_has_the_figures_in_the_order_of_the_file_and_their_places_behind() -> None:
+    final = final_state(np.arange(float(pack(LINE.seen(ARC)).size)))
+    assert final["start"]["position"] == [0.0, 1.0, 2.0]
+    assert final["end"]["angle_deg"] == 23.0
+    assert final["touchdown_position"] == [25.0, 26.0, 27.0]
+    assert final["max_bending_moment"] == {"value": 29.0, "arc": 52.0}
+    assert final["contact_force"] == 41.0
 
 
 def test_plain_json() -> None:
@@ -232,15 +258,19 @@ def test_structure_of_the_file(tmp_path: Path) -> None:
 
 def test_energy_that_does_not_balance_is_a_warning() -> None:
     """1 J of 99 J is more than a hundredth, at its worst or at the end; the scheme's own share has its own warning."""
-    stage = StageTally("heave", "dynamic")
-    booked = [Ledger(kinetic=99.0, turned_over=99.0, residual=residual) for residual in (-1.0, 0.1)]
-    stage.balance([0.5, 1.0], booked)
-    (warning,) = stage.warnings
-    line_with([warning], "energy balance", "-1 J", "0.5 s", "1.01% of the 99 J")
-    quiet, greedy = StageTally("heave", "dynamic"), StageTally("heave", "dynamic")
-    quiet.balance([0.5], [Ledger(turned_over=101.0, residual=1.0, numerical=1.0)])
-    assert quiet.warnings == []
-    greedy.balance([0.5], [Ledger(turned_over=99.0, numerical=-1.0)])
-    (warning,) = greedy.warnings
-    line_with([warning], "time scheme", "added 1 J", "1.01% of the 99 J", "smaller time_step")
-    assert StageTally("lay", "static", energy=Ledger(residual=math.nan)).warnings == []
+    off = balanced(*(Ledger(kinetic=99.0, turned_over=99.0, residual=residual) for residual in (-1.0, 0.1)))
+    assert len(off.warnings) == 1
+    line_with(off.warnings, "energy balance", "-1 J", "0.5 s", "1.01% of the 99 J")
+    assert balanced(Ledger(turned_over=101.0, residual=1.0, numerical=1.0)).warnings == []
+    greedy = balanced(Ledger(turned_over=99.0, numerical=-1.0))
+    assert len(greedy.warnings) == 1
+    line_with(greedy.warnings, "time scheme", "added 1 J", "1.01% of the 99 J", "smaller time_step")
+    assert balanced(Ledger(residual=math.nan), kind="static").warnings == []
+
+
+def balanced(*ledgers: Ledger, kind: str = "dynamic") -> StageTally:
+    """A stage after steps of 0.5 s with these ledgers."""
+    stage, health = StageTally(FACTS, "heave", kind), StepStatistics(3, 0.5, 0.0, 0)
+    times = [0.5 * (n + 1) for n in range(len(ledgers))]
+    stage.count(times, [StepRecord(t, health, ledger) for t, ledger in zip(times, ledgers, strict=True)])
+    return stage

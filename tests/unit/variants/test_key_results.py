@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from riser_soil.core.snapshot import RunFacts
-from riser_soil.results.figures import final_state, pack
-from riser_soil.results.summary import StageTally, Summary, plain_json
+from riser_soil.results.figures import pack
+from riser_soil.results.summary import Summary, plain_json
 from riser_soil.variants.key_results import KeyResult, key_results
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary
 
@@ -20,14 +20,14 @@ LENGTH = math.dist((0.0, 0.0, 0.15), Catenary(32.0, 30.0).seen(ARC).position[-1]
 
 def summary(kind: str, *parameters: float, facts: RunFacts = FACTS, **soil: Any) -> Any:
     """Of one stage that went through catenaries of these parameters [m], as read from summary.json."""
-    whole, tally = Summary(facts), StageTally("lay", kind)
+    whole = Summary(facts)
+    stage = whole.begin_stage("lay", kind)
     for t, a in enumerate(parameters):
-        seen = Catenary(a, 62.0 - a).seen(ARC)
-        tally.extremes.update(float(t), pack(seen))
-        tally.final, tally.steps = final_state(seen), t + 1
-    tally.soil = soil
-    whole.stages.append(tally)
-    return plain_json(whole.as_dict())
+        stage.lines[""].extremes.update(float(t), pack(Catenary(a, 62.0 - a).seen(ARC)))
+        stage.steps = t + 1
+    made = plain_json(whole.as_dict())
+    made["stages"][0] |= {"soil": soil} if soil else {}
+    return made
 
 
 def test_of_a_static_stage_the_end_counts() -> None:
