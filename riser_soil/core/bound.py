@@ -102,9 +102,12 @@ def _interpreted(kernel: Any, arguments: Sequence[Packed], row: int, same: int) 
     kernel(*(each.value for each in arguments))
 
 
-def bound(stub: Any, data: tuple[Any, ...], *arguments: Packed) -> Bound:
-    """The kernel that a function chosen by type has for this data, bound to it and to its other arguments."""
-    return Bound(stub.kernels[type(data)], Packed(data), *arguments)
+def bound(stub: Any, data: tuple[Any, ...] | Packed, *arguments: Packed) -> Bound:
+    """The kernel that a function chosen by type has for this data, packed or not, bound to it and to its other
+    arguments.
+    """
+    packed = data if isinstance(data, Packed) else Packed(data)
+    return Bound(stub.kernels[type(packed.value)], packed, *arguments)
 
 
 class Calls(NamedTuple):
